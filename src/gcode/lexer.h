@@ -1,0 +1,75 @@
+// bytes -> lines -> commands with their parameters. Knows the grammar, not what a command does.
+//
+// Handled here: N words and *checksums, ';' and '(...)' comments, lower case, missing spaces, tabs, LF, CR, CRLF and
+// any mixture of them, a byte order mark, bytes that are no text, several commands in a line (RepRapFirmware, CNC),
+// commands whose argument is free text (M117 ...), and Klipper's extended commands (SET_THING A=1).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace stratum::gcode {
+
+/// One command and its parameters. Letters are upper case.
+struct Command {
+    enum class Kind : std::uint8_t {
+        words,     ///< parameters only: the motion command in force goes on
+        numbered,  ///< G1, M82, T0, G92.1
+        extended,  ///< a macro or extended command, in `name`
+    };
+    Kind kind = Kind::words;
+    char letter = 0;           ///< 'G', 'M' or 'T' of a numbered command
+    std::int32_t code = 0;     ///< its number; -1 where T names no number (T?, Tx)
+    std::int32_t subcode = 0;  ///< 1 of G92.1
+    std::string_view name;     ///< of an extended command, as written
+    std::string_view text;     ///< what follows the code or name, up to the comment: for free-text arguments
+
+    bool has(char parameter) const { return ((present_ >> index(parameter)) & 1U) != 0; }
+    bool hasValue(char parameter) const { return ((valued_ >> index(parameter)) & 1U) != 0; }
+    /// The parameter's number. Only meaningful if hasValue().
+    double value(char parameter) const { return values_[index(parameter)]; }
+
+    void clear();
+    void set(char parameter) { present_ |= 1U << index(parameter); }
+    void set(char parameter, double number);
+
+private:
+    static std::uint32_t index(char letter) { return static_cast<std::uint32_t>(letter - 'A') & 31U; }
+    std::uint32_t present_ = 0;
+    std::uint32_t valued_ = 0;
+    std::array<double, 32> values_;  // only those marked in valued_ are ever read
+};
+
+/// One line of the source. Views point into the bytes given to the Lexer.
+struct Line {
+    static constexpr std::size_t kMaxCommands = 4;
+    std::uint32_t number = 0;  ///< 1-based
+    std::size_t count = 0;     ///< commands used
+    std::array<Command, kMaxCommands> commands;
+    std::string_view comment;  ///< without its ';' or parentheses, untrimmed; of several the ';' one or the first
+    bool unreadable = false;   ///< something in it is neither a word nor a comment
+};
+
+/// Splits bytes into lines. Allocates nothing; the bytes must outlive it.
+class Lexer {
+public:
+    explicit Lexer(std::string_view bytes);
+
+    /// Reads the next line, also an empty one. Returns false at the end.
+    bool next(Line& line);
+
+    /// Bytes consumed so far.
+    std::size_t offset() const { return static_cast<std::size_t>(p_ - begin_); }
+
+private:
+    std::string_view takeLine();
+
+    const char* begin_;
+    const char* p_;
+    const char* end_;
+    const char* newline_;  // the next '\n' at or after p_, so that files with bare CR aren't searched again and again
+    std::uint32_t number_ = 0;
+};
+
+}  // namespace stratum::gcode

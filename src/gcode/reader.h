@@ -1,0 +1,33 @@
+// bytes -> Toolpath: the one entrance of this room.
+#pragma once
+
+#include "gcode/toolpath.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace stratum::gcode {
+
+/// How E words count when the file and its settings leave it open.
+enum class ExtruderMode : std::uint8_t { automatic, absolute, relative };
+
+/// Whose rules hold where firmwares differ (does G90/G91 touch E: Marlin yes, Klipper and RepRapFirmware no).
+enum class Firmware : std::uint8_t { automatic, marlin, klipper, reprap };
+
+struct ReadOptions {
+    ExtruderMode extruder_mode = ExtruderMode::automatic;
+    Firmware firmware = Firmware::automatic;
+    std::optional<double> filament_diameter;  ///< mm; overrides the file's settings
+    std::optional<double> layer_height;       ///< mm; used where neither tags nor Z moves tell
+    /// Called now and then with the fraction done, 0..1, from the reading thread. May be empty.
+    std::function<void(double)> progress;
+};
+
+/// Reads one G-code program. `name` stands in messages. Throws InputError (with "name:line: ...") for bytes that are
+/// not G-code, unusable numbers, or a program that deposits nothing. Single-threaded, re-entrant.
+Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options = {});
+
+}  // namespace stratum::gcode

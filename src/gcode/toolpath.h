@@ -1,0 +1,113 @@
+// The seam between reading G-code and everything after it: beads as plain data.
+//
+// Print space: millimetres, x and y in the bed plane, z up, as the G-code has them. One bead is one extruding move.
+// Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// What a bead is for, in one vocabulary for all slicers. Names as in featureName().
+enum class Feature : std::uint8_t {
+    unknown,
+    perimeter,
+    external_perimeter,
+    overhang_perimeter,
+    infill,
+    solid_infill,
+    top_infill,
+    bridge,
+    gap_fill,
+    ironing,
+    skirt,
+    brim,
+    support,
+    support_interface,
+    wipe_tower,
+    custom,
+    count_
+};
+constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::count_);
+
+/// Lower-case name with dashes, e.g. "external-perimeter".
+std::string_view featureName(Feature feature);
+/// The feature of that name, or Feature::count_ if there is none.
+Feature featureNamed(std::string_view name);
+
+/// A circular plan path. The path starts at the bead's start, turns by `sweep` radians (counter-clockwise positive,
+/// |sweep| <= 2 pi) about the centre, with z linear in the angle. Its radius is the mean of the distances of start and
+/// end from the centre, so that a file's rounding (a micrometre) is shared by both ends.
+struct Arc {
+    double center_x = 0;  ///< mm
+    double center_y = 0;  ///< mm
+    double sweep = 0;     ///< radians
+};
+
+/// What neighbouring beads have in common; a bead names its run by index.
+struct Run {
+    float height = 0;            ///< mm, of the layer: the bead's centre is at z - height / 2
+    float speed = 0;             ///< mm/s, the feed rate in force
+    std::uint32_t layer = 0;     ///< 1, 2, ... as slicers count; 0 is what comes before the first layer (prime lines)
+    std::uint16_t object = 0;    ///< index into Toolpath::objects; 0 is "no object"
+    std::uint8_t tool = 0;       ///< T number
+    Feature feature = Feature::unknown;
+    bool operator==(const Run&) const = default;
+};
+
+/// One extruding move. Coordinates are of the nozzle: z is the top of the bead.
+struct Bead {
+    double x0 = 0, y0 = 0, z0 = 0;  ///< mm, start
+    double x1 = 0, y1 = 0, z1 = 0;  ///< mm, end
+    float width = 0;                ///< mm; width >= height: stadium section; width < height: round, of this diameter
+    std::uint32_t run = 0;          ///< index into Toolpath::runs
+    std::int32_t arc = -1;          ///< index into Toolpath::arcs; -1 is a straight bead
+    std::uint32_t line = 0;         ///< 1-based line in the source
+};
+static_assert(sizeof(Bead) == 64);
+
+/// A remark about the input that changed nothing fatal. Equal texts are counted, not repeated.
+struct Warning {
+    std::string text;
+    std::uint32_t first_line = 0;
+    std::uint32_t count = 0;
+};
+
+/// Everything that one G-code file deposits, in print order.
+struct Toolpath {
+    std::vector<Bead> beads;
+    std::vector<Arc> arcs;
+    std::vector<Run> runs;
+    std::vector<std::string> objects{""};  ///< names of labelled objects; [0] is unlabelled
+    std::vector<Warning> warnings;
+
+    std::string slicer;                 ///< e.g. "PrusaSlicer 2.5.0"; empty if the file doesn't say
+    std::string firmware;               ///< the rule set used, e.g. "marlin"
+    std::string format = "ascii";       ///< the container
+    double filament_diameter = 1.75;    ///< mm, of tool 0
+    double layer_height = 0;            ///< mm, nominal, from the file's settings; 0 if unknown
+    std::uint32_t layer_count = 0;
+    double filament_mm = 0;             ///< positive E of the beads as the file counts it, in mm of filament
+    double extruded_mm3 = 0;            ///< the same as volume, times the flow factor (M221): what beads must add up to
+
+    const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
+    bool empty() const { return beads.empty(); }
+};
+
+/// Length of the path of a bead in mm, its climb included.
+double beadLength(const Toolpath& toolpath, const Bead& bead);
+
+/// Area of a bead's cross-section in mm^2: a stadium of `width` x `height`, or a disc of diameter `width` if narrower.
+double sectionArea(double width, double height);
+
+/// Inverse of sectionArea: the width in mm that gives `area` (mm^2) at `height` (mm).
+double sectionWidth(double area, double height);
+
+/// Sum over beads of section area times length, in mm^3.
+double beadVolume(const Toolpath& toolpath);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,34 @@
+// A whole input file as bytes, mapped, not read: pages that nobody looks at are never loaded.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace stratum {
+
+/// Read-only map of a regular file. Movable, not copyable; safe to read from several threads.
+class MappedFile {
+public:
+    /// Maps `path`. Throws InputError if it is missing, a directory, unreadable or empty.
+    explicit MappedFile(const std::filesystem::path& path);
+    ~MappedFile();
+    MappedFile(MappedFile&& other) noexcept;
+    MappedFile& operator=(MappedFile&& other) noexcept;
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    std::string_view bytes() const { return {data_, size_}; }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+    const char* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+/// SHA-256 of the bytes as 64 lower-case hex digits, the same as `sha256sum` prints.
+std::string sha256Hex(std::string_view bytes);
+
+}  // namespace stratum

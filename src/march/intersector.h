@@ -1,0 +1,65 @@
+// The seam between geometry and light: rays in, hits out. Knows nothing of light.
+//
+// World space is the grid's world space (mm unless the .vdb says otherwise). Positions are double: a printer's bed is
+// 10^5 voxels wide and a hit must be good to 10^-3 voxel.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace stratum::march {
+
+/// A ray in world space. `direction` must be of unit length; t counts world units.
+struct Ray {
+    glm::dvec3 origin{0.0};
+    glm::dvec3 direction{0.0, 0.0, 1.0};
+    double t_min = 0.0;
+    double t_max = std::numeric_limits<double>::infinity();
+};
+
+/// Where a ray meets the surface from outside or inside.
+struct Hit {
+    double t = 0.0;                 ///< world units along the ray
+    glm::dvec3 position{0.0};       ///< world space
+    glm::dvec3 normal{0.0};         ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
+};
+
+/// Axis-aligned box in world space.
+struct Box {
+    glm::dvec3 min{0.0};
+    glm::dvec3 max{0.0};
+};
+
+/// What one thread traces rays with. Not thread-safe: every thread makes its own from the shared Intersector, which
+/// must outlive it.
+class Tracer {
+public:
+    virtual ~Tracer() = default;
+    /// The nearest hit with t in [ray.t_min, ray.t_max]. Returns false, and leaves `hit` alone, if there is none.
+    virtual bool intersect(const Ray& ray, Hit& hit) = 0;
+    /// Whether anything lies in [ray.t_min, ray.t_max].
+    virtual bool occluded(const Ray& ray) = 0;
+};
+
+/// A level set ready to be traced. Immutable once made; shared by all threads.
+class Intersector {
+public:
+    virtual ~Intersector() = default;
+    virtual std::unique_ptr<Tracer> makeTracer() const = 0;
+    /// The method's name as in --march.
+    virtual std::string_view name() const = 0;
+    /// World-space box of the surface's narrow band.
+    virtual Box bounds() const = 0;
+    /// World-space edge of a voxel.
+    virtual double voxelSize() const = 0;
+    /// Distance in world units by which a secondary ray must leave a hit along the geometric normal so that it doesn't
+    /// meet the same surface again.
+    virtual double surfaceOffset() const = 0;
+};
+
+}  // namespace stratum::march

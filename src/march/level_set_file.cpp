@@ -1,0 +1,81 @@
+#include "march/level_set_file.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <vector>
+
+namespace stratum::march {
+namespace {
+
+constexpr double kLeastHalfWidth = 2;
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
+    const std::string where = path.string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw InputError(fmt::format("{}: is not a file; check the name", where));
+    openvdb::FloatGrid::Ptr chosen;
+    std::string seen;
+    int candidates = 0;
+    try {
+        openvdb::io::File file(where);
+        // Reading at once shows damage now, not in the middle of a picture.
+        file.open(/*delayLoad=*/false);
+        std::string wanted = name;
+        for (auto it = file.beginName(); it != file.endName(); ++it) {
+            const auto meta = file.readGridMetadata(it.gridName());
+            seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
+            const bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
+            if (!level_set) continue;
+            if (name.empty() && it.gridName() == "surface") {
+                wanted = "surface";
+                candidates = 1;
+                break;
+            }
+            ++candidates;
+            if (name.empty()) wanted = it.gridName();
+        }
+        if (name.empty() && candidates > 1)
+            throw InputError(
+                fmt::format("{}: has {} level sets; say which with --grid NAME. It has: {}", where, candidates, seen));
+        if (name.empty() && candidates == 0)
+            throw InputError(fmt::format(
+                "{}: has no level set of floats; make one with gcode2vdb. It has: {}", where, seen.empty() ? "nothing" : seen));
+        if (!file.hasGrid(wanted))
+            throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
+        chosen = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(wanted));
+        file.close();
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        // OpenVDB throws its own kinds, and std::bad_alloc for the absurd counts of a damaged file.
+        throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
+    }
+    if (!chosen) throw InputError(fmt::format("{}: the grid {} does not hold floats. It has: {}", where, name, seen));
+    requireTraceable(*chosen, where);
+    return chosen;
+}
+
+void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {
+    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET)
+        throw InputError(fmt::format("{}: the grid {} is not a level set but a {}; make a level set with gcode2vdb or "
+                                     "OpenVDB's fog-to-level-set tools",
+                                     where, grid.getName(), grid.gridClassToMenuName(grid.getGridClass())));
+    if (grid.tree().leafCount() == 0)
+        throw InputError(fmt::format("{}: the level set {} is empty; there is no surface to trace", where,
+                                     grid.getName()));
+    if (!grid.hasUniformVoxels())
+        throw InputError(fmt::format("{}: the voxels of {} are not cubes; resample it first", where, grid.getName()));
+    const double half_width = static_cast<double>(grid.background()) / grid.voxelSize()[0];
+    if (!(half_width >= kLeastHalfWidth))
+        throw InputError(fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "
+                                     "make it again with --half-width 3",
+                                     where, grid.getName(), half_width, kLeastHalfWidth));
+}
+
+}  // namespace stratum::march

@@ -1,0 +1,19 @@
+// .vdb -> level set: opens a file, picks the grid to trace, refuses what can't be traced.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+#include <string>
+
+namespace stratum::march {
+
+/// Reads the level set of that name; an empty name takes "surface", or else the only level set in the file.
+/// Throws InputError for a missing or damaged file, no level set, or several to choose from.
+openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name = "");
+
+/// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
+/// not empty, uniform voxels, half-width of at least 2 voxels.
+void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
+
+}  // namespace stratum::march

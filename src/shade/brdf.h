@@ -1,0 +1,50 @@
+// How a surface scatters light: the one interface of every material.
+#pragma once
+
+#include "shade/color.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace stratum::shade {
+
+/// A direction drawn by Brdf::sample.
+struct BrdfSample {
+    glm::vec3 wi{0.0f};  ///< towards the light, unit, local frame, wi.z > 0
+    Color f{0.0f};       ///< eval(wo, wi), 1/sr, without the cosine
+    float pdf = 0.0f;    ///< per steradian, > 0
+};
+
+/// A bidirectional reflectance distribution function, in 1/sr.
+///
+/// Frame: local, z is the surface normal, x and y any tangents (every material here is isotropic). `wo` points to the
+/// viewer, `wi` to the light; both leave the surface and are of unit length. The cosine |wi.z| is never included.
+/// Opaque: whenever wo.z or wi.z is not positive, eval and pdf are 0 and sample returns nothing.
+/// Contract: reciprocal, eval >= 0 and finite, no albedo above 1, pdf > 0 wherever eval > 0, and sample, eval and pdf
+/// agree. Immutable; shared by all threads.
+class Brdf {
+public:
+    virtual ~Brdf() = default;
+    virtual Color eval(const glm::vec3& wo, const glm::vec3& wi) const = 0;
+    /// @param lobe  uniform in [0, 1): chooses among the lobes
+    /// @param u     uniform in [0, 1)^2: chooses the direction in the lobe
+    virtual std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const = 0;
+    /// Density of sample() per steradian.
+    virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
+};
+
+/// What a print is made of when nobody says: a satin teal PLA.
+extern const char* const kDefaultBrdf;
+
+/// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
+///   lambert:R,G,B        ideal diffuse
+///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
+/// Throws UsageError.
+std::shared_ptr<const Brdf> makeBrdf(std::string_view text);
+
+}  // namespace stratum::shade

@@ -1,0 +1,161 @@
+#include "shade/camera.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::shade {
+namespace {
+
+struct NamedView {
+    std::string_view name;
+    View view;
+    glm::dvec3 forward;  // from the camera into the scene
+};
+
+/// Three-quarter view from the front right, 28 degrees above the bed: lower than a true isometric view, as one looks at
+/// a thing on a table.
+const glm::dvec3 kIso = {-std::cos(28.0 * std::numbers::pi / 180.0) * std::sin(35.0 * std::numbers::pi / 180.0),
+                         std::cos(28.0 * std::numbers::pi / 180.0) * std::cos(35.0 * std::numbers::pi / 180.0),
+                         -std::sin(28.0 * std::numbers::pi / 180.0)};
+
+const std::array<NamedView, 7> kViews = {{{"iso", View::iso, kIso},
+                                          {"front", View::front, {0.0, 1.0, 0.0}},
+                                          {"back", View::back, {0.0, -1.0, 0.0}},
+                                          {"left", View::left, {1.0, 0.0, 0.0}},
+                                          {"right", View::right, {-1.0, 0.0, 0.0}},
+                                          {"top", View::top, {0.0, 0.0, -1.0}},
+                                          {"bottom", View::bottom, {0.0, 0.0, 1.0}}}};
+
+bool allFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+glm::dvec3 defaultUp(const glm::dvec3& forward) {
+    return std::abs(forward.z) > 0.9999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+}
+
+/// One image axis of the fit: points (a, depth) must be seen within +-slope from the eye (position, back).
+struct Axis {
+    std::array<double, 8> a{}, depth{};
+    double slope = 1.0;
+
+    /// Depth of the one eye whose two bounding lines of this slope both touch the points.
+    double tightest() const {
+        double high = -std::numeric_limits<double>::infinity();
+        double low = high;
+        for (std::size_t i = 0; i < 8; ++i) {
+            high = std::max(high, a[i] - slope * depth[i]);
+            low = std::max(low, -a[i] - slope * depth[i]);
+        }
+        return -(high + low) / (2.0 * slope);
+    }
+    /// Position at this depth from which the points are seen equally far to both sides.
+    double centred(double back) const {
+        double narrow = 0.0;
+        double wide = slope;
+        double position = 0.0;
+        for (int i = 0; i < 64; ++i) {
+            const double s = 0.5 * (narrow + wide);
+            double from = -std::numeric_limits<double>::infinity();
+            double to = -from;
+            for (std::size_t k = 0; k < 8; ++k) {
+                from = std::max(from, a[k] - s * (depth[k] - back));
+                to = std::min(to, a[k] + s * (depth[k] - back));
+            }
+            position = 0.5 * (from + to);
+            (from <= to ? wide : narrow) = s;
+        }
+        return position;
+    }
+};
+
+}  // namespace
+
+View parseView(std::string_view text) {
+    for (const NamedView& v : kViews)
+        if (v.name == text) return v.view;
+    throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom", text));
+}
+
+void CameraOptions::validate() const {
+    if (!(fov > 0.0 && fov <= 170.0))
+        throw UsageError(fmt::format("--fov {}: must be above 0 and at most 170 degrees", fov));
+    if (!(margin >= 0.0 && margin <= 0.45))
+        throw UsageError(fmt::format("the margin is {}; it must be from 0 to 0.45 of the frame", margin));
+    if (look_at && !eye) throw UsageError("--look-at needs --eye; give both, or choose a --view");
+    if ((eye && !allFinite(*eye)) || (look_at && !allFinite(*look_at)) || (up && !allFinite(*up)))
+        throw UsageError("--eye, --look-at and --up must be finite numbers");
+}
+
+Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec3& up, double fov, int width,
+               int height)
+    : eye_(eye), fov_(fov), tan_half_(std::tan(0.5 * fov * std::numbers::pi / 180.0)), width_(width), height_(height) {
+    const glm::dvec3 line = look_at - eye;
+    if (!(glm::length(line) > 0.0)) throw UsageError("--eye and --look-at are the same point; move one of them");
+    forward_ = glm::normalize(line);
+    const glm::dvec3 side = glm::cross(forward_, up);
+    if (!(glm::length(side) > 1e-9 * glm::length(up)))
+        throw UsageError("--up is parallel to the line of sight (or zero); choose another, e.g. 0,1,0");
+    right_ = glm::normalize(side);
+    up_ = glm::cross(right_, forward_);
+}
+
+Camera Camera::make(const CameraOptions& options, const march::Box& box, int width, int height) {
+    options.validate();
+    const glm::dvec3 middle = 0.5 * (box.min + box.max);
+    if (options.eye) {
+        const glm::dvec3 target = options.look_at.value_or(middle);
+        const glm::dvec3 line = target - *options.eye;
+        const double length = glm::length(line);
+        return {
+            *options.eye, target, options.up.value_or(length > 0.0 ? defaultUp(line / length) : glm::dvec3(0, 0, 1)),
+            options.fov,  width,  height};
+    }
+    const glm::dvec3 forward = kViews[static_cast<std::size_t>(options.view)].forward;
+    Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
+
+    // In view space each pair of opposite frustum planes is a problem in the plane of one image axis and depth.
+    const double room = camera.tan_half_ * (1.0 - 2.0 * options.margin);
+    Axis x;
+    Axis y;
+    x.slope = room * width / height;
+    y.slope = room;
+    for (std::size_t i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1u) ? box.max.x : box.min.x, (i & 2u) ? box.max.y : box.min.y,
+                                (i & 4u) ? box.max.z : box.min.z);
+        const glm::dvec3 d = corner - middle;
+        x.a[i] = glm::dot(d, camera.right_);
+        y.a[i] = glm::dot(d, camera.up_);
+        x.depth[i] = y.depth[i] = glm::dot(d, camera.forward_);
+    }
+    double back = std::min(x.tightest(), y.tightest());
+    // A box without any size has no distance of its own.
+    if (glm::length(box.max - box.min) <= 0.0) back = -1.0;
+    camera.eye_ = middle + back * camera.forward_ + x.centred(back) * camera.right_ + y.centred(back) * camera.up_;
+    return camera;
+}
+
+march::Ray Camera::ray(const glm::dvec2& pixel) const {
+    const double scale = 2.0 * tan_half_ / height_;
+    const double x = (pixel.x - 0.5 * width_) * scale;
+    const double y = (0.5 * height_ - pixel.y) * scale;
+    march::Ray ray;
+    ray.origin = eye_;
+    ray.direction = glm::normalize(forward_ + x * right_ + y * up_);
+    return ray;
+}
+
+std::optional<glm::dvec2> Camera::project(const glm::dvec3& point) const {
+    const glm::dvec3 d = point - eye_;
+    const double depth = glm::dot(d, forward_);
+    if (!(depth > 0.0)) return std::nullopt;
+    const double scale = height_ / (2.0 * tan_half_ * depth);
+    return glm::dvec2(0.5 * width_ + glm::dot(d, right_) * scale, 0.5 * height_ - glm::dot(d, up_) * scale);
+}
+
+}  // namespace stratum::shade

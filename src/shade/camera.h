@@ -1,0 +1,67 @@
+// Where the picture is taken from.
+#pragma once
+
+#include "march/intersector.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <string_view>
+
+namespace stratum::shade {
+
+/// Named directions to look from. z is up and the front of a printer is at -y.
+enum class View { iso, front, back, left, right, top, bottom };
+
+/// Throws UsageError and names the choices.
+View parseView(std::string_view text);
+
+struct CameraOptions {
+    View view = View::iso;              ///< used unless `eye` is given; the distance is fitted to the box
+    std::optional<glm::dvec3> eye;      ///< world space
+    std::optional<glm::dvec3> look_at;  ///< world space; needs `eye`; default: the middle of the box
+    std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
+    double fov = 28.0;             ///< degrees, vertical, whole angle, in (0, 170]
+    double margin = 0.09;          ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
+
+    /// Throws UsageError.
+    void validate() const;
+};
+
+/// A pinhole. Pixels are square; (0, 0) is the upper left corner of the frame, (width, height) the lower right one.
+/// Immutable.
+class Camera {
+public:
+    /// World space; `up` of any length.
+    /// @param fov            degrees, vertical, whole angle
+    /// @param width, height  pixels of the whole frame
+    /// Throws UsageError if eye and look_at coincide or `up` is parallel to the line between them.
+    Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec3& up, double fov, int width, int height);
+
+    /// The camera of `options` for this box. A named view stands as close as it can with all corners of the box inside
+    /// the frame less its margin, and centred. Throws UsageError.
+    static Camera make(const CameraOptions& options, const march::Box& box, int width, int height);
+
+    /// The ray through a point of the frame, in pixels.
+    march::Ray ray(const glm::dvec2& pixel) const;
+    /// Where a world-space point is seen, in pixels; nothing if it is not in front of the camera.
+    std::optional<glm::dvec2> project(const glm::dvec3& point) const;
+
+    const glm::dvec3& eye() const { return eye_; }
+    /// Unit axes, world space.
+    const glm::dvec3& right() const { return right_; }
+    const glm::dvec3& up() const { return up_; }
+    const glm::dvec3& forward() const { return forward_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    double fov() const { return fov_; }
+
+private:
+    glm::dvec3 eye_, right_, up_, forward_;
+    double fov_;       // degrees
+    double tan_half_;  // of the vertical angle
+    int width_, height_;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,13 @@
+#include "shade/constant.h"
+
+#include "shade/sampling.h"
+
+namespace stratum::shade {
+
+EnvironmentSample ConstantEnvironment::sample(const glm::vec2& u) const {
+    return {toSphere(u), radiance_, 0.25f * kInvPi};
+}
+
+float ConstantEnvironment::pdf(const glm::vec3&) const { return 0.25f * kInvPi; }
+
+}  // namespace stratum::shade

@@ -1,0 +1,51 @@
+// Light from infinitely far away, over the whole sphere of directions.
+#pragma once
+
+#include "shade/color.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+#include <string_view>
+
+namespace stratum::shade {
+
+/// A direction drawn by Environment::sample.
+struct EnvironmentSample {
+    glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
+    Color radiance{0.0f};                   ///< radiance(direction)
+    float pdf = 0.0f;                       ///< per steradian; 0 means "no sample"
+};
+
+/// Radiance by direction (see color.h for the unit). World space, z up. pdf > 0 wherever radiance > 0.
+/// Immutable; shared by all threads.
+class Environment {
+public:
+    virtual ~Environment() = default;
+    /// @param direction  away from the scene, unit
+    virtual Color radiance(const glm::vec3& direction) const = 0;
+    /// @param u  uniform in [0, 1)^2
+    virtual EnvironmentSample sample(const glm::vec2& u) const = 0;
+    /// Density of sample() per steradian.
+    virtual float pdf(const glm::vec3& direction) const = 0;
+    /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
+    virtual bool visible() const { return true; }
+};
+
+/// Where the environment stands; used by the built-in ones that follow the camera.
+struct EnvironmentPlacement {
+    double azimuth = 0.0;  ///< radians about +z, from +x: where the camera's right-hand side points
+    bool bed = true;       ///< a bed hides the lower hemisphere, so a studio needs no light from below
+};
+
+/// An environment from the text of --env.
+///   studio            softboxes that turn with the camera's azimuth, as on a photographer's turntable
+///   constant:R,G,B    the same radiance from everywhere
+/// Throws UsageError.
+std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement);
+
+/// Irradiance on a horizontal surface that looks up, from the upper hemisphere, by quadrature. (relative, times pi)
+Color irradianceFromAbove(const Environment& environment);
+
+}  // namespace stratum::shade

@@ -1,0 +1,56 @@
+#include "shade/exr_writer.h"
+
+#include "io/error.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+namespace stratum::shade {
+
+void writeExr(const std::filesystem::path& path, const Film& film, const std::map<std::string, std::string>& metadata) {
+    constexpr std::size_t kChannels = 4;
+    constexpr std::array<const char*, kChannels> kNames = {"R", "G", "B", "A"};
+    const PixelBox& region = film.region();
+    // Inclusive corners.
+    const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(film.frameWidth() - 1, film.frameHeight() - 1));
+    const Imath::Box2i data(Imath::V2i(region.x0, region.y0), Imath::V2i(region.x1 - 1, region.y1 - 1));
+    Imf::Header header(display, data, 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::addChromaticities(header, Imf::Chromaticities());
+    for (const auto& [name, text] : metadata) {
+        if (name.empty() || header.find(name.c_str()) != header.end() || name == "channels")
+            throw std::invalid_argument(fmt::format("'{}' can't be the name of an EXR attribute of ours", name));
+        header.insert(name.c_str(), Imf::StringAttribute(text));
+    }
+
+    std::vector<float> values;
+    values.reserve(kChannels * film.pixels().size());
+    for (const Pixel& p : film.pixels()) values.insert(values.end(), {p.rgb.r, p.rgb.g, p.rgb.b, p.alpha});
+
+    // OpenEXR addresses pixels by frame coordinates: its base is where (0, 0) would be.
+    constexpr std::size_t kStepX = kChannels * sizeof(float);
+    const std::size_t step_y = kStepX * static_cast<std::size_t>(film.width());
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        header.channels().insert(kNames[c], Imf::Channel(Imf::FLOAT));
+        buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, data, kStepX, step_y));
+    }
+    try {
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(film.height());
+    } catch (const std::exception& error) {
+        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+    }
+}
+
+}  // namespace stratum::shade

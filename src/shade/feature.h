@@ -1,0 +1,31 @@
+// What the geometry is, not what it looks like: normals and depth, for checking and for computer vision.
+#pragma once
+
+#include "shade/integrator.h"
+#include "shade/surface.h"
+
+namespace stratum::shade {
+
+/// World-space unit normals, on the side that is seen. Alpha 0 where there is nothing; the far bed fades out.
+class NormalIntegrator final : public Integrator {
+public:
+    NormalIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    FilmContent content() const override { return FilmContent::normal; }
+
+private:
+    Surfaces surfaces_;
+};
+
+/// Distance from the eye in world units. Alpha 0 where there is nothing; the far bed fades out.
+class DepthIntegrator final : public Integrator {
+public:
+    DepthIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    FilmContent content() const override { return FilmContent::depth; }
+
+private:
+    Surfaces surfaces_;
+};
+
+}  // namespace stratum::shade

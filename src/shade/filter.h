@@ -1,0 +1,31 @@
+// How a pixel weighs the light around it.
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <array>
+
+namespace stratum::shade {
+
+/// A separable Blackman-Harris window, drawn from instead of weighed by: every sample belongs to one pixel and counts
+/// the same, so that each pixel is owned by one thread.
+/// Source: M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE RT 2006.
+class PixelFilter {
+public:
+    static constexpr double kRadius = 1.5;  ///< pixels
+
+    PixelFilter();
+    /// Offset from the pixel's centre, in pixels, within +-kRadius.
+    /// @param u  uniform in [0, 1)^2
+    glm::dvec2 offset(const glm::vec2& u) const { return {quantile(u.x), quantile(u.y)}; }
+    /// The window's weight, for checking; 0 beyond the radius.
+    static double weight(double offset);
+
+private:
+    double quantile(float u) const;
+
+    static constexpr int kNodes = 1025;
+    std::array<double, kNodes> quantiles_{};
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,39 @@
+#include "shade/integrator.h"
+
+#include "io/error.h"
+#include "shade/ambient_occlusion.h"
+#include "shade/feature.h"
+#include "shade/path.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+namespace stratum::shade {
+namespace {
+
+constexpr std::array<std::string_view, 5> kNames = {"path", "direct", "ao", "normal", "depth"};
+
+}  // namespace
+
+void IntegratorOptions::validate() const {
+    if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
+        throw UsageError(fmt::format("--integrator {}: unknown; choose path, direct, ao, normal or depth", name));
+    if (bounces < 1 || bounces > 64)
+        throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
+    if (!(ao_distance > 0.0))
+        throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
+}
+
+std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
+                                           const march::Intersector& print) {
+    options.validate();
+    if (options.name == "direct") return std::make_unique<PathIntegrator>(scene, print, 1);
+    if (options.name == "ao") return std::make_unique<AmbientOcclusion>(scene, print, options.ao_distance);
+    if (options.name == "normal") return std::make_unique<NormalIntegrator>(scene, print);
+    if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
+    return std::make_unique<PathIntegrator>(scene, print, options.bounces);
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,61 @@
+// How much light comes back along a ray: the interface of every method, and their choice by name.
+#pragma once
+
+#include "march/intersector.h"
+#include "shade/film.h"
+#include "shade/sampler.h"
+#include "shade/scene.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+
+namespace stratum::shade {
+
+/// Rays traced against the print. A ray that is answered without it (the far bed) is not counted, except primary ones:
+/// there is one a sample.
+struct RayCounts {
+    std::uint64_t primary = 0;  ///< from the camera
+    std::uint64_t shadow = 0;   ///< to a light, and ambient occlusion's
+    std::uint64_t bounce = 0;   ///< drawn from a BRDF
+    std::uint64_t total() const { return primary + shadow + bounce; }
+    RayCounts& operator+=(const RayCounts& o) {
+        primary += o.primary;
+        shadow += o.shadow;
+        bounce += o.bounce;
+        return *this;
+    }
+    bool operator==(const RayCounts&) const = default;
+};
+
+/// What belongs to one thread.
+struct TraceContext {
+    march::Tracer& tracer;
+    Sampler& sampler;
+    RayCounts& rays;
+};
+
+struct IntegratorOptions {
+    std::string name = "path";  ///< path, direct, ao, normal, depth
+    int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
+    double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther things don't occlude
+
+    /// Throws UsageError.
+    void validate() const;
+};
+
+/// Immutable; shared by all threads.
+class Integrator {
+public:
+    virtual ~Integrator() = default;
+    /// What is seen along a camera ray; finite. Draws from context.sampler in a fixed order.
+    virtual Pixel radiance(const march::Ray& ray, TraceContext& context) const = 0;
+    virtual FilmContent content() const { return FilmContent::radiance; }
+};
+
+/// The integrator of `options`. It keeps references: `scene` and `print` must outlive it. Throws UsageError.
+std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
+                                           const march::Intersector& print);
+
+}  // namespace stratum::shade

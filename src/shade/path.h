@@ -1,0 +1,33 @@
+// Light as it travels: paths from the camera, joined to the lights at every bounce.
+#pragma once
+
+#include "shade/bed_light.h"
+#include "shade/frame.h"
+#include "shade/integrator.h"
+#include "shade/surface.h"
+
+#include <optional>
+
+namespace stratum::shade {
+
+/// Path tracing. At each of `bounces` scattering events on the print the environment is sampled both by its own density
+/// and by the BRDF's, joined by multiple importance sampling; on the bed by BedLight alone. Directional lights are
+/// summed. Unbiased for paths of that length; nothing is clamped.
+class PathIntegrator final : public Integrator {
+public:
+    PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces);
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+
+private:
+    Color fromEnvironment(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo,
+                          TraceContext& context) const;
+    Color fromLights(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo, TraceContext& context) const;
+    Color scattered(SurfacePoint point, glm::dvec3 direction, TraceContext& context) const;
+
+    const SceneDescription& scene_;
+    Surfaces surfaces_;
+    std::optional<BedLight> bed_light_;
+    int bounces_;
+};
+
+}  // namespace stratum::shade

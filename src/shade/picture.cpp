@@ -1,0 +1,37 @@
+#include "shade/picture.h"
+
+#include "io/error.h"
+#include "shade/exr_writer.h"
+#include "shade/png_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace stratum::shade {
+namespace {
+
+/// Whether the name says EXR; throws if it says neither kind.
+bool isExr(const std::filesystem::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (ending == ".exr") return true;
+    if (ending == ".png") return false;
+    throw UsageError(fmt::format("{}: the name must end in .png (to look at) or .exr (linear)", path.string()));
+}
+
+}  // namespace
+
+PictureFile::PictureFile(const std::filesystem::path& path) : exr_(isExr(path)), file_(path) {}
+
+void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone) {
+    if (exr_)
+        writeExr(file_.temporary(), film, metadata);
+    else
+        writePng(file_.temporary(), film.width(), film.height(), toDisplay(film, tone), metadata);
+    file_.commit();
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,31 @@
+// A film as a file: a viewable PNG or a linear EXR, by the name's ending.
+#pragma once
+
+#include "io/atomic_file.h"
+#include "shade/film.h"
+#include "shade/tonemap.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace stratum::shade {
+
+/// Keyword -> text, written as PNG tEXt chunks or EXR string attributes.
+/// Keywords: 1 to 79 printable Latin-1 characters (PNG's rule).
+using Metadata = std::map<std::string, std::string>;
+
+/// A picture file in the making. Make it before the work so that a bad name fails at once.
+class PictureFile {
+public:
+    /// Throws UsageError if the name ends neither in .png nor in .exr, OutputError if it can't be written.
+    explicit PictureFile(const std::filesystem::path& path);
+    /// Writes all of it and puts it in its place. `tone` is for PNG only. Throws OutputError.
+    void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {});
+
+private:
+    bool exr_;
+    AtomicFile file_;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,19 @@
+// 8-bit RGB pictures with text in them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace stratum::shade {
+
+/// Overwrites `path`. Marks the file as sRGB.
+/// @param rgb       3 * width * height bytes, row by row from the top
+/// @param metadata  keyword -> UTF-8 text; written as tEXt, or as iTXt where it isn't ASCII
+/// Throws OutputError; std::invalid_argument for a keyword that PNG does not allow.
+void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
+              const std::map<std::string, std::string>& metadata);
+
+}  // namespace stratum::shade

@@ -1,0 +1,41 @@
+// From a scene to a film, on all cores, with the same bytes for any number of them.
+#pragma once
+
+#include "march/intersector.h"
+#include "shade/film.h"
+#include "shade/integrator.h"
+#include "shade/scene.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace stratum::shade {
+
+struct RenderOptions {
+    int width = 1280;              ///< pixels, 1 to 32768
+    int height = 960;              ///< pixels, 1 to 32768
+    int spp = 16;                  ///< samples a pixel, 1 to 65536; powers of two are best
+    std::uint32_t seed = 0;        ///< another seed, another noise
+    std::optional<PixelBox> crop;  ///< --crop: only this part of the same picture; must lie in the frame
+    IntegratorOptions integrator;
+
+    /// Throws UsageError.
+    void validate() const;
+};
+
+struct RenderResult {
+    Film film;
+    RayCounts rays;  ///< the same for any number of threads
+};
+
+/// Called now and then from any thread, never from two at once, with the number of finished pixels.
+using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+/// Renders. Runs on the threads that TBB may use: limit them with tbb::global_control. The film depends on print, scene
+/// and options alone. scene.camera must have been made for options.width and options.height (UsageError if not).
+/// Throws UsageError; what `progress` throws ends the render and is passed on.
+RenderResult render(const march::Intersector& print, const SceneDescription& scene, const RenderOptions& options,
+                    const Progress& progress = {});
+
+}  // namespace stratum::shade

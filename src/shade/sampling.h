@@ -1,0 +1,51 @@
+// Maps from the unit square to the places one draws from.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::shade {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+
+/// Uniform on the unit disc, keeping neighbours together.
+/// Source: P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3) 1997.
+inline glm::vec2 toDisc(const glm::vec2& u) {
+    const float a = 2.0f * u.x - 1.0f;
+    const float b = 2.0f * u.y - 1.0f;
+    if (a == 0.0f && b == 0.0f) return {0.0f, 0.0f};
+    const bool wide = std::abs(a) > std::abs(b);
+    const float r = wide ? a : b;
+    const float phi = wide ? 0.25f * kPi * (b / a) : 0.5f * kPi - 0.25f * kPi * (a / b);
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Density z / pi over the hemisphere about +z. May return z = 0 in the corners; density 0, reject it.
+inline glm::vec3 toCosineHemisphere(const glm::vec2& u) {
+    const glm::vec2 d = toDisc(u);
+    return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
+}
+
+/// Density 1 / (4 pi) over the sphere.
+inline glm::vec3 toSphere(const glm::vec2& u) {
+    const float z = 1.0f - 2.0f * u.x;
+    const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+    const float phi = 2.0f * kPi * u.y;
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// Weight of a sample of density `a` when the other strategy has density `b`, one sample each.
+/// Source: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, power heuristic of exponent 2.
+inline float powerHeuristic(float a, float b) {
+    if (!(a > 0.0f)) return 0.0f;
+    // By the ratio, so that large densities don't overflow.
+    const float r = b / a;
+    return 1.0f / (1.0f + r * r);
+}
+
+}  // namespace stratum::shade

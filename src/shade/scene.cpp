@@ -1,0 +1,76 @@
+#include "shade/scene.h"
+
+#include "shade/sampling.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::shade {
+namespace {
+
+/// Radiance of the bare paper far from the print.
+Color paperRadiance(const SceneDescription& scene, const Color& albedo) {
+    Color irradiance = irradianceFromAbove(*scene.environment);
+    for (const DirectionalLight& light : scene.lights)
+        irradiance += light.irradiance * std::max(0.0f, light.to_light.z);
+    return albedo * irradiance * kInvPi;
+}
+
+}  // namespace
+
+double restingHeight(const march::Intersector& print) {
+    constexpr int kSide = 128;
+    const march::Box box = print.bounds();
+    const glm::dvec3 size = box.max - box.min;
+    const auto tracer = print.makeTracer();
+    double lowest = std::numeric_limits<double>::infinity();
+    march::Ray ray;
+    ray.direction = {0.0, 0.0, 1.0};
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            ray.origin = {box.min.x + size.x * (i + 0.5) / kSide, box.min.y + size.y * (j + 0.5) / kSide,
+                          box.min.z - std::max(size.z, print.voxelSize())};
+            march::Hit hit;
+            if (tracer->intersect(ray, hit)) lowest = std::min(lowest, hit.position.z);
+        }
+    }
+    return std::isfinite(lowest) ? std::clamp(lowest, box.min.z, box.max.z) : box.min.z;
+}
+
+SceneDescription makeScene(const SceneOptions& options, const march::Intersector& print, int width, int height) {
+    const march::Box box = print.bounds();
+    SceneDescription scene{.camera = Camera::make(options.camera, box, width, height),
+                           .material = makeBrdf(options.brdf),
+                           .environment = nullptr,
+                           .lights = {},
+                           .bed = std::nullopt,
+                           .backdrop = std::nullopt};
+    for (const std::string& light : options.lights) scene.lights.push_back(parseDirectionalLight(light));
+
+    EnvironmentPlacement placement;
+    placement.azimuth = std::atan2(scene.camera.right().y, scene.camera.right().x);
+    placement.bed = false;
+    Bed bed;
+    if (options.bed) {
+        bed.z = restingHeight(print);
+        placement.bed = scene.camera.eye().z > bed.z;
+    }
+    scene.environment = makeEnvironment(options.env, placement);
+
+    const Color paper = paperRadiance(scene, bed.albedo);
+    if (placement.bed) {
+        const double reach = 0.5 * glm::length(box.max - box.min);
+        bed.centre = {0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y)};
+        bed.fade_begin = 1.0 * reach;
+        bed.fade_end = 7.0 * reach;
+        scene.bed = bed;
+    }
+    // The paper's own colour a little darker, as the light of a real lamp falls off behind the subject.
+    if (options.backdrop && (scene.bed || !scene.environment->visible()))
+        scene.backdrop = Backdrop{paper * 0.72f, paper * 0.35f};
+    return scene;
+}
+
+}  // namespace stratum::shade

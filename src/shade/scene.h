@@ -1,0 +1,49 @@
+// What stands in front of the camera besides the print: material, light, bed, backdrop.
+#pragma once
+
+#include "march/intersector.h"
+#include "shade/bed.h"
+#include "shade/brdf.h"
+#include "shade/camera.h"
+#include "shade/directional.h"
+#include "shade/environment.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stratum::shade {
+
+/// A scene in the words of the command line. The defaults make a product photo.
+struct SceneOptions {
+    std::string brdf = kDefaultBrdf;  ///< --brdf, see makeBrdf
+    std::string env = "studio";       ///< --env, see makeEnvironment
+    std::vector<std::string> lights;  ///< --light, see parseDirectionalLight; they add to the environment
+    bool bed = true;                  ///< a sweep under the print
+    bool backdrop = true;             ///< false: nothing behind the print, alpha 0 there
+    CameraOptions camera;
+};
+
+/// A scene ready to be rendered. Everything is immutable and shared by all threads.
+struct SceneDescription {
+    Camera camera;
+    std::shared_ptr<const Brdf> material;            ///< of the print; never null
+    std::shared_ptr<const Environment> environment;  ///< never null
+    std::vector<DirectionalLight> lights;
+    std::optional<Bed> bed;
+    std::optional<Backdrop>
+        backdrop;  ///< what the camera sees behind everything; without it, a visible environment or nothing
+};
+
+/// Builds the scene around a print. The bed lies where the print's lowest surface is (found with a few thousand rays:
+/// the narrow band's box reaches lower than the surface); a camera that is below the bed sees no bed.
+/// @param width, height  pixels of the whole frame
+/// Throws UsageError.
+SceneDescription makeScene(const SceneOptions& options, const march::Intersector& print, int width, int height);
+
+/// Height of the print's lowest surface: print.bounds() is the box of the narrow band, which reaches lower. Found with
+/// rays that look up; bounds().min.z if none meets anything. World units.
+double restingHeight(const march::Intersector& print);
+
+}  // namespace stratum::shade

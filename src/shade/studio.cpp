@@ -1,0 +1,103 @@
+#include "shade/studio.h"
+
+#include "shade/sampling.h"
+
+#include <glm/geometric.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace stratum::shade {
+namespace {
+
+/// A lamp seen through a smooth rectangular window. Studio frame: x to the camera's right, y away from the camera, z
+/// up.
+struct Softbox {
+    glm::vec3 direction;  // from the print to its middle, unit
+    glm::vec3 across;     // horizontal, unit
+    glm::vec3 along;      // unit
+    float half_width;     // tangent of the half angle across
+    float half_height;    // tangent of the half angle along
+    float softness;       // width of the edge, in tangents
+    Color radiance;       // of the middle, before scaling
+
+    Softbox(float azimuth, float elevation, float width, float height, float soft, const Color& light)
+        : half_width(std::tan(0.5f * radians(width))),
+          half_height(std::tan(0.5f * radians(height))),
+          softness(soft),
+          radiance(light) {
+        const float a = radians(azimuth);
+        const float e = radians(elevation);
+        direction = {std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
+        across = {std::cos(a), -std::sin(a), 0.0f};
+        along = glm::cross(across, direction);
+    }
+    static float radians(float degrees) { return degrees * kPi / 180.0f; }
+    static float window(float x, float half, float soft) {
+        const float t = std::clamp((half + 0.5f * soft - std::abs(x)) / soft, 0.0f, 1.0f);
+        return t * t * (3.0f - 2.0f * t);
+    }
+    Color operator()(const glm::vec3& d) const {
+        const float facing = glm::dot(d, direction);
+        if (!(facing > 0.05f)) return Color(0.0f);
+        return radiance * (window(glm::dot(d, across) / facing, half_width, softness) *
+                           window(glm::dot(d, along) / facing, half_height, softness));
+    }
+};
+
+/// Azimuth is clockwise from "away from the camera": -90 is left, 90 right, 180 the camera. All angles in degrees.
+const std::array<Softbox, 4>& softboxes() {
+    static const std::array<Softbox, 4> boxes = {
+        Softbox(-105.0f, 48.0f, 36.0f, 40.0f, 0.20f, Color(13.0f, 12.6f, 11.9f)),  // key
+        Softbox(115.0f, 25.0f, 60.0f, 50.0f, 0.60f, Color(0.40f, 0.45f, 0.53f)),   // fill
+        Softbox(52.0f, 30.0f, 16.0f, 60.0f, 0.15f, Color(9.0f, 9.4f, 10.0f)),      // rim, right
+        Softbox(-35.0f, 32.0f, 14.0f, 50.0f, 0.15f, Color(5.0f, 5.1f, 5.3f)),      // rim, left
+    };
+    return boxes;
+}
+
+/// @param d  studio frame
+Color unscaled(const glm::vec3& d, bool bed) {
+    // Light from below stands for what a bed would send back.
+    if (d.z < 0.0f) return bed ? Color(0.0f) : Color(0.35f) + 0.15f * (1.0f + d.z);
+    Color sum = Color(0.20f, 0.21f, 0.23f) + Color(0.25f, 0.25f, 0.24f) * d.z;
+    for (const Softbox& box : softboxes()) sum += box(d);
+    return sum;
+}
+
+/// Radiance of a white Lambert surface that looks up, with nothing in its way.
+constexpr float kLevel = 1.5f;
+
+constexpr int kColumns = 256;
+constexpr int kRows = 128;  // even: a row ends at the horizon, where the light does
+
+}  // namespace
+
+StudioEnvironment::StudioEnvironment(const EnvironmentPlacement& placement)
+    : cosine_(static_cast<float>(std::cos(placement.azimuth))),
+      sine_(static_cast<float>(std::sin(placement.azimuth))),
+      bed_(placement.bed),
+      table_([this](const glm::dvec3& d) { return static_cast<double>(luminance(unscaled(glm::vec3(d), bed_))); },
+             kColumns, kRows) {
+    scale_ = kLevel * kPi / luminance(irradianceFromAbove(*this));
+}
+
+glm::vec3 StudioEnvironment::toStudio(const glm::vec3& world) const {
+    return {cosine_ * world.x + sine_ * world.y, cosine_ * world.y - sine_ * world.x, world.z};
+}
+
+Color StudioEnvironment::radiance(const glm::vec3& direction) const {
+    return unscaled(toStudio(direction), bed_) * scale_;
+}
+
+EnvironmentSample StudioEnvironment::sample(const glm::vec2& u) const {
+    EnvironmentSample result;
+    const glm::vec3 d = table_.sample(u, result.pdf);
+    result.radiance = unscaled(d, bed_) * scale_;
+    result.direction = {cosine_ * d.x - sine_ * d.y, cosine_ * d.y + sine_ * d.x, d.z};
+    return result;
+}
+
+float StudioEnvironment::pdf(const glm::vec3& direction) const { return table_.pdf(toStudio(direction)); }
+
+}  // namespace stratum::shade

@@ -1,0 +1,40 @@
+// Toolpath -> LayerStack: level beads grouped by centre plane and half-height, and what must be welded to what.
+#pragma once
+
+#include "gcode/toolpath.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// Level beads of one centre plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
+/// one plan field, expanded once per column.
+struct Layer {
+    double centre_z = 0;               ///< mm
+    double radius = 0;                 ///< mm, half the layer height
+    std::vector<std::uint32_t> beads;  ///< indices into Toolpath::beads, in print order
+};
+
+/// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave
+/// phi = 0 on the plane between them, a crack of no thickness inside the solid. The weld adds the body that both share,
+/// {max(D_lower, D_upper) <= 0} between the two centre planes, which lies inside the union and moves no surface.
+struct Weld {
+    std::uint32_t lower = 0;  ///< index into LayerStack::layers
+    std::uint32_t upper = 0;
+};
+
+/// Planes closer than this fraction of the thinner layer's height touch (slicers print Z with three decimals).
+constexpr double kWeldGap = 0.02;
+
+struct LayerStack {
+    std::vector<Layer> layers;          ///< ascending centre_z, then radius
+    std::vector<Weld> welds;            ///< ordered by (lower, upper)
+    std::vector<std::uint32_t> direct;  ///< sloped beads and round beads that share no layer: evaluated in 3-D
+};
+
+/// Groups the beads of `selection` (indices into toolpath.beads, ascending). Single-threaded.
+LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,44 @@
+// Which beads become voxels: layers, features and partial prints.
+#pragma once
+
+#include "gcode/toolpath.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// A filter over beads; the default keeps everything.
+struct Selection {
+    std::uint32_t first_layer = 0;  ///< inclusive; 0 also takes what is printed before the first layer
+    std::uint32_t last_layer = 0xffffffff;
+    std::array<bool, gcode::kFeatureCount> features;
+
+    Selection() { features.fill(true); }
+};
+
+/// Parses "A:B" (inclusive, either end may be left out) or "A" into the layer range. Throws UsageError.
+void parseLayers(std::string_view text, Selection& selection);
+
+/// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list
+/// of names for an unknown one.
+void parseFeatures(std::string_view text, Selection& selection);
+
+/// Indices of the selected beads, ascending. Throws InputError, saying what there is, if none is left.
+std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
+
+/// A partial print: everything printed before bead number `bead_count`.
+struct Snapshot {
+    std::string label;          ///< for the file name, e.g. "25pct", "layer0040"
+    std::size_t bead_count = 0;
+};
+
+/// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40) and "every:10" (after each 10 layers).
+/// In print order, without doubles. Throws UsageError.
+std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath);
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,53 @@
+#include "voxelize/vdb_file.h"
+
+#include "io/atomic_file.h"
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+namespace stratum::voxelize {
+
+void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance& provenance) {
+    const auto text = [&grid](const char* name, const std::string& value) {
+        if (!value.empty()) grid.insertMeta(name, openvdb::StringMetadata(value));
+    };
+    const auto number = [&grid](const char* name, double value) {
+        grid.insertMeta(name, openvdb::DoubleMetadata(value));
+    };
+    grid.setCreator("gcode2vdb " STRATUM_VERSION);
+    text("program", "gcode2vdb " STRATUM_VERSION);
+    text("source_file", provenance.source_file);
+    text("source_sha256", provenance.source_sha256);
+    text("slicer", provenance.slicer);
+    text("unit", provenance.unit);
+    text("snapshot", provenance.snapshot);
+    text("selection", provenance.selection);
+    text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");
+    text("interior", "negative bound, not a distance");
+    number("voxel_size_mm", lattice.voxel_size);
+    number("half_width_voxels", lattice.half_width);
+    number("layer_height_mm", lattice.layer_height);
+    grid.addStatsMetadata();
+}
+
+void writeVdb(const openvdb::FloatGrid::Ptr& grid, const std::filesystem::path& path, const FileOptions& options) {
+    AtomicFile output(path);
+    grid->setSaveFloatAsHalf(options.half);
+    try {
+        openvdb::io::File file(output.temporary().string());
+        std::uint32_t flags = openvdb::io::COMPRESS_NONE;
+        // The active mask says which voxels differ from the background; the rest need no bytes.
+        if (options.compression == Compression::blosc)
+            flags = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
+        if (options.compression == Compression::zip)
+            flags = openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK;
+        file.setCompression(flags);
+        file.write(openvdb::GridCPtrVec{grid});
+        file.close();
+    } catch (const openvdb::Exception& error) {
+        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+    }
+    output.commit();
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,38 @@
+// FloatGrid -> .vdb: metadata that says what the grid is and where it came from, written whole or not at all.
+#pragma once
+
+#include "voxelize/lattice.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace stratum::voxelize {
+
+/// What the file says about its origin. Written as grid metadata under the names given here.
+struct Provenance {
+    std::string source_file;    ///< "source_file": name without folders
+    std::string source_sha256;  ///< "source_sha256"
+    std::string slicer;         ///< "slicer", left out if empty
+    std::string unit = "mm";    ///< "unit": of world space
+    std::string snapshot;       ///< "snapshot": label of a partial print, left out if empty
+    std::string selection;      ///< "selection": --layers and --features, left out if empty
+};
+
+enum class Compression : std::uint8_t { blosc, zip, none };
+
+struct FileOptions {
+    bool half = false;  ///< 16-bit floats: half the file, values good to 2^-11 of the band
+    Compression compression = Compression::blosc;
+};
+
+/// Adds the metadata: provenance, "voxel_size_mm", "half_width_voxels", "layer_height_mm", "bead_model", "interior",
+/// "program", creator, and OpenVDB's own file statistics.
+void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance& provenance);
+
+/// Writes one grid to `path`. Throws OutputError; the old file then stays.
+void writeVdb(const openvdb::FloatGrid::Ptr& grid, const std::filesystem::path& path, const FileOptions& options = {});
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,138 @@
+#include "voxelize/voxelizer.h"
+
+#include "io/error.h"
+#include "voxelize/layer_stack.h"
+#include "voxelize/leaf_column.h"
+#include "voxelize/plan_bins.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/LeafManager.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace stratum::voxelize {
+namespace {
+
+// A leaf's values, mask and header, and its share of the nodes above.
+constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
+
+std::size_t availableMemory() {
+    std::ifstream meminfo("/proc/meminfo");
+    std::string key;
+    std::size_t kilobytes = 0;
+    std::string unit;
+    while (meminfo >> key >> kilobytes >> unit)
+        if (key == "MemAvailable:") return kilobytes * 1024 / 10 * 9;
+    return std::size_t{4} << 30;
+}
+
+// Calls back at most once a percent, one thread at a time.
+class ProgressMeter {
+public:
+    ProgressMeter(std::size_t total, const std::function<void(double)>& report) : total_(total), report_(report) {}
+    void advance(std::size_t count) {
+        if (!report_) return;
+        const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
+        if (done * 100 / total_ == (done - count) * 100 / total_) return;
+        const std::scoped_lock lock(mutex_);
+        report_(static_cast<double>(done) / static_cast<double>(total_));
+    }
+
+private:
+    const std::size_t total_;
+    const std::function<void(double)>& report_;
+    std::atomic<std::size_t> done_{0};
+    std::mutex mutex_;
+};
+
+openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
+    auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size * placement.unit);
+    transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
+                                            (placement.offset[2] + lattice.origin_z) * placement.unit));
+    return transform;
+}
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                                 const Lattice& lattice, const VoxelizeOptions& options) {
+    const std::size_t limit = options.memory_limit != 0 ? options.memory_limit : availableMemory();
+    const LayerStack stack = stackLayers(toolpath, selection);
+    const PlanBins bins(toolpath, stack, lattice, limit);
+    const double scale = options.placement.unit;
+
+    tbb::enumerable_thread_specific<LeafColumn> scratch(
+        [&] { return LeafColumn(toolpath, stack, lattice, scale); });
+    const tbb::blocked_range<std::size_t> columns(0, bins.size(), 16);
+    const std::size_t leaf_bound = tbb::parallel_reduce(
+        columns, std::size_t{0},
+        [&](const tbb::blocked_range<std::size_t>& range, std::size_t count) {
+            LeafColumn& column = scratch.local();
+            for (std::size_t c = range.begin(); c != range.end(); ++c)
+                if (!bins[c].empty()) count += column.countLeaves(bins[c]);
+            return count;
+        },
+        std::plus<>());
+    const double bytes = static_cast<double>(leaf_bound) * kBytesPerLeaf;
+    if (bytes > static_cast<double>(limit))
+        throw UsageError(fmt::format(
+            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, fewer "
+            "layers or features",
+            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound), static_cast<double>(limit) * 1e-9));
+
+    std::vector<ColumnLeaves> built(bins.size());
+    ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), options.progress);
+    tbb::parallel_for(columns, [&](const tbb::blocked_range<std::size_t>& range) {
+        LeafColumn& column = scratch.local();
+        for (std::size_t c = range.begin(); c != range.end(); ++c) {
+            if (bins[c].empty()) continue;
+            column.build(bins.originI(c), bins.originJ(c), bins[c], built[c]);
+            meter.advance(bins[c].size());
+        }
+    });
+
+    const auto background = static_cast<float>(lattice.background() * scale);
+    auto grid = openvdb::FloatGrid::create(background);
+    auto accessor = grid->getAccessor();
+    for (ColumnLeaves& column : built) {
+        for (Leaf* leaf : column.leaves) accessor.addLeaf(leaf);
+        for (const openvdb::Coord& origin : column.inside_tiles) accessor.addTile(1, origin, -background, false);
+    }
+    openvdb::tools::pruneLevelSet(grid->tree());
+    grid->setTransform(makeTransform(lattice, options.placement));
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setName("surface");
+    return grid;
+}
+
+double enclosedVolume(const openvdb::FloatGrid& grid) {
+    const double voxel = grid.voxelSize()[0];
+    const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(grid.tree());
+    // One sum a leaf, added in order: the same value for any number of threads.
+    std::vector<double> sums(leaves.leafCount());
+    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t n) {
+        double inside = 0;
+        const float* values = leaves.leaf(n).buffer().data();
+        for (openvdb::Index v = 0; v < Leaf::SIZE; ++v)
+            inside += std::clamp(0.5 - static_cast<double>(values[v]) / voxel, 0.0, 1.0);
+        sums[n] = inside;
+    });
+    double voxels = 0;
+    for (const double sum : sums) voxels += sum;
+    for (auto tile = grid.tree().cbeginValueOff(); tile; ++tile)
+        if (tile.getLevel() > 0 && *tile < 0) voxels += static_cast<double>(tile.getVoxelCount());
+    return voxels * voxel * voxel * voxel;
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,34 @@
+#include "io/mapped_file.h"
+
+#include "io/error.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace stratum {
+namespace {
+
+TEST(MappedFile, GivesTheBytes) {
+    const auto path = std::filesystem::path(testing::TempDir()) / "mapped.bin";
+    std::ofstream(path, std::ios::binary) << std::string("G1 X1\0\r\n", 8);
+    const MappedFile file(path);
+    EXPECT_EQ(file.bytes(), std::string_view("G1 X1\0\r\n", 8));
+}
+
+TEST(MappedFile, RefusesMissingEmptyAndFolder) {
+    EXPECT_THROW(MappedFile("/nonexistent/file.gcode"), InputError);
+    EXPECT_THROW(MappedFile(std::filesystem::path(testing::TempDir())), InputError);
+    const auto path = std::filesystem::path(testing::TempDir()) / "empty.gcode";
+    std::ofstream(path).close();
+    EXPECT_THROW(MappedFile{path}, InputError);
+}
+
+TEST(Sha256, KnownAnswers) {
+    // FIPS 180-2, appendix B.1, and the empty message.
+    EXPECT_EQ(sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(sha256Hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+}  // namespace
+}  // namespace stratum

@@ -1,0 +1,70 @@
+#include "voxelize/plan_bins.h"
+
+#include "io/error.h"
+#include "toolpaths.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace stratum::voxelize {
+namespace {
+
+using test::addArc;
+using test::addBead;
+using test::allBeads;
+
+TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
+    gcode::Toolpath toolpath;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> where(-6, 6);
+    for (int n = 0; n < 40; ++n) {
+        if (n % 3 == 0)
+            addArc(toolpath, where(random), where(random), 2.5, where(random), where(random), 0.2, 0.2, 0.5, 0.2);
+        else
+            addBead(toolpath, where(random), where(random), 0.2, where(random), where(random), n % 5 == 0 ? 0.3 : 0.2,
+                    0.5, 0.2);
+    }
+    Lattice lattice;
+    lattice.voxel_size = 0.1;
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    const PlanBins bins(toolpath, stack, lattice, std::size_t{1} << 30);
+    std::size_t samples = 0;
+    for (std::size_t c = 0; c < bins.size(); ++c) {
+        std::set<std::uint32_t> present;
+        std::uint32_t layer = 0;
+        for (const BinEntry& entry : bins[c]) {
+            EXPECT_GE(entry.layer, layer);  // ascending, direct beads last
+            layer = entry.layer;
+            present.insert(entry.bead);
+        }
+        EXPECT_EQ(present.size(), bins[c].size());
+        for (std::uint32_t bead = 0; bead < toolpath.beads.size(); ++bead) {
+            const BeadField field(toolpath, toolpath.beads[bead]);
+            const double reach = field.halfFlat() + field.radius() + lattice.background();
+            for (int x = 0; x < kLeafDim; ++x)
+                for (int y = 0; y < kLeafDim; ++y) {
+                    const double rho =
+                        field.path().distance((bins.originI(c) + x) * 0.1, (bins.originJ(c) + y) * 0.1);
+                    if (rho < reach) {
+                        ++samples;
+                        EXPECT_TRUE(present.contains(bead));
+                    }
+                }
+        }
+    }
+    EXPECT_GT(samples, 1000U);
+}
+
+TEST(PlanBins, RefusesBeforeItAllocates) {
+    gcode::Toolpath toolpath;
+    addBead(toolpath, 0, 0, 0.2, 1000, 1000, 0.2, 0.5, 0.2);
+    Lattice lattice;
+    lattice.voxel_size = 1e-5;
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    EXPECT_THROW(PlanBins(toolpath, stack, lattice, std::size_t{1} << 30), UsageError);
+}
+
+}  // namespace
+}  // namespace stratum::voxelize

@@ -1,0 +1,139 @@
+// Small toolpaths made by hand, and the brute-force field that the voxelizer is held against.
+#pragma once
+
+#include "gcode/toolpath.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+namespace stratum::test {
+
+/// Adds a bead; a new run is made for each height.
+inline void addBead(gcode::Toolpath& toolpath, double x0, double y0, double z0, double x1, double y1, double z1,
+                    double width, double height, std::uint32_t layer = 1) {
+    gcode::Run run;
+    run.height = static_cast<float>(height);
+    run.layer = layer;
+    if (toolpath.runs.empty() || !(toolpath.runs.back() == run)) toolpath.runs.push_back(run);
+    gcode::Bead bead;
+    bead.x0 = x0, bead.y0 = y0, bead.z0 = z0;
+    bead.x1 = x1, bead.y1 = y1, bead.z1 = z1;
+    bead.width = static_cast<float>(width);
+    bead.run = static_cast<std::uint32_t>(toolpath.runs.size() - 1);
+    toolpath.beads.push_back(bead);
+    toolpath.layer_count = std::max(toolpath.layer_count, layer);
+}
+
+/// Adds a circular bead about (cx, cy) from angle `from` (radians), turning by `sweep`.
+inline void addArc(gcode::Toolpath& toolpath, double cx, double cy, double radius, double from, double sweep, double z0,
+                   double z1, double width, double height, std::uint32_t layer = 1) {
+    addBead(toolpath, cx + radius * std::cos(from), cy + radius * std::sin(from), z0,
+            cx + radius * std::cos(from + sweep), cy + radius * std::sin(from + sweep), z1, width, height, layer);
+    toolpath.beads.back().arc = static_cast<std::int32_t>(toolpath.arcs.size());
+    toolpath.arcs.push_back({cx, cy, sweep});
+}
+
+inline std::vector<std::uint32_t> allBeads(const gcode::Toolpath& toolpath) {
+    std::vector<std::uint32_t> beads(toolpath.beads.size());
+    std::iota(beads.begin(), beads.end(), 0U);
+    return beads;
+}
+
+/// The field of one level bead, written from the definition: nearest point of the path in the plane, then the formula.
+/// Straight paths in closed form; arcs by turning to the chord-free polar form. Sloped beads are not covered.
+inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y, double z) {
+    double rho = 0;
+    if (bead.arc < 0) {
+        const double ux = bead.x1 - bead.x0;
+        const double uy = bead.y1 - bead.y0;
+        const double length = std::hypot(ux, uy);
+        double along = 0;
+        if (length > 0) along = std::min(std::max(((x - bead.x0) * ux + (y - bead.y0) * uy) / length, 0.0), length);
+        const double nx = length > 0 ? bead.x0 + along * ux / length : bead.x0;
+        const double ny = length > 0 ? bead.y0 + along * uy / length : bead.y0;
+        rho = std::hypot(x - nx, y - ny);
+    } else {
+        const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+        const double radius = 0.5 * (std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y) +
+                                     std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y));
+        const double from = std::atan2(bead.y0 - arc.center_y, bead.x0 - arc.center_x);
+        const double to = std::atan2(bead.y1 - arc.center_y, bead.x1 - arc.center_x);
+        double turned = std::atan2(y - arc.center_y, x - arc.center_x) - from;
+        if (arc.sweep < 0) turned = -turned;
+        turned = std::fmod(turned + 4 * std::numbers::pi, 2 * std::numbers::pi);
+        const auto to_point = [&](double angle) {
+            return std::hypot(x - arc.center_x - radius * std::cos(angle), y - arc.center_y - radius * std::sin(angle));
+        };
+        rho = turned <= std::abs(arc.sweep)
+                  ? std::abs(std::hypot(x - arc.center_x, y - arc.center_y) - radius)
+                  : std::min(to_point(from), to_point(to));
+    }
+    const double height = std::round(static_cast<double>(toolpath.runOf(bead).height) * 1e6) * 1e-6;
+    const double width = static_cast<double>(bead.width);
+    const double radius = std::min(width, height) / 2;
+    const double c = std::max(width - height, 0.0) / 2;
+    return std::hypot(std::max(rho - c, 0.0), z - (bead.z0 - height / 2)) - radius;
+}
+
+/// Minimum over all level beads of a toolpath. Beads are looked at in blocks whose boxes let most be passed over; the
+/// box distance is a lower bound, so the minimum is that of all beads.
+class BruteForce {
+public:
+    explicit BruteForce(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
+        constexpr std::size_t kBlock = 32;
+        for (std::size_t first = 0; first < toolpath.beads.size(); first += kBlock) {
+            Block block{first, std::min(first + kBlock, toolpath.beads.size()), {}, {}};
+            for (int axis = 0; axis < 3; ++axis) {
+                block.min[axis] = std::numeric_limits<double>::max();
+                block.max[axis] = std::numeric_limits<double>::lowest();
+            }
+            for (std::size_t i = block.first; i < block.last; ++i) {
+                const gcode::Bead& bead = toolpath.beads[i];
+                // Generous: an arc stays within its diameter of its start.
+                double pad = static_cast<double>(bead.width) + static_cast<double>(toolpath.runOf(bead).height);
+                if (bead.arc >= 0) {
+                    const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+                    pad += 2 * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+                }
+                const double low[3] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1), std::min(bead.z0, bead.z1)};
+                const double high[3] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1), std::max(bead.z0, bead.z1)};
+                for (int axis = 0; axis < 3; ++axis) {
+                    block.min[axis] = std::min(block.min[axis], low[axis] - pad);
+                    block.max[axis] = std::max(block.max[axis], high[axis] + pad);
+                }
+            }
+            blocks_.push_back(block);
+        }
+    }
+
+    double operator()(double x, double y, double z) const {
+        const double p[3] = {x, y, z};
+        double best = std::numeric_limits<double>::max();
+        for (const Block& block : blocks_) {
+            double outside2 = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double gap = std::max({block.min[axis] - p[axis], p[axis] - block.max[axis], 0.0});
+                outside2 += gap * gap;
+            }
+            if (best >= 0 ? outside2 > best * best : outside2 > 0) continue;
+            for (std::size_t i = block.first; i < block.last; ++i)
+                best = std::min(best, levelBeadDistance(toolpath_, toolpath_.beads[i], x, y, z));
+        }
+        return best;
+    }
+
+private:
+    struct Block {
+        std::size_t first, last;
+        double min[3], max[3];
+    };
+    const gcode::Toolpath& toolpath_;
+    std::vector<Block> blocks_;
+};
+
+}  // namespace stratum::test

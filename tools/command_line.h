@@ -1,0 +1,89 @@
+// What all tools share: the common options, exit statuses, the report file and the progress bar.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tbb::detail::d1 {
+class global_control;
+}
+
+namespace stratum::tools {
+
+/// --threads, --stats, --quiet, --version.
+struct CommonOptions {
+    int threads = 0;    ///< 0: as many as the machine has
+    std::string stats;  ///< file for the JSON report, "-" is standard output, empty is none
+    bool quiet = false;
+};
+
+/// Adds the common options to a command line.
+void addCommonOptions(CLI::App& app, CommonOptions& options);
+
+/// Parses, runs `body` and turns what escapes into a message on stderr and an exit status:
+/// 0 done, 1 failed, 2 wrong usage, 3 bad input.
+int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
+
+/// Limits TBB to --threads for as long as it lives.
+class ThreadLimit {
+public:
+    explicit ThreadLimit(int threads);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+    int threads() const { return threads_; }
+
+private:
+    int threads_;
+    std::unique_ptr<tbb::detail::d1::global_control> control_;
+};
+
+/// A line that fills while work goes on. Shown only if stderr is a terminal and the tool is not quiet; gone afterwards.
+class ProgressBar {
+public:
+    ProgressBar(std::string label, bool quiet);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+    /// Fraction done, 0..1. Calls must not overlap.
+    void show(double fraction);
+    /// Empty when nothing would be shown, so that the work reports nothing.
+    std::function<void(double)> callback();
+
+private:
+    std::string label_;
+    bool visible_;
+    std::chrono::steady_clock::time_point start_;
+    std::chrono::steady_clock::time_point shown_;
+};
+
+/// Wall time since construction or the last lap, in seconds.
+class Stopwatch {
+public:
+    double lap();
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Largest resident set of this process so far, bytes.
+std::size_t peakRssBytes();
+
+/// Writes the report where --stats says; does nothing if it says nothing. Throws OutputError.
+void writeStats(const CommonOptions& options, const nlohmann::ordered_json& report);
+
+/// A line of the summary for people: to stdout, or to stderr if stdout carries the report; nothing if quiet.
+void say(const CommonOptions& options, std::string_view line);
+
+/// "1.23 GB", "45.6 MB", "789 B".
+std::string humanBytes(double bytes);
+/// "12.3 M", "45.6 k".
+std::string humanCount(double count);
+
+}  // namespace stratum::tools

@@ -1,0 +1,310 @@
+// gcode2vdb: G-code -> level set of the part as printed.
+#include "command_line.h"
+
+#include "gcode/reader.h"
+#include "gcode/toolpath_csv.h"
+#include "io/atomic_file.h"
+#include "io/error.h"
+#include "io/mapped_file.h"
+#include "voxelize/selection.h"
+#include "voxelize/vdb_file.h"
+#include "voxelize/voxelizer.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace stratum;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kExamples = R"(
+Examples:
+  gcode2vdb part.gcode                              part.vdb, voxel size chosen from the layer height
+  gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
+  gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
+  gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
+  gcode2vdb part.gcode --unit m --origin center     for Blender and Houdini
+  gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
+
+struct Options {
+    tools::CommonOptions common;
+    std::vector<std::string> inputs;
+    std::string output;
+    std::string dump_toolpath;
+    voxelize::LatticeRequest lattice;
+    std::string layers, features, snapshots;
+    std::string unit = "mm", origin = "bed";
+    gcode::ReadOptions read;
+    voxelize::FileOptions file;
+};
+
+const std::map<std::string, double> kUnits{{"mm", 1.0}, {"cm", 0.1}, {"m", 0.001}};
+
+void addOptions(CLI::App& app, Options& o) {
+    app.add_option("IN", o.inputs, "G-code of any slicer")->required()->type_name("FILE");
+    app.add_option("-o,--output", o.output, "The .vdb to write; a folder if there are several inputs")
+        ->type_name("OUT.vdb");
+    const char* lattice = "Lattice";
+    auto* size = app.add_option("--voxel-size", o.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
+    app.add_option("--voxels-per-layer", o.lattice.voxels_per_layer, "Voxels in a layer height (1 to 64)")
+        ->type_name("N")
+        ->excludes(size)
+        ->group(lattice);
+    app.add_option("--half-width", o.lattice.half_width, "Narrow band to each side (default 3)")
+        ->type_name("VOXELS")
+        ->group(lattice);
+    app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
+        ->check(CLI::IsMember({"mm", "cm", "m"}))
+        ->type_name("UNIT")
+        ->group(lattice);
+    app.add_option("--origin", o.origin, "bed: as in the G-code; center: the part over the origin; min: its corner")
+        ->check(CLI::IsMember({"bed", "center", "min"}))
+        ->type_name("WHERE")
+        ->group(lattice);
+    const char* what = "What to convert";
+    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1")->type_name("A:B")->group(what);
+    app.add_option("--features", o.features, "Only (+NAME,...) or all but (-NAME,...) these features")
+        ->type_name("LIST")
+        ->group(what);
+    app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10")
+        ->type_name("LIST")
+        ->group(what);
+    const char* reading = "Reading";
+    app.add_option("--filament-diameter", o.read.filament_diameter, "Overrides the file's settings")
+        ->check(CLI::Range(0.1, 20.0))
+        ->type_name("MM")
+        ->group(reading);
+    app.add_option("--layer-height", o.read.layer_height, "Where neither tags nor Z moves tell")
+        ->check(CLI::Range(0.001, 50.0))
+        ->type_name("MM")
+        ->group(reading);
+    const std::map<std::string, gcode::ExtruderMode> modes{{"auto", gcode::ExtruderMode::automatic},
+                                                           {"absolute", gcode::ExtruderMode::absolute},
+                                                           {"relative", gcode::ExtruderMode::relative}};
+    app.add_option("--e-mode", o.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
+        ->transform(CLI::CheckedTransformer(modes).description(""))
+        ->type_name("MODE")
+        ->group(reading);
+    const std::map<std::string, gcode::Firmware> firmwares{{"auto", gcode::Firmware::automatic},
+                                                           {"marlin", gcode::Firmware::marlin},
+                                                           {"klipper", gcode::Firmware::klipper},
+                                                           {"reprap", gcode::Firmware::reprap}};
+    app.add_option("--firmware", o.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
+        ->transform(CLI::CheckedTransformer(firmwares).description(""))
+        ->type_name("NAME")
+        ->group(reading);
+    const char* writing = "Writing";
+    app.add_option_function<std::string>(
+           "--precision", [&o](const std::string& text) { o.file.half = text == "half"; }, "float or half (default float)")
+        ->check(CLI::IsMember({"float", "half"}))
+        ->type_name("KIND")
+        ->group(writing);
+    const std::map<std::string, voxelize::Compression> compressions{{"blosc", voxelize::Compression::blosc},
+                                                                    {"zip", voxelize::Compression::zip},
+                                                                    {"none", voxelize::Compression::none}};
+    app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
+        ->transform(CLI::CheckedTransformer(compressions).description(""))
+        ->type_name("KIND")
+        ->group(writing);
+    app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
+    tools::addCommonOptions(app, o.common);
+    app.footer(kExamples);
+}
+
+voxelize::Placement placementFor(const Options& o, const voxelize::Bounds& bounds) {
+    voxelize::Placement placement;
+    placement.unit = kUnits.at(o.unit);
+    if (o.origin == "bed") return placement;
+    for (int axis = 0; axis < 2; ++axis)
+        placement.offset[axis] = o.origin == "center" ? -bounds.centre(axis) : -bounds.min[axis];
+    placement.offset[2] = -bounds.min[2];
+    return placement;
+}
+
+// One output: the whole selection, or what of it a snapshot has printed.
+struct Job {
+    std::string label;
+    fs::path path;
+    std::vector<std::uint32_t> beads;
+};
+
+std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath, std::vector<std::uint32_t> selection,
+                          const fs::path& output) {
+    std::vector<Job> jobs;
+    if (!o.snapshots.empty()) {
+        for (const voxelize::Snapshot& snapshot : voxelize::parseSnapshots(o.snapshots, toolpath)) {
+            fs::path path = output;
+            path.replace_filename(
+                fmt::format("{}.{}{}", output.stem().string(), snapshot.label, output.extension().string()));
+            Job job{snapshot.label, path, {}};
+            for (const std::uint32_t bead : selection)
+                if (bead < snapshot.bead_count) job.beads.push_back(bead);
+            if (!job.beads.empty()) jobs.push_back(std::move(job));
+        }
+    }
+    jobs.push_back({"", output, std::move(selection)});
+    return jobs;
+}
+
+Json describeToolpath(const gcode::Toolpath& toolpath) {
+    double length = 0;
+    for (const gcode::Bead& bead : toolpath.beads) length += gcode::beadLength(toolpath, bead);
+    Json warnings = Json::array();
+    for (const gcode::Warning& warning : toolpath.warnings)
+        warnings.push_back({{"text", warning.text}, {"first_line", warning.first_line}, {"count", warning.count}});
+    return {{"beads", toolpath.beads.size()},
+            {"arcs", toolpath.arcs.size()},
+            {"layers", toolpath.layer_count},
+            {"length_mm", length},
+            {"filament_mm", toolpath.filament_mm},
+            {"filament_diameter_mm", toolpath.filament_diameter},
+            {"volume_mm3", gcode::beadVolume(toolpath)},
+            {"extruded_mm3", toolpath.extruded_mm3},
+            {"firmware", toolpath.firmware},
+            {"warnings", warnings}};
+}
+
+Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    const openvdb::Vec3d low = grid.indexToWorld(box.min());
+    const openvdb::Vec3d high = grid.indexToWorld(box.max());
+    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
+    return {{"voxel_size_mm", lattice.voxel_size},
+            {"half_width", lattice.half_width},
+            {"layer_height_mm", lattice.layer_height},
+            {"aligned_share", lattice.aligned_share},
+            {"choice", lattice.reason},
+            {"active_voxels", grid.activeVoxelCount()},
+            {"leaves", grid.tree().leafCount()},
+            {"bytes", grid.memUsage()},
+            {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
+            {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
+}
+
+Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
+    tools::Stopwatch total;
+    tools::Stopwatch watch;
+    // Unwritable places are found before the work, not after it.
+    { const AtomicFile probe(output); }
+
+    const MappedFile file{fs::path(input)};
+    gcode::ReadOptions read = o.read;
+    tools::ProgressBar parse_bar("reading", o.common.quiet);
+    read.progress = parse_bar.callback();
+    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), input, read);
+    const double parse_seconds = watch.lap();
+    for (const gcode::Warning& warning : toolpath.warnings)
+        if (!o.common.quiet)
+            fmt::print(stderr, "gcode2vdb: {}:{}: {}{}\n", input, warning.first_line, warning.text,
+                       warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
+    tools::say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", input,
+                                     toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer,
+                                     toolpath.layer_count, toolpath.beads.size(), toolpath.arcs.size(),
+                                     toolpath.filament_mm * 1e-3, gcode::beadVolume(toolpath) * 1e-3));
+    if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
+
+    voxelize::Selection filter;
+    if (!o.layers.empty()) voxelize::parseLayers(o.layers, filter);
+    if (!o.features.empty()) voxelize::parseFeatures(o.features, filter);
+    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, filter);
+    const std::size_t kept = selection.size();
+    const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
+    const voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, o.lattice);
+    tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
+                                     lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
+
+    voxelize::Provenance provenance;
+    provenance.source_file = fs::path(input).filename().string();
+    provenance.source_sha256 = sha256Hex(file.bytes());
+    provenance.slicer = toolpath.slicer;
+    provenance.unit = o.unit;
+    if (!o.layers.empty()) provenance.selection += "layers " + o.layers;
+    if (!o.features.empty()) provenance.selection += (provenance.selection.empty() ? "features " : "; features ") + o.features;
+
+    voxelize::VoxelizeOptions options;
+    options.placement = placementFor(o, bounds);
+    double voxelize_seconds = 0;
+    double write_seconds = 0;
+    Json files = Json::array();
+    Json grid_report;
+    for (const Job& job : planJobs(o, toolpath, std::move(selection), output)) {
+        tools::ProgressBar bar(job.label.empty() ? "voxelizing" : job.label, o.common.quiet);
+        options.progress = bar.callback();
+        watch.lap();
+        const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, job.beads, lattice, options);
+        voxelize_seconds += watch.lap();
+        provenance.snapshot = job.label;
+        voxelize::describe(*grid, lattice, provenance);
+        voxelize::writeVdb(grid, job.path, o.file);
+        write_seconds += watch.lap();
+        const auto bytes = fs::file_size(job.path);
+        files.push_back({{"path", job.path.string()}, {"snapshot", job.label}, {"bytes", bytes},
+                         {"beads", job.beads.size()}, {"active_voxels", grid->activeVoxelCount()}});
+        tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
+                                         tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
+                                         tools::humanBytes(static_cast<double>(grid->memUsage())),
+                                         tools::humanBytes(static_cast<double>(bytes))));
+        // Counting the enclosed volume reads every leaf once more: only for a report.
+        if (!o.common.stats.empty() && job.label.empty()) grid_report = describeGrid(*grid, lattice);
+    }
+    Json skipped = Json::array();
+    if (kept < toolpath.beads.size())
+        skipped.push_back({{"what", "beads"},
+                           {"why", provenance.selection},
+                           {"saved", fmt::format("{} of {} beads", toolpath.beads.size() - kept, toolpath.beads.size())}});
+    skipped.push_back({{"what", "distances inside the solid"},
+                       {"why", "the surface needs only their sign"},
+                       {"saved", "a fast-sweeping pass over the grid"}});
+    const double total_seconds = total.lap();
+    tools::say(o.common, fmt::format("  done in {:.2f} s", total_seconds));
+    return {{"input",
+             {{"path", input}, {"bytes", file.bytes().size()}, {"sha256", provenance.source_sha256},
+              {"slicer", toolpath.slicer}, {"format", toolpath.format}}},
+            {"toolpath", describeToolpath(toolpath)},
+            {"grid", grid_report},
+            {"files", files},
+            {"skipped", skipped},
+            {"seconds",
+             {{"parse", parse_seconds}, {"cull", 0.0}, {"voxelize", voxelize_seconds}, {"write", write_seconds},
+              {"total", total_seconds}}},
+            {"peak_rss_bytes", tools::peakRssBytes()},
+            {"threads", threads}};
+}
+
+void run(const Options& o) {
+    const tools::ThreadLimit limit(o.common.threads);
+    openvdb::initialize();
+    if (o.inputs.size() == 1) {
+        fs::path output = o.output;
+        if (output.empty()) output = fs::path(o.inputs.front()).filename().replace_extension(".vdb");
+        if (output.extension() != ".vdb")
+            throw UsageError(fmt::format("-o {}: the name must end in .vdb", output.string()));
+        tools::writeStats(o.common, convert(o, o.inputs.front(), output, limit.threads()));
+        return;
+    }
+    if (!fs::is_directory(o.output))
+        throw UsageError(fmt::format("{} inputs: -o must name an existing folder for their .vdb files", o.inputs.size()));
+    if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
+    Json reports = Json::array();
+    for (const std::string& input : o.inputs)
+        reports.push_back(convert(o, input, fs::path(o.output) / fs::path(input).filename().replace_extension(".vdb"),
+                                  limit.threads()));
+    tools::writeStats(o.common, reports);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Turns printer G-code into an OpenVDB level set of the part as printed, every bead and layer line.",
+                 "gcode2vdb");
+    Options options;
+    addOptions(app, options);
+    return tools::runTool(app, argc, argv, [&options] { run(options); });
+}
