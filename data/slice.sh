@@ -20,21 +20,27 @@ need() { command -v "$1" >/dev/null 2>&1 || die "$1 is missing. On Debian: apt-g
 
 # run COMMAND...: show it, run it in the temporary folder, keep its chatter for a failure
 run() {
-    printf '+'; printf ' %q' "$@" | cut -c1-400
+    printf '+'; printf ' %q' "$@"; printf '\n'
     (cd "$tmp" && "$@") >"$tmp/log" 2>&1 || { cat "$tmp/log" >&2; die "failed: $1"; }
 }
+
+# What OpenSCAD and PrusaSlicer write depends a little on the addresses of their memory
+# and on the order in which their threads end. With both held still, the same input
+# gives the same file, but for the date in its first line.
+still=()
+if setarch -R taskset -c 0 true 2>/dev/null; then still=(setarch -R taskset -c 0); fi
 
 # stl NAME: models/NAME.scad -> NAME.stl in the temporary folder, once
 stl() {
     need openscad openscad
-    [ -s "$tmp/$1.stl" ] || run openscad -q -o "$1.stl" "$data/models/$1.scad"
+    [ -s "$tmp/$1.stl" ] || run "${still[@]}" openscad -q -o "$1.stl" "$data/models/$1.scad"
 }
 
 # prusa OUT MODEL [OPTION...]: slice MODEL with prusa.ini and the options
 prusa() {
     need prusa-slicer prusa-slicer
     local out=$1 model=$2; shift 2
-    run prusa-slicer --datadir "$tmp/prusa" --load "$data/prusa.ini" "$@" \
+    run "${still[@]}" prusa-slicer --datadir "$tmp/prusa" --load "$data/prusa.ini" "$@" \
         --center 100,100 --export-gcode --output "$out" "$model"
     cp "$tmp/$out" "$data/gcode/$out"
 }
@@ -47,7 +53,7 @@ find_cura_definitions() {
     for d in "${CURA_DEFINITIONS:-}" /usr/share/cura/resources/definitions "$tmp/cura/usr/share/cura/resources/definitions"; do
         if [ -n "$d" ] && [ -f "$d/fdmprinter.def.json" ]; then definitions=$d; return; fi
     done
-    command -v apt-get >/dev/null 2>&1 && command -v dpkg-deb >/dev/null 2>&1 ||
+    { command -v apt-get && command -v dpkg-deb; } >/dev/null 2>&1 ||
         die "fdmprinter.def.json is missing. Install Cura, or set CURA_DEFINITIONS to the folder that has it"
     mkdir -p "$tmp/cura"
     run apt-get download cura
@@ -104,12 +110,12 @@ vase()     { stl vase;    prusa vase.gcode vase.stl --spiral-vase --layer-height
                  --external-perimeter-extrusion-width 0.5; }
 gear()     { stl gear;    prusa gear.gcode gear.stl --layer-height 0.3 --first-layer-height 0.3 --perimeter-generator classic \
                  --fill-pattern rectilinear --fill-density 15% --top-solid-layers 3 --bottom-solid-layers 2 \
-                 --skirts 2 --skirt-distance 8 --brim-type outer_only --brim-width 4; }
+                 --skirts 2 --skirt-distance 8 --brim-type outer_only --brim-width 4 --gcode-resolution 0.08; }
 knot()     { stl knot;    prusa knot.gcode knot.stl --layer-height 0.3 --first-layer-height 0.3 --perimeter-generator classic \
                  --fill-density 10% --top-solid-layers 3 --bottom-solid-layers 2 --retract-lift 0 \
-                 --support-material --support-material-threshold 35 --support-material-spacing 3.5 \
+                 --support-material --support-material-style snug --support-material-threshold 35 --support-material-spacing 3.5 \
                  --support-material-interface-layers 1 --support-material-interface-spacing 2 \
-                 --brim-type outer_only --brim-width 3; }
+                 --brim-type outer_only --brim-width 3 --gcode-resolution 0.08; }
 bridges()  { stl bridges; prusa bridges.gcode bridges.stl --layer-height 0.3 --first-layer-height 0.3 \
                  --perimeter-generator classic --retract-lift 0; }
 
@@ -119,10 +125,10 @@ two_tone_mmu() { two_tone_amf; prusa two_tone_mmu.gcode two_tone.amf --load "$da
                      --layer-height 0.3 --first-layer-height 0.3 --perimeter-generator classic; }
 two_tone_amf() { stl two_tone_a; stl two_tone_b; amf two_tone.amf two_tone_a.stl two_tone_b.stl; }
 
-tile()            { stl tile; prusa tile.gcode tile.stl; }
-tile_absolute()   { stl tile; prusa tile_absolute.gcode tile.stl --use-relative-e-distances=0 --layer-gcode ';[layer_z]'; }
-tile_fwretract()  { stl tile; prusa tile_fwretract.gcode tile.stl --use-firmware-retraction; }
-tile_volumetric() { stl tile; prusa tile_volumetric.gcode tile.stl --load "$data/volumetric.ini"; }
+tile()            { stl tile; prusa tile.gcode tile.stl --perimeter-generator classic; }
+tile_absolute()   { stl tile; prusa tile_absolute.gcode tile.stl --perimeter-generator classic --use-relative-e-distances=0 --layer-gcode ';[layer_z]'; }
+tile_fwretract()  { stl tile; prusa tile_fwretract.gcode tile.stl --perimeter-generator classic --use-firmware-retraction; }
+tile_volumetric() { stl tile; prusa tile_volumetric.gcode tile.stl --perimeter-generator classic --load "$data/volumetric.ini"; }
 
 hull_cura()    { stl hull;    cura hull_cura.gcode hull.stl -s layer_height=0.3 -s layer_height_0=0.3 \
                      -s infill_sparse_thickness=0.3 -s retraction_combing=off; }
@@ -130,11 +136,13 @@ bridges_cura() { stl bridges; cura bridges_cura.gcode bridges.stl -s layer_heigh
                      -s infill_sparse_thickness=0.3 -s relative_extrusion=true -s retraction_combing=off; }
 tile_cura()    { stl tile;    cura tile_cura.gcode tile.stl; }
 
-all='hull vase gear knot bridges two_tone two_tone_mmu tile tile_absolute tile_fwretract tile_volumetric hull_cura bridges_cura tile_cura'
+all=(hull vase gear knot bridges two_tone two_tone_mmu
+     tile tile_absolute tile_fwretract tile_volumetric hull_cura bridges_cura tile_cura)
 
-if [ "${1:-}" = --list ]; then printf '%s\n' $all; exit 0; fi
-for name in ${*:-$all}; do
-    case " $all " in *" $name "*) ;; *) die "no such file: $name. There are: $all" ;; esac
+if [ "${1:-}" = --list ]; then printf '%s\n' "${all[@]}"; exit 0; fi
+[ $# -gt 0 ] || set -- "${all[@]}"
+for name in "$@"; do
+    case " ${all[*]} " in *" $name "*) ;; *) die "no such file: $name. There are: ${all[*]}" ;; esac
     "$name"
     printf '  = data/gcode/%s.gcode, %s bytes\n' "$name" "$(wc -c <"$data/gcode/$name.gcode")"
 done

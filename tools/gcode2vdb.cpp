@@ -69,7 +69,7 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("WHERE")
         ->group(lattice);
     const char* what = "What to convert";
-    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1")->type_name("A:B")->group(what);
+    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")->type_name("A:B")->group(what);
     app.add_option("--features", o.features, "Only (+NAME,...) or all but (-NAME,...) these features")
         ->type_name("LIST")
         ->group(what);
@@ -153,7 +153,7 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath, std
     return jobs;
 }
 
-Json describeToolpath(const gcode::Toolpath& toolpath) {
+Json describeToolpath(const gcode::Toolpath& toolpath, const voxelize::Bounds& selected) {
     double length = 0;
     for (const gcode::Bead& bead : toolpath.beads) length += gcode::beadLength(toolpath, bead);
     Json warnings = Json::array();
@@ -168,6 +168,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"volume_mm3", gcode::beadVolume(toolpath)},
             {"extruded_mm3", toolpath.extruded_mm3},
             {"firmware", toolpath.firmware},
+            {"selected_bbox_mm", {selected.min, selected.max}},
             {"warnings", warnings}};
 }
 
@@ -255,10 +256,13 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         if (!o.common.stats.empty() && job.label.empty()) grid_report = describeGrid(*grid, lattice);
     }
     Json skipped = Json::array();
-    if (kept < toolpath.beads.size())
-        skipped.push_back({{"what", "beads"},
-                           {"why", provenance.selection},
-                           {"saved", fmt::format("{} of {} beads", toolpath.beads.size() - kept, toolpath.beads.size())}});
+    if (kept < toolpath.beads.size()) {
+        const std::string why = provenance.selection.empty() ? "prime lines before layer 1 (--layers 0: keeps them)"
+                                                             : provenance.selection;
+        const std::string count = fmt::format("{} of {} beads", toolpath.beads.size() - kept, toolpath.beads.size());
+        skipped.push_back({{"what", "beads"}, {"why", why}, {"saved", count}});
+        tools::say(o.common, fmt::format("  left out {}: {}", count, why));
+    }
     skipped.push_back({{"what", "distances inside the solid"},
                        {"why", "the surface needs only their sign"},
                        {"saved", "a fast-sweeping pass over the grid"}});
@@ -267,7 +271,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     return {{"input",
              {{"path", input}, {"bytes", file.bytes().size()}, {"sha256", provenance.source_sha256},
               {"slicer", toolpath.slicer}, {"format", toolpath.format}}},
-            {"toolpath", describeToolpath(toolpath)},
+            {"toolpath", describeToolpath(toolpath, bounds)},
             {"grid", grid_report},
             {"files", files},
             {"skipped", skipped},

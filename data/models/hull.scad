@@ -1,4 +1,4 @@
-// hull.scad -- a stout little harbour tug, about 56 x 25 x 38 mm.
+// hull.scad -- a stout little harbour tug, about 56 x 23 x 36 mm.
 //
 // What it exercises: double-curved sides that change every layer (flare at the
 // bow, rounded stern), thin bulwarks with scuppers, bridged window openings,

@@ -12,7 +12,7 @@ depth  = 1.7;   // depth of the flutes
 M      = 120;   // points around
 K      = 90;    // rings, bottom to top
 
-function belly(t) = R * (0.78 + 0.34*sin(180*pow(t, 0.75)) - 0.26*pow(sin(180*pow(t, 2.6)), 2) + 0.24*pow(t, 6));
+function belly(t) = R * (0.80 + 0.32*sin(180*pow(t, 0.85)) - 0.26*pow(sin(180*pow(t, 2.6)), 2) + 0.24*pow(t, 6));
 function lean(t)  = 30*sin(175*t);                       // degrees of twist at height t
 function flute(t) = depth * (0.30 + 0.70*sin(160*t + 15));
 function r(a, t)  = belly(t) + flute(t)*(pow(abs(sin(flutes*a/2)), 0.8) - 0.5);

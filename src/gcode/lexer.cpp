@@ -113,19 +113,23 @@ private:
 
     void word() {
         const char* next = p_ + 1;
-        if (line_.count == 0 && next != end_ && (isLetter(*next) || *next == '_')) return extended();
         const char letter = upper(*p_);
+        if (line_.count == 0 && next != end_ && (isLetter(*next) || *next == '_')) {
+            // Tx and Tc are Prusa's "ask for a tool", not macros.
+            if (letter == 'T' && (next + 1 == end_ || isBlank(next[1]) || next[1] == ';')) return tool(next);
+            return extended();
+        }
         next = skipBlanks(next, end_);
         const bool number = next != end_ && isDigit(*next);
         if ((letter == 'G' || letter == 'M') && number) return numbered(letter, next);
         if (letter == 'T' && line_.count == 0) return tool(next);
-        if (line_.count == 0) open();
+        if (!command_) open();
         double value = 0;
         if (parseNumber(next, end_, value)) {
-            line_.commands[line_.count - 1].set(letter, value);
+            command_->set(letter, value);
             p_ = next;
         } else {
-            line_.commands[line_.count - 1].set(letter);
+            command_->set(letter);
             ++p_;
         }
     }
@@ -136,9 +140,9 @@ private:
             line_.unreadable = true;
             --line_.count;
         }
-        Command& command = line_.commands[line_.count++];
-        command.clear();
-        return command;
+        command_ = &line_.commands[line_.count++];
+        command_->clear();
+        return *command_;
     }
 
     void numbered(char letter, const char* digits) {
@@ -181,13 +185,14 @@ private:
     }
 
     void closeText(const char* to) {
-        if (text_) line_.commands[line_.count - 1].text = view(text_, to);
+        if (command_ && text_) command_->text = view(text_, to);
         text_ = nullptr;
     }
 
     const char* p_;
     const char* end_;
     const char* text_ = nullptr;
+    Command* command_ = nullptr;  // the one being filled
     Line& line_;
 };
 

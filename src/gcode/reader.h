@@ -27,7 +27,8 @@ struct ReadOptions {
 };
 
 /// Reads one G-code program. `name` stands in messages. Throws InputError (with "name:line: ...") for bytes that are
-/// not G-code, unusable numbers, or a program that deposits nothing. Single-threaded, re-entrant.
+/// not G-code, unusable numbers, or a program that deposits nothing; UsageError for options out of range.
+/// Single-threaded, re-entrant.
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options = {});
 
 }  // namespace stratum::gcode

@@ -98,8 +98,7 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
         HeightResolver resolver(levelsOf(toolpath, run_z), nominal_height, warnings);
         for (const Bead& bead : toolpath.beads) {
             Run& run = toolpath.runs[bead.run];
-            if (!(run.height > 0))
-                run.height = static_cast<float>(resolver.heightOf(run, run_z[bead.run], bead.line));
+            if (!(run.height > 0)) run.height = static_cast<float>(resolver.heightOf(run, run_z[bead.run], bead.line));
         }
     }
     for (Bead& bead : toolpath.beads) {

@@ -84,6 +84,8 @@ private:
             settings.relative_e = flag(value);
         } else if (key == "use_volumetric_e") {
             settings.volumetric_e = flag(value);
+        } else if (key == "single_extruder_multi_material") {
+            settings.shared_nozzle = flag(value).value_or(false);
         } else if (key == "gcode_flavor") {
             settings.firmware = firmwareOfFlavor(value);
         }
@@ -107,8 +109,11 @@ private:
             if (const auto height = positive(text, 100)) settings.layer_height = height;
         } else if (take(text, "Filament Diameter #")) {
             const auto colon = text.find(':');
-            const auto diameter = colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
+            const auto diameter =
+                colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
+        } else if (take(text, "relativeEdistances,")) {
+            settings.relative_e = flag(text);
         } else if (take(text, "filamentDiameters,")) {
             if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
         }

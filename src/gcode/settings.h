@@ -19,6 +19,7 @@ struct Settings {
     std::optional<double> layer_height;      ///< mm
     std::optional<bool> relative_e;          ///< E words are increments
     std::optional<bool> volumetric_e;        ///< E words are mm^3
+    bool shared_nozzle = false;              ///< several filaments take turns in one nozzle
     Firmware firmware = Firmware::automatic;
 };
 

@@ -126,9 +126,7 @@ Tag ofHeight(std::string_view text) {
 }
 
 Tag ofType(std::string_view text) {
-    return {.kind = Tag::Kind::feature,
-            .feature = featureOfSlicerName(text).value_or(Feature::unknown),
-            .text = text};
+    return {.kind = Tag::Kind::feature, .feature = featureOfSlicerName(text).value_or(Feature::unknown), .text = text};
 }
 
 Tag layerChange(double height = 0) { return {.kind = Tag::Kind::layer_change, .height = height}; }
@@ -144,7 +142,7 @@ Tag ofKiriLayer(std::string_view text) {
 Tag ofNumberedLayer(std::string_view text) {
     const auto digits = text.find_first_not_of("0123456789");
     return digits != 0 && digits != std::string_view::npos && text.substr(digits).starts_with(", Z =") ? layerChange()
-                                                                                                        : Tag{};
+                                                                                                       : Tag{};
 }
 
 // Simplify3D: "tool H0.200 W0.450".
@@ -178,8 +176,7 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "CHANGE_LAYER")) return layerChange();
             break;
         case 'M':
-            if (take(text, "MESH:"))
-                return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
+            if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
             break;
         case ';':
             if (take(text, "; --- layer ")) return ofKiriLayer(text);

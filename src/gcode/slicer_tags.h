@@ -16,7 +16,7 @@ struct Tag {
     Kind kind = Kind::none;
     Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if `text` is no name that is known here
     double height = 0;                   ///< mm, of Kind::height; of a layer change that names its height, else 0
-    std::string_view text;               ///< the feature's or object's name as written
+    std::string_view text{};             ///< the feature's or object's name as written
 };
 
 /// The tag in a comment (given without its ';'), or Kind::none. ";WIDTH:" is none of them: the width follows from E.

@@ -8,9 +8,22 @@ namespace stratum::gcode {
 namespace {
 
 constexpr std::array<std::string_view, kFeatureCount> kFeatureNames{
-    "unknown",      "perimeter", "external-perimeter", "overhang-perimeter", "infill", "solid-infill",
-    "top-infill",   "bridge",    "gap-fill",           "ironing",            "skirt",  "brim",
-    "support",      "support-interface",               "wipe-tower",         "custom",
+    "unknown",
+    "perimeter",
+    "external-perimeter",
+    "overhang-perimeter",
+    "infill",
+    "solid-infill",
+    "top-infill",
+    "bridge",
+    "gap-fill",
+    "ironing",
+    "skirt",
+    "brim",
+    "support",
+    "support-interface",
+    "wipe-tower",
+    "custom",
 };
 
 }  // namespace

@@ -50,11 +50,11 @@ struct Arc {
 
 /// What neighbouring beads have in common; a bead names its run by index.
 struct Run {
-    float height = 0;            ///< mm, of the layer: the bead's centre is at z - height / 2
-    float speed = 0;             ///< mm/s, the feed rate in force
-    std::uint32_t layer = 0;     ///< 1, 2, ... as slicers count; 0 is what comes before the first layer (prime lines)
-    std::uint16_t object = 0;    ///< index into Toolpath::objects; 0 is "no object"
-    std::uint8_t tool = 0;       ///< T number
+    float height = 0;          ///< mm, of the layer: the bead's centre is at z - height / 2
+    float speed = 0;           ///< mm/s, the feed rate in force
+    std::uint32_t layer = 0;   ///< 1, 2, ... as slicers count; 0 is what comes before the first layer (prime lines)
+    std::uint16_t object = 0;  ///< index into Toolpath::objects; 0 is "no object"
+    std::uint8_t tool = 0;     ///< T number
     Feature feature = Feature::unknown;
     bool operator==(const Run&) const = default;
 };
@@ -85,14 +85,14 @@ struct Toolpath {
     std::vector<std::string> objects{""};  ///< names of labelled objects; [0] is unlabelled
     std::vector<Warning> warnings;
 
-    std::string slicer;                 ///< e.g. "PrusaSlicer 2.5.0"; empty if the file doesn't say
-    std::string firmware;               ///< the rule set used, e.g. "marlin"
-    std::string format = "ascii";       ///< the container
-    double filament_diameter = 1.75;    ///< mm, of tool 0
-    double layer_height = 0;            ///< mm, nominal, from the file's settings; 0 if unknown
+    std::string slicer;               ///< e.g. "PrusaSlicer 2.5.0"; empty if the file doesn't say
+    std::string firmware;             ///< the rule set used, e.g. "marlin"
+    std::string format = "ascii";     ///< the container
+    double filament_diameter = 1.75;  ///< mm, of tool 0
+    double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
     std::uint32_t layer_count = 0;
-    double filament_mm = 0;             ///< positive E of the beads as the file counts it, in mm of filament
-    double extruded_mm3 = 0;            ///< the same as volume, times the flow factor (M221): what beads must add up to
+    double filament_mm = 0;   ///< positive E of the beads as the file counts it, in mm of filament
+    double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
     bool empty() const { return beads.empty(); }

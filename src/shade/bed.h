@@ -26,7 +26,7 @@ struct Backdrop {
 /// backdrop are one sweep without a horizon.
 struct Bed {
     double z = 0.0;           ///< world units
-    Color albedo{0.5f};       ///< of the paper, in [0, 1]
+    Color albedo{0.56f};      ///< of the paper, in [0, 1]
     glm::dvec2 centre{0.0};   ///< world units: the fade is round about this point
     double fade_begin = 1.0;  ///< world units from the centre: nothing faded yet
     double fade_end = 2.0;    ///< world units from the centre: all faded; > fade_begin

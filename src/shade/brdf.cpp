@@ -9,7 +9,7 @@
 
 namespace stratum::shade {
 
-const char* const kDefaultBrdf = "plastic:0.75,0.17,0.025,0.18";
+const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";

@@ -38,7 +38,7 @@ public:
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
 };
 
-/// What a print is made of when nobody says: a satin teal PLA.
+/// What a print is made of when nobody says: satin orange PLA.
 extern const char* const kDefaultBrdf;
 
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].

@@ -23,7 +23,7 @@ struct CameraOptions {
     std::optional<glm::dvec3> look_at;  ///< world space; needs `eye`; default: the middle of the box
     std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
     double fov = 28.0;             ///< degrees, vertical, whole angle, in (0, 170]
-    double margin = 0.09;          ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
+    double margin = 0.05;          ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
 
     /// Throws UsageError.
     void validate() const;

@@ -10,8 +10,8 @@ namespace stratum::shade {
 
 /// Linear light in Rec. 709 / sRGB primaries with a D65 white. Radiance, irradiance or reflectance, as the place says.
 ///
-/// Radiance is relative: the built-in lights are scaled so that a white Lambert surface facing up, with nothing in its
-/// way, has radiance 1. A measured environment keeps the unit of its file.
+/// Radiance is relative: under `--env constant:1,1,1` a white surface has radiance 1; the built-in studio gives one
+/// that looks up 1.5. A measured environment keeps the unit of its file.
 using Color = glm::vec3;
 
 /// Relative luminance (Rec. 709 weights).

@@ -5,6 +5,9 @@
 namespace stratum::shade {
 namespace {
 
+/// Below this cosine floats can't tell directions apart (wo + wi may vanish); no light is scattered there.
+constexpr float kGrazing = 1e-6f;
+
 /// Directional albedo of the coat by quadrature over visible normals, which flattens the integrand for every alpha.
 double quadrature(const Ggx& ggx, float cosine) {
     constexpr int kRings = 96;
@@ -58,6 +61,7 @@ float Plastic::coatAlbedo(float cosine) const {
 }
 
 float Plastic::coatShare(float cosine) const {
+    // By what each lobe reflects, but the coat gets more than its share: it is the lobe that meets the lamps.
     const float e = coatAlbedo(cosine);
     return std::max(e / (e + (1.0f - e) * body_max_), 0.3f);
 }
@@ -69,19 +73,19 @@ float Plastic::coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h
 }
 
 Color Plastic::eval(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > 0.0f && wi.z > 0.0f)) return Color(0.0f);
+    if (!(wo.z > kGrazing && wi.z > kGrazing)) return Color(0.0f);
     const float body = (1.0f - coatAlbedo(wo.z)) * (1.0f - coatAlbedo(wi.z)) / one_minus_mean_ * kInvPi;
     return body_ * body + Color(coat(wo, wi, glm::normalize(wo + wi)));
 }
 
 float Plastic::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
+    if (!(wo.z > kGrazing && wi.z > kGrazing)) return 0.0f;
     const float share = coatShare(wo.z);
     return share * ggx_.pdfReflected(wo, glm::normalize(wo + wi)) + (1.0f - share) * wi.z * kInvPi;
 }
 
 std::optional<BrdfSample> Plastic::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
-    if (!(wo.z > 0.0f)) return std::nullopt;
+    if (!(wo.z > kGrazing)) return std::nullopt;
     glm::vec3 wi;
     if (lobe < coatShare(wo.z)) {
         const glm::vec3 h = ggx_.sampleVisible(wo, u);
@@ -89,7 +93,7 @@ std::optional<BrdfSample> Plastic::sample(const glm::vec3& wo, float lobe, const
     } else {
         wi = toCosineHemisphere(u);
     }
-    if (!(wi.z > 0.0f)) return std::nullopt;
+    if (!(wi.z > kGrazing)) return std::nullopt;
     const float density = pdf(wo, wi);
     if (!(density > 0.0f && std::isfinite(density))) return std::nullopt;
     return BrdfSample{wi, eval(wo, wi), density};

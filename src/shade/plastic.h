@@ -31,6 +31,7 @@ public:
     float coatAlbedo(float cosine) const;
 
 private:
+    /// Probability of drawing from the coat.
     float coatShare(float cosine) const;
     float coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const;
 

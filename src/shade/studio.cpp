@@ -48,25 +48,22 @@ struct Softbox {
 /// Azimuth is clockwise from "away from the camera": -90 is left, 90 right, 180 the camera. All angles in degrees.
 const std::array<Softbox, 4>& softboxes() {
     static const std::array<Softbox, 4> boxes = {
-        Softbox(-105.0f, 48.0f, 36.0f, 40.0f, 0.20f, Color(13.0f, 12.6f, 11.9f)),  // key
-        Softbox(115.0f, 25.0f, 60.0f, 50.0f, 0.60f, Color(0.40f, 0.45f, 0.53f)),   // fill
-        Softbox(52.0f, 30.0f, 16.0f, 60.0f, 0.15f, Color(9.0f, 9.4f, 10.0f)),      // rim, right
-        Softbox(-35.0f, 32.0f, 14.0f, 50.0f, 0.15f, Color(5.0f, 5.1f, 5.3f)),      // rim, left
+        Softbox(-100.0f, 50.0f, 34.0f, 38.0f, 0.20f, Color(15.0f, 14.5f, 13.7f)),  // key
+        Softbox(125.0f, 22.0f, 50.0f, 40.0f, 0.50f, Color(0.60f, 0.66f, 0.76f)),   // fill
+        Softbox(50.0f, 30.0f, 18.0f, 60.0f, 0.15f, Color(9.0f, 9.4f, 10.0f)),      // rim, right
+        Softbox(-30.0f, 34.0f, 18.0f, 50.0f, 0.15f, Color(6.0f, 6.1f, 6.4f)),      // rim, left
     };
     return boxes;
 }
 
 /// @param d  studio frame
 Color unscaled(const glm::vec3& d, bool bed) {
-    // Light from below stands for what a bed would send back.
-    if (d.z < 0.0f) return bed ? Color(0.0f) : Color(0.35f) + 0.15f * (1.0f + d.z);
-    Color sum = Color(0.20f, 0.21f, 0.23f) + Color(0.25f, 0.25f, 0.24f) * d.z;
+    // With no bed to send light back, the lamps' weaker mirror images do it: a view from below is lit as well.
+    if (d.z < 0.0f) return bed ? Color(0.0f) : 0.5f * unscaled({d.x, d.y, -d.z}, bed);
+    Color sum = Color(0.16f, 0.17f, 0.19f) + Color(0.20f, 0.20f, 0.19f) * d.z;
     for (const Softbox& box : softboxes()) sum += box(d);
     return sum;
 }
-
-/// Radiance of a white Lambert surface that looks up, with nothing in its way.
-constexpr float kLevel = 1.5f;
 
 constexpr int kColumns = 256;
 constexpr int kRows = 128;  // even: a row ends at the horizon, where the light does

@@ -6,11 +6,14 @@
 
 namespace stratum::shade {
 
-/// A large key light high on the left, a broad weak fill on the right, two strips behind that draw the rims, and a room
-/// that is brighter above than at the horizon. Edges are smooth. Scaled so that a white Lambert surface that looks up
-/// has radiance 1.
+/// A key light high on the left, a broad weak fill on the right, two strips behind that draw the rims, and a room that
+/// is brighter above than at the horizon. Edges are smooth.
 class StudioEnvironment final : public Environment {
 public:
+    /// Radiance of a white Lambert surface that looks up, with nothing in its way. Bright enough that a print and the
+    /// paper under it need no exposure.
+    static constexpr float kLevel = 1.5f;
+
     explicit StudioEnvironment(const EnvironmentPlacement& placement);
     Color radiance(const glm::vec3& direction) const override;
     EnvironmentSample sample(const glm::vec2& u) const override;

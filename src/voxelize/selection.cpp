@@ -60,7 +60,7 @@ void parseLayers(std::string_view text, Selection& selection) {
     };
     if (parts.size() > 2 || text.empty())
         throw UsageError(fmt::format("--layers {}: expected A:B with whole numbers, e.g. 1:40", text));
-    selection.first_layer = number(parts.front(), 0);
+    selection.first_layer = number(parts.front(), 1);
     selection.last_layer = parts.size() == 2 ? number(parts.back(), 0xffffffff) : selection.first_layer;
     if (selection.first_layer > selection.last_layer)
         throw UsageError(fmt::format("--layers {}: the first layer is above the last", text));

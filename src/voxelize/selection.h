@@ -12,16 +12,17 @@
 
 namespace stratum::voxelize {
 
-/// A filter over beads; the default keeps everything.
+/// A filter over beads; the default keeps all layers of the print, without prime lines.
 struct Selection {
-    std::uint32_t first_layer = 0;  ///< inclusive; 0 also takes what is printed before the first layer
+    std::uint32_t first_layer = 1;  ///< inclusive; 0 also takes what is extruded before the first layer (prime lines)
     std::uint32_t last_layer = 0xffffffff;
     std::array<bool, gcode::kFeatureCount> features;
 
     Selection() { features.fill(true); }
 };
 
-/// Parses "A:B" (inclusive, either end may be left out) or "A" into the layer range. Throws UsageError.
+/// Parses "A:B" (inclusive, either end may be left out: from 1, to the last) or "A" into the layer range. Layer 0 is what
+/// is extruded before the first layer. Throws UsageError.
 void parseLayers(std::string_view text, Selection& selection);
 
 /// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list

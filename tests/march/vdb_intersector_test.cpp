@@ -160,7 +160,7 @@ TEST(VdbIntersector, RefusesWhatItCannotTrace) {
     const auto fog = ball();
     fog->setGridClass(openvdb::GRID_FOG_VOLUME);
     EXPECT_THROW(makeVdbIntersector(fog), InputError);
-    EXPECT_THROW(makeVdbIntersector(test::sphereGrid(10, openvdb::Vec3f(0), 0.2f, 1)), InputError);
+    EXPECT_THROW(makeVdbIntersector(test::sphereGrid(10, openvdb::Vec3f(0), 0.2f, 1.5f)), InputError);
     const auto oblong = ball();
     oblong->transform().postScale(openvdb::Vec3d(1, 1, 2));
     EXPECT_THROW(makeVdbIntersector(oblong), InputError);

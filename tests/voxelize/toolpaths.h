@@ -80,31 +80,30 @@ inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Be
     return std::hypot(std::max(rho - c, 0.0), z - (bead.z0 - height / 2)) - radius;
 }
 
-/// Minimum over all level beads of a toolpath. Beads are looked at in blocks whose boxes let most be passed over; the
-/// box distance is a lower bound, so the minimum is that of all beads.
+/// Minimum over all level beads of a toolpath. Beads are looked at in short blocks whose boxes let most be passed over:
+/// the distance to a box is a lower bound for all beads in it, so the minimum is that of all beads.
 class BruteForce {
 public:
     explicit BruteForce(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
-        constexpr std::size_t kBlock = 32;
+        constexpr std::size_t kBlock = 8;
         for (std::size_t first = 0; first < toolpath.beads.size(); first += kBlock) {
-            Block block{first, std::min(first + kBlock, toolpath.beads.size()), {}, {}};
-            for (int axis = 0; axis < 3; ++axis) {
-                block.min[axis] = std::numeric_limits<double>::max();
-                block.max[axis] = std::numeric_limits<double>::lowest();
-            }
+            Block block{first, std::min(first + kBlock, toolpath.beads.size()), {1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
             for (std::size_t i = block.first; i < block.last; ++i) {
                 const gcode::Bead& bead = toolpath.beads[i];
+                const double height = static_cast<double>(toolpath.runOf(bead).height);
+                double side = static_cast<double>(bead.width) / 2;
                 // Generous: an arc stays within its diameter of its start.
-                double pad = static_cast<double>(bead.width) + static_cast<double>(toolpath.runOf(bead).height);
                 if (bead.arc >= 0) {
                     const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-                    pad += 2 * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+                    side += 2 * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
                 }
-                const double low[3] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1), std::min(bead.z0, bead.z1)};
-                const double high[3] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1), std::max(bead.z0, bead.z1)};
+                const double low[3] = {std::min(bead.x0, bead.x1) - side, std::min(bead.y0, bead.y1) - side,
+                                       bead.z0 - height - 1e-6};
+                const double high[3] = {std::max(bead.x0, bead.x1) + side, std::max(bead.y0, bead.y1) + side,
+                                        bead.z0 + 1e-6};
                 for (int axis = 0; axis < 3; ++axis) {
-                    block.min[axis] = std::min(block.min[axis], low[axis] - pad);
-                    block.max[axis] = std::max(block.max[axis], high[axis] + pad);
+                    block.min[axis] = std::min(block.min[axis], low[axis]);
+                    block.max[axis] = std::max(block.max[axis], high[axis]);
                 }
             }
             blocks_.push_back(block);
@@ -120,7 +119,7 @@ public:
                 const double gap = std::max({block.min[axis] - p[axis], p[axis] - block.max[axis], 0.0});
                 outside2 += gap * gap;
             }
-            if (best >= 0 ? outside2 > best * best : outside2 > 0) continue;
+            if (outside2 > 0 && (best < 0 || outside2 > best * best)) continue;
             for (std::size_t i = block.first; i < block.last; ++i)
                 best = std::min(best, levelBeadDistance(toolpath_, toolpath_.beads[i], x, y, z));
         }

@@ -1,0 +1,24 @@
+# Sourced by the other scripts: installs Debian packages that are missing, and is quick when none is.
+
+# install_packages NAME...
+install_packages() {
+    local missing=() name
+    for name in "$@"; do
+        dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || missing+=("$name")
+    done
+    [ ${#missing[@]} -eq 0 ] && return 0
+    echo "Installing: ${missing[*]}"
+    local run=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || { echo "Run this as root: packages must be installed." >&2; return 1; }
+        run=(sudo)
+    fi
+    "${run[@]}" apt-get update -q >/dev/null
+    "${run[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# What the tools are built with.
+BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
+    libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev)
+# What the tests need besides: the test library and the real programs that our files must work in.
+TEST_PACKAGES=(libgtest-dev libopenvdb-tools blender python3 prusa-slicer)

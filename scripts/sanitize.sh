@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# The tests under AddressSanitizer with UndefinedBehaviorSanitizer, and under ThreadSanitizer where threads meet.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/packages.sh
+
+install_packages "${BUILD_PACKAGES[@]}" libgtest-dev
+cmake --preset asan >/dev/null
+cmake --build --preset asan
+# Freed blocks are kept for a while by the allocator; with large grids that alone would fill the memory.
+ASAN_OPTIONS=quarantine_size_mb=64:detect_leaks=1 ctest --test-dir build/asan --output-on-failure -j"$(nproc)" -LE "client|slow"
+cmake --preset tsan >/dev/null
+cmake --build --preset tsan --target test_voxelize test_shade
+TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp ctest --test-dir build/tsan --output-on-failure -j1 -L thread

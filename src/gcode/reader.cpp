@@ -1,0 +1,77 @@
+#include "gcode/reader.h"
+
+#include "gcode/bead_recorder.h"
+#include "gcode/lexer.h"
+#include "gcode/machine.h"
+#include "gcode/sections.h"
+#include "gcode/settings.h"
+#include "gcode/sniff.h"
+#include "gcode/warning_log.h"
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::size_t kProgressBytes = std::size_t{1} << 20;
+constexpr std::size_t kBytesPerBead = 26;  // the densest real files have 30; memory never touched costs nothing
+
+void checkOptions(const ReadOptions& options) {
+    if (options.filament_diameter && !(*options.filament_diameter >= 0.1 && *options.filament_diameter <= 100))
+        throw UsageError(
+            fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", *options.filament_diameter));
+    if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
+        throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
+}
+
+[[noreturn]] void refuseWithoutBeads(const MoveCounts& counts, std::string_view name) {
+    if (counts.commands == 0)
+        throw InputError(fmt::format("{}: no G-code command in it; give the slicer's .gcode file", name));
+    throw InputError(
+        fmt::format("{}: no extruding move: {} travel moves, {} primes on the spot, no motion with rising E; is this a "
+                    "laser or CNC program, or a tool test?",
+                    name, counts.travels, counts.stationary));
+}
+
+}  // namespace
+
+Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
+    checkOptions(options);
+    refuseOtherFormats(bytes, name);
+    const Settings settings = readSettings(bytes);
+    const std::optional<double> nominal = options.layer_height ? options.layer_height : settings.layer_height;
+
+    WarningLog warnings;
+    BeadRecorder recorder(nominal.value_or(0.2), bytes.size() / kBytesPerBead, warnings);
+    Machine machine(settings, options, name, recorder, warnings);
+    Lexer lexer(bytes);
+    Line line;
+    std::size_t reported = 0;
+    while (lexer.next(line)) {
+        machine.run(line);
+        if (options.progress && lexer.offset() - reported >= kProgressBytes) {
+            reported = lexer.offset();
+            options.progress(static_cast<double>(reported) / static_cast<double>(bytes.size()));
+        }
+    }
+    if (recorder.toolpath().empty()) refuseWithoutBeads(machine.counts(), name);
+    resolveSections(recorder.toolpath(), recorder.runZ(), nominal, warnings);
+    if (options.progress) options.progress(1);
+
+    Toolpath toolpath = std::move(recorder.toolpath());
+    toolpath.warnings = warnings.take();
+    toolpath.slicer = settings.slicer;
+    toolpath.firmware = firmwareName(machine.firmware());
+    toolpath.filament_diameter = machine.filamentDiameter();
+    toolpath.layer_height = nominal.value_or(0);
+    for (const Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
+    toolpath.filament_mm = machine.filamentMm();
+    toolpath.extruded_mm3 = machine.extrudedMm3();
+    return toolpath;
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,134 @@
+#include "shade/environment.h"
+
+#include "io/error.h"
+#include "shade/bed_light.h"
+#include "shade/sampler.h"
+#include "shade/sampling.h"
+#include "shade/studio.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace stratum {
+namespace {
+
+using shade::Color;
+using shade::EnvironmentPlacement;
+using shade::makeEnvironment;
+
+/// Integral over the sphere, midpoint rule in (z, phi).
+template <typename F>
+double overSphere(const F& f, int side = 1024) {
+    double sum = 0.0;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) sum += f(shade::toSphere({(i + 0.5f) / side, (j + 0.5f) / side}));
+    return sum * 4.0 * std::numbers::pi / side / side;
+}
+
+struct Case {
+    const char* text;
+    double azimuth;
+    bool bed;
+};
+
+class Environments : public testing::TestWithParam<Case> {};
+
+TEST_P(Environments, SampleAgreesWithRadianceAndDensity) {
+    const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
+    EXPECT_NEAR(overSphere([&](const glm::vec3& d) { return double(env->pdf(d)); }), 1.0, 2e-3);
+    const double power = overSphere([&](const glm::vec3& d) { return double(shade::luminance(env->radiance(d))); });
+    double estimate = 0.0;
+    double squares = 0.0;
+    int differ = 0;
+    constexpr int kSide = 256;
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            const auto s = env->sample({(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+            ASSERT_GT(s.pdf, 0.0f);
+            ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-5f);
+            differ += std::abs(s.pdf - env->pdf(s.direction)) > 1e-3f * s.pdf;
+            ASSERT_NEAR(shade::luminance(s.radiance), shade::luminance(env->radiance(s.direction)), 2e-3f);
+            const double v = double(shade::luminance(s.radiance)) / double(s.pdf);
+            estimate += v;
+            squares += v * v;
+        }
+    }
+    const double n = kSide * kSide;
+    estimate /= n;
+    EXPECT_NEAR(estimate, power, 2e-3 * power);
+    EXPECT_LT(differ, 0.005 * n);
+    // The table follows the light: the estimate's spread is small.
+    EXPECT_LT(std::sqrt(squares / n - estimate * estimate), 0.25 * estimate);
+}
+
+TEST_P(Environments, DensityIsPositiveWhereLightIs) {
+    const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
+    overSphere(
+        [&](const glm::vec3& d) {
+            if (shade::maxComponent(env->radiance(d)) > 0.0f) {
+                EXPECT_GT(env->pdf(d), 0.0f);
+            }
+            return 0.0;
+        },
+        256);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Environments,
+                         testing::Values(Case{"constant:1,0.5,0.25", 0.0, false}, Case{"studio", 0.0, true},
+                                         Case{"studio", 2.1, true}, Case{"studio", -1.0, false}));
+
+TEST(Studio, LightsAWhiteSheetToItsLevel) {
+    const auto env = makeEnvironment("studio", {0.7, true});
+    EXPECT_NEAR(shade::luminance(shade::irradianceFromAbove(*env)) * shade::kInvPi, shade::StudioEnvironment::kLevel,
+                5e-3f);
+    EXPECT_FALSE(env->visible());
+}
+
+TEST(Studio, TurnsWithTheCamera) {
+    const auto a = makeEnvironment("studio", {0.0, true});
+    const auto b = makeEnvironment("studio", {0.5 * std::numbers::pi, true});
+    for (int i = 0; i < 100; ++i) {
+        const glm::vec3 d = shade::toSphere({(i % 10 + 0.5f) / 10, (i / 10 + 0.5f) / 10});
+        EXPECT_NEAR(a->radiance(d).r, b->radiance({-d.y, d.x, d.z}).r, 1e-3f);
+    }
+}
+
+TEST(Studio, HasNoLightBelowABed) {
+    const auto env = makeEnvironment("studio", {0.0, true});
+    EXPECT_EQ(env->radiance({0.0f, 0.6f, -0.8f}), Color(0.0f));
+    EXPECT_GT(makeEnvironment("studio", {0.0, false})->radiance({0.0f, 0.6f, -0.8f}).r, 0.0f);
+}
+
+TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
+    for (const char* text : {"constant:1,1,1", "studio"}) {
+        const auto env = makeEnvironment(text, {0.3, true});
+        const shade::BedLight light(*env);
+        const double expected = double(shade::luminance(shade::irradianceFromAbove(*env)));
+        double sum = 0.0;
+        double squares = 0.0;
+        constexpr std::uint32_t kSamples = 1u << 16;
+        shade::Sampler sampler(1, kSamples);
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            sampler.start(0, 0, i);
+            const auto s = light.sample(sampler.next2D());
+            const double v =
+                double(shade::luminance(s.radiance)) * double(std::max(s.direction.z, 0.0f)) / double(s.pdf);
+            sum += v;
+            squares += v * v;
+        }
+        const double mean = sum / kSamples;
+        EXPECT_NEAR(mean, expected, 2e-3 * expected) << text;
+        EXPECT_LT(std::sqrt(squares / kSamples - mean * mean), 0.12 * mean) << text;
+    }
+}
+
+TEST(MakeEnvironment, RefusesNonsense) {
+    for (const char* text : {"", "sky", "studio:1", "constant", "constant:1,2", "constant:-1,0,0", "constant:1,1,x"})
+        EXPECT_THROW(makeEnvironment(text, {}), UsageError) << text;
+}
+
+}  // namespace
+}  // namespace stratum

@@ -1,0 +1,134 @@
+#include "shade/path.h"
+
+#include "shade/analytic_prints.h"
+#include "shade/constant.h"
+#include "shade/plastic.h"
+#include "shade/render.h"
+
+#include <gtest/gtest.h>
+
+namespace stratum {
+namespace {
+
+using shade::Color;
+
+shade::SceneDescription sceneOf(const march::Intersector& print, const char* brdf, const char* env, bool bed) {
+    shade::SceneOptions options;
+    options.brdf = brdf;
+    options.env = env;
+    options.bed = bed;
+    return shade::makeScene(options, print, 32, 24);
+}
+
+/// Mean radiance along one ray.
+Color mean(const march::Intersector& print, const shade::SceneDescription& scene, const march::Ray& ray, int bounces,
+           std::uint32_t samples = 4096) {
+    const shade::PathIntegrator path(scene, print, bounces);
+    const auto tracer = print.makeTracer();
+    shade::Sampler sampler(1, samples);
+    shade::RayCounts rays;
+    shade::TraceContext context{*tracer, sampler, rays};
+    glm::dvec3 sum(0.0);
+    for (std::uint32_t s = 0; s < samples; ++s) {
+        sampler.start(3, 4, s);
+        sum += glm::dvec3(path.radiance(ray, context).rgb);
+    }
+    return Color(sum / double(samples));
+}
+
+march::Ray towards(const glm::dvec3& from, const glm::dvec3& to) {
+    march::Ray ray;
+    ray.origin = from;
+    ray.direction = glm::normalize(to - from);
+    return ray;
+}
+
+TEST(Path, FurnaceOnAConvexBodyIsItsAlbedo) {
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    for (const auto& [brdf, albedo] :
+         {std::pair{"lambert:0.5,0.8,1", Color(0.5f, 0.8f, 1.0f)}, std::pair{"plastic:1,1,1,0.25", Color(1.0f)}}) {
+        const auto scene = sceneOf(ball, brdf, "constant:1,1,1", false);
+        for (const double y : {0.0, 0.6, 0.97}) {
+            for (const int bounces : {1, 3}) {
+                const Color c = mean(ball, scene, towards({y, 0, 5}, {y, 0, 0}), bounces);
+                for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], albedo[k], 0.01f) << brdf << " " << y;
+            }
+        }
+    }
+}
+
+TEST(Path, FurnaceOnAConcaveBodyIsWhiteWhenAllBouncesCount) {
+    // A white vase in a white furnace can't be seen, inside or out.
+    test::Vase vase;
+    vase.layers = 30;
+    const auto print = vase.intersector();
+    const auto scene = sceneOf(print, "lambert:1,1,1", "constant:1,1,1", false);
+    const Color deep = mean(print, scene, towards({0, -2, 60}, {0, 0, 1}), 64, 512);
+    const Color wall = mean(print, scene, towards({0, -60, 6}, {0, 0, 5}), 64, 512);
+    EXPECT_NEAR(deep.r, 1.0f, 0.01f);
+    EXPECT_NEAR(wall.r, 1.0f, 0.01f);
+}
+
+TEST(Path, DirectionalLightOnPaper) {
+    const auto none = test::nothing();
+    auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);
+    scene.lights.push_back({glm::normalize(glm::vec3(0, 3, 4)), Color(2.0f)});
+    scene.backdrop.reset();
+    const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 3, 16);
+    EXPECT_NEAR(c.r, scene.bed->albedo.r * 2.0f * 0.8f / 3.14159265f, 1e-5f);
+}
+
+TEST(Path, ShadowOfADirectionalLight) {
+    const auto ball = test::sphere({0, 0, 3}, 1.0);
+    auto scene = sceneOf(ball, "lambert:0,0,0", "constant:0,0,0", true);
+    scene.bed->z = 0.0;
+    scene.lights.push_back({glm::vec3(0, 0, 1), Color(1.0f)});
+    EXPECT_EQ(mean(ball, scene, towards({5, 0, 1}, {0.9, 0, 0}), 1, 16).r, 0.0f);
+    EXPECT_GT(mean(ball, scene, towards({5, 0, 1}, {1.1, 0, 0}), 1, 16).r, 0.1f);
+}
+
+TEST(Path, EnvironmentSamplingIsUnbiased) {
+    // The same integral without importance sampling of the light: uniform directions, no MIS.
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    const auto scene = sceneOf(ball, "plastic:0.6,0.3,0.1,0.3", "studio", false);
+    const glm::vec3 n = glm::normalize(glm::vec3(0.3f, -0.5f, 0.4f));
+    const glm::vec3 eye = glm::normalize(glm::vec3(0.5f, -0.8f, 0.1f));
+    const shade::Frame frame(n);
+    glm::dvec3 expected(0.0);
+    constexpr int kSide = 1500;
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            const glm::vec3 d = shade::toSphere({(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+            const glm::vec3 wi = frame.toLocal(d);
+            if (wi.z <= 0.0f) continue;
+            expected +=
+                glm::dvec3(scene.material->eval(frame.toLocal(eye), wi) * wi.z * scene.environment->radiance(d));
+        }
+    }
+    expected *= 4.0 * std::numbers::pi / kSide / kSide;
+    const glm::dvec3 hit(n);
+    const Color c = mean(ball, scene, towards(hit + 5.0 * glm::dvec3(eye), hit), 1, 16384);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], float(expected[k]), 0.01f * float(expected[k]));
+}
+
+TEST(Path, BedUnderAnOpenSkyHasItsAlbedo) {
+    const auto none = test::nothing();
+    const auto scene = sceneOf(none, "lambert:1,1,1", "constant:1,1,1", true);
+    const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, -1}), 3, 256);
+    EXPECT_NEAR(c.r, scene.bed->albedo.r, 0.002f);
+}
+
+TEST(Path, NonsenseNormalsStayFinite) {
+    const test::FunctionIntersector broken({glm::dvec3(-1), glm::dvec3(1)}, 1e-3,
+                                           [](const march::Ray& ray, march::Hit& hit) {
+                                               hit = {1.0, ray.origin + ray.direction, glm::dvec3(std::nan(""))};
+                                               return ray.origin.z > 4.5;
+                                           });
+    auto scene = sceneOf(broken, shade::kDefaultBrdf, "studio", false);
+    const Color c = mean(broken, scene, towards({0, 0, 5}, {0, 0, 0}), 2, 64);
+    EXPECT_TRUE(shade::isFinite(c));
+    EXPECT_GT(c.r, 0.0f);
+}
+
+}  // namespace
+}  // namespace stratum
