@@ -23,6 +23,6 @@ inline std::filesystem::path corpusDir() {
 }  // namespace stratum::test
 
 /// Skips a test by name when a file of the corpus is not there.
-#define STRATUM_NEEDS_CORPUS(variable, relative)                                         \
-    const std::filesystem::path variable = ::stratum::test::corpusDir() / (relative);    \
+#define STRATUM_NEEDS_CORPUS(variable, relative)                                      \
+    const std::filesystem::path variable = ::stratum::test::corpusDir() / (relative); \
     if (!std::filesystem::exists(variable)) GTEST_SKIP() << "corpus file " << (relative) << " is not there"

@@ -73,8 +73,10 @@ ThreadLimit::ThreadLimit(int threads) : threads_(threads > 0 ? threads : tbb::in
 ThreadLimit::~ThreadLimit() = default;
 
 ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)), visible_(!quiet && ::isatty(STDERR_FILENO) != 0),
-      start_(std::chrono::steady_clock::now()), shown_(start_) {}
+    : label_(std::move(label)),
+      visible_(!quiet && ::isatty(STDERR_FILENO) != 0),
+      start_(std::chrono::steady_clock::now()),
+      shown_(start_) {}
 
 ProgressBar::~ProgressBar() {
     if (visible_) fmt::print(stderr, "\r\033[K");

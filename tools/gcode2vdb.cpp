@@ -52,7 +52,8 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("-o,--output", o.output, "The .vdb to write; a folder if there are several inputs")
         ->type_name("OUT.vdb");
     const char* lattice = "Lattice";
-    auto* size = app.add_option("--voxel-size", o.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
+    auto* size =
+        app.add_option("--voxel-size", o.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
     app.add_option("--voxels-per-layer", o.lattice.voxels_per_layer, "Voxels in a layer height (1 to 64)")
         ->type_name("N")
         ->excludes(size)
@@ -69,7 +70,9 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("WHERE")
         ->group(lattice);
     const char* what = "What to convert";
-    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")->type_name("A:B")->group(what);
+    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
+        ->type_name("A:B")
+        ->group(what);
     app.add_option("--features", o.features, "Only (+NAME,...) or all but (-NAME,...) these features")
         ->type_name("LIST")
         ->group(what);
@@ -102,7 +105,8 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(reading);
     const char* writing = "Writing";
     app.add_option_function<std::string>(
-           "--precision", [&o](const std::string& text) { o.file.half = text == "half"; }, "float or half (default float)")
+           "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
+           "float or half (default float)")
         ->check(CLI::IsMember({"float", "half"}))
         ->type_name("KIND")
         ->group(writing);
@@ -177,16 +181,17 @@ Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& latti
     const openvdb::Vec3d low = grid.indexToWorld(box.min());
     const openvdb::Vec3d high = grid.indexToWorld(box.max());
     const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return {{"voxel_size_mm", lattice.voxel_size},
-            {"half_width", lattice.half_width},
-            {"layer_height_mm", lattice.layer_height},
-            {"aligned_share", lattice.aligned_share},
-            {"choice", lattice.reason},
-            {"active_voxels", grid.activeVoxelCount()},
-            {"leaves", grid.tree().leafCount()},
-            {"bytes", grid.memUsage()},
-            {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
-            {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
+    return {
+        {"voxel_size_mm", lattice.voxel_size},
+        {"half_width", lattice.half_width},
+        {"layer_height_mm", lattice.layer_height},
+        {"aligned_share", lattice.aligned_share},
+        {"choice", lattice.reason},
+        {"active_voxels", grid.activeVoxelCount()},
+        {"leaves", grid.tree().leafCount()},
+        {"bytes", grid.memUsage()},
+        {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
+        {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
 }
 
 Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
@@ -206,9 +211,9 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             fmt::print(stderr, "gcode2vdb: {}:{}: {}{}\n", input, warning.first_line, warning.text,
                        warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
     tools::say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", input,
-                                     toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer,
-                                     toolpath.layer_count, toolpath.beads.size(), toolpath.arcs.size(),
-                                     toolpath.filament_mm * 1e-3, gcode::beadVolume(toolpath) * 1e-3));
+                                     toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
+                                     toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
+                                     gcode::beadVolume(toolpath) * 1e-3));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
     voxelize::Selection filter;
@@ -227,7 +232,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
     if (!o.layers.empty()) provenance.selection += "layers " + o.layers;
-    if (!o.features.empty()) provenance.selection += (provenance.selection.empty() ? "features " : "; features ") + o.features;
+    if (!o.features.empty())
+        provenance.selection += (provenance.selection.empty() ? "features " : "; features ") + o.features;
 
     voxelize::VoxelizeOptions options;
     options.placement = placementFor(o, bounds);
@@ -246,8 +252,11 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         voxelize::writeVdb(grid, job.path, o.file);
         write_seconds += watch.lap();
         const auto bytes = fs::file_size(job.path);
-        files.push_back({{"path", job.path.string()}, {"snapshot", job.label}, {"bytes", bytes},
-                         {"beads", job.beads.size()}, {"active_voxels", grid->activeVoxelCount()}});
+        files.push_back({{"path", job.path.string()},
+                         {"snapshot", job.label},
+                         {"bytes", bytes},
+                         {"beads", job.beads.size()},
+                         {"active_voxels", grid->activeVoxelCount()}});
         tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
                                          tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
@@ -257,8 +266,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     }
     Json skipped = Json::array();
     if (kept < toolpath.beads.size()) {
-        const std::string why = provenance.selection.empty() ? "prime lines before layer 1 (--layers 0: keeps them)"
-                                                             : provenance.selection;
+        const std::string why =
+            provenance.selection.empty() ? "prime lines before layer 1 (--layers 0: keeps them)" : provenance.selection;
         const std::string count = fmt::format("{} of {} beads", toolpath.beads.size() - kept, toolpath.beads.size());
         skipped.push_back({{"what", "beads"}, {"why", why}, {"saved", count}});
         tools::say(o.common, fmt::format("  left out {}: {}", count, why));
@@ -269,14 +278,20 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     const double total_seconds = total.lap();
     tools::say(o.common, fmt::format("  done in {:.2f} s", total_seconds));
     return {{"input",
-             {{"path", input}, {"bytes", file.bytes().size()}, {"sha256", provenance.source_sha256},
-              {"slicer", toolpath.slicer}, {"format", toolpath.format}}},
+             {{"path", input},
+              {"bytes", file.bytes().size()},
+              {"sha256", provenance.source_sha256},
+              {"slicer", toolpath.slicer},
+              {"format", toolpath.format}}},
             {"toolpath", describeToolpath(toolpath, bounds)},
             {"grid", grid_report},
             {"files", files},
             {"skipped", skipped},
             {"seconds",
-             {{"parse", parse_seconds}, {"cull", 0.0}, {"voxelize", voxelize_seconds}, {"write", write_seconds},
+             {{"parse", parse_seconds},
+              {"cull", 0.0},
+              {"voxelize", voxelize_seconds},
+              {"write", write_seconds},
               {"total", total_seconds}}},
             {"peak_rss_bytes", tools::peakRssBytes()},
             {"threads", threads}};
@@ -294,7 +309,8 @@ void run(const Options& o) {
         return;
     }
     if (!fs::is_directory(o.output))
-        throw UsageError(fmt::format("{} inputs: -o must name an existing folder for their .vdb files", o.inputs.size()));
+        throw UsageError(
+            fmt::format("{} inputs: -o must name an existing folder for their .vdb files", o.inputs.size()));
     if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
     Json reports = Json::array();
     for (const std::string& input : o.inputs)

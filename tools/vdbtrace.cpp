@@ -134,8 +134,7 @@ void applyText(Options& o) {
 // People hand over what they have; say which tool takes it.
 void refuseOtherFormats(const std::string& input) {
     std::ifstream file(input, std::ios::binary);
-    if (!file)
-        throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", input));
+    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", input));
     std::array<char, 4> magic{};
     file.read(magic.data(), magic.size());
     if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", input));
@@ -208,20 +207,29 @@ void run(Options& o) {
     if (scene.lights.empty()) skip("directional lights", "none asked for", "one shadow ray a hit and light");
     if (o.render.integrator.name != "path" && o.render.integrator.name != "direct")
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
-    tools::writeStats(o.common, {{"input", {{"path", o.input}, {"grid", grid->getName()},
-                                            {"active_voxels", grid->activeVoxelCount()}, {"bytes", grid->memUsage()}}},
-                                 {"output", o.output},
-                                 {"image", {{"width", o.render.width}, {"height", o.render.height}, {"spp", o.render.spp}}},
-                                 {"rays", {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce},
-                                           {"total", rays.total()}}},
-                                 {"march", intersector->name()},
-                                 {"integrator", o.render.integrator.name},
-                                 {"seconds", {{"load", load_seconds}, {"build", build_seconds}, {"render", render_seconds},
-                                              {"write", write_seconds}, {"total", total_seconds}}},
-                                 {"mrays_per_second", mrays},
-                                 {"peak_rss_bytes", tools::peakRssBytes()},
-                                 {"threads", limit.threads()},
-                                 {"skipped", skipped}});
+    tools::writeStats(
+        o.common,
+        {{"input",
+          {{"path", o.input},
+           {"grid", grid->getName()},
+           {"active_voxels", grid->activeVoxelCount()},
+           {"bytes", grid->memUsage()}}},
+         {"output", o.output},
+         {"image", {{"width", o.render.width}, {"height", o.render.height}, {"spp", o.render.spp}}},
+         {"rays",
+          {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
+         {"march", intersector->name()},
+         {"integrator", o.render.integrator.name},
+         {"seconds",
+          {{"load", load_seconds},
+           {"build", build_seconds},
+           {"render", render_seconds},
+           {"write", write_seconds},
+           {"total", total_seconds}}},
+         {"mrays_per_second", mrays},
+         {"peak_rss_bytes", tools::peakRssBytes()},
+         {"threads", limit.threads()},
+         {"skipped", skipped}});
 }
 
 }  // namespace

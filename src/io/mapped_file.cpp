@@ -34,8 +34,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
     void* map = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, fd, 0);
     const int error = errno;
     ::close(fd);
-    if (map == MAP_FAILED)
-        throw InputError(fmt::format("{}: can't be read ({})", path.string(), std::strerror(error)));
+    if (map == MAP_FAILED) throw InputError(fmt::format("{}: can't be read ({})", path.string(), std::strerror(error)));
     data_ = static_cast<const char*>(map);
     ::madvise(map, size_, MADV_SEQUENTIAL);
 }

@@ -24,9 +24,9 @@ struct Ray {
 
 /// Where a ray meets the surface from outside or inside.
 struct Hit {
-    double t = 0.0;                 ///< world units along the ray
-    glm::dvec3 position{0.0};       ///< world space
-    glm::dvec3 normal{0.0};         ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
+    double t = 0.0;            ///< world units along the ray
+    glm::dvec3 position{0.0};  ///< world space
+    glm::dvec3 normal{0.0};    ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
 };
 
 /// Axis-aligned box in world space.

@@ -30,7 +30,8 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
         for (auto it = file.beginName(); it != file.endName(); ++it) {
             const auto meta = file.readGridMetadata(it.gridName());
             seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
-            const bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
+            const bool level_set =
+                meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
             if (!level_set) continue;
             if (name.empty() && it.gridName() == "surface") {
                 wanted = "surface";
@@ -44,8 +45,8 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
             throw InputError(
                 fmt::format("{}: has {} level sets; say which with --grid NAME. It has: {}", where, candidates, seen));
         if (name.empty() && candidates == 0)
-            throw InputError(fmt::format(
-                "{}: has no level set of floats; make one with gcode2vdb. It has: {}", where, seen.empty() ? "nothing" : seen));
+            throw InputError(fmt::format("{}: has no level set of floats; make one with gcode2vdb. It has: {}", where,
+                                         seen.empty() ? "nothing" : seen));
         if (!file.hasGrid(wanted))
             throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
         chosen = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(wanted));
@@ -63,19 +64,21 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
 
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {
     if (grid.getGridClass() != openvdb::GRID_LEVEL_SET)
-        throw InputError(fmt::format("{}: the grid {} is not a level set but a {}; make a level set with gcode2vdb or "
-                                     "OpenVDB's fog-to-level-set tools",
-                                     where, grid.getName(), grid.gridClassToMenuName(grid.getGridClass())));
+        throw InputError(
+            fmt::format("{}: the grid {} is not a level set but a {}; make a level set with gcode2vdb or "
+                        "OpenVDB's fog-to-level-set tools",
+                        where, grid.getName(), grid.gridClassToMenuName(grid.getGridClass())));
     if (grid.tree().leafCount() == 0)
-        throw InputError(fmt::format("{}: the level set {} is empty; there is no surface to trace", where,
-                                     grid.getName()));
+        throw InputError(
+            fmt::format("{}: the level set {} is empty; there is no surface to trace", where, grid.getName()));
     if (!grid.hasUniformVoxels())
         throw InputError(fmt::format("{}: the voxels of {} are not cubes; resample it first", where, grid.getName()));
     const double half_width = static_cast<double>(grid.background()) / grid.voxelSize()[0];
     if (!(half_width >= kLeastHalfWidth))
-        throw InputError(fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "
-                                     "make it again with --half-width 3",
-                                     where, grid.getName(), half_width, kLeastHalfWidth));
+        throw InputError(
+            fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "
+                        "make it again with --half-width 3",
+                        where, grid.getName(), half_width, kLeastHalfWidth));
 }
 
 }  // namespace stratum::march

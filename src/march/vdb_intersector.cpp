@@ -2,8 +2,8 @@
 
 #include "march/level_set_file.h"
 
-#include <glm/geometric.hpp>
 #include <openvdb/tools/RayIntersector.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -46,8 +46,11 @@ class VdbTracer final : public Tracer {
 public:
     VdbTracer(const openvdb::FloatGrid& grid, const openvdb::math::MapBase& map, const Reference& reference,
               const Box& bounds)
-        : map_(map), reference_(reference), accessor_(grid.getConstAccessor()),
-          centre_(0.5 * (bounds.min + bounds.max)), diagonal_(glm::length(bounds.max - bounds.min)) {}
+        : map_(map),
+          reference_(reference),
+          accessor_(grid.getConstAccessor()),
+          centre_(0.5 * (bounds.min + bounds.max)),
+          diagonal_(glm::length(bounds.max - bounds.min)) {}
 
     bool intersect(const Ray& ray, Hit& hit) override {
         openvdb::Vec3d index;
@@ -103,7 +106,9 @@ public:
         }
     }
 
-    std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<VdbTracer>(*grid_, *map_, reference_, bounds_); }
+    std::unique_ptr<Tracer> makeTracer() const override {
+        return std::make_unique<VdbTracer>(*grid_, *map_, reference_, bounds_);
+    }
     std::string_view name() const override { return "vdb"; }
     Box bounds() const override { return bounds_; }
     double voxelSize() const override { return grid_->voxelSize()[0]; }

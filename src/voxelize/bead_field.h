@@ -100,8 +100,8 @@ public:
 private:
     PlanPath path_;
     double half_flat_, radius_;
-    double x0_, y0_, dx_, dy_;     // mm, centre line in the plane
-    double zc0_, zc1_;             // mm, centre line at the start and the end
+    double x0_, y0_, dx_, dy_;  // mm, centre line in the plane
+    double zc0_, zc1_;          // mm, centre line at the start and the end
     double cosine_ = 1, reach_ = 0;
     bool level_ = true, rod_ = false;
 };

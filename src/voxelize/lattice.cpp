@@ -75,8 +75,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         lattice.voxel_size = *request.voxel_size;
         lattice.reason = "as asked";
         if (!(std::isfinite(lattice.voxel_size) && lattice.voxel_size > 0))
-            throw UsageError(
-                fmt::format("voxel size {} mm: expected a number above 0, e.g. 0.1", lattice.voxel_size));
+            throw UsageError(fmt::format("voxel size {} mm: expected a number above 0, e.g. 0.1", lattice.voxel_size));
     } else if (request.voxels_per_layer) {
         if (*request.voxels_per_layer < 1 || *request.voxels_per_layer > 64)
             throw UsageError(fmt::format("{} voxels a layer: expected 1 to 64", *request.voxels_per_layer));
@@ -84,29 +83,30 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         lattice.reason = fmt::format("{} voxels a layer of {:g} mm", *request.voxels_per_layer, lattice.layer_height);
     } else {
         int count = kFinestVoxelsPerLayer;
-        while (count > kCoarsestVoxelsPerLayer &&
-               estimateActive(toolpath, selection, lattice.layer_height / count, request.half_width) >
-                   kComfortableActiveVoxels)
+        while (count > kCoarsestVoxelsPerLayer && estimateActive(toolpath, selection, lattice.layer_height / count,
+                                                                 request.half_width) > kComfortableActiveVoxels)
             --count;
         lattice.voxel_size = lattice.layer_height / count;
-        lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count,
-                                     lattice.layer_height,
-                                     estimateActive(toolpath, selection, lattice.voxel_size, request.half_width) * 1e-6);
+        lattice.reason =
+            fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count, lattice.layer_height,
+                        estimateActive(toolpath, selection, lattice.voxel_size, request.half_width) * 1e-6);
     }
     const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
     if (lattice.voxel_size > extent)
-        throw UsageError(fmt::format("voxel size {:g} mm is larger than the part ({:.3f} x {:.3f} x {:.3f} mm); the "
-                                     "layer height is {:g} mm, try {:g}",
-                                     lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2),
-                                     lattice.layer_height, lattice.layer_height / 2));
+        throw UsageError(
+            fmt::format("voxel size {:g} mm is larger than the part ({:.3f} x {:.3f} x {:.3f} mm); the "
+                        "layer height is {:g} mm, try {:g}",
+                        lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2), lattice.layer_height,
+                        lattice.layer_height / 2));
     // OpenVDB indexes with 32-bit integers; a factor of four is left for the band and for the tools of others.
     double farthest = 0;
     for (int axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
     if (farthest / lattice.voxel_size > 536870912.0)
-        throw UsageError(fmt::format("voxel size {:g} mm: {:.3g} voxels from the origin to the part's far end, more "
-                                     "than OpenVDB can index; try {:g} mm",
-                                     lattice.voxel_size, farthest / lattice.voxel_size, lattice.layer_height / 2));
+        throw UsageError(
+            fmt::format("voxel size {:g} mm: {:.3g} voxels from the origin to the part's far end, more "
+                        "than OpenVDB can index; try {:g} mm",
+                        lattice.voxel_size, farthest / lattice.voxel_size, lattice.layer_height / 2));
 
     if (!by_plane.empty()) {
         const double plane = static_cast<double>(longest(by_plane)) * 1e-3;

@@ -17,19 +17,19 @@ namespace stratum::voxelize {
 
 /// What the user asked for; at most one of the two.
 struct LatticeRequest {
-    std::optional<double> voxel_size;      ///< mm
-    std::optional<int> voxels_per_layer;   ///< 1..64
-    double half_width = 3;                 ///< voxels, 1..10; OpenVDB's tools expect 3
+    std::optional<double> voxel_size;     ///< mm
+    std::optional<int> voxels_per_layer;  ///< 1..64
+    double half_width = 3;                ///< voxels, 1..10; OpenVDB's tools expect 3
 };
 
 /// Sample (i, j, k) lies at (i, j, k) * voxel_size + (0, 0, origin_z) in print space.
 struct Lattice {
-    double voxel_size = 0;      ///< mm
-    double origin_z = 0;        ///< mm
-    double half_width = 3;      ///< voxels
-    double layer_height = 0;    ///< mm, of most of the printed length
-    double aligned_share = 0;   ///< share of the level beads' length whose bottom and top lie on voxel planes, 0..1
-    std::string reason;         ///< how the voxel size came about, for the report
+    double voxel_size = 0;     ///< mm
+    double origin_z = 0;       ///< mm
+    double half_width = 3;     ///< voxels
+    double layer_height = 0;   ///< mm, of most of the printed length
+    double aligned_share = 0;  ///< share of the level beads' length whose bottom and top lie on voxel planes, 0..1
+    std::string reason;        ///< how the voxel size came about, for the report
 
     /// The value far outside, mm. A hair above the half-width: OpenVDB's checks divide it by the voxel size in floats
     /// and must not get less than the half-width back.

@@ -25,8 +25,8 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
     }
     stack.layers.reserve(groups.size());
     for (auto& [key, beads] : groups)
-        stack.layers.push_back({static_cast<double>(key.first) * 1e-6, static_cast<double>(key.second) * 1e-6,
-                                std::move(beads)});
+        stack.layers.push_back(
+            {static_cast<double>(key.first) * 1e-6, static_cast<double>(key.second) * 1e-6, std::move(beads)});
 
     // Bottom planes in order, so that each top plane finds its partners by bisection.
     std::vector<std::pair<double, std::uint32_t>> bottoms;
@@ -46,8 +46,9 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
             if (it->second != lower && std::abs(it->first - top) <= limit) stack.welds.push_back({lower, it->second});
         }
     }
-    std::sort(stack.welds.begin(), stack.welds.end(),
-              [](const Weld& a, const Weld& b) { return std::pair{a.lower, a.upper} < std::pair{b.lower, b.upper}; });
+    std::sort(stack.welds.begin(), stack.welds.end(), [](const Weld& a, const Weld& b) {
+        return std::pair{a.lower, a.upper} < std::pair{b.lower, b.upper};
+    });
     return stack;
 }
 

@@ -63,7 +63,7 @@ void LeafColumn::gatherLayers(int i, int j, std::span<const BinEntry> entries) {
             const double half_flat = sectionOf(toolpath_, bead).half_flat;
             for (int x = 0; x < kLeafDim; ++x)
                 for (int y = 0; y < kLeafDim; ++y) {
-                    double& d = plan.d[static_cast<std::size_t>(x * kLeafDim + y)];
+                    double& d = plan.d[column(x, y)];
                     d = std::min(d, path.distance((i + x) * v, (j + y) * v) - half_flat);
                 }
         }
@@ -119,8 +119,7 @@ void LeafColumn::evaluate(int i, int j, int leaf_k, std::span<const BinEntry> di
             if (weld.d[c] >= 0) continue;
             for (int z = 0; z < kLeafDim; ++z) {
                 // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
-                const double bound =
-                    std::max(weld.d[c], std::abs(sampleZ(k0 + z) - weld.middle_z) - weld.half);
+                const double bound = std::max(weld.d[c], std::abs(sampleZ(k0 + z) - weld.middle_z) - weld.half);
                 double& phi = phi_[c * kLeafDim + static_cast<std::size_t>(z)];
                 if (bound < 0) phi = std::min(phi, bound);
             }
@@ -133,7 +132,7 @@ void LeafColumn::evaluate(int i, int j, int leaf_k, std::span<const BinEntry> di
         for (int x = 0; x < kLeafDim; ++x)
             for (int y = 0; y < kLeafDim; ++y)
                 for (int z = 0; z < kLeafDim; ++z) {
-                    double& phi = phi_[static_cast<std::size_t>((x * kLeafDim + y) * kLeafDim + z)];
+                    double& phi = phi_[column(x, y) * kLeafDim + static_cast<std::size_t>(z)];
                     phi = std::min(phi, field.distance((i + x) * v, (j + y) * v, sampleZ(k0 + z)));
                 }
     }
@@ -166,9 +165,8 @@ void LeafColumn::store(int i, int j, int leaf_k, ColumnLeaves& out) const {
 }
 
 void LeafColumn::build(int i, int j, std::span<const BinEntry> entries, ColumnLeaves& out) {
-    const auto first_direct = std::find_if(entries.begin(), entries.end(), [this](const BinEntry& entry) {
-        return entry.layer >= stack_.layers.size();
-    });
+    const auto first_direct = std::find_if(
+        entries.begin(), entries.end(), [this](const BinEntry& entry) { return entry.layer >= stack_.layers.size(); });
     const auto level = entries.first(static_cast<std::size_t>(first_direct - entries.begin()));
     const auto direct = entries.subspan(level.size());
     gatherLayers(i, j, level);

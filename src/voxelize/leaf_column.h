@@ -20,8 +20,8 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 /// What one column contributes to the grid. Leaves are owned by whoever takes them over.
 struct ColumnLeaves {
-    std::vector<Leaf*> leaves;                  ///< with at least one active voxel, ascending in z
-    std::vector<openvdb::Coord> inside_tiles;   ///< origins of leaf positions that are deep inside
+    std::vector<Leaf*> leaves;                 ///< with at least one active voxel, ascending in z
+    std::vector<openvdb::Coord> inside_tiles;  ///< origins of leaf positions that are deep inside
 };
 
 /// Scratch of one thread: builds columns one after the other.
@@ -37,7 +37,10 @@ public:
     std::size_t countLeaves(std::span<const BinEntry> entries);
 
 private:
-    static constexpr int kColumns = kLeafDim * kLeafDim;
+    static constexpr std::size_t kColumns = std::size_t{kLeafDim} * kLeafDim;
+    static constexpr std::size_t column(int x, int y) {
+        return static_cast<std::size_t>(x) * kLeafDim + static_cast<std::size_t>(y);
+    }
     // D = min(rho - c) of one layer over the column's 8 x 8 samples, mm; index x * 8 + y, as in a leaf.
     using PlanField = std::array<double, kColumns>;
     struct PlanLayer {

@@ -33,7 +33,8 @@ Footprint footprintOf(const gcode::Toolpath& toolpath, std::uint32_t index, cons
     const double edge = lattice.voxel_size * kLeafDim;
     // Samples of column c lie at voxels 8c .. 8c+7, so floor of the voxel index over 8 is the column.
     const auto column = [edge](double mm) { return static_cast<int>(std::floor(mm / edge)); };
-    return {field.path(), reach,
+    return {field.path(),
+            reach,
             {column(min[0] - reach), column(max[0] + reach), column(min[1] - reach), column(max[1] + reach)}};
 }
 
@@ -61,8 +62,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
 
     // Bound the work by arithmetic alone before anything is visited or allocated.
     double bound = 0;
-    ColumnRange all{std::numeric_limits<int>::max(), std::numeric_limits<int>::min(),
-                    std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    ColumnRange all{std::numeric_limits<int>::max(), std::numeric_limits<int>::min(), std::numeric_limits<int>::max(),
+                    std::numeric_limits<int>::min()};
     const double edge = lattice.voxel_size * kLeafDim;
     forEachBead([&](std::uint32_t, std::uint32_t bead) {
         const Footprint footprint = footprintOf(toolpath, bead, lattice);
@@ -79,9 +80,10 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     const double columns = (static_cast<double>(all.i1) - all.i0 + 1) * (static_cast<double>(all.j1) - all.j0 + 1);
     const double bytes = columns * sizeof(std::size_t) + bound * sizeof(BinEntry);
     if (bytes > static_cast<double>(memory_limit))
-        throw UsageError(fmt::format("voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB are free); "
-                                     "choose a larger voxel",
-                                     lattice.voxel_size, bytes * 1e-9, static_cast<double>(memory_limit) * 1e-9));
+        throw UsageError(
+            fmt::format("voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB are free); "
+                        "choose a larger voxel",
+                        lattice.voxel_size, bytes * 1e-9, static_cast<double>(memory_limit) * 1e-9));
     columns_i_ = static_cast<std::size_t>(all.i1 - all.i0) + 1;
     columns_j_ = static_cast<std::size_t>(all.j1 - all.j0) + 1;
 
@@ -97,8 +99,9 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     entries_.resize(offsets_.back());
     std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
     forEachBead([&](std::uint32_t layer, std::uint32_t bead) {
-        forEachColumn(footprintOf(toolpath, bead, lattice), lattice,
-                      [&](int i, int j) { entries_[next[columnIndex(i, j)]++] = {layer, bead}; });
+        forEachColumn(footprintOf(toolpath, bead, lattice), lattice, [&](int i, int j) {
+            entries_[next[columnIndex(i, j)]++] = {layer, bead};
+        });
     });
 }
 

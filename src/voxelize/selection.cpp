@@ -69,14 +69,13 @@ void parseLayers(std::string_view text, Selection& selection) {
 void parseFeatures(std::string_view text, Selection& selection) {
     bool first = true;
     for (const std::string_view part : split(text, ',')) {
-        const gcode::Feature feature =
-            part.size() < 2 ? gcode::Feature::count_ : gcode::featureNamed(part.substr(1));
+        const gcode::Feature feature = part.size() < 2 ? gcode::Feature::count_ : gcode::featureNamed(part.substr(1));
         if (feature == gcode::Feature::count_ || (part[0] != '+' && part[0] != '-')) {
             std::string names;
             for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
                 names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-            throw UsageError(
-                fmt::format("--features {}: expected +NAME or -NAME, separated by commas; the names are:{}", part, names));
+            throw UsageError(fmt::format(
+                "--features {}: expected +NAME or -NAME, separated by commas; the names are:{}", part, names));
         }
         // A list that starts with + names what to keep; one that starts with - names what to drop.
         if (first) selection.features.fill(part[0] == '-');
@@ -110,9 +109,10 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
     std::vector<Snapshot> snapshots;
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
-            return UsageError(fmt::format("--snapshots {}: expected N% (0 to 100), layer:N or every:N, separated by "
-                                          "commas; the print has layers 1 to {}",
-                                          part, toolpath.layer_count));
+            return UsageError(
+                fmt::format("--snapshots {}: expected N% (0 to 100), layer:N or every:N, separated by "
+                            "commas; the print has layers 1 to {}",
+                            part, toolpath.layer_count));
         };
         if (part.ends_with('%')) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));

@@ -21,8 +21,8 @@ struct Selection {
     Selection() { features.fill(true); }
 };
 
-/// Parses "A:B" (inclusive, either end may be left out: from 1, to the last) or "A" into the layer range. Layer 0 is what
-/// is extruded before the first layer. Throws UsageError.
+/// Parses "A:B" (inclusive, either end may be left out: from 1, to the last) or "A" into the layer range. Layer 0 is
+/// what is extruded before the first layer. Throws UsageError.
 void parseLayers(std::string_view text, Selection& selection);
 
 /// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list
@@ -34,12 +34,12 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
 
 /// A partial print: everything printed before bead number `bead_count`.
 struct Snapshot {
-    std::string label;          ///< for the file name, e.g. "25pct", "layer0040"
+    std::string label;  ///< for the file name, e.g. "25pct", "layer0040"
     std::size_t bead_count = 0;
 };
 
-/// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40) and "every:10" (after each 10 layers).
-/// In print order, without doubles. Throws UsageError.
+/// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40) and "every:10" (after each 10
+/// layers). In print order, without doubles. Throws UsageError.
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath);
 
 }  // namespace stratum::voxelize

@@ -72,8 +72,7 @@ openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<cons
     const PlanBins bins(toolpath, stack, lattice, limit);
     const double scale = options.placement.unit;
 
-    tbb::enumerable_thread_specific<LeafColumn> scratch(
-        [&] { return LeafColumn(toolpath, stack, lattice, scale); });
+    tbb::enumerable_thread_specific<LeafColumn> scratch([&] { return LeafColumn(toolpath, stack, lattice, scale); });
     const tbb::blocked_range<std::size_t> columns(0, bins.size(), 16);
     const std::size_t leaf_bound = tbb::parallel_reduce(
         columns, std::size_t{0},
@@ -87,7 +86,8 @@ openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<cons
     const double bytes = static_cast<double>(leaf_bound) * kBytesPerLeaf;
     if (bytes > static_cast<double>(limit))
         throw UsageError(fmt::format(
-            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, fewer "
+            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, "
+            "fewer "
             "layers or features",
             lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound), static_cast<double>(limit) * 1e-9));
 

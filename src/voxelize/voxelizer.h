@@ -15,8 +15,8 @@ namespace stratum::voxelize {
 
 /// From print space to the grid's world space: world = unit * (print + offset).
 struct Placement {
-    double unit = 1;                 ///< world units a mm: 1 for mm, 0.1 for cm, 0.001 for m
-    double offset[3] = {0, 0, 0};    ///< mm
+    double unit = 1;               ///< world units a mm: 1 for mm, 0.1 for cm, 0.001 for m
+    double offset[3] = {0, 0, 0};  ///< mm
 };
 
 struct VoxelizeOptions {

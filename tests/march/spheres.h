@@ -6,7 +6,8 @@
 
 namespace stratum::test {
 
-inline openvdb::FloatGrid::Ptr sphereGrid(float radius, const openvdb::Vec3f& centre, float voxel, float half_width = 3) {
+inline openvdb::FloatGrid::Ptr sphereGrid(float radius, const openvdb::Vec3f& centre, float voxel,
+                                          float half_width = 3) {
     auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, centre, voxel, half_width);
     grid->setName("surface");
     return grid;

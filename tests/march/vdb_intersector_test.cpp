@@ -3,10 +3,10 @@
 #include "io/error.h"
 #include "spheres.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <openvdb/tools/RayIntersector.h>
 #include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <random>

@@ -48,9 +48,7 @@ TEST(Lattice, OriginFollowsTheMajorityPlane) {
     EXPECT_NEAR(lattice.aligned_share, 19.0 / 20, 1e-9);
 }
 
-TEST(Lattice, SaysWhenNothingAligns) {
-    EXPECT_LT(choose(stack(0.2, 0.2, 20), voxel(0.07)).aligned_share, 0.2);
-}
+TEST(Lattice, SaysWhenNothingAligns) { EXPECT_LT(choose(stack(0.2, 0.2, 20), voxel(0.07)).aligned_share, 0.2); }
 
 TEST(Lattice, ChoosesByItselfBetweenTwoAndFourVoxelsALayer) {
     const Lattice small = choose(stack(0.2, 0.2, 10), {});

@@ -45,8 +45,7 @@ TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
             const double reach = field.halfFlat() + field.radius() + lattice.background();
             for (int x = 0; x < kLeafDim; ++x)
                 for (int y = 0; y < kLeafDim; ++y) {
-                    const double rho =
-                        field.path().distance((bins.originI(c) + x) * 0.1, (bins.originJ(c) + y) * 0.1);
+                    const double rho = field.path().distance((bins.originI(c) + x) * 0.1, (bins.originJ(c) + y) * 0.1);
                     if (rho < reach) {
                         ++samples;
                         EXPECT_TRUE(present.contains(bead));

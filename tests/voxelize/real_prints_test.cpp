@@ -19,8 +19,8 @@ namespace {
 
 struct Print {
     const char* name;
-    const char* path;       // below data/gcode or the corpus's gcode
-    const char* layers;     // as for --layers; keeps the oracle's run short
+    const char* path;    // below data/gcode or the corpus's gcode
+    const char* layers;  // as for --layers; keeps the oracle's run short
     bool corpus;
 };
 
@@ -111,7 +111,8 @@ TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
         EXPECT_GT(inside, 20000U);
         RecordProperty("interfaces", static_cast<int>(interfaces));
         std::printf("  %s at %g mm: %zu active, %zu outside, %zu inside, %zu on interfaces\n", print.name, voxel,
-                    static_cast<std::size_t>(grid->activeVoxelCount()), outside.load(), inside.load(), interfaces.load());
+                    static_cast<std::size_t>(grid->activeVoxelCount()), outside.load(), inside.load(),
+                    interfaces.load());
     }
 }
 

@@ -46,7 +46,8 @@ inline std::vector<std::uint32_t> allBeads(const gcode::Toolpath& toolpath) {
 
 /// The field of one level bead, written from the definition: nearest point of the path in the plane, then the formula.
 /// Straight paths in closed form; arcs by turning to the chord-free polar form. Sloped beads are not covered.
-inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y, double z) {
+inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y,
+                                double z) {
     double rho = 0;
     if (bead.arc < 0) {
         const double ux = bead.x1 - bead.x0;
@@ -69,9 +70,8 @@ inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Be
         const auto to_point = [&](double angle) {
             return std::hypot(x - arc.center_x - radius * std::cos(angle), y - arc.center_y - radius * std::sin(angle));
         };
-        rho = turned <= std::abs(arc.sweep)
-                  ? std::abs(std::hypot(x - arc.center_x, y - arc.center_y) - radius)
-                  : std::min(to_point(from), to_point(to));
+        rho = turned <= std::abs(arc.sweep) ? std::abs(std::hypot(x - arc.center_x, y - arc.center_y) - radius)
+                                            : std::min(to_point(from), to_point(to));
     }
     const double height = std::round(static_cast<double>(toolpath.runOf(bead).height) * 1e6) * 1e-6;
     const double width = static_cast<double>(bead.width);
@@ -87,7 +87,10 @@ public:
     explicit BruteForce(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
         constexpr std::size_t kBlock = 8;
         for (std::size_t first = 0; first < toolpath.beads.size(); first += kBlock) {
-            Block block{first, std::min(first + kBlock, toolpath.beads.size()), {1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+            Block block{first,
+                        std::min(first + kBlock, toolpath.beads.size()),
+                        {1e300, 1e300, 1e300},
+                        {-1e300, -1e300, -1e300}};
             for (std::size_t i = block.first; i < block.last; ++i) {
                 const gcode::Bead& bead = toolpath.beads[i];
                 const double height = static_cast<double>(toolpath.runOf(bead).height);

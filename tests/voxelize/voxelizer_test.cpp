@@ -38,8 +38,7 @@ gcode::Toolpath smallPrint() {
             addBead(toolpath, b, b, z, a, b, z, 0.45, 0.2, number);
             addBead(toolpath, a, b, z, a, a, z, 0.45, 0.2, number);
         }
-        for (double y = 1.2; y < 5; y += 1.3)
-            addBead(toolpath, 1, y + 0.1 * (layer % 2), z, 5, y, z, 0.5, 0.2, number);
+        for (double y = 1.2; y < 5; y += 1.3) addBead(toolpath, 1, y + 0.1 * (layer % 2), z, 5, y, z, 0.5, 0.2, number);
         addArc(toolpath, 9, 3, 1.7, 0.3, layer % 2 == 0 ? 5.0 : -2.0, z, z, 0.6, 0.2, number);
     }
     return toolpath;
@@ -201,8 +200,8 @@ TEST(Voxelizer, EnclosedVolumeOfOneBead) {
     // the half circle, by Pappus.
     const double c = 0.5;
     const double r = 1;
-    const double ends = std::numbers::pi * c * c * 2 * r + std::numbers::pi * r * r / 2 * 2 * std::numbers::pi *
-                                                               (c + 4 * r / (3 * std::numbers::pi));
+    const double ends = std::numbers::pi * c * c * 2 * r +
+                        std::numbers::pi * r * r / 2 * 2 * std::numbers::pi * (c + 4 * r / (3 * std::numbers::pi));
     EXPECT_NEAR(enclosedVolume(*grid), 40 * gcode::sectionArea(3, 2) + ends, 0.4);
 }
 
