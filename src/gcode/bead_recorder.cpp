@@ -50,7 +50,9 @@ void BeadRecorder::markLayer(const Tag& mark) {
         for (Run& run : toolpath_.runs) run.layer = 0;
         next_.layer = 0;
     }
-    ++next_.layer;
+    // One layer, announced once for each process that prints in it.
+    if (!(mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ)) ++next_.layer;
+    mark_z_ = mark.z;
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
 }
 

@@ -52,6 +52,7 @@ private:
     Run next_;
     double nominal_height_;
     bool layer_marks_ = false;
+    std::optional<double> mark_z_;  // of the layer mark in force, if it said so
     double first_z_ = 0;
     double layer_z_ = 0;
     std::unordered_map<std::string, std::uint16_t> object_index_;

@@ -31,7 +31,11 @@ struct Command {
     double value(char parameter) const { return values_[index(parameter)]; }
 
     void clear();
-    void set(char parameter) { present_ |= 1U << index(parameter); }
+    /// Without a number; a letter that comes twice means what it says last.
+    void set(char parameter) {
+        present_ |= 1U << index(parameter);
+        valued_ &= ~(1U << index(parameter));
+    }
     void set(char parameter, double number);
 
 private:

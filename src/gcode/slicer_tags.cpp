@@ -138,11 +138,15 @@ Tag ofKiriLayer(std::string_view text) {
     return layerChange(positive(text.substr(open + 1)));
 }
 
-// Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not.
+// Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not. With several processes a layer is announced by each.
 Tag ofNumberedLayer(std::string_view text) {
     const auto digits = text.find_first_not_of("0123456789");
-    return digits != 0 && digits != std::string_view::npos && text.substr(digits).starts_with(", Z =") ? layerChange()
-                                                                                                       : Tag{};
+    if (digits == 0 || digits == std::string_view::npos) return {};
+    text.remove_prefix(digits);
+    if (!take(text, ", Z =")) return {};
+    Tag tag = layerChange();
+    tag.z = positive(text);
+    return tag;
 }
 
 // Simplify3D: "tool H0.200 W0.450".

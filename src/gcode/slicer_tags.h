@@ -16,6 +16,7 @@ struct Tag {
     Kind kind = Kind::none;
     Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if `text` is no name that is known here
     double height = 0;                   ///< mm, of Kind::height; of a layer change that names its height, else 0
+    std::optional<double> z{};           ///< mm, of a layer change that names its z
     std::string_view text{};             ///< the feature's or object's name as written
 };
 

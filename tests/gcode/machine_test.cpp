@@ -111,7 +111,7 @@ TEST(Machine, G92AfterwardsMovesTheFrame) {
 }
 
 TEST(Machine, BareG92ZeroesEverything) {
-    const Toolpath toolpath = readProgram("M82\nG1 X5 Y6 Z7 E3\nG92\nG1 Z.2\nG1 X1 E1\n");
+    const Toolpath toolpath = readProgram("M82\nG1 X5 Y6 Z7\nG1 E3\nG92\nG1 Z.2\nG1 X50 E1\n");
     expectStart(toolpath.beads[0], 0, 0, 0.2);
     EXPECT_DOUBLE_EQ(toolpath.filament_mm, 1);
 }
@@ -180,14 +180,14 @@ TEST(Machine, FirmwareRetractionIsNoBead) {
 }
 
 TEST(Machine, ArcsStayArcs) {
-    const Toolpath toolpath = readProgram("M83\nG1 X1 Z.2\nG3 X0 Y1 I-1 J0 E1\nG2 X1 Y0 R1 E1\nG2 X1 Y0 I-1 E1\n");
+    const Toolpath toolpath = readProgram("M83\nG1 X1 Z.2\nG3 X0 Y1 I-1 J0 E.1\nG2 X1 Y0 R1 E.1\nG2 X1 Y0 I-1 E.1\n");
     ASSERT_EQ(toolpath.arcs.size(), 3U);
     EXPECT_NEAR(toolpath.arcs[0].sweep, kPi / 2, 1e-12);
     EXPECT_NEAR(toolpath.arcs[1].sweep, -kPi / 2, 1e-12);
     EXPECT_NEAR(toolpath.arcs[1].center_x, 0 + 1 - 1, 1e-12);
     EXPECT_NEAR(toolpath.arcs[2].sweep, -2 * kPi, 1e-12);
     for (std::int32_t i = 0; i < 3; ++i) EXPECT_EQ(toolpath.beads[static_cast<std::size_t>(i)].arc, i);
-    EXPECT_NEAR(beadVolume(toolpath), 3 * kFilamentArea, 1e-5);
+    EXPECT_NEAR(beadVolume(toolpath), 0.3 * kFilamentArea, 1e-5);
 }
 
 TEST(Machine, ArcEndsInRelativeMode) {
@@ -225,7 +225,7 @@ TEST(Machine, SeveralCommandsInALine) {
 }
 
 TEST(Machine, Tools) {
-    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nT3\nG1 X1 E1\nT-1\nT255\nT1000\nTx\nT?\nG1 X2 E1\n");
+    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nT3\nG1 X50 E1\nT-1\nT255\nT1000\nTx\nT?\nG1 X99 E1\n");
     EXPECT_EQ(toolpath.runs.size(), 1U);
     EXPECT_EQ(toolpath.runs[0].tool, 3);
     EXPECT_TRUE(toolpath.warnings.empty());
@@ -243,7 +243,7 @@ TEST(Machine, FetchingUnloadedFilamentIsNoExtrusion) {
 }
 
 TEST(Machine, UnknownCommandsAreRemarkedOnceEach) {
-    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nM98765\nM98765\nG777\nMY_MACRO A=1\nM104 S200\nG1 X1 E1\n");
+    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nM98765\nM98765\nG777\nMY_MACRO A=1\nM104 S200\nG1 X50 E1\n");
     EXPECT_EQ(warningCount(toolpath, "M98765"), 2U);
     EXPECT_EQ(warningCount(toolpath, "G777"), 1U);
     EXPECT_EQ(warningCount(toolpath, "MY_MACRO"), 1U);

@@ -200,7 +200,8 @@ TEST(CorpusFiles, ASpiralHasItsNominalHeight) {
     STRATUM_NEEDS_CORPUS(path, "gcode/vase_ps25.gcode");
     const Toolpath toolpath = readCorpus(path);
     for (const Bead& bead : toolpath.beads) {
-        if (std::abs(bead.z1 - bead.z0) < 1e-6) continue;
+        // Where the wall overhangs, the slicer lays round threads and says their height.
+        if (std::abs(bead.z1 - bead.z0) < 1e-6 || toolpath.runOf(bead).feature == Feature::overhang_perimeter) continue;
         ASSERT_FLOAT_EQ(toolpath.runOf(bead).height, 0.2F) << bead.line;
     }
 }

@@ -43,11 +43,11 @@ Resolved resolve(const std::vector<Level>& levels, std::optional<double> nominal
 }
 
 TEST(Sections, HeightIsTheDistanceToTheNextLowerLevel) {
-    const Resolved resolved = resolve({{0.3}, {0.5, 2}, {0.7, 3}, {0.6, 4}}, 0.2);
-    EXPECT_FLOAT_EQ(resolved.height(0), 0.3F);
-    EXPECT_FLOAT_EQ(resolved.height(1), 0.2F);
-    EXPECT_FLOAT_EQ(resolved.height(2), 0.1F);  // a level lies at 0.6, wherever it comes in the file
-    EXPECT_FLOAT_EQ(resolved.height(3), 0.1F);
+    const Resolved resolved = resolve({{0.6}, {1.0, 2}, {1.4, 3}, {1.2, 4}}, 0.4);
+    EXPECT_FLOAT_EQ(resolved.height(0), 0.6F);
+    EXPECT_FLOAT_EQ(resolved.height(1), 0.4F);
+    EXPECT_FLOAT_EQ(resolved.height(2), 0.2F);  // a level lies at 1.2, wherever it comes in the file
+    EXPECT_FLOAT_EQ(resolved.height(3), 0.2F);
     EXPECT_TRUE(resolved.warnings.empty());
 }
 
