@@ -1,6 +1,7 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "command_line.h"
 
+#include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "gcode/toolpath_csv.h"
 #include "io/atomic_file.h"
@@ -31,6 +32,8 @@ Examples:
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender and Houdini
+  gcode2vdb plates.gcode.3mf --plate 2              one plate of several
+  zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
 
 struct Options {
@@ -48,7 +51,10 @@ struct Options {
 const std::map<std::string, double> kUnits{{"mm", 1.0}, {"cm", 0.1}, {"m", 0.001}};
 
 void addOptions(CLI::App& app, Options& o) {
-    app.add_option("IN", o.inputs, "G-code of any slicer")->required()->type_name("FILE");
+    app.add_option("IN", o.inputs,
+                   "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
+        ->required()
+        ->type_name("FILE");
     app.add_option("-o,--output", o.output, "The .vdb to write; a folder if there are several inputs")
         ->type_name("OUT.vdb");
     const char* lattice = "Lattice";
@@ -80,6 +86,10 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("LIST")
         ->group(what);
     const char* reading = "Reading";
+    app.add_option("--plate", o.read.plate, "Which plate of a .gcode.3mf that has several")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N")
+        ->group(reading);
     app.add_option("--filament-diameter", o.read.filament_diameter, "Overrides the file's settings")
         ->check(CLI::Range(0.1, 20.0))
         ->type_name("MM")
@@ -200,17 +210,18 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     // Unwritable places are found before the work, not after it.
     { const AtomicFile probe(output); }
 
-    const MappedFile file{fs::path(input)};
+    const gcode::InputBytes file(input);
+    const std::string& name = file.name();
     gcode::ReadOptions read = o.read;
     tools::ProgressBar parse_bar("reading", o.common.quiet);
     read.progress = parse_bar.callback();
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), input, read);
+    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), name, read);
     const double parse_seconds = watch.lap();
     for (const gcode::Warning& warning : toolpath.warnings)
         if (!o.common.quiet)
-            fmt::print(stderr, "gcode2vdb: {}:{}: {}{}\n", input, warning.first_line, warning.text,
+            fmt::print(stderr, "gcode2vdb: {}:{}: {}{}\n", name, warning.first_line, warning.text,
                        warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
-    tools::say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", input,
+    tools::say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", name,
                                      toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                                      toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
                                      gcode::beadVolume(toolpath) * 1e-3));
@@ -227,7 +238,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                                      lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
 
     voxelize::Provenance provenance;
-    provenance.source_file = fs::path(input).filename().string();
+    provenance.source_file = fs::path(name).filename().string();
     provenance.source_sha256 = sha256Hex(file.bytes());
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
@@ -297,12 +308,20 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             {"threads", threads}};
 }
 
+// part.gcode.gz and part.gcode.3mf -> part.vdb
+fs::path outputName(const std::string& input) {
+    if (input == "-") throw UsageError("standard input has no name to call the output by; give -o OUT.vdb");
+    fs::path name = fs::path(input).filename();
+    if (name.extension() == ".gz" || name.extension() == ".3mf") name = name.stem();
+    return name.replace_extension(".vdb");
+}
+
 void run(const Options& o) {
     const tools::ThreadLimit limit(o.common.threads);
     openvdb::initialize();
     if (o.inputs.size() == 1) {
         fs::path output = o.output;
-        if (output.empty()) output = fs::path(o.inputs.front()).filename().replace_extension(".vdb");
+        if (output.empty()) output = outputName(o.inputs.front());
         if (output.extension() != ".vdb")
             throw UsageError(fmt::format("-o {}: the name must end in .vdb", output.string()));
         tools::writeStats(o.common, convert(o, o.inputs.front(), output, limit.threads()));
@@ -314,8 +333,7 @@ void run(const Options& o) {
     if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
     Json reports = Json::array();
     for (const std::string& input : o.inputs)
-        reports.push_back(convert(o, input, fs::path(o.output) / fs::path(input).filename().replace_extension(".vdb"),
-                                  limit.threads()));
+        reports.push_back(convert(o, input, fs::path(o.output) / outputName(input), limit.threads()));
     tools::writeStats(o.common, reports);
 }
 

@@ -1,5 +1,8 @@
 #include "gcode/bead_recorder.h"
 
+#include "gcode/color.h"
+#include "gcode/feature_names.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +27,7 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
             break;
         case Tag::Kind::feature:
             next_.feature = tag.feature;
-            if (tag.feature == Feature::unknown)
+            if (tag.feature == Feature::unknown && !featureOfType(tag.text))
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
             break;
         case Tag::Kind::height:
@@ -39,6 +42,13 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
             break;
         case Tag::Kind::object_stop:
             stopObject();
+            break;
+        case Tag::Kind::color_change:
+            if (const auto color = parseColor(tag.text))
+                toolpath_.color_changes.push_back(
+                    {.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
+                     .tool = tag.tool < 0 ? next_.tool : static_cast<std::uint8_t>(tag.tool),
+                     .color = *color});
             break;
     }
 }
@@ -69,6 +79,13 @@ void BeadRecorder::startObject(std::string_view name, std::uint32_t line) {
         toolpath_.objects.emplace_back(name);
     }
     next_.object = entry->second;
+}
+
+void BeadRecorder::renameObject(std::string_view name, std::uint32_t line) {
+    if (next_.object == 0 || object_index_.contains(std::string(name))) return startObject(name, line);
+    object_index_.erase(toolpath_.objects[next_.object]);
+    object_index_.emplace(name, next_.object);
+    toolpath_.objects[next_.object] = name;
 }
 
 void BeadRecorder::countLayer(const Point& from, const Point& to, bool sloped) {

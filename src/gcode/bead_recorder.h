@@ -1,6 +1,7 @@
 // Turns extruding moves and slicer tags into beads, runs, arcs, layers and objects. Knows no commands.
 #pragma once
 
+#include "gcode/frame.h"
 #include "gcode/slicer_tags.h"
 #include "gcode/toolpath.h"
 #include "gcode/warning_log.h"
@@ -12,13 +13,6 @@
 #include <vector>
 
 namespace stratum::gcode {
-
-/// A place of the nozzle in print space, mm.
-struct Point {
-    double x = 0;
-    double y = 0;
-    double z = 0;
-};
 
 /// Grows a Toolpath. Layers are counted by the slicer's marks; until the first mark comes, and in files without any,
 /// by the z at which material is laid: a new layer begins where z rises above the current layer's, or falls back to
@@ -33,6 +27,10 @@ public:
     void setSpeed(double speed) { next_.speed = static_cast<float>(speed); }
     void startObject(std::string_view name, std::uint32_t line);
     void stopObject() { next_.object = 0; }
+    /// Gives the object in force another name, unless one of that name exists: then that one is in force.
+    void renameObject(std::string_view name, std::uint32_t line);
+    /// mm, as tagged; 0 if it is yet to be found.
+    double height() const { return static_cast<double>(next_.height); }
 
     /// Adds a bead of `volume` mm^3 whose path is `length` mm long (> 0).
     void add(const Point& from, const Point& to, const std::optional<Arc>& arc, double length, double volume,

@@ -1,12 +1,16 @@
 // The machine simulator: commands -> positions, extrusion, beads.
 //
 // Lengths are mm, E is mm of filament or mm^3, feed rates mm/s. Where nothing has been said the machine stands at 0.
-// Sources: marlinfw.org/docs/gcode (G0-G3, G10, G20, G28, G90, G92, M82, M200, M221); docs.duet3d.com and
-// klipper3d.org/G-Codes.html (G90/G91 leave E alone there).
+// Its methods live in machine.cpp (what commands set), machine_motion.cpp (moves and what they deposit) and
+// machine_macro.cpp (Klipper's named commands).
+// Sources: marlinfw.org/docs/gcode (G0-G5, G10, G17-G20, G28, G53-G59, G90, G92, M82, M200, M206, M218, M220, M221,
+// M486); docs.duet3d.com (G10, G53, G92, M221, M486) and klipper3d.org/G-Codes.html (G90/G91 leave E alone there).
 #pragma once
 
 #include "gcode/arc.h"
 #include "gcode/bead_recorder.h"
+#include "gcode/curve.h"
+#include "gcode/frame.h"
 #include "gcode/lexer.h"
 #include "gcode/reader.h"
 #include "gcode/settings.h"
@@ -14,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,10 +33,7 @@ struct MoveCounts {
     std::uint64_t beads = 0;
 };
 
-/// Executes lines one after another and hands extruding moves to a BeadRecorder.
-///
-/// Print space is the coordinate frame in force when the first bead is laid: G92 X/Y/Z before that (touching off)
-/// renames the place, after it moves the frame, so that a program that prints the same lines again elsewhere does.
+/// Executes lines one after another and hands extruding moves to a BeadRecorder. Print space is Frame's.
 class Machine {
 public:
     /// `name` stands in messages. `settings` and `recorder` must outlive the machine.
@@ -48,23 +50,51 @@ public:
     double extrudedMm3() const { return extruded_mm3_; }
 
 private:
+    // What SAVE_GCODE_STATE keeps.
+    struct Saved {
+        Frame frame;
+        double e = 0;
+        double speed_factor = 1;
+        std::array<double, 256> flow{};
+        bool absolute = true;
+        bool e_absolute = true;
+    };
+
     void execute(const Command& command);
     void executeG(const Command& command);
     void executeM(const Command& command);
-    void executeExtended(const Command& command);
+    void executeMacro(const Command& command);
     void selectTool(const Command& command);
-    void move(const Command& command, int motion);
-    std::optional<Arc> arcOf(const Command& command, const Point& target, bool clockwise);
-    void deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion);
-    void home(const Command& command);
+    void useTool(std::size_t tool);
+    void setOffsets(const Command& command);
     void setPosition(const Command& command);
     void setAbsolute(bool absolute);
+    void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);
+    void setSpeedFactor(const Command& command);
     void setFlow(const Command& command);
     void labelObject(const Command& command);
+    void home(const Command& command);
+    double placeOf(const Command& command, char letter) const;
 
-    double takeAxis(const Command& command, char letter, double current, double offset) const;
+    void setMacroOffset(std::string_view text);
+    void saveState(std::string_view text);
+    void restoreState(std::string_view text);
+
+    void move(const Command& command, int motion);
+    /// The straight or, in the bed plane, circular path to the target.
+    void runPath(const Point& target, const std::optional<Arc>& arc, double extrusion);
+    void runPieces(const std::vector<Point>& pieces, double extrusion);
+    void runTurns(const Point& target, const Arc& arc, int turns, double extrusion);
+    void runArc(const Command& command, const Point& target, bool clockwise, double extrusion);
+    void runBezier(const Command& command, const Point& target, double extrusion);
+    std::optional<Arc> arcOf(const Command& command, const Point& target, bool clockwise);
+    void deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion);
+    double switchedExtrusion(double length);
+
+    double takeAxis(const Command& command, char letter, std::size_t axis) const;
     double takeExtrusion(const Command& command);
+    char drivingLetter(const Command& command);
     void assumeExtruderMode();
     /// The part of a push or pull of E that isn't spent on fetching unloaded filament back to the nozzle.
     double leavesNozzle(double drive, bool in_place);
@@ -81,22 +111,28 @@ private:
     Firmware firmware_ = Firmware::marlin;
     std::optional<double> filament_override_;
     std::optional<double> m200_diameter_;
+    double nominal_height_;
 
     std::uint32_t line_ = 0;
-    Point position_;
-    Point offset_;  // print space minus the program's coordinates
+    Frame frame_;
+    Plane plane_;
     double e_ = 0;
     double unit_ = 1;  // mm in one unit of the program
-    int motion_ = 0;   // the G0..G3 in force, for lines without a command
+    int motion_ = 0;   // the G0..G3 or G5 in force, for lines without a command
     bool absolute_ = true;
     bool e_absolute_ = true;
     bool e_mode_known_ = false;    // by M82, M83, an option, or assumed
     bool e_follows_axes_ = false;  // G90 or G91 has set it by Marlin's rule
     bool volumetric_ = false;
+    bool motor_on_ = false;  // between M101 and M103, where those are all there is
     std::size_t tool_ = 0;
+    double feed_ = 0;
+    double speed_factor_ = 1;
+    double speed_backup_ = 1;
     std::array<double, 256> flow_;
     std::array<double, 256> drawn_back_{};  // mm of filament, by tool
     std::array<bool, 256> unloaded_{};
+    std::map<std::string, Saved, std::less<>> saved_;
     bool objects_by_comment_ = false;
 
     MoveCounts counts_;

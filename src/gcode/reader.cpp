@@ -1,6 +1,7 @@
 #include "gcode/reader.h"
 
 #include "gcode/bead_recorder.h"
+#include "gcode/container.h"
 #include "gcode/lexer.h"
 #include "gcode/machine.h"
 #include "gcode/sections.h"
@@ -37,29 +38,43 @@ void checkOptions(const ReadOptions& options) {
                     name, counts.travels, counts.stationary));
 }
 
+// What a file lost at a block's end leaves no other trace.
+void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_line, WarningLog& warnings) {
+    if (program.filament_mm && filament_mm < 0.99 * *program.filament_mm)
+        warnings.add(
+            fmt::format("only {:.1f} of the {:.1f} mm of filament that the {} container states are extruded; the "
+                        "file may be cut off",
+                        filament_mm, *program.filament_mm, program.format),
+            last_line);
+}
+
 }  // namespace
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
     checkOptions(options);
-    refuseOtherFormats(bytes, name);
-    const Settings settings = readSettings(bytes);
+    const Program program = openContainer(bytes, name, options.plate);
+    const std::string_view text = program.text;
+    refuseOtherFormats(text, name);
+    Settings settings = readSettings(text);
+    if (!program.cut_short.empty()) settings.cut_short = program.cut_short;
     const std::optional<double> nominal = options.layer_height ? options.layer_height : settings.layer_height;
 
     WarningLog warnings;
-    BeadRecorder recorder(nominal.value_or(0.2), bytes.size() / kBytesPerBead, warnings);
+    BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
     Machine machine(settings, options, name, recorder, warnings);
-    Lexer lexer(bytes);
+    Lexer lexer(text);
     Line line;
     std::size_t reported = 0;
     while (lexer.next(line)) {
         machine.run(line);
         if (options.progress && lexer.offset() - reported >= kProgressBytes) {
             reported = lexer.offset();
-            options.progress(static_cast<double>(reported) / static_cast<double>(bytes.size()));
+            options.progress(static_cast<double>(reported) / static_cast<double>(text.size()));
         }
     }
     if (recorder.toolpath().empty()) refuseWithoutBeads(machine.counts(), name);
     resolveSections(recorder.toolpath(), recorder.runZ(), nominal, warnings);
+    warnIfShort(machine.filamentMm(), program, line.number, warnings);
     if (options.progress) options.progress(1);
 
     Toolpath toolpath = std::move(recorder.toolpath());
@@ -69,6 +84,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     toolpath.filament_diameter = machine.filamentDiameter();
     toolpath.layer_height = nominal.value_or(0);
     for (const Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
+    toolpath.format = program.format;
     toolpath.filament_mm = machine.filamentMm();
     toolpath.extruded_mm3 = machine.extrudedMm3();
     return toolpath;

@@ -22,13 +22,14 @@ struct ReadOptions {
     Firmware firmware = Firmware::automatic;
     std::optional<double> filament_diameter;  ///< mm; overrides the file's settings
     std::optional<double> layer_height;       ///< mm; used where neither tags nor Z moves tell
+    std::optional<int> plate;                 ///< which program of a .gcode.3mf; needed only if it has several
     /// Called now and then with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;
 };
 
-/// Reads one G-code program. `name` stands in messages. Throws InputError (with "name:line: ...") for bytes that are
-/// not G-code, unusable numbers, or a program that deposits nothing; UsageError for options out of range.
-/// Single-threaded, re-entrant.
+/// Reads one G-code program, out of its container if it has one (container.h). `name` stands in messages. Throws
+/// InputError (with "name:line: ...") for bytes that are not G-code, unusable numbers, or a program that deposits
+/// nothing; UsageError for options out of range. Single-threaded, re-entrant.
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options = {});
 
 }  // namespace stratum::gcode

@@ -1,76 +1,20 @@
 #include "gcode/sections.h"
 
+#include "gcode/heights.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 namespace stratum::gcode {
 namespace {
 
-constexpr double kFallbackHeight = 0.2;  // mm
-constexpr double kLeastHeight = 0.01;    // mm; levels closer than this are one level
-constexpr double kMostNominals = 4;      // a gap of more layers than this is air, not a layer
-constexpr double kMostHeights = 100;     // a bead wider than this many heights is a mistake
+constexpr double kMostHeights = 100;  // a bead wider than this many heights is a mistake
 constexpr double kBlobHeights = 10;
 constexpr double kBlobLengths = 4;
-
-// z levels of level beads in micrometres, ascending. Start-up lines (layer 0) are no levels of the part.
-std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z) {
-    std::vector<std::int64_t> levels;
-    for (const Bead& bead : toolpath.beads) {
-        const Run& run = toolpath.runOf(bead);
-        if (run.layer == 0 || std::isnan(run_z[bead.run])) continue;
-        const std::int64_t z = std::llround(bead.z1 * 1000);
-        if (levels.empty() || levels.back() != z) levels.push_back(z);
-    }
-    std::sort(levels.begin(), levels.end());
-    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-    return levels;
-}
-
-class HeightResolver {
-public:
-    HeightResolver(std::vector<std::int64_t> levels, std::optional<double> nominal, WarningLog& warnings)
-        : levels_(std::move(levels)), nominal_(nominal), warnings_(warnings) {}
-
-    double heightOf(const Run& run, double z, std::uint32_t line) {
-        if (std::isnan(z)) return nominalAt(line);
-        if (run.layer == 0) {
-            const double nominal = nominalAt(line);
-            return z >= kLeastHeight && z <= 2 * nominal ? z : nominal;
-        }
-        const double height = z - levelBelow(z);
-        if (!(height >= kLeastHeight)) {
-            warnings_.add("extrusion at or below the bed (z <= 0); the nominal layer height is used", line);
-            return nominalAt(line);
-        }
-        if (nominal_ && height > kMostNominals * *nominal_) {
-            warnings_.add("extrusion far above anything below it; the nominal layer height is used", line);
-            return *nominal_;
-        }
-        return height;
-    }
-
-private:
-    double levelBelow(double z) const {
-        const auto ceiling = std::llround((z - kLeastHeight) * 1000);
-        const auto above = std::upper_bound(levels_.begin(), levels_.end(), ceiling);
-        return above == levels_.begin() ? 0 : std::max(0.0, static_cast<double>(*(above - 1)) / 1000);
-    }
-
-    double nominalAt(std::uint32_t line) {
-        if (nominal_) return *nominal_;
-        warnings_.add("the file doesn't tell its layer height; 0.2 mm is used (set it with --layer-height)", line);
-        return kFallbackHeight;
-    }
-
-    std::vector<std::int64_t> levels_;
-    std::optional<double> nominal_;
-    WarningLog& warnings_;
-};
 
 double widthOf(const Toolpath& toolpath, const Bead& bead, double area, double height, WarningLog& warnings) {
     const double width = sectionWidth(area, height);
@@ -95,15 +39,18 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
     const bool all_tagged =
         std::all_of(toolpath.runs.begin(), toolpath.runs.end(), [](const Run& run) { return run.height > 0; });
     if (!all_tagged) {
-        HeightResolver resolver(levelsOf(toolpath, run_z), nominal_height, warnings);
-        for (const Bead& bead : toolpath.beads) {
-            Run& run = toolpath.runs[bead.run];
-            if (!(run.height > 0)) run.height = static_cast<float>(resolver.heightOf(run, run_z[bead.run], bead.line));
-        }
+        const std::vector<double> heights = findHeights(toolpath, run_z, nominal_height, warnings);
+        for (std::size_t k = 0; k < heights.size(); ++k) toolpath.runs[k].height = static_cast<float>(heights[k]);
     }
     for (Bead& bead : toolpath.beads) {
         const double height = static_cast<double>(toolpath.runOf(bead).height);
         bead.width = static_cast<float>(widthOf(toolpath, bead, static_cast<double>(bead.width), height, warnings));
+    }
+    if (!toolpath.cut_short.empty() && !toolpath.empty()) {
+        const Bead& last = toolpath.beads.back();
+        warnings.add(fmt::format("the program seems to be cut short ({}); its last layer is {}, at z = {:g} mm",
+                                 toolpath.cut_short, toolpath.runOf(last).layer, last.z1),
+                     last.line);
     }
 }
 

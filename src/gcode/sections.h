@@ -12,10 +12,9 @@
 
 namespace stratum::gcode {
 
-/// `toolpath.beads[i].width` holds the section's area in mm^2 and becomes the width in mm. `toolpath.runs[k].height`
-/// is the tagged height, or 0 to be found: for a level run (its z in `run_z[k]`) the distance to the next lower level
-/// at which anything was extruded, or to the bed; for a sloped run (NaN) the nominal height. Beads of layer 0 rest on
-/// the bed. `nominal_height` is 0.2 mm with a warning where it is needed and absent.
+/// `toolpath.beads[i].width` holds the section's area in mm^2 and becomes the width in mm. `toolpath.runs[k].height` is
+/// the tagged height, or 0 to be found by findHeights(), which says what `run_z` and `nominal_height` mean. Says in a
+/// warning which layer is the last where the program was cut short.
 void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
                      WarningLog& warnings);
 

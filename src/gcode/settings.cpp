@@ -1,15 +1,19 @@
 #include "gcode/settings.h"
 
+#include "gcode/color.h"
+#include "gcode/ending.h"
 #include "gcode/number.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace stratum::gcode {
 namespace {
 
 // Thumbnails and Cura's SETTING_3 lines can push what matters this far from the ends.
 constexpr std::size_t kReach = std::size_t{1} << 18;
+constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
 std::string_view trim(std::string_view text) {
     const auto first = text.find_first_not_of(" \t\r\"");
@@ -44,6 +48,55 @@ std::vector<double> diameters(std::string_view text, std::string_view separators
     return values;
 }
 
+// "#FF8000;#DB5182", with or without quotes; an empty place is black only if another tool has a colour.
+std::vector<std::array<std::uint8_t, 3>> colors(std::string_view text) {
+    std::vector<std::array<std::uint8_t, 3>> values;
+    bool any = false;
+    while (!text.empty() && values.size() < 256) {
+        const auto cut = std::min(text.find_first_of(";,"), text.size());
+        const std::string_view one = trim(text.substr(0, cut));
+        const auto color = parseColor(one);
+        any = any || color;
+        values.push_back(color.value_or(std::array<std::uint8_t, 3>{}));
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return any ? values : std::vector<std::array<std::uint8_t, 3>>{};
+}
+
+// "0x0,18x0": the nozzles' places by tool.
+std::vector<Point> offsets(std::string_view text) {
+    std::vector<Point> values;
+    bool any = false;
+    while (!text.empty() && values.size() < 256) {
+        const auto cut = std::min(text.find(','), text.size());
+        const std::string_view one = trim(text.substr(0, cut));
+        Point point;
+        const char* p = one.data();
+        const char* const end = p + one.size();
+        if (!parseNumber(p, end, point.x) || p == end || *p != 'x' || !parseNumber(++p, end, point.y)) return {};
+        if (!(std::abs(point.x) <= kFarthestNozzle && std::abs(point.y) <= kFarthestNozzle)) return {};
+        any = any || point.x != 0 || point.y != 0;
+        values.push_back(point);
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return any ? values : std::vector<Point>{};
+}
+
+// Numbers separated by commas, with or without a unit behind each, times `scale`.
+std::vector<double> amounts(std::string_view text, double scale) {
+    std::vector<double> values;
+    while (!text.empty() && values.size() < 256) {
+        const auto cut = std::min(text.find(','), text.size());
+        const std::string_view one = trim(text.substr(0, cut));
+        const char* p = one.data();
+        double value = 0;
+        if (!parseNumber(p, p + one.size(), value) || !(value >= 0 && value < 1e9)) return {};
+        values.push_back(value * scale);
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return values;
+}
+
 // The firmware of a flavour's name. PrusaSlicer's and Slic3r's "reprap" means RepRap/Sprinter, Marlin's forebear;
 // Cura's "RepRap" means RepRapFirmware and is handled where it is read.
 Firmware firmwareOfFlavor(std::string_view flavor) {
@@ -72,6 +125,17 @@ public:
             sentence(text);
     }
 
+    // Skeinforge: "(<layerHeight> 0.3 </layerHeight>)".
+    void markup(std::string_view text) {
+        if (take(text, "<layerHeight>") || take(text, "<layerThickness>")) {
+            settings.layer_height = positive(text, 100);
+        } else if (take(text, "<edgeWidth>") || take(text, "<perimeterWidth>")) {
+            settings.extrusion_width = positive(text, 100);
+        } else if (text.starts_with("<creator>") || text.starts_with("<version>")) {
+            name("Skeinforge");
+        }
+    }
+
     Settings settings;
 
 private:
@@ -86,8 +150,19 @@ private:
             settings.volumetric_e = flag(value);
         } else if (key == "single_extruder_multi_material") {
             settings.shared_nozzle = flag(value).value_or(false);
+        } else if (key == "extruder_colour") {
+            if (auto list = colors(value); !list.empty()) settings.tool_colors = std::move(list);
+        } else if (key == "filament_colour") {
+            if (settings.tool_colors.empty()) settings.tool_colors = colors(value);
+        } else if (key == "extruder_offset") {
+            settings.tool_offsets = offsets(value);
+        } else if (key == "nozzle_diameter") {
+            settings.nozzle_diameter = positive(value, 100);
+        } else if (key == "extrusion_width" || key == "line_width") {
+            if (value.find('%') == std::string_view::npos) settings.extrusion_width = positive(value, 100);
         } else if (key == "gcode_flavor") {
             settings.firmware = firmwareOfFlavor(value);
+            settings.firmware_reason = std::string("the file's gcode_flavor is ").append(value);
         }
     }
 
@@ -98,6 +173,8 @@ private:
             name(upTo(text, " - "));
         } else if (take(text, "Sliced by ")) {
             name(upTo(text, ","));
+        } else if (text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
+            name(upTo(text, " - "));
         } else if (take(text, "GENERATOR.NAME:")) {
             name(text);
         } else if (take(text, "GENERATOR.VERSION:")) {
@@ -112,11 +189,36 @@ private:
             const auto diameter =
                 colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
+        } else if (footer(text)) {
+            return;
         } else if (take(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
         } else if (take(text, "filamentDiameters,")) {
             if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
         }
+    }
+
+    // What the slicer says it used: "filament used [mm] = 1.5, 2", "filament used = 290.4mm", Cura's "Filament used:
+    // 0.27387m, 0m", Simplify3D's "Filament length: 2706.2 mm", ideaMaker's and Kiri:Moto's.
+    bool footer(std::string_view text) {
+        if (take(text, "filament used [mm] =") || take(text, "filament used =") || take(text, "Filament length:") ||
+            take(text, "--- filament used:")) {
+            if (auto list = amounts(text, 1); !list.empty()) settings.footer_by_tool = std::move(list);
+            return true;
+        }
+        if (take(text, "Filament used:")) {
+            settings.footer_by_tool = amounts(text, 1000);
+            return true;
+        }
+        if (!take(text, "Material#")) return false;
+        const auto used = text.find(" Used:");
+        if (used != 1 || text[0] < '1' || text[0] > '9') return false;
+        const std::vector<double> list = amounts(trim(text.substr(used + 6)), 1);
+        const auto tool = static_cast<std::size_t>(text[0] - '1');
+        if (list.empty()) return false;
+        if (settings.footer_by_tool.size() <= tool) settings.footer_by_tool.resize(tool + 1);
+        settings.footer_by_tool[tool] = list[0];
+        return true;
     }
 
     void name(std::string_view text) {
@@ -125,6 +227,7 @@ private:
 
     void curaFlavor(std::string_view flavor) {
         settings.firmware = flavor == "RepRap" ? Firmware::reprap : Firmware::marlin;
+        settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
         // The Ultimaker flavours count mm^3 and leave it to the printer to know that; M200 in the file says otherwise.
         if (flavor == "Griffin" || flavor == "UltiGCode") settings.volumetric_e = true;
     }
@@ -134,6 +237,7 @@ void readComments(std::string_view part, SettingsReader& reader) {
     while (!part.empty()) {
         const auto end = std::min(part.find_first_of("\r\n"), part.size());
         if (part.front() == ';') reader.comment(part.substr(1, end - 1));
+        if (part.front() == '(') reader.markup(part.substr(1, end - 1));
         part.remove_prefix(std::min(end + 1, part.size()));
     }
 }
@@ -149,6 +253,8 @@ Settings readSettings(std::string_view bytes) {
         tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
         readComments(tail, reader);
     }
+    reader.settings.extrusion = scanExtrusion(bytes);
+    reader.settings.cut_short = findCut(bytes, reader.settings.slicer);
     return std::move(reader.settings);
 }
 

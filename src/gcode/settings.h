@@ -1,10 +1,14 @@
 // What a file says about itself in its first and last comments: slicer, filament, layer height, how E counts.
-// Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r ("; key = value"), the headers of Cura, ideaMaker,
-// Simplify3D, Kiri:Moto and Griffin files.
+// Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r, OrcaSlicer, BambuStudio ("; key = value"), the
+// headers of Cura, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Skeinforge's "(<layerHeight> 0.3 )".
 #pragma once
 
+#include "gcode/extrusion_scan.h"
+#include "gcode/frame.h"
 #include "gcode/reader.h"
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,16 +18,25 @@ namespace stratum::gcode {
 
 /// Values are absent where the file is silent or says nonsense.
 struct Settings {
-    std::string slicer;                      ///< name and version
-    std::vector<double> filament_diameters;  ///< mm, by tool
-    std::optional<double> layer_height;      ///< mm
-    std::optional<bool> relative_e;          ///< E words are increments
-    std::optional<bool> volumetric_e;        ///< E words are mm^3
-    bool shared_nozzle = false;              ///< several filaments take turns in one nozzle
+    std::string slicer;                                    ///< name and version
+    std::vector<double> filament_diameters;                ///< mm, by tool
+    std::optional<double> layer_height;                    ///< mm
+    std::optional<bool> relative_e;                        ///< E words are increments
+    std::optional<bool> volumetric_e;                      ///< E words are mm^3
+    std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool: the extruder's colour, else the filament's
+    std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
+    std::optional<double> nozzle_diameter;  ///< mm, of the first tool
+    std::optional<double> extrusion_width;  ///< mm
+    ExtrusionScan extrusion;                ///< what the program's own words show
+    std::string cut_short;                  ///< why the program seems to end too early; empty if it doesn't
+    bool shared_nozzle = false;             ///< several filaments take turns in one nozzle
     Firmware firmware = Firmware::automatic;
+    std::string firmware_reason;         ///< what the file says about it
+    std::vector<double> footer_by_tool;  ///< mm of filament that the file says it uses
 };
 
-/// Reads the comments in the first and the last part of the bytes. Never throws for what it finds there.
+/// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends
+/// as its slicer ends programs. Never throws for what it finds there.
 Settings readSettings(std::string_view bytes);
 
 }  // namespace stratum::gcode

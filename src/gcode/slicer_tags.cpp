@@ -1,105 +1,10 @@
 #include "gcode/slicer_tags.h"
 
+#include "gcode/feature_names.h"
 #include "gcode/number.h"
-
-#include <algorithm>
-#include <array>
 
 namespace stratum::gcode {
 namespace {
-
-struct Name {
-    std::string_view text;  // lower case
-    Feature feature;
-};
-
-// Names behind ";TYPE:" and its kin. One list for all slicers: where two use one word, they mean the same thing.
-constexpr std::array kTypeNames{
-    // PrusaSlicer, SuperSlicer
-    Name{"perimeter", Feature::perimeter},
-    Name{"internal perimeter", Feature::perimeter},
-    Name{"external perimeter", Feature::external_perimeter},
-    Name{"overhang perimeter", Feature::overhang_perimeter},
-    Name{"thin wall", Feature::external_perimeter},
-    Name{"internal infill", Feature::infill},
-    Name{"solid infill", Feature::solid_infill},
-    Name{"top solid infill", Feature::top_infill},
-    Name{"bridge infill", Feature::bridge},
-    Name{"internal bridge infill", Feature::bridge},
-    Name{"gap fill", Feature::gap_fill},
-    Name{"ironing", Feature::ironing},
-    Name{"skirt", Feature::skirt},
-    Name{"skirt/brim", Feature::skirt},
-    Name{"brim", Feature::brim},
-    Name{"support material", Feature::support},
-    Name{"support material interface", Feature::support_interface},
-    Name{"wipe tower", Feature::wipe_tower},
-    Name{"custom", Feature::custom},
-    // Cura
-    Name{"wall-outer", Feature::external_perimeter},
-    Name{"wall-inner", Feature::perimeter},
-    Name{"skin", Feature::solid_infill},
-    Name{"fill", Feature::infill},
-    Name{"support", Feature::support},
-    Name{"support-interface", Feature::support_interface},
-    Name{"prime-tower", Feature::wipe_tower},
-    // ideaMaker
-    Name{"solid-fill", Feature::solid_infill},
-    Name{"gap-fill", Feature::gap_fill},
-    Name{"bridge", Feature::bridge},
-    Name{"raft", Feature::support},
-    // OrcaSlicer, BambuStudio
-    Name{"inner wall", Feature::perimeter},
-    Name{"outer wall", Feature::external_perimeter},
-    Name{"overhang wall", Feature::overhang_perimeter},
-    Name{"sparse infill", Feature::infill},
-    Name{"internal solid infill", Feature::solid_infill},
-    Name{"bottom surface", Feature::solid_infill},
-    Name{"top surface", Feature::top_infill},
-    Name{"internal bridge", Feature::bridge},
-    Name{"gap infill", Feature::gap_fill},
-    Name{"support interface", Feature::support_interface},
-    Name{"support transition", Feature::support},
-    Name{"prime tower", Feature::wipe_tower},
-};
-
-// Whole comments of Slic3r (behind each move) and Simplify3D (a line of their own).
-constexpr std::array kBareNames{
-    Name{"perimeter", Feature::perimeter},
-    Name{"inner perimeter", Feature::perimeter},
-    Name{"external perimeter", Feature::external_perimeter},
-    Name{"outer perimeter", Feature::external_perimeter},
-    Name{"overhang perimeter", Feature::overhang_perimeter},
-    Name{"external single extrusion", Feature::external_perimeter},
-    Name{"internal single extrusion", Feature::perimeter},
-    Name{"infill", Feature::infill},
-    Name{"solid infill", Feature::solid_infill},
-    Name{"solid layer", Feature::solid_infill},
-    Name{"top solid infill", Feature::top_infill},
-    Name{"bridge", Feature::bridge},
-    Name{"gap fill", Feature::gap_fill},
-    Name{"skirt", Feature::skirt},
-    Name{"brim", Feature::brim},
-    Name{"raft", Feature::support},
-    Name{"support", Feature::support},
-    Name{"dense support", Feature::support_interface},
-    Name{"support material", Feature::support},
-    Name{"support material interface", Feature::support_interface},
-    Name{"prime pillar", Feature::wipe_tower},
-    Name{"ooze shield", Feature::wipe_tower},
-};
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; }
-
-template <std::size_t n>
-std::optional<Feature> lookUp(const std::array<Name, n>& names, std::string_view text) {
-    const auto same = [&](const Name& name) {
-        return std::equal(name.text.begin(), name.text.end(), text.begin(), text.end(),
-                          [](char a, char b) { return a == lower(b); });
-    };
-    const auto found = std::find_if(names.begin(), names.end(), same);
-    return found == names.end() ? std::nullopt : std::optional(found->feature);
-}
 
 std::string_view trim(std::string_view text) {
     const auto first = text.find_first_not_of(" \t");
@@ -126,7 +31,11 @@ Tag ofHeight(std::string_view text) {
 }
 
 Tag ofType(std::string_view text) {
-    return {.kind = Tag::Kind::feature, .feature = featureOfSlicerName(text).value_or(Feature::unknown), .text = text};
+    return {.kind = Tag::Kind::feature, .feature = featureOfType(text).value_or(Feature::unknown), .text = text};
+}
+
+Tag ofSegment(std::string_view text) {
+    return {.kind = Tag::Kind::feature, .feature = featureOfSegment(text).value_or(Feature::unknown), .text = text};
 }
 
 Tag layerChange(double height = 0) { return {.kind = Tag::Kind::layer_change, .height = height}; }
@@ -152,11 +61,43 @@ Tag ofNumberedLayer(std::string_view text) {
 // Simplify3D: "tool H0.200 W0.450".
 Tag ofToolShape(std::string_view text) { return take(text, "H") ? ofHeight(text) : Tag{}; }
 
+// KISSlicer: "'Sparse Infill Path', 0.9 [feed mm/s], 52.5 [head mm/s]".
+Tag ofPath(std::string_view text) {
+    text.remove_prefix(1);
+    const auto end = text.find(" Path'");
+    if (end == std::string_view::npos) return {};
+    text = text.substr(0, end);
+    if (text.starts_with("Destring")) return {};
+    return {.kind = Tag::Kind::feature, .feature = featureOfPath(text).value_or(Feature::unknown), .text = text};
+}
+
+// Skeinforge: "<layer> 0.36 ", the number being the middle of the layer; IceSL: "<layer 3>".
+Tag ofMarkup(std::string_view text) {
+    if (text.starts_with("<layer>") || text.starts_with("<layer ")) return layerChange();
+    if (text.starts_with("<edge>") || text.starts_with("<perimeter>") || text.starts_with("<perimeterPath>"))
+        return {.kind = Tag::Kind::feature, .feature = Feature::external_perimeter};
+    if (text.starts_with("<loop>")) return {.kind = Tag::Kind::feature, .feature = Feature::perimeter};
+    if (text.starts_with("<infill>")) return {.kind = Tag::Kind::feature, .feature = Feature::infill};
+    if (text.starts_with("<supportLayer>")) return {.kind = Tag::Kind::feature, .feature = Feature::support};
+    return {};
+}
+
+// PrusaSlicer and its kin: "COLOR_CHANGE,T0,#ED1C24".
+Tag ofColorChange(std::string_view text) {
+    Tag tag{.kind = Tag::Kind::color_change};
+    if (text.starts_with('T') && text.size() > 1 && text[1] >= '0' && text[1] <= '9') {
+        tag.tool = text[1] - '0';
+        if (text.size() > 2 && text[2] >= '0' && text[2] <= '9') tag.tool = tag.tool * 10 + text[2] - '0';
+    }
+    const auto color = text.find('#');
+    if (color == std::string_view::npos) return {};
+    tag.text = text.substr(color, 7);
+    return tag;
+}
+
 Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .text = name}; }
 
 }  // namespace
-
-std::optional<Feature> featureOfSlicerName(std::string_view name) { return lookUp(kTypeNames, trim(name)); }
 
 Tag parseTag(std::string_view comment) {
     std::string_view text = trim(comment);
@@ -165,8 +106,28 @@ Tag parseTag(std::string_view comment) {
         case 'T':
             if (take(text, "TYPE:")) return ofType(text);
             break;
+        case '<':
+            return ofMarkup(text);
+        case '(':  // IceSL: ";(<layer 3>)"
+            return ofMarkup(text.substr(1));
+        case '\'':
+            return ofPath(text);
+        case 'B':
+            if (take(text, "BEGIN_LAYER_")) return layerChange();
+            break;
+        case 'P':  // ideaMaker
+            if (take(text, "PRINTING:"))
+                return text == "NON-OBJECT" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
+            break;
         case 'F':
             if (take(text, "FEATURE:")) return ofType(text);
+            break;
+        case 'f':  // Simplify3D from 4.1 on
+            if (take(text, "feature ")) {
+                if (const auto feature = featureOfBareName(text))
+                    return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
+                return {};
+            }
             break;
         case 'H':
             if (take(text, "HEIGHT:")) return ofHeight(text);
@@ -178,6 +139,7 @@ Tag parseTag(std::string_view comment) {
             break;
         case 'C':
             if (take(text, "CHANGE_LAYER")) return layerChange();
+            if (take(text, "COLOR_CHANGE,")) return ofColorChange(text);
             break;
         case 'M':
             if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
@@ -195,6 +157,8 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "printing object ")) return ofObject(text);
             break;
         case 's':
+            if (take(text, "start printing object, ")) return ofObject(text);
+            if (take(text, "segType:")) return ofSegment(text);
             if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
             break;
         default:
@@ -202,7 +166,7 @@ Tag parseTag(std::string_view comment) {
     }
     constexpr std::size_t kLongestBareName = 26;
     if (text.size() <= kLongestBareName && text.front() >= 'a' && text.front() <= 'z')
-        if (const auto feature = lookUp(kBareNames, text))
+        if (const auto feature = featureOfBareName(text))
             return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
     return {};
 }

@@ -32,11 +32,12 @@ bool isTextStl(std::string_view bytes) {
 void refuseOtherFormats(std::string_view bytes, std::string_view name) {
     const auto refuse = [name](std::string_view what) { throw InputError(fmt::format("{}: {}", name, what)); };
     if (bytes.empty()) refuse("is empty; slice the model again");
-    if (bytes.starts_with("\x1f\x8b"sv)) refuse("is gzip-compressed, which isn't read yet; run gunzip on it first");
+    if (bytes.starts_with("\x1f\x8b"sv))
+        refuse("holds gzip-compressed data inside its container; unpack the outer one first");
     if (bytes.starts_with("PK\x03\x04"sv))
-        refuse("is a zip container (3mf, ufp), which isn't read yet; unpack the .gcode inside it first");
+        refuse("holds a zip container inside its container; unpack the outer one first");
     if (bytes.starts_with("GCDE"sv))
-        refuse("is binary G-code (bgcode), which isn't read yet; export it as ASCII G-code from the slicer");
+        refuse("holds binary G-code (bgcode) inside its container; unpack the outer one first");
     if (isBinaryStl(bytes) || isTextStl(bytes)) refuse("is a STL model, not G-code; slice it first");
     if (bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv))
         refuse("is UTF-16 text; save it as UTF-8 or ASCII");

@@ -5,8 +5,8 @@
 
 namespace stratum::gcode {
 
-/// Throws InputError, naming what the bytes are and what to do, if they are empty, a container that isn't read here
-/// (gzip, zip, bgcode), a STL model, or binary. Cheap: looks at the beginning only.
+/// Throws InputError, naming what the bytes are and what to do, if they are empty, a container (after one was
+/// opened already), a STL model, or binary. Cheap: looks at the beginning only.
 void refuseOtherFormats(std::string_view bytes, std::string_view name);
 
 }  // namespace stratum::gcode

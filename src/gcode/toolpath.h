@@ -77,6 +77,13 @@ struct Warning {
     std::uint32_t count = 0;
 };
 
+/// The filament of a tool has another colour from a bead on (a manual change of filament).
+struct ColorChange {
+    std::uint32_t first_bead = 0;  ///< index into Toolpath::beads; may be one past the last
+    std::uint8_t tool = 0;
+    std::array<std::uint8_t, 3> color{};  ///< sRGB
+};
+
 /// Everything that one G-code file deposits, in print order.
 struct Toolpath {
     std::vector<Bead> beads;
@@ -91,7 +98,13 @@ struct Toolpath {
     double filament_diameter = 1.75;  ///< mm, of tool 0
     double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
     std::uint32_t layer_count = 0;
-    double filament_mm = 0;   ///< positive E of the beads as the file counts it, in mm of filament
+    std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool, from the file's settings; may be short
+    std::vector<ColorChange> color_changes;                ///< in print order
+    std::vector<double> filament_by_tool;                  ///< mm as the file counts it, by T number; may be short
+    std::vector<double> footer_by_tool;  ///< mm that the file itself says it uses; empty if it doesn't say
+    std::string firmware_reason;         ///< why that rule set was chosen
+    std::string cut_short;               ///< why the program seems to end too early; empty if it doesn't
+    double filament_mm = 0;              ///< positive E of the beads as the file counts it, in mm of filament
     double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }

@@ -163,6 +163,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Oracle{"gcode-preview-benchy_slic3r.gcode", 4913.4, 0, 240},
                     Oracle{"gcode-preview-benchy_arcs.gcode", 4913.437, 3765, 240},  // 7 more arcs are travel
                     Oracle{"vase_ps25.gcode", 2445.09, 0, 363}, Oracle{"libbgcode-mini_cube_a.gcode", 986.61, 0, 120},
+                    Oracle{"libbgcode-mini_cube_b.bgcode", 986.61, 0, 120},
+                    Oracle{"spot_1000cc_0.1mm_grid.gcode.gz", 64723.70, 0, 1886},
                     Oracle{"Printrun-testgeometry.gcode", 5045.35, 3592, 174},
                     Oracle{"volumetric_fwretract.gcode", 1548.89, 0, 99},  // E in mm^3: 3725.5 of them
                     Oracle{"slic3r_vol.gcode", 642.3, 0, 99}),             // E in mm^3, 3 mm filament
@@ -234,10 +236,7 @@ INSTANTIATE_TEST_SUITE_P(Files, CorpusRefused,
                                          Refusal{"gcode-preview-mach3.gcode", "no extruding move"},
                                          Refusal{"Printrun-PCB-milling-and-comment.gcode", "no extruding move"},
                                          Refusal{"gcode-metadata-fdn_filename.gcode", "no extruding move"},
-                                         Refusal{"gcode-metadata-fdn_all_empty.gcode", "empty"},
-                                         Refusal{"libbgcode-mini_cube_b.bgcode", "bgcode"},
-                                         Refusal{"gcode_metadata-cura_2ext.ufp", "zip"},
-                                         Refusal{"spot_1000cc_0.1mm_grid.gcode.gz", "gzip"}));
+                                         Refusal{"gcode-metadata-fdn_all_empty.gcode", "empty"}));
 
 // Sum of the millimetres in "; filament used [mm] = a, b"; 0 if there is none.
 double footerOf(std::string_view bytes) {

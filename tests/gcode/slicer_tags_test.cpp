@@ -1,5 +1,7 @@
 #include "gcode/slicer_tags.h"
 
+#include "gcode/feature_names.h"
+
 #include <gtest/gtest.h>
 
 namespace stratum::gcode {
@@ -43,10 +45,10 @@ TEST(SlicerTags, Features) {
 }
 
 TEST(SlicerTags, EveryFeatureButUnknownHasASlicersName) {
-    EXPECT_EQ(featureOfSlicerName("IRONING"), Feature::ironing);
-    EXPECT_EQ(featureOfSlicerName("Gap fill"), Feature::gap_fill);
-    EXPECT_EQ(featureOfSlicerName("Brim"), Feature::brim);
-    EXPECT_FALSE(featureOfSlicerName("").has_value());
+    EXPECT_EQ(featureOfType("IRONING"), Feature::ironing);
+    EXPECT_EQ(featureOfType("Gap fill"), Feature::gap_fill);
+    EXPECT_EQ(featureOfType("Brim"), Feature::brim);
+    EXPECT_FALSE(featureOfType("").has_value());
 }
 
 TEST(SlicerTags, Heights) {

@@ -1,0 +1,24 @@
+// "#RRGGBB" as slicers write colours.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace stratum::gcode {
+
+/// sRGB of a text that begins with '#' and six hexadecimal digits; nullopt for any other.
+inline std::optional<std::array<std::uint8_t, 3>> parseColor(std::string_view text) {
+    if (text.size() < 7 || text.front() != '#') return std::nullopt;
+    std::array<std::uint8_t, 3> color{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const char* const first = text.data() + 1 + 2 * i;
+        const auto [end, error] = std::from_chars(first, first + 2, color[i], 16);
+        if (error != std::errc{} || end != first + 2) return std::nullopt;
+    }
+    return color;
+}
+
+}  // namespace stratum::gcode

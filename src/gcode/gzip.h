@@ -1,0 +1,13 @@
+// gzip-compressed text, RFC 1952.
+#pragma once
+
+#include "gcode/container.h"
+
+namespace stratum::gcode {
+
+bool isGzip(std::string_view bytes);
+
+/// Unpacks all members, one after the other, and checks the CRC32 and size of each. Throws InputError.
+Program openGzip(std::string_view bytes, std::string_view name, const ContainerLimits& limits);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,66 @@
+#include "gcode/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace stratum::gcode {
+namespace {
+
+void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
+    const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
+    const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
+    for (std::size_t tool = 0; tool < tools; ++tool) {
+        const double measured = at(toolpath.filament_by_tool, tool);
+        const double footer = at(toolpath.footer_by_tool, tool);
+        if (!(measured > 0) && !(footer > 0)) continue;
+        fmt::format_to(std::back_inserter(out), "T{}: {:.2f} mm of filament", tool, measured);
+        if (footer > 0)
+            fmt::format_to(std::back_inserter(out), "; the file says {:.2f} ({:+.2f} %)", footer,
+                           100 * (measured - footer) / footer);
+        out.push_back('\n');
+    }
+}
+
+}  // namespace
+
+std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath) {
+    std::array<FeatureTotal, kFeatureCount> totals{};
+    for (const Bead& bead : toolpath.beads) {
+        const Run& run = toolpath.runOf(bead);
+        FeatureTotal& total = totals[static_cast<std::size_t>(run.feature)];
+        const double length = beadLength(toolpath, bead);
+        ++total.beads;
+        total.length += length;
+        total.volume += length * sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height));
+    }
+    return totals;
+}
+
+std::string summarize(const Toolpath& toolpath) {
+    fmt::memory_buffer out;
+    const auto totals = featureTotals(toolpath);
+    double length = 0;
+    for (const FeatureTotal& total : totals) length += total.length;
+    fmt::format_to(std::back_inserter(out), "{} ({}), read by the rules of {}: {}\n",
+                   toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.format, toolpath.firmware,
+                   toolpath.firmware_reason);
+    fmt::format_to(std::back_inserter(out), "{} layers, {} beads, {} of them arcs; {:.2f} m, {:.2f} mm^3\n",
+                   toolpath.layer_count, toolpath.beads.size(), toolpath.arcs.size(), length / 1000,
+                   toolpath.extruded_mm3);
+    describeFilament(toolpath, out);
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+        if (totals[i].beads == 0) continue;
+        fmt::format_to(std::back_inserter(out), "  {:<20}{:>9} beads {:>10.2f} m {:>11.2f} mm^3\n",
+                       featureName(static_cast<Feature>(i)), totals[i].beads, totals[i].length / 1000,
+                       totals[i].volume);
+    }
+    for (const Warning& warning : toolpath.warnings)
+        fmt::format_to(std::back_inserter(out), "warning: line {}: {}{}\n", warning.first_line, warning.text,
+                       warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
+    return fmt::to_string(out);
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,25 @@
+// What a person wants to know about a toolpath, as a few lines of text.
+#pragma once
+
+#include "gcode/toolpath.h"
+
+#include <array>
+#include <string>
+
+namespace stratum::gcode {
+
+/// Of one feature: what lies under its name.
+struct FeatureTotal {
+    std::size_t beads = 0;
+    double length = 0;  ///< mm
+    double volume = 0;  ///< mm^3
+};
+
+/// By Feature.
+std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
+
+/// Slicer, container and firmware rules with their reason; layers, beads, length, volume; filament per tool beside what
+/// the file itself says; features; warnings with count and first line. Ends with a line end.
+std::string summarize(const Toolpath& toolpath);
+
+}  // namespace stratum::gcode

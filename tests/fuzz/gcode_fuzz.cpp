@@ -1,0 +1,53 @@
+// libFuzzer: any text as a program. Only InputError and UsageError may come out of reading it, and a toolpath that is
+// read must be one that can be drawn: finite places, positive sections, no index out of bounds.
+//
+//   cmake --preset release -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DSTRATUM_FUZZ=ON
+//       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
+//   cmake --build build/fuzz --target gcode_fuzz
+//   build/fuzz/bin/gcode_fuzz -dict=tests/fuzz/gcode.dict -max_total_time=300 -max_len=4096 FOLDER tests/fuzz/gcode
+//
+// FOLDER collects the inputs that reach new code; tests/fuzz/gcode holds the smallest set of them so far. The first
+// byte chooses the options, so that one folder serves all firmwares.
+#include "gcode/reader.h"
+#include "io/error.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace {
+
+void require(bool good) {
+    if (!good) __builtin_trap();
+}
+
+void check(const stratum::gcode::Toolpath& toolpath) {
+    require(!toolpath.empty());
+    for (const stratum::gcode::Bead& bead : toolpath.beads) {
+        require(bead.run < toolpath.runs.size());
+        require(bead.arc < static_cast<std::int32_t>(toolpath.arcs.size()));
+        require(std::isfinite(bead.width) && bead.width > 0);
+        for (const double place : {bead.x0, bead.y0, bead.z0, bead.x1, bead.y1, bead.z1}) require(std::isfinite(place));
+        const stratum::gcode::Run& run = toolpath.runOf(bead);
+        require(std::isfinite(run.height) && run.height > 0);
+        require(run.object < toolpath.objects.size());
+        require(std::isfinite(stratum::gcode::beadLength(toolpath, bead)));
+    }
+    require(std::isfinite(toolpath.extruded_mm3));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) return 0;
+    stratum::gcode::ReadOptions options;
+    options.firmware = static_cast<stratum::gcode::Firmware>(data[0] & 3U);
+    options.extruder_mode = static_cast<stratum::gcode::ExtruderMode>((data[0] >> 2U & 3U) % 3);
+    try {
+        check(stratum::gcode::readToolpath({reinterpret_cast<const char*>(data) + 1, size - 1}, "fuzz", options));
+    } catch (const stratum::InputError&) {
+    } catch (const stratum::UsageError&) {
+    }
+    return 0;
+}
