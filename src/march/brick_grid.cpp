@@ -1,10 +1,9 @@
 #include "march/brick_grid.h"
 
 #include "io/error.h"
+#include "parallel/parallel_for.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -90,18 +89,19 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         cells *= macros_[a];
     }
     if (cells > 2147483648.0)
-        throw InputError(fmt::format("the level set spans {} x {} x {} voxels, too far apart to lay out for rays; split "
-                                     "it or use --march vdb",
-                                     size_[0], size_[1], size_[2]));
+        throw InputError(
+            fmt::format("the level set spans {} x {} x {} voxels, too far apart to lay out for rays; split "
+                        "it or use --march vdb",
+                        size_[0], size_[1], size_[2]));
     macro_cells_.resize(static_cast<std::size_t>(cells));
 
     // First the masks, which tell what is kept; then the samples of that alone.
     std::vector<Surface> masks(leaves.size());
-    const tbb::blocked_range<std::size_t> all(0, leaves.size(), 256);
-    tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+    constexpr std::size_t kGrain = 256;
+    parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
         Accessor accessor = grid.getConstAccessor();
         Samples samples;
-        for (std::size_t n = range.begin(); n != range.end(); ++n) {
+        for (std::size_t n = first; n != last; ++n) {
             gather(*leaves[n], accessor, samples);
             masks[n] = findSurface(samples);
         }
@@ -125,9 +125,9 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
     }
     surfaces_.resize(count);
     samples_.resize(count);
-    tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+    parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
         Accessor accessor = grid.getConstAccessor();
-        for (std::size_t n = range.begin(); n != range.end(); ++n) {
+        for (std::size_t n = first; n != last; ++n) {
             if (isEmpty(masks[n])) continue;
             const openvdb::Coord at = leaves[n]->origin() - origin_;
             const std::size_t brick = brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]));

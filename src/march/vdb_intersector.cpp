@@ -75,8 +75,10 @@ private:
     bool nearest(const Ray& ray, openvdb::Vec3d& index) {
         // OpenVDB scales times to index space: an infinite one stays out of its arithmetic.
         const double t_max = std::min(ray.t_max, glm::length(ray.origin - centre_) + diagonal_);
-        if (!(t_max > ray.t_min)) return false;
-        const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), ray.t_min, t_max);
+        // OpenVDB wants a start above zero.
+        const double t_min = std::max(ray.t_min, openvdb::math::Delta<double>::value());
+        if (!(t_max > t_min)) return false;
+        const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), t_min, t_max);
         return reference_.intersectsIS(world.applyInverseMap(map_), index);
     }
 
@@ -90,7 +92,10 @@ private:
 class VdbIntersector final : public Intersector {
 public:
     explicit VdbIntersector(openvdb::FloatGrid::ConstPtr grid)
-        : grid_(std::move(grid)), map_(grid_->transform().baseMap()), reference_(*grid_), bounds_(narrowBandBounds(*grid_)) {}
+        : grid_(std::move(grid)),
+          map_(grid_->transform().baseMap()),
+          reference_(*grid_),
+          bounds_(narrowBandBounds(*grid_)) {}
 
     std::unique_ptr<Tracer> makeTracer() const override {
         return std::make_unique<VdbTracer>(*grid_, *map_, reference_, bounds_);
