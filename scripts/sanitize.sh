@@ -8,7 +8,7 @@ install_packages "${BUILD_PACKAGES[@]}" libgtest-dev
 cmake --preset asan >/dev/null
 cmake --build --preset asan
 # Freed blocks are kept for a while by the allocator; with large grids that alone would fill the memory.
-ASAN_OPTIONS=quarantine_size_mb=64:detect_leaks=1 ctest --test-dir build/asan --output-on-failure -j"$(nproc)" -LE "client|slow"
+ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 ctest --test-dir build/asan --output-on-failure -j"$(nproc)" -LE "client|slow"
 cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target test_voxelize test_shade
-TSAN_OPTIONS=suppressions=$PWD/tests/tsan.supp ctest --test-dir build/tsan --output-on-failure -j1 -L thread
+cmake --build --preset tsan --target test_voxelize test_shade test_march
+ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Render|BrickGrid"

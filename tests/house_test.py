@@ -8,12 +8,13 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Which rooms a room may include from. march and voxelize meet only in openvdb::FloatGrid.
 MAY_INCLUDE = {
     "io": set(),
+    "parallel": set(),
     "gcode": {"io"},
-    "voxelize": {"io", "gcode"},
-    "march": {"io"},
-    "shade": {"io", "march"},
+    "voxelize": {"io", "parallel", "gcode"},
+    "march": {"io", "parallel"},
+    "shade": {"io", "parallel", "march"},
 }
-WITHOUT_OPENVDB = {"io", "gcode", "shade"}
+WITHOUT_OPENVDB = {"io", "parallel", "gcode", "shade"}
 MOST_LINES = 500
 
 problems = []

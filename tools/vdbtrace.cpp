@@ -2,6 +2,7 @@
 #include "command_line.h"
 
 #include "io/error.h"
+#include "march/brick_intersector.h"
 #include "march/level_set_file.h"
 #include "march/vdb_intersector.h"
 #include "shade/picture.h"
@@ -85,8 +86,8 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
 
     const char* tracing = "Tracing";
-    app.add_option("--march", o.march, "auto or vdb (OpenVDB's intersector)")
-        ->check(CLI::IsMember({"auto", "vdb"}))
+    app.add_option("--march", o.march, "brick (exact), vdb (OpenVDB's own), or auto, which is brick (default auto)")
+        ->check(CLI::IsMember({"auto", "brick", "vdb"}))
         ->type_name("NAME")
         ->group(tracing);
     tools::addCommonOptions(app, o.common);
@@ -161,15 +162,19 @@ void run(Options& o) {
     shade::PictureFile picture(o.output);
 
     openvdb::initialize();
-    const openvdb::FloatGrid::ConstPtr grid = march::readLevelSet(o.input, o.grid);
-    const double load_seconds = watch.lap();
-    const auto intersector = march::makeVdbIntersector(grid);
-    const shade::SceneDescription scene = shade::makeScene(o.scene, *intersector, o.render.width, o.render.height);
-    const double build_seconds = watch.lap();
+    openvdb::FloatGrid::ConstPtr grid = march::readLevelSet(o.input, o.grid);
+    const Json input{{"path", o.input},
+                     {"grid", grid->getName()},
+                     {"active_voxels", grid->activeVoxelCount()},
+                     {"bytes", grid->memUsage()}};
     tools::say(o.common, fmt::format("{}: {} active voxels of {:g} {}", o.input,
                                      tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                      grid->voxelSize()[0], unitOf(*grid)));
-    watch.lap();
+    const double load_seconds = watch.lap();
+    const auto intersector = o.march == "vdb" ? march::makeVdbIntersector(grid) : march::makeBrickIntersector(*grid);
+    grid.reset();  // bricks hold all that rays need
+    const shade::SceneDescription scene = shade::makeScene(o.scene, *intersector, o.render.width, o.render.height);
+    const double build_seconds = watch.lap();
     shade::RenderResult result;
     {
         tools::ProgressBar bar("rendering", o.common.quiet);
@@ -209,16 +214,13 @@ void run(Options& o) {
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
     tools::writeStats(
         o.common,
-        {{"input",
-          {{"path", o.input},
-           {"grid", grid->getName()},
-           {"active_voxels", grid->activeVoxelCount()},
-           {"bytes", grid->memUsage()}}},
+        {{"input", input},
          {"output", o.output},
          {"image", {{"width", o.render.width}, {"height", o.render.height}, {"spp", o.render.spp}}},
          {"rays",
           {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
          {"march", intersector->name()},
+         {"march_bytes", intersector->bytes()},
          {"integrator", o.render.integrator.name},
          {"seconds",
           {{"load", load_seconds},

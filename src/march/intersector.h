@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -57,6 +58,8 @@ public:
     virtual Box bounds() const = 0;
     /// World-space edge of a voxel.
     virtual double voxelSize() const = 0;
+    /// Memory taken besides the grid it was made from, bytes.
+    virtual std::size_t bytes() const = 0;
     /// Distance in world units by which a secondary ray must leave a hit along the geometric normal so that it doesn't
     /// meet the same surface again.
     virtual double surfaceOffset() const = 0;

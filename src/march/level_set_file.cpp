@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <system_error>
 #include <vector>
 
@@ -79,6 +81,21 @@ void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) 
             fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "
                         "make it again with --half-width 3",
                         where, grid.getName(), half_width, kLeastHalfWidth));
+}
+
+Box narrowBandBounds(const openvdb::FloatGrid& grid) {
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    Box bounds{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+    for (int corner = 0; corner < 8; ++corner) {
+        openvdb::Coord index;
+        for (int axis = 0; axis < 3; ++axis) index[axis] = (corner >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
+        const openvdb::Vec3d world = grid.indexToWorld(index);
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.min[axis] = std::min(bounds.min[axis], world[axis]);
+            bounds.max[axis] = std::max(bounds.max[axis], world[axis]);
+        }
+    }
+    return bounds;
 }
 
 }  // namespace stratum::march

@@ -1,6 +1,8 @@
 // .vdb -> level set: opens a file, picks the grid to trace, refuses what can't be traced.
 #pragma once
 
+#include "march/intersector.h"
+
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
@@ -15,5 +17,8 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
 /// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
 /// not empty, uniform voxels, half-width of at least 2 voxels.
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
+
+/// World-space box of the active voxels' sample points, whichever way the transform turns them.
+Box narrowBandBounds(const openvdb::FloatGrid& grid);
 
 }  // namespace stratum::march

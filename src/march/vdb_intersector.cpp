@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace stratum::march {
@@ -76,8 +75,10 @@ private:
     bool nearest(const Ray& ray, openvdb::Vec3d& index) {
         // OpenVDB scales times to index space: an infinite one stays out of its arithmetic.
         const double t_max = std::min(ray.t_max, glm::length(ray.origin - centre_) + diagonal_);
-        if (!(t_max > ray.t_min)) return false;
-        const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), ray.t_min, t_max);
+        // OpenVDB wants a start above zero.
+        const double t_min = std::max(ray.t_min, openvdb::math::Delta<double>::value());
+        if (!(t_max > t_min)) return false;
+        const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), t_min, t_max);
         return reference_.intersectsIS(world.applyInverseMap(map_), index);
     }
 
@@ -91,26 +92,17 @@ private:
 class VdbIntersector final : public Intersector {
 public:
     explicit VdbIntersector(openvdb::FloatGrid::ConstPtr grid)
-        : grid_(std::move(grid)), map_(grid_->transform().baseMap()), reference_(*grid_) {
-        const openvdb::CoordBBox box = grid_->evalActiveVoxelBoundingBox();
-        // Corner by corner, for a transform may turn or mirror the box.
-        bounds_.min = glm::dvec3(std::numeric_limits<double>::infinity());
-        bounds_.max = -bounds_.min;
-        for (int corner = 0; corner < 8; ++corner) {
-            const openvdb::Coord index((corner & 1) != 0 ? box.max()[0] : box.min()[0],
-                                       (corner & 2) != 0 ? box.max()[1] : box.min()[1],
-                                       (corner & 4) != 0 ? box.max()[2] : box.min()[2]);
-            const glm::dvec3 world = toGlm(grid_->indexToWorld(index));
-            bounds_.min = glm::min(bounds_.min, world);
-            bounds_.max = glm::max(bounds_.max, world);
-        }
-    }
+        : grid_(std::move(grid)),
+          map_(grid_->transform().baseMap()),
+          reference_(*grid_),
+          bounds_(narrowBandBounds(*grid_)) {}
 
     std::unique_ptr<Tracer> makeTracer() const override {
         return std::make_unique<VdbTracer>(*grid_, *map_, reference_, bounds_);
     }
     std::string_view name() const override { return "vdb"; }
     Box bounds() const override { return bounds_; }
+    std::size_t bytes() const override { return 0; }
     double voxelSize() const override { return grid_->voxelSize()[0]; }
     // The reference interpolates its root linearly between a voxel's faces, so a hit may lie some hundredths of a voxel
     // inside the solid; a secondary ray that started there would meet the surface on its way out.

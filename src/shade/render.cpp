@@ -1,13 +1,11 @@
 #include "shade/render.h"
 
 #include "io/error.h"
+#include "parallel/parallel_for.h"
 #include "shade/filter.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <mutex>
@@ -80,21 +78,18 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
     std::uint64_t done = 0;
     const std::uint64_t total =
         static_cast<std::uint64_t>(region.width()) * static_cast<std::uint64_t>(region.height());
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            Worker& worker = workers.local();
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const PixelBox& tile = tiles[i];
-                for (int y = tile.y0; y < tile.y1; ++y)
-                    for (int x = tile.x0; x < tile.x1; ++x) result.film.at(x, y) = renderPixel(x, y, worker);
-                if (!progress) continue;
-                const std::lock_guard lock(progress_mutex);
-                done += static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height());
-                progress(done, total);
-            }
-        },
-        tbb::simple_partitioner());
+    parallelFor(tiles.size(), 1, [&](std::size_t first, std::size_t last) {
+        Worker& worker = workers.local();
+        for (std::size_t i = first; i != last; ++i) {
+            const PixelBox& tile = tiles[i];
+            for (int y = tile.y0; y < tile.y1; ++y)
+                for (int x = tile.x0; x < tile.x1; ++x) result.film.at(x, y) = renderPixel(x, y, worker);
+            if (!progress) continue;
+            const std::lock_guard lock(progress_mutex);
+            done += static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height());
+            progress(done, total);
+        }
+    });
     for (const Worker& worker : workers) result.rays += worker.rays;
     return result;
 }

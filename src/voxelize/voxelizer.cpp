@@ -1,6 +1,7 @@
 #include "voxelize/voxelizer.h"
 
 #include "io/error.h"
+#include "parallel/parallel_for.h"
 #include "voxelize/layer_stack.h"
 #include "voxelize/leaf_column.h"
 #include "voxelize/plan_bins.h"
@@ -8,10 +9,7 @@
 #include <fmt/format.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -73,29 +71,29 @@ openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<cons
     const double scale = options.placement.unit;
 
     tbb::enumerable_thread_specific<LeafColumn> scratch([&] { return LeafColumn(toolpath, stack, lattice, scale); });
-    const tbb::blocked_range<std::size_t> columns(0, bins.size(), 16);
-    const std::size_t leaf_bound = tbb::parallel_reduce(
-        columns, std::size_t{0},
-        [&](const tbb::blocked_range<std::size_t>& range, std::size_t count) {
-            LeafColumn& column = scratch.local();
-            for (std::size_t c = range.begin(); c != range.end(); ++c)
-                if (!bins[c].empty()) count += column.countLeaves(bins[c]);
-            return count;
-        },
-        std::plus<>());
-    const double bytes = static_cast<double>(leaf_bound) * kBytesPerLeaf;
+    constexpr std::size_t kGrain = 16;  // columns
+    std::atomic<std::size_t> leaf_bound{0};
+    parallelFor(bins.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = scratch.local();
+        std::size_t count = 0;
+        for (std::size_t c = first; c != last; ++c)
+            if (!bins[c].empty()) count += column.countLeaves(bins[c]);
+        leaf_bound.fetch_add(count, std::memory_order_relaxed);
+    });
+    const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
     if (bytes > static_cast<double>(limit))
         throw UsageError(fmt::format(
             "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, "
             "fewer "
             "layers or features",
-            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound), static_cast<double>(limit) * 1e-9));
+            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()),
+            static_cast<double>(limit) * 1e-9));
 
     std::vector<ColumnLeaves> built(bins.size());
     ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), options.progress);
-    tbb::parallel_for(columns, [&](const tbb::blocked_range<std::size_t>& range) {
+    parallelFor(bins.size(), kGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = scratch.local();
-        for (std::size_t c = range.begin(); c != range.end(); ++c) {
+        for (std::size_t c = first; c != last; ++c) {
             if (bins[c].empty()) continue;
             column.build(bins.originI(c), bins.originJ(c), bins[c], built[c]);
             meter.advance(bins[c].size());
@@ -121,12 +119,12 @@ double enclosedVolume(const openvdb::FloatGrid& grid) {
     const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(grid.tree());
     // One sum a leaf, added in order: the same value for any number of threads.
     std::vector<double> sums(leaves.leafCount());
-    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t n) {
-        double inside = 0;
-        const float* values = leaves.leaf(n).buffer().data();
-        for (openvdb::Index v = 0; v < Leaf::SIZE; ++v)
-            inside += std::clamp(0.5 - static_cast<double>(values[v]) / voxel, 0.0, 1.0);
-        sums[n] = inside;
+    parallelFor(sums.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n) {
+            const float* values = leaves.leaf(n).buffer().data();
+            for (openvdb::Index v = 0; v < Leaf::SIZE; ++v)
+                sums[n] += std::clamp(0.5 - static_cast<double>(values[v]) / voxel, 0.0, 1.0);
+        }
     });
     double voxels = 0;
     for (const double sum : sums) voxels += sum;

@@ -1,6 +1,7 @@
 #include "io/atomic_file.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -19,46 +20,40 @@ std::string slurp(const std::filesystem::path& path) {
     return text.str();
 }
 
-std::filesystem::path freshFolder(const char* name) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / name;
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-    return folder;
-}
-
 std::size_t filesIn(const std::filesystem::path& folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
 TEST(AtomicFile, CommitReplacesAndLeavesNothingBeside) {
-    const auto folder = freshFolder("atomic_commit");
+    const test::ScratchFolder folder;
     std::ofstream(folder / "out") << "old";
     AtomicFile file(folder / "out");
     std::ofstream(file.temporary()) << "new";
     EXPECT_EQ(slurp(folder / "out"), "old");
     file.commit();
     EXPECT_EQ(slurp(folder / "out"), "new");
-    EXPECT_EQ(filesIn(folder), 1U);
+    EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
 TEST(AtomicFile, WithoutCommitTheOldFileStays) {
-    const auto folder = freshFolder("atomic_drop");
+    const test::ScratchFolder folder;
     std::ofstream(folder / "out") << "old";
     {
         const AtomicFile file(folder / "out");
         std::ofstream(file.temporary()) << "half";
     }
     EXPECT_EQ(slurp(folder / "out"), "old");
-    EXPECT_EQ(filesIn(folder), 1U);
+    EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
 TEST(AtomicFile, RefusesBeforeTheWork) {
     EXPECT_THROW(AtomicFile("/nonexistent/folder/out.vdb"), OutputError);
-    EXPECT_THROW(AtomicFile(freshFolder("atomic_dir")), OutputError);
+    const test::ScratchFolder folder;
+    EXPECT_THROW(AtomicFile{folder.path()}, OutputError);
 }
 
 TEST(AtomicFile, ASignalRemovesTheTemporary) {
-    const auto folder = freshFolder("atomic_signal");
+    const test::ScratchFolder folder;
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -70,7 +65,7 @@ TEST(AtomicFile, ASignalRemovesTheTemporary) {
     int status = 0;
     ::waitpid(child, &status, 0);
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
-    EXPECT_EQ(filesIn(folder), 0U);
+    EXPECT_EQ(filesIn(folder.path()), 0U);
 }
 
 }  // namespace

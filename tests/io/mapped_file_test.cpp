@@ -1,6 +1,7 @@
 #include "io/mapped_file.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -10,16 +11,18 @@ namespace stratum {
 namespace {
 
 TEST(MappedFile, GivesTheBytes) {
-    const auto path = std::filesystem::path(testing::TempDir()) / "mapped.bin";
+    const test::ScratchFolder folder;
+    const auto path = folder / "mapped.bin";
     std::ofstream(path, std::ios::binary) << std::string("G1 X1\0\r\n", 8);
     const MappedFile file(path);
     EXPECT_EQ(file.bytes(), std::string_view("G1 X1\0\r\n", 8));
 }
 
 TEST(MappedFile, RefusesMissingEmptyAndFolder) {
+    const test::ScratchFolder folder;
     EXPECT_THROW(MappedFile("/nonexistent/file.gcode"), InputError);
-    EXPECT_THROW(MappedFile(std::filesystem::path(testing::TempDir())), InputError);
-    const auto path = std::filesystem::path(testing::TempDir()) / "empty.gcode";
+    EXPECT_THROW(MappedFile(folder.path()), InputError);
+    const auto path = folder / "empty.gcode";
     std::ofstream(path).close();
     EXPECT_THROW(MappedFile{path}, InputError);
 }

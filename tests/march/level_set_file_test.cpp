@@ -1,6 +1,7 @@
 #include "march/level_set_file.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "spheres.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +15,10 @@ class LevelSetFile : public testing::Test {
 protected:
     static void SetUpTestSuite() { openvdb::initialize(); }
 
+    test::ScratchFolder folder_;
+
     std::filesystem::path write(const openvdb::GridCPtrVec& grids) {
-        const auto path = std::filesystem::path(testing::TempDir()) / "level_set_file_test.vdb";
+        const auto path = folder_ / "grids.vdb";
         openvdb::io::File file(path.string());
         file.write(grids);
         return path;
@@ -68,12 +71,12 @@ TEST_F(LevelSetFile, RefusesDamage) {
     const auto path = write({named("surface", 5)});
     const auto size = std::filesystem::file_size(path);
     for (const double share : {0.0, 0.01, 0.1, 0.5, 0.9, 0.99}) {
-        const auto cut = std::filesystem::path(testing::TempDir()) / "cut.vdb";
+        const auto cut = folder_ / "cut.vdb";
         std::filesystem::copy_file(path, cut, std::filesystem::copy_options::overwrite_existing);
         std::filesystem::resize_file(cut, static_cast<std::uintmax_t>(share * static_cast<double>(size)));
         EXPECT_NE(refusal(cut).find("cut.vdb"), std::string::npos) << share;
     }
-    const auto text = std::filesystem::path(testing::TempDir()) / "text.vdb";
+    const auto text = folder_ / "text.vdb";
     std::ofstream(text) << "solid this is no vdb\n";
     EXPECT_NE(refusal(text).find("not a readable .vdb"), std::string::npos);
 }

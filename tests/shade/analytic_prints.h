@@ -27,6 +27,7 @@ public:
     std::string_view name() const override { return "function"; }
     march::Box bounds() const override { return box_; }
     double voxelSize() const override { return 0.1; }
+    std::size_t bytes() const override { return 0; }
     double surfaceOffset() const override { return offset_; }
 
 private:

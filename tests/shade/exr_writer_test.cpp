@@ -1,6 +1,7 @@
 #include "shade/exr_writer.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "shade/picture_checks.h"
 
 #include <ImfArray.h>
@@ -15,7 +16,7 @@ namespace stratum {
 namespace {
 
 TEST(WriteExr, ReadsBackWithItsAttributes) {
-    const test::ScratchFolder folder("exr");
+    const test::ScratchFolder folder;
     shade::Film film(20, 10, {3, 2, 8, 6});
     for (int y = 2; y < 6; ++y)
         for (int x = 3; x < 8; ++x) film.at(x, y) = {shade::Color(0.1f * float(x), 100.0f * float(y), -1.5f), 0.25f};
@@ -45,7 +46,7 @@ TEST(WriteExr, ReadsBackWithItsAttributes) {
 }
 
 TEST(WriteExr, RefusesWhatItCanNotWrite) {
-    const test::ScratchFolder folder("exr");
+    const test::ScratchFolder folder;
     const shade::Film film(1, 1, {0, 0, 1, 1});
     EXPECT_THROW(shade::writeExr(folder / "none/a.exr", film, {}), OutputError);
     EXPECT_THROW(shade::writeExr(folder / "a.exr", film, {{"dataWindow", "x"}}), std::invalid_argument);

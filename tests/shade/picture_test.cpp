@@ -1,6 +1,7 @@
 #include "shade/picture.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "shade/picture_checks.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ shade::Film small() {
 }
 
 TEST(PictureFile, KindIsTheNamesEnding) {
-    const test::ScratchFolder folder("picture");
+    const test::ScratchFolder folder;
     shade::PictureFile(folder / "a.png").write(small(), {{"Software", "test"}});
     shade::PictureFile(folder / "a.EXR").write(small(), {{"Software", "test"}});
     EXPECT_EQ(test::readPng(folder / "a.png").texts.at("Software"), "test");
@@ -28,7 +29,7 @@ TEST(PictureFile, KindIsTheNamesEnding) {
 }
 
 TEST(PictureFile, AppearsWholeOrNotAtAll) {
-    const test::ScratchFolder folder("picture");
+    const test::ScratchFolder folder;
     EXPECT_THROW(shade::PictureFile(folder / "none/a.png"), OutputError);
     { const shade::PictureFile abandoned(folder / "a.png"); }
     EXPECT_TRUE(folder.empty());

@@ -1,6 +1,7 @@
 #include "shade/png_writer.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "shade/picture_checks.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ namespace stratum {
 namespace {
 
 TEST(WritePng, ReadsBackWithItsTexts) {
-    const test::ScratchFolder folder("png");
+    const test::ScratchFolder folder;
     std::vector<std::uint8_t> rgb;
     for (int i = 0; i < 7 * 5 * 3; ++i) rgb.push_back(static_cast<std::uint8_t>(i * 37));
     const std::map<std::string, std::string> texts = {{"Software", "stratum 0.1.0"},
@@ -27,7 +28,7 @@ TEST(WritePng, ReadsBackWithItsTexts) {
 }
 
 TEST(WritePng, RefusesWhatItCanNotWrite) {
-    const test::ScratchFolder folder("png");
+    const test::ScratchFolder folder;
     const std::vector<std::uint8_t> rgb(3, 0);
     EXPECT_THROW(shade::writePng(folder / "none/a.png", 1, 1, rgb, {}), OutputError);
     EXPECT_THROW(shade::writePng("/dev/full", 1, 1, rgb, {}), OutputError);

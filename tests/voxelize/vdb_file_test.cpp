@@ -1,6 +1,7 @@
 #include "voxelize/vdb_file.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "toolpaths.h"
 #include "voxelize/voxelizer.h"
 
@@ -26,7 +27,8 @@ openvdb::FloatGrid::Ptr readBack(const std::filesystem::path& path) {
 class VdbFile : public testing::Test {
 protected:
     static void SetUpTestSuite() { openvdb::initialize(); }
-    std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) / "vdb_file_test.vdb";
+    test::ScratchFolder folder_;
+    std::filesystem::path path_ = folder_ / "print.vdb";
 };
 
 TEST_F(VdbFile, KeepsEveryValueWithEveryCompression) {
