@@ -1,6 +1,7 @@
 #include "voxelize/lattice.h"
 
 #include "io/error.h"
+#include "voxelize/estimate.h"
 
 #include <fmt/format.h>
 
@@ -21,24 +22,6 @@ constexpr double kComfortableActiveVoxels = 60e6;
 constexpr double kOnPlane = 0.01;
 
 std::int64_t micrometres(double mm) { return std::llround(mm * 1e3); }
-
-// Active voxels that a voxel size will make, from the swept volume of beads and their band; neighbours share bands, so
-// the true count is lower where the print is dense.
-double estimateActive(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, double voxel,
-                      double half_width) {
-    const double band = half_width * voxel;
-    double solid = 0;
-    double surface = 0;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        const double height = toolpath.runOf(bead).height;
-        const double length = gcode::beadLength(toolpath, bead);
-        solid += length * gcode::sectionArea(bead.width, height);
-        // One side of a wall is seen, the others touch neighbours.
-        surface += length * height;
-    }
-    return (solid + surface * band) / (voxel * voxel * voxel);
-}
 
 }  // namespace
 
@@ -83,13 +66,14 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         lattice.reason = fmt::format("{} voxels a layer of {:g} mm", *request.voxels_per_layer, lattice.layer_height);
     } else {
         int count = kFinestVoxelsPerLayer;
-        while (count > kCoarsestVoxelsPerLayer && estimateActive(toolpath, selection, lattice.layer_height / count,
-                                                                 request.half_width) > kComfortableActiveVoxels)
+        while (count > kCoarsestVoxelsPerLayer &&
+               estimateActiveVoxels(toolpath, selection, lattice.layer_height / count, request.half_width) >
+                   kComfortableActiveVoxels)
             --count;
         lattice.voxel_size = lattice.layer_height / count;
         lattice.reason =
             fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count, lattice.layer_height,
-                        estimateActive(toolpath, selection, lattice.voxel_size, request.half_width) * 1e-6);
+                        estimateActiveVoxels(toolpath, selection, lattice.voxel_size, request.half_width) * 1e-6);
     }
     const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
     if (lattice.voxel_size > extent)

@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "parallel/parallel_for.h"
+#include "voxelize/estimate.h"
 #include "voxelize/layer_stack.h"
 #include "voxelize/leaf_column.h"
 #include "voxelize/plan_bins.h"
@@ -66,8 +67,16 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
 openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                                  const Lattice& lattice, const VoxelizeOptions& options) {
     const std::size_t limit = options.memory_limit != 0 ? options.memory_limit : availableMemory();
+    // Only what is hopeless is refused here, for the estimate can be off; the exact bound follows from the bins.
+    const double estimate =
+        estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) * kBytesPerActiveVoxel;
+    if (estimate > 3 * static_cast<double>(limit))
+        throw UsageError(fmt::format(
+            "voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
+            "(half the layer height is {:g} mm), fewer layers or features",
+            lattice.voxel_size, estimate * 1e-9, static_cast<double>(limit) * 1e-9, lattice.layer_height / 2));
     const LayerStack stack = stackLayers(toolpath, selection);
-    const PlanBins bins(toolpath, stack, lattice, limit);
+    const PlanBins bins(toolpath, stack, lattice, limit / 4);
     const double scale = options.placement.unit;
 
     tbb::enumerable_thread_specific<LeafColumn> scratch([&] { return LeafColumn(toolpath, stack, lattice, scale); });
