@@ -3,6 +3,7 @@
 
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
+#include "gcode/summary.h"
 #include "gcode/toolpath_csv.h"
 #include "io/atomic_file.h"
 #include "io/error.h"
@@ -41,6 +42,7 @@ struct Options {
     std::vector<std::string> inputs;
     std::string output;
     std::string dump_toolpath;
+    bool summary = false;
     voxelize::LatticeRequest lattice;
     std::string layers, features, snapshots;
     std::string unit = "mm", origin = "bed";
@@ -128,6 +130,8 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("KIND")
         ->group(writing);
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
+    app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
+        ->group(writing);
     tools::addCommonOptions(app, o.common);
     app.footer(kExamples);
 }
@@ -225,6 +229,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                                      toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                                      toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
                                      gcode::beadVolume(toolpath) * 1e-3));
+    if (o.summary) tools::say(o.common, gcode::summarize(toolpath));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
     voxelize::Selection filter;

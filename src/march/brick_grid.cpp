@@ -28,7 +28,7 @@ void gather(const Leaf& leaf, Accessor& accessor, BrickGrid::Samples& out) {
             for (int y = py * kEdge; y < (py != 0 ? kSamples : kEdge); ++y) {
                 const int z0 = pz * kEdge;
                 const int count = pz != 0 ? 1 : kEdge;
-                float* row = out.data() + (x * kSamples + y) * kSamples + z0;
+                float* row = out.data() + x * BrickGrid::kStrideX + y * BrickGrid::kStrideY + z0;
                 if (source == nullptr) {
                     std::fill_n(row, count, tile);
                 } else {

@@ -48,11 +48,11 @@ public:
     static constexpr int kBrickEdge = 8;   ///< cells
     static constexpr int kSamples = kBrickEdge + 1;
     /// Strides of a brick's samples.
-    static constexpr int kStrideX = kSamples * kSamples;
-    static constexpr int kStrideY = kSamples;
+    static constexpr std::ptrdiff_t kStrideY = kSamples;
+    static constexpr std::ptrdiff_t kStrideX = kStrideY * kSamples;
 
-    using Surface = std::array<std::uint64_t, 8>;                       ///< Mask64 of each 4^3 cells; x slowest
-    using Samples = std::array<float, kSamples * kSamples * kSamples>;  ///< world units; x slowest
+    using Surface = std::array<std::uint64_t, 8>;  ///< Mask64 of each 4^3 cells; x slowest
+    using Samples = std::array<float, static_cast<std::size_t>(kStrideX* kSamples)>;  ///< world units; x slowest
 
     /// Builds from a level set; parallel. The grid may be released afterwards. Throws InputError, with the size, for a
     /// grid whose box holds more than 2^31 macro cells.

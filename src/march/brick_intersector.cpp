@@ -61,8 +61,8 @@ public:
         }
         if (!(t_ <= t_end_)) return false;
         for (int axis = 0; axis < 3; ++axis)
-            cell_[axis] = std::clamp(static_cast<int>(std::floor(at(axis, t_))), 0,
-                                     size[static_cast<std::size_t>(axis)] - 1);
+            cell_[axis] =
+                std::clamp(static_cast<int>(std::floor(at(axis, t_))), 0, size[static_cast<std::size_t>(axis)] - 1);
         return true;
     }
 
@@ -95,8 +95,8 @@ public:
                 cell_[axis] = d > 0 ? high[axis] : low[axis] - 1;
             } else if (d != 0) {
                 const int there = static_cast<int>(std::floor(at(axis, t_exit_)));
-                cell_[axis] = d > 0 ? std::clamp(there, cell_[axis], high[axis] - 1)
-                                    : std::clamp(there, low[axis], cell_[axis]);
+                cell_[axis] =
+                    d > 0 ? std::clamp(there, cell_[axis], high[axis] - 1) : std::clamp(there, low[axis], cell_[axis]);
             }
         }
         t_ = t_exit_;
@@ -108,7 +108,9 @@ public:
     // Entry and exit of the current cell in its own coordinates; the face that is crossed is exactly 0 or 1, so that
     // the neighbour evaluates the same point. aim() must have been called for the cell.
     glm::dvec3 localEntry() const { return local(t_, entry_axis_, true); }
-    glm::dvec3 localExit() const { return t_exit_ <= t_end_ ? local(t_exit_, exit_axis_, false) : local(t_end_, -1, false); }
+    glm::dvec3 localExit() const {
+        return t_exit_ <= t_end_ ? local(t_exit_, exit_axis_, false) : local(t_end_, -1, false);
+    }
     double tExit() const { return std::min(t_exit_, t_end_); }
 
 private:
@@ -143,8 +145,8 @@ Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
     const MacroCell& macro = grid.macroCell(m.x, m.y, m.z);
     if (macro.bricks == 0) {
         const int radius = static_cast<int>(macro.empty_radius);
-        return {glm::max((m - (radius - 1)) << kMacroShift, glm::ivec3(0)), glm::min((m + radius) << kMacroShift, size), 0,
-                false};
+        return {glm::max((m - (radius - 1)) << kMacroShift, glm::ivec3(0)), glm::min((m + radius) << kMacroShift, size),
+                0, false};
     }
     const auto aligned = [&cell](int edge) {
         const glm::ivec3 low = cell & ~(edge - 1);
@@ -161,8 +163,8 @@ Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
 }
 
 Corners cornersOf(const BrickGrid& grid, std::size_t brick, const glm::ivec3& cell) {
-    constexpr int kX = BrickGrid::kStrideX;
-    constexpr int kY = BrickGrid::kStrideY;
+    constexpr auto kX = BrickGrid::kStrideX;
+    constexpr auto kY = BrickGrid::kStrideY;
     const float* v = grid.samples(brick) + (cell.x & 7) * kX + (cell.y & 7) * kY + (cell.z & 7);
     return {v[0], v[1], v[kY], v[kY + 1], v[kX], v[kX + 1], v[kX + kY], v[kX + kY + 1]};
 }
@@ -214,7 +216,9 @@ private:
 class BrickIntersector final : public Intersector {
 public:
     explicit BrickIntersector(const openvdb::FloatGrid& grid)
-        : bricks_(grid), map_(*grid.transform().baseMap(), bricks_.origin()), bounds_(narrowBandBounds(grid)),
+        : bricks_(grid),
+          map_(*grid.transform().baseMap(), bricks_.origin()),
+          bounds_(narrowBandBounds(grid)),
           voxel_size_(grid.voxelSize()[0]) {}
 
     std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<BrickTracer>(bricks_, map_); }

@@ -85,10 +85,12 @@ void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) 
 
 Box narrowBandBounds(const openvdb::FloatGrid& grid) {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    Box bounds{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+    Box bounds{glm::dvec3(std::numeric_limits<double>::infinity()),
+               glm::dvec3(-std::numeric_limits<double>::infinity())};
     for (int corner = 0; corner < 8; ++corner) {
         openvdb::Coord index;
-        for (int axis = 0; axis < 3; ++axis) index[axis] = (corner >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
+        for (int axis = 0; axis < 3; ++axis)
+            index[axis] = (corner >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
         const openvdb::Vec3d world = grid.indexToWorld(index);
         for (int axis = 0; axis < 3; ++axis) {
             bounds.min[axis] = std::min(bounds.min[axis], world[axis]);

@@ -44,11 +44,11 @@ TEST(BrickGrid, HoldsEverySurfaceCellAndItsCorners) {
                 bool stored = false;
                 if ((macro.bricks >> Mask64::bit(bx, by, bz) & 1) != 0) {
                     const std::size_t brick = BrickGrid::brickIndex(macro, bx, by, bz);
-                    const std::uint64_t word =
-                        bricks.surface(brick)[static_cast<std::size_t>((x >> 2 & 1) << 2 | (y >> 2 & 1) << 1 | (z >> 2 & 1))];
+                    const std::uint64_t word = bricks.surface(
+                        brick)[static_cast<std::size_t>((x >> 2 & 1) << 2 | (y >> 2 & 1) << 1 | (z >> 2 & 1))];
                     stored = (word >> Mask64::bit(x & 3, y & 3, z & 3) & 1) != 0;
-                    const float* v = bricks.samples(brick) + (x & 7) * BrickGrid::kStrideX +
-                                     (y & 7) * BrickGrid::kStrideY + (z & 7);
+                    const float* v =
+                        bricks.samples(brick) + (x & 7) * BrickGrid::kStrideX + (y & 7) * BrickGrid::kStrideY + (z & 7);
                     for (int c = 0; c < 8; ++c)
                         ASSERT_EQ(v[(c >> 2) * BrickGrid::kStrideX + (c >> 1 & 1) * BrickGrid::kStrideY + (c & 1)],
                                   corner[c]);
@@ -74,7 +74,8 @@ TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {
                     for (int b = 0; b < n[1]; ++b)
                         for (int c = 0; c < n[2]; ++c)
                             if (bricks.macroCell(a, b, c).bricks != 0)
-                                nearest = std::min(nearest, std::max({std::abs(a - x), std::abs(b - y), std::abs(c - z)}));
+                                nearest =
+                                    std::min(nearest, std::max({std::abs(a - x), std::abs(b - y), std::abs(c - z)}));
                 ASSERT_EQ(bricks.macroCell(x, y, z).empty_radius, static_cast<std::uint32_t>(nearest));
             }
 }

@@ -4,9 +4,9 @@
 #include "io/error.h"
 #include "spheres.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <openvdb/tools/Composite.h>
+#include <glm/geometric.hpp>
 
 #include <chrono>
 #include <cmath>
@@ -55,9 +55,9 @@ Tally compare(const openvdb::FloatGrid& grid, int rays, std::uint32_t seed) {
     Tally tally;
     for (int n = 0; n < rays; ++n) {
         Ray ray;
-        ray.origin = n % 3 == 0 ? glm::dvec3(where(random), where(random), where(random)) : 20.0 * randomDirection(random);
-        ray.direction =
-            glm::normalize(glm::dvec3(where(random), where(random), where(random)) - ray.origin);
+        ray.origin =
+            n % 3 == 0 ? glm::dvec3(where(random), where(random), where(random)) : 20.0 * randomDirection(random);
+        ray.direction = glm::normalize(glm::dvec3(where(random), where(random), where(random)) - ray.origin);
         if (n % 7 == 0) ray.t_min = 0.5 * glm::length(ray.origin);
         if (n % 11 == 0) ray.t_max = glm::length(ray.origin);
         const auto expected = brute(ray);
