@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-install_packages "${BUILD_PACKAGES[@]}" libgtest-dev clang-format clang-tidy
+install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 clang-format clang-tidy
 mapfile -t sources < <(git ls-files '*.cpp' '*.h')
 clang-format --dry-run --Werror "${sources[@]}"
 echo "clang-format: ${#sources[@]} files are formatted"

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-install_packages "${BUILD_PACKAGES[@]}" libgtest-dev
+install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3
 cmake --preset asan >/dev/null
 cmake --build --preset asan
 # Freed blocks are kept for a while by the allocator; with large grids that alone would fill the memory.
