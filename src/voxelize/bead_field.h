@@ -96,6 +96,12 @@ public:
     double halfFlat() const { return half_flat_; }
     double radius() const { return radius_; }
     bool level() const { return level_; }
+    /// A straight round bead: a capsule in 3-D.
+    bool rod() const { return rod_; }
+    /// Of the slope's angle; 1 for a level bead.
+    double cosine() const { return cosine_; }
+    /// How far the underside is let down, mm; see kSlopedReach.
+    double reach() const { return reach_; }
 
 private:
     PlanPath path_;

@@ -12,9 +12,10 @@ namespace stratum::voxelize {
 /// Level beads of one centre plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
 /// one plan field, expanded once per column.
 struct Layer {
-    double centre_z = 0;               ///< mm
-    double radius = 0;                 ///< mm, half the layer height
-    std::vector<std::uint32_t> beads;  ///< indices into Toolpath::beads, in print order
+    double centre_z = 0;      ///< mm
+    double radius = 0;        ///< mm, half the layer height
+    std::uint32_t first = 0;  ///< ranks [first, last) of LayerStack::beads, in print order
+    std::uint32_t last = 0;
 };
 
 /// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave
@@ -28,10 +29,18 @@ struct Weld {
 /// Planes closer than this fraction of the thinner layer's height touch (slicers print Z with three decimals).
 constexpr double kWeldGap = 0.02;
 
+/// The selected beads, ranked by layer. A bead's rank is its place in this order; bins and columns name beads by it.
 struct LayerStack {
-    std::vector<Layer> layers;          ///< ascending centre_z, then radius
-    std::vector<Weld> welds;            ///< ordered by (lower, upper)
-    std::vector<std::uint32_t> direct;  ///< sloped beads and round beads that share no layer: evaluated in 3-D
+    std::vector<Layer> layers;         ///< ascending centre_z, then radius
+    std::vector<Weld> welds;           ///< ordered by (upper, lower)
+    std::vector<std::uint32_t> beads;  ///< by rank: index into Toolpath::beads. Layers first, then direct beads
+    std::vector<std::uint32_t> layer;  ///< by rank: index into layers; layers.size() for a direct bead
+    std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
+
+    std::span<const std::uint32_t> beadsOf(const Layer& l) const {
+        return std::span(beads).subspan(l.first, l.last - l.first);
+    }
+    std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
 };
 
 /// Groups the beads of `selection` (indices into toolpath.beads, ascending). Single-threaded.

@@ -4,179 +4,265 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stratum::voxelize {
+namespace {
 
-LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale)
-    : toolpath_(toolpath), stack_(stack), lattice_(lattice), scale_(scale) {
+// How far planes that count as touching may be apart, for a layer of this radius (mm).
+double weldGap(double radius) { return kWeldGap * 2 * radius; }
+
+}  // namespace
+
+LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
+                       bool owners)
+    : toolpath_(toolpath),
+      stack_(stack),
+      lattice_(lattice),
+      scale_(scale),
+      band_(lattice.background()),
+      with_owners_(owners),
+      grid_(static_cast<float>(lattice.voxel_size * scale)) {
+    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.radius);
     weld_offsets_.assign(stack.layers.size() + 1, 0);
-    for (const Weld& weld : stack.welds) ++weld_offsets_[weld.lower + 1];
+    for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
     for (std::size_t i = 1; i < weld_offsets_.size(); ++i) weld_offsets_[i] += weld_offsets_[i - 1];
 }
 
-LeafColumn::LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
+LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
     const double edge = lattice_.voxel_size * kLeafDim;
-    const double band = lattice_.background();
-    return {static_cast<int>(std::floor((z_min - band - lattice_.origin_z) / edge)),
-            static_cast<int>(std::floor((z_max + band - lattice_.origin_z) / edge))};
+    return {static_cast<int>(std::floor((z_min - band_ - lattice_.origin_z) / edge)),
+            static_cast<int>(std::floor((z_max + band_ - lattice_.origin_z) / edge))};
 }
 
-std::size_t LeafColumn::countLeaves(std::span<const BinEntry> entries) {
-    ranges_.clear();
-    for (std::size_t e = 0; e < entries.size(); ++e) {
-        const std::uint32_t layer = entries[e].layer;
-        if (layer < stack_.layers.size()) {
-            if (e > 0 && entries[e - 1].layer == layer) continue;
-            const Layer& l = stack_.layers[layer];
-            ranges_.push_back(leafRange(l.centre_z - l.radius, l.centre_z + l.radius));
-        } else {
-            const Bounds box = BeadField(toolpath_, toolpath_.beads[entries[e].bead]).bounds();
-            ranges_.push_back(leafRange(box.min[2], box.max[2]));
-        }
-    }
+void LeafColumn::mergeRanges() {
     std::sort(ranges_.begin(), ranges_.end());
-    std::size_t count = 0;
     std::size_t kept = 0;
     for (const LeafRange& range : ranges_) {
-        if (kept > 0 && range.first <= ranges_[kept - 1].second) {
+        if (kept > 0 && range.first <= ranges_[kept - 1].second + 1) {
             ranges_[kept - 1].second = std::max(ranges_[kept - 1].second, range.second);
         } else {
             ranges_[kept++] = range;
         }
     }
     ranges_.resize(kept);
+}
+
+std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
+    ranges_.clear();
+    std::uint32_t previous = std::numeric_limits<std::uint32_t>::max();
+    for (const std::uint32_t rank : ranks) {
+        if (rank >= stack_.first_direct) {
+            const Bounds box = BeadField(toolpath_, toolpath_.beads[stack_.beads[rank]]).bounds();
+            ranges_.push_back(leafRange(box.min[2], box.max[2]));
+        } else if (stack_.layer[rank] != previous) {
+            previous = stack_.layer[rank];
+            const Layer& l = stack_.layers[previous];
+            ranges_.push_back(leafRange(l.centre_z - l.radius, l.centre_z + l.radius));
+        }
+    }
+    mergeRanges();
+    std::size_t count = 0;
     for (const LeafRange& range : ranges_) count += static_cast<std::size_t>(range.second - range.first) + 1;
     return count;
 }
 
-void LeafColumn::gatherLayers(int i, int j, std::span<const BinEntry> entries) {
-    layers_.clear();
-    const double v = lattice_.voxel_size;
-    for (std::size_t e = 0; e < entries.size();) {
-        const std::uint32_t index = entries[e].layer;
-        const Layer& layer = stack_.layers[index];
-        PlanLayer plan{index, layer.centre_z, layer.radius, {}};
-        plan.d.fill(std::numeric_limits<double>::max());
-        for (; e < entries.size() && entries[e].layer == index; ++e) {
-            const gcode::Bead& bead = toolpath_.beads[entries[e].bead];
-            const PlanPath path(toolpath_, bead);
-            const double half_flat = sectionOf(toolpath_, bead).half_flat;
-            for (int x = 0; x < kLeafDim; ++x)
-                for (int y = 0; y < kLeafDim; ++y) {
-                    double& d = plan.d[column(x, y)];
-                    d = std::min(d, path.distance((i + x) * v, (j + y) * v) - half_flat);
-                }
-        }
-        layers_.push_back(plan);
-    }
-}
-
-void LeafColumn::gatherWelds() {
+void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end) {
+    i_ = i;
+    j_ = j;
+    leaf_k_ = std::numeric_limits<int>::min();
+    constexpr double kMiddle = 0.5 * (kLeafDim - 1);
+    middle_x_ = (i + kMiddle) * lattice_.voxel_size;
+    middle_y_ = (j + kMiddle) * lattice_.voxel_size;
+    ranks_ = ranks;
+    end_ = end;
+    column_layers_.clear();
+    direct_.clear();
+    next_layer_ = first_direct_ = 0;
+    free_.insert(free_.end(), window_.begin(), window_.end());
+    window_.clear();
     welds_.clear();
-    for (const PlanLayer& lower : layers_) {
-        for (std::size_t w = weld_offsets_[lower.layer]; w < weld_offsets_[lower.layer + 1]; ++w) {
-            const std::uint32_t wanted = stack_.welds[w].upper;
-            const auto upper =
-                std::lower_bound(layers_.begin(), layers_.end(), wanted,
-                                 [](const PlanLayer& layer, std::uint32_t value) { return layer.layer < value; });
-            if (upper == layers_.end() || upper->layer != wanted) continue;
-            PlanWeld weld{0.5 * (lower.centre_z + upper->centre_z), 0.5 * (upper->centre_z - lower.centre_z), {}};
-            bool any = false;
-            for (std::size_t c = 0; c < weld.d.size(); ++c) {
-                weld.d[c] = std::max(lower.d[c], upper->d[c]);
-                any = any || weld.d[c] < 0;
-            }
-            if (any) welds_.push_back(weld);
+    radii_.clear();
+    for (std::uint32_t e = 0; e < ranks.size(); ++e) {
+        const std::uint32_t rank = ranks[e];
+        if (stack_.beads[rank] >= end) continue;
+        if (rank >= stack_.first_direct) {
+            const Bounds box = BeadField(toolpath_, toolpath_.beads[stack_.beads[rank]]).bounds();
+            direct_.push_back({box.min[2] - band_, box.max[2] + band_, rank});
+        } else if (column_layers_.empty() || column_layers_.back().layer != stack_.layer[rank]) {
+            column_layers_.push_back({stack_.layer[rank], e, e + 1, false});
+        } else {
+            column_layers_.back().last = e + 1;
         }
+    }
+    // Rank breaks ties, so that the order never depends on the sort.
+    std::sort(direct_.begin(), direct_.end(), [](const DirectBead& a, const DirectBead& b) {
+        return std::pair{a.z_min, a.rank} < std::pair{b.z_min, b.rank};
+    });
+}
+
+std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
+    ranges_.clear();
+    for (const ColumnLayer& source : column_layers_) {
+        bool any = begin == 0;
+        for (std::uint32_t e = source.first; !any && e < source.last; ++e) {
+            const std::uint32_t bead = stack_.beads[ranks_[e]];
+            any = bead >= begin && bead < end_;
+        }
+        if (!any) continue;
+        const Layer& l = stack_.layers[source.layer];
+        // A new bead can weld what lies below it: up to its own centre plane, so no farther than its own band.
+        ranges_.push_back(leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
+    }
+    for (const DirectBead& direct : direct_)
+        if (stack_.beads[direct.rank] >= begin)
+            ranges_.push_back(leafRange(direct.z_min + band_, direct.z_max - band_));
+    mergeRanges();
+    return ranges_;
+}
+
+void LeafColumn::loadLayer(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    lines_.clear();
+    arcs_.clear();
+    line_ids_.clear();
+    arc_ids_.clear();
+    const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
+    for (std::uint32_t e = source.first; e < source.last; ++e) {
+        const std::uint32_t rank = ranks_[e];
+        // The beads of a column lie apart in memory: ask for one early.
+        constexpr std::uint32_t kAhead = 6;
+        if (e + kAhead < ranks_.size()) __builtin_prefetch(&toolpath_.beads[stack_.beads[ranks_[e + kAhead]]]);
+        if (stack_.beads[rank] >= end_) continue;
+        const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
+        const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.radius;
+        if (!curved(toolpath_, bead)) {
+            lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            if (with_owners_) line_ids_.push_back(rank);
+        } else {
+            const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+            arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            if (with_owners_) arc_ids_.push_back(rank);
+        }
+    }
+    if (free_.empty()) {
+        free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        slots_.emplace_back();
+    }
+    const std::uint32_t slot = free_.back();
+    PlanLayer& plan = slots_[slot];
+    plan.layer = source.layer;
+    plan.centre_z = layer.centre_z;
+    plan.radius = layer.radius;
+    std::fill(std::begin(plan.d.v), std::end(plan.d.v), std::numeric_limits<float>::max());
+    PlanOwners* owners = with_owners_ ? &plan.owners : nullptr;
+    if (!lines_.empty()) minimumOfLines(grid_, lines_, plan.d, line_ids_.data(), owners);
+    if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, plan.d, arc_ids_.data(), owners);
+    // Nothing of the column within the band: neither a surface nor a weld.
+    const double reach = (layer.radius + band_) * scale_;
+    if (static_cast<double>(squaredSides(plan.d, plan.sides2)) >= reach * reach) return;
+    free_.pop_back();
+    window_.push_back(slot);
+    if (std::find(radii_.begin(), radii_.end(), layer.radius) == radii_.end()) radii_.push_back(layer.radius);
+    addWelds(plan);
+}
+
+void LeafColumn::addWelds(const PlanLayer& upper) {
+    for (std::size_t w = weld_offsets_[upper.layer]; w < weld_offsets_[upper.layer + 1]; ++w) {
+        const std::uint32_t wanted = stack_.welds[w].lower;
+        const auto lower =
+            std::find_if(window_.begin(), window_.end(), [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
+        if (lower == window_.end()) continue;
+        const PlanLayer& below = slots_[*lower];
+        const double top = below.centre_z + below.radius;
+        const double bottom = upper.centre_z - upper.radius;
+        PlanWeld weld{std::min(top, bottom), std::max(top, bottom), 0.5 * (below.centre_z + upper.centre_z),
+                      0.5 * (upper.centre_z - below.centre_z), {}};
+        if (maximumOf(below.d, upper.d, weld.d) < 0) welds_.push_back(weld);
     }
 }
 
-void LeafColumn::evaluate(int i, int j, int leaf_k, std::span<const BinEntry> direct) {
-    const double v = lattice_.voxel_size;
-    const double band = lattice_.background();
+void LeafColumn::moveWindow(double z_min, double z_max) {
+    // A layer stays while its band reaches the leaf, and a little longer for what rests on it across a gap.
+    const auto reach = [this](double radius) { return radius + band_ + weldGap(radius); };
+    const auto passed = [&](std::uint32_t slot) {
+        const PlanLayer& plan = slots_[slot];
+        return plan.centre_z + reach(plan.radius) < z_min;
+    };
+    const auto kept = std::stable_partition(window_.begin(), window_.end(), [&](std::uint32_t s) { return !passed(s); });
+    if (kept != window_.end()) {
+        free_.insert(free_.end(), kept, window_.end());
+        window_.erase(kept, window_.end());
+        radii_.clear();
+        for (const std::uint32_t slot : window_)
+            if (std::find(radii_.begin(), radii_.end(), slots_[slot].radius) == radii_.end())
+                radii_.push_back(slots_[slot].radius);
+    }
+    std::erase_if(welds_, [&](const PlanWeld& weld) { return weld.interface_high + band_ < z_min; });
+    // Layers ascend by centre, but a thick one can reach lower than a thin one before it.
+    for (std::size_t n = next_layer_; n < column_layers_.size(); ++n) {
+        ColumnLayer& source = column_layers_[n];
+        if (source.loaded) continue;
+        const Layer& layer = stack_.layers[source.layer];
+        if (layer.centre_z - reach(thickest_) > z_max) break;
+        if (layer.centre_z - reach(layer.radius) > z_max) continue;
+        source.loaded = true;
+        if (layer.centre_z + reach(layer.radius) >= z_min) loadLayer(source);
+    }
+    while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
+}
+
+LeafContent LeafColumn::evaluate(int leaf_k) {
+    leaf_k_ = leaf_k;
     const int k0 = leaf_k * kLeafDim;
     const double z_min = sampleZ(k0);
     const double z_max = sampleZ(k0 + kLeafDim - 1);
-    phi_.fill(band);
-    std::array<double, kLeafDim> dz{};
+    moveWindow(z_min, z_max);
+    const auto background = static_cast<float>(band_ * scale_);
+    for (PlanField& plane : phi_.plane) std::fill(std::begin(plane.v), std::end(plane.v), background);
 
-    for (const PlanLayer& layer : layers_) {
-        const double reach = layer.radius + band;
-        if (layer.centre_z - reach > z_max || layer.centre_z + reach < z_min) continue;
-        for (int z = 0; z < kLeafDim; ++z) dz[static_cast<std::size_t>(z)] = sampleZ(k0 + z) - layer.centre_z;
-        for (std::size_t c = 0; c < layer.d.size(); ++c) {
-            if (layer.d[c] >= reach) continue;
-            const double side = std::max(layer.d[c], 0.0);
-            for (std::size_t z = 0; z < dz.size(); ++z) {
-                double& phi = phi_[c * kLeafDim + z];
-                phi = std::min(phi, std::sqrt(side * side + dz[z] * dz[z]) - layer.radius);
+    for (const double radius : radii_) {
+        const double reach = radius + band_;
+        for (int z = 0; z < kLeafDim; ++z) {
+            terms_.clear();
+            for (const std::uint32_t slot : window_) {
+                const PlanLayer& plan = slots_[slot];
+                const double dz = sampleZ(k0 + z) - plan.centre_z;
+                if (plan.radius != radius || std::abs(dz) >= reach) continue;
+                const auto world = static_cast<float>(dz * scale_);
+                terms_.push_back({&plan.sides2, world * world});
             }
+            if (!terms_.empty())
+                expandLayers(terms_, static_cast<float>(radius * scale_), phi_.plane[static_cast<std::size_t>(z)]);
         }
     }
-    for (const PlanWeld& weld : welds_) {
-        if (weld.middle_z - weld.half > z_max || weld.middle_z + weld.half < z_min) continue;
-        for (std::size_t c = 0; c < weld.d.size(); ++c) {
-            if (weld.d[c] >= 0) continue;
-            for (int z = 0; z < kLeafDim; ++z) {
-                // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
-                const double bound = std::max(weld.d[c], std::abs(sampleZ(k0 + z) - weld.middle_z) - weld.half);
-                double& phi = phi_[c * kLeafDim + static_cast<std::size_t>(z)];
-                if (bound < 0) phi = std::min(phi, bound);
-            }
+    for (const PlanWeld& weld : welds_)
+        for (int z = 0; z < kLeafDim; ++z) {
+            // Farther than the band from the interface the layer itself is deeper than the band.
+            const double height = sampleZ(k0 + z);
+            if (height < weld.interface_low - band_ || height > weld.interface_high + band_) continue;
+            // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
+            const double bound = std::abs(height - weld.middle_z) - weld.half;
+            if (bound < 0)
+                expandWeld(weld.d, static_cast<float>(bound * scale_), phi_.plane[static_cast<std::size_t>(z)]);
         }
-    }
-    for (const BinEntry& entry : direct) {
-        const BeadField field(toolpath_, toolpath_.beads[entry.bead]);
-        const Bounds box = field.bounds();
-        if (box.min[2] - band > z_max || box.max[2] + band < z_min) continue;
-        for (int x = 0; x < kLeafDim; ++x)
-            for (int y = 0; y < kLeafDim; ++y)
-                for (int z = 0; z < kLeafDim; ++z) {
-                    double& phi = phi_[column(x, y) * kLeafDim + static_cast<std::size_t>(z)];
-                    phi = std::min(phi, field.distance((i + x) * v, (j + y) * v, sampleZ(k0 + z)));
-                }
-    }
+    while (first_direct_ < direct_.size() && direct_[first_direct_].z_max < z_min) ++first_direct_;
+    for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n)
+        if (direct_[n].z_max >= z_min) expandDirect(direct_[n], k0);
+    return clampLeaf(phi_, background);
 }
 
-void LeafColumn::store(int i, int j, int leaf_k, ColumnLeaves& out) const {
-    const double band = lattice_.background();
-    const auto [lowest, highest] = std::minmax_element(phi_.begin(), phi_.end());
-    if (*lowest >= band) return;
-    const openvdb::Coord origin(i, j, leaf_k * kLeafDim);
-    if (*highest <= -band) {
-        out.inside_tiles.push_back(origin);
-        return;
-    }
-    const auto background = static_cast<float>(band * scale_);
-    auto* leaf = new Leaf(origin, background, false);
-    float* values = leaf->buffer().data();
-    auto& active = leaf->getValueMask();
-    for (std::size_t n = 0; n < phi_.size(); ++n) {
-        const auto value = static_cast<float>(phi_[n] * scale_);
-        // After rounding: an active value must lie strictly within the background's magnitude.
-        if (std::abs(value) < background) {
-            values[n] = value;
-            active.setOn(static_cast<openvdb::Index>(n));
-        } else {
-            values[n] = std::copysign(background, value);
-        }
-    }
-    out.leaves.push_back(leaf);
-}
-
-void LeafColumn::build(int i, int j, std::span<const BinEntry> entries, ColumnLeaves& out) {
-    const auto first_direct = std::find_if(
-        entries.begin(), entries.end(), [this](const BinEntry& entry) { return entry.layer >= stack_.layers.size(); });
-    const auto level = entries.first(static_cast<std::size_t>(first_direct - entries.begin()));
-    const auto direct = entries.subspan(level.size());
-    gatherLayers(i, j, level);
-    gatherWelds();
-    countLeaves(entries);
-    for (const LeafRange& range : ranges_)
-        for (int k = range.first; k <= range.second; ++k) {
-            evaluate(i, j, k, direct);
-            store(i, j, k, out);
-        }
+Leaf* LeafColumn::makeLeaf() const {
+    const auto background = static_cast<float>(band_ * scale_);
+    const openvdb::Coord origin(i_, j_, leaf_k_ * kLeafDim);
+    // Partial: the values are written once, below, not twice.
+    auto* leaf = new Leaf(openvdb::PartialCreate(), origin, background, false);
+    leaf->allocate();
+    std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];
+    storeLeaf(phi_, background, leaf->buffer().data(), mask);
+    for (openvdb::Index w = 0; w < Leaf::NodeMaskType::WORD_COUNT; ++w)
+        leaf->getValueMask().getWord<openvdb::Index64>(w) = mask[w];
+    return leaf;
 }
 
 }  // namespace stratum::voxelize

@@ -4,11 +4,11 @@
 #include "gcode/toolpath.h"
 #include "voxelize/lattice.h"
 #include "voxelize/layer_stack.h"
+#include "voxelize/leaf_kernels.h"
 #include "voxelize/plan_bins.h"
 
 #include <openvdb/openvdb.h>
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -18,58 +18,101 @@ namespace stratum::voxelize {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// What one column contributes to the grid. Leaves are owned by whoever takes them over.
-struct ColumnLeaves {
-    std::vector<Leaf*> leaves;                 ///< with at least one active voxel, ascending in z
-    std::vector<openvdb::Coord> inside_tiles;  ///< origins of leaf positions that are deep inside
-};
+/// First and last leaf of a run along z, in leaves from index 0.
+using LeafRange = std::pair<int, int>;
 
-/// Scratch of one thread: builds columns one after the other.
+/// Scratch of one thread: opens columns one after the other and evaluates their leaves from the bottom up. Plan fields
+/// live in a window that moves up with the leaves, so a column costs what meets one leaf, however tall it is.
 class LeafColumn {
 public:
-    /// `scale` turns mm into the grid's world unit. The references must outlive the object.
-    LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale);
+    /// `scale` turns mm into the grid's world unit. The references must outlive the object. With `owners` the nearest
+    /// bead is remembered as well; see owners().
+    LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
+               bool owners = false);
 
-    /// Evaluates the column whose first voxel is (i, j) from the beads that reach it.
-    void build(int i, int j, std::span<const BinEntry> entries, ColumnLeaves& out);
+    /// Takes up the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
+    /// toolpath of `end` or more aren't printed yet.
+    void open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end);
 
-    /// An upper bound on the leaves of a column, from z extents alone.
-    std::size_t countLeaves(std::span<const BinEntry> entries);
+    /// The leaves that the open column's beads from index `begin` on can touch: ascending, apart. Valid until the next
+    /// call.
+    std::span<const LeafRange> touched(std::uint32_t begin = 0);
+
+    /// An upper bound on the leaves of a column, from z extents alone; does not open it.
+    std::size_t countLeaves(std::span<const std::uint32_t> ranks);
+
+    /// Evaluates a leaf of the open column. `leaf_k` must ascend from call to call until the next open().
+    LeafContent evaluate(int leaf_k);
+
+    /// A new leaf with what evaluate() has just found to be surface.
+    Leaf* makeLeaf() const;
+    /// The values of evaluate(), clamped to the background, world units.
+    const LeafPlanes& planes() const { return phi_; }
+
+    /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; the
+    /// earlier bead of equals. Only with `owners`, and only where a bead is within the band.
+    void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
 
 private:
-    static constexpr std::size_t kColumns = std::size_t{kLeafDim} * kLeafDim;
-    static constexpr std::size_t column(int x, int y) {
-        return static_cast<std::size_t>(x) * kLeafDim + static_cast<std::size_t>(y);
-    }
-    // D = min(rho - c) of one layer over the column's 8 x 8 samples, mm; index x * 8 + y, as in a leaf.
-    using PlanField = std::array<double, kColumns>;
+    struct ColumnLayer {
+        std::uint32_t layer;
+        std::uint32_t first, last;  // entries of ranks_
+        bool loaded;
+    };
     struct PlanLayer {
         std::uint32_t layer;
         double centre_z, radius;  // mm
-        PlanField d;
+        PlanField d, sides2;
+        PlanOwners owners;
     };
     struct PlanWeld {
-        double middle_z, half;  // mm
-        PlanField d;            // max of the two layers
+        double interface_low, interface_high;  // mm, the two planes that touch
+        double middle_z, half;                 // mm
+        PlanField d;                           // max of the two layers
     };
-    using LeafRange = std::pair<int, int>;  // first and last leaf along z, in leaves
+    struct DirectBead {
+        double z_min, z_max;  // mm, with the band
+        std::uint32_t rank;
+    };
 
     double sampleZ(int k) const { return lattice_.origin_z + k * lattice_.voxel_size; }
     LeafRange leafRange(double z_min, double z_max) const;
-    void gatherLayers(int i, int j, std::span<const BinEntry> entries);
-    void gatherWelds();
-    void evaluate(int i, int j, int leaf_k, std::span<const BinEntry> direct);
-    void store(int i, int j, int leaf_k, ColumnLeaves& out) const;
+    void mergeRanges();
+    void moveWindow(double z_min, double z_max);
+    void loadLayer(const ColumnLayer& source);
+    void addWelds(const PlanLayer& upper);
+    void expandDirect(const DirectBead& direct, int k0);
 
     const gcode::Toolpath& toolpath_;
     const LayerStack& stack_;
     const Lattice& lattice_;
-    const double scale_;
-    std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by lower layer
-    std::vector<PlanLayer> layers_;
-    std::vector<PlanWeld> welds_;
+    const double scale_, band_;  // world units a mm; mm
+    const bool with_owners_;
+    const ColumnGrid grid_;
+    double thickest_ = 0;                    // mm, the largest radius of a layer
+    std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by upper layer
+
+    // The open column.
+    int i_ = 0, j_ = 0, leaf_k_ = 0;
+    double middle_x_ = 0, middle_y_ = 0;  // mm
+    std::span<const std::uint32_t> ranks_;
+    std::uint32_t end_ = 0;
+    std::vector<ColumnLayer> column_layers_;
+    std::size_t next_layer_ = 0;
+    std::vector<DirectBead> direct_;  // ascending z_min
+    std::size_t first_direct_ = 0;
     std::vector<LeafRange> ranges_;
-    std::array<double, kColumns * kLeafDim> phi_{};  // mm, in leaf order
+
+    // The window. Slots are reused; window_ and weld_window_ list those in use.
+    std::vector<PlanLayer> slots_;
+    std::vector<std::uint32_t> window_, free_;
+    std::vector<PlanWeld> welds_;
+    std::vector<double> radii_;  // distinct, of the window
+    std::vector<LocalLine> lines_;
+    std::vector<LocalArc> arcs_;
+    std::vector<std::uint32_t> line_ids_, arc_ids_;
+    std::vector<PlaneTerm> terms_;
+    LeafPlanes phi_{};
 };
 
 }  // namespace stratum::voxelize

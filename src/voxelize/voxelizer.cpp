@@ -55,6 +55,12 @@ private:
     std::mutex mutex_;
 };
 
+// What one column contributes to the grid. Leaves are owned by whoever takes them over.
+struct ColumnLeaves {
+    std::vector<Leaf*> leaves;
+    std::vector<openvdb::Coord> inside_tiles;  // origins of leaf positions that are deep inside
+};
+
 openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
     auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size * placement.unit);
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
@@ -104,7 +110,15 @@ openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<cons
         LeafColumn& column = scratch.local();
         for (std::size_t c = first; c != last; ++c) {
             if (bins[c].empty()) continue;
-            column.build(bins.originI(c), bins.originJ(c), bins[c], built[c]);
+            column.open(bins.originI(c), bins.originJ(c), bins[c], std::numeric_limits<std::uint32_t>::max());
+            for (const LeafRange& range : column.touched())
+                for (int k = range.first; k <= range.second; ++k) {
+                    const LeafContent content = column.evaluate(k);
+                    if (content == LeafContent::surface) built[c].leaves.push_back(column.makeLeaf());
+                    if (content == LeafContent::inside)
+                        built[c].inside_tiles.push_back(
+                            openvdb::Coord(bins.originI(c), bins.originJ(c), k * kLeafDim));
+                }
             meter.advance(bins[c].size());
         }
     });

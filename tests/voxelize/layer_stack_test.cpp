@@ -10,6 +10,11 @@ namespace {
 using test::addBead;
 using test::allBeads;
 
+std::vector<std::uint32_t> beadsOf(const LayerStack& stack, std::size_t layer) {
+    const auto beads = stack.beadsOf(stack.layers[layer]);
+    return {beads.begin(), beads.end()};
+}
+
 TEST(LayerStack, GroupsByPlaneAndHeight) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 0, 0, 0.2, 9, 0, 0.2, 0.5, 0.2);
@@ -20,12 +25,13 @@ TEST(LayerStack, GroupsByPlaneAndHeight) {
     addBead(toolpath, 0, 4, 0.4, 9, 4, 0.4, 0.15, 0.2);  // round
     const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
     ASSERT_EQ(stack.layers.size(), 3U);
-    EXPECT_EQ(stack.layers[0].beads, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(beadsOf(stack, 0), (std::vector<std::uint32_t>{0, 1}));
     EXPECT_DOUBLE_EQ(stack.layers[0].centre_z, 0.1);
     EXPECT_DOUBLE_EQ(stack.layers[0].radius, 0.1);
-    EXPECT_EQ(stack.layers[1].beads, (std::vector<std::uint32_t>{3}));  // centre 0.2
-    EXPECT_EQ(stack.layers[2].beads, (std::vector<std::uint32_t>{2}));  // centre 0.3
-    EXPECT_EQ(stack.direct, (std::vector<std::uint32_t>{4, 5}));
+    EXPECT_EQ(beadsOf(stack, 1), (std::vector<std::uint32_t>{3}));  // centre 0.2
+    EXPECT_EQ(beadsOf(stack, 2), (std::vector<std::uint32_t>{2}));  // centre 0.3
+    EXPECT_EQ(std::vector(stack.direct().begin(), stack.direct().end()), (std::vector<std::uint32_t>{4, 5}));
+    EXPECT_EQ(stack.layer, (std::vector<std::uint32_t>{0, 0, 1, 2, 3, 3}));
     ASSERT_EQ(stack.welds.size(), 1U);  // 0.2 rests on 0.2; the thick one reaches down to the bed
     EXPECT_EQ(stack.welds[0].lower, 0U);
     EXPECT_EQ(stack.welds[0].upper, 2U);
@@ -41,7 +47,7 @@ TEST(LayerStack, RoundedZAndRelativeMovesStillMakeOneLayerAndWeld) {
     addBead(toolpath, 0, 0, 0.51, 9, 0, 0.51, 0.5, 0.1);      // 9.5 %: a real gap
     const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
     ASSERT_EQ(stack.layers.size(), 3U);
-    EXPECT_EQ(stack.layers[0].beads.size(), 2U);
+    EXPECT_EQ(beadsOf(stack, 0).size(), 2U);
     ASSERT_EQ(stack.welds.size(), 1U);
     EXPECT_EQ(stack.welds[0].upper, 1U);
 }
@@ -53,7 +59,7 @@ TEST(LayerStack, TakesOnlyTheSelection) {
     const std::vector<std::uint32_t> only{1};
     const LayerStack stack = stackLayers(toolpath, only);
     ASSERT_EQ(stack.layers.size(), 1U);
-    EXPECT_EQ(stack.layers[0].beads, only);
+    EXPECT_EQ(beadsOf(stack, 0), only);
     EXPECT_TRUE(stack.welds.empty());
 }
 

@@ -33,12 +33,8 @@ TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
     std::size_t samples = 0;
     for (std::size_t c = 0; c < bins.size(); ++c) {
         std::set<std::uint32_t> present;
-        std::uint32_t layer = 0;
-        for (const BinEntry& entry : bins[c]) {
-            EXPECT_GE(entry.layer, layer);  // ascending, direct beads last
-            layer = entry.layer;
-            present.insert(entry.bead);
-        }
+        EXPECT_TRUE(std::is_sorted(bins[c].begin(), bins[c].end()));  // layer by layer, direct beads last
+        for (const std::uint32_t rank : bins[c]) present.insert(stack.beads[rank]);
         EXPECT_EQ(present.size(), bins[c].size());
         for (std::uint32_t bead = 0; bead < toolpath.beads.size(); ++bead) {
             const BeadField field(toolpath, toolpath.beads[bead]);

@@ -86,7 +86,7 @@ TEST(Voxelizer, EveryVoxelAgreesWithBruteForce) {
             if (expected > 0) {
                 ASSERT_NEAR(value, std::min<double>(expected, background), 2e-5) << *c;
                 ++compared;
-            } else if (expected < -1e-9) {
+            } else if (expected < -2e-7) {  // what floats of this size can tell from 0
                 ASSERT_LT(value, 0) << *c;
                 ASSERT_LE(value, expected + 2e-5) << *c;
             }

@@ -1,0 +1,95 @@
+// The inner loops of the voxelizer, in SIMD: plan fields of a leaf column, and their expansion into a leaf.
+//
+// Through Highway, for the best instruction set of the machine, chosen at run time. Every operation is one that IEEE 754
+// rounds exactly (no fused multiply-add, no estimate), so all instruction sets give the same bytes.
+//
+// A column has 64 samples, x * 8 + y as in a leaf; q is a sample relative to the middle of the column. A leaf is kept as
+// eight planes of 64, plane by plane in z, until it is stored. World units throughout.
+#pragma once
+
+#include "voxelize/local_path.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace stratum::voxelize {
+
+constexpr std::size_t kColumnSamples = 64;
+constexpr std::size_t kLeafPlanes = 8;
+
+/// 64 values of a column.
+struct alignas(64) PlanField {
+    float v[kColumnSamples];
+};
+
+/// 512 values of a leaf, plane by plane.
+struct alignas(64) LeafPlanes {
+    PlanField plane[kLeafPlanes];
+};
+
+/// 64 bead ranks.
+struct alignas(64) PlanOwners {
+    std::uint32_t v[kColumnSamples];
+};
+
+/// Where the samples of a column lie.
+struct ColumnGrid {
+    PlanField qx, qy;
+    /// `voxel` in world units.
+    explicit ColumnGrid(float voxel);
+};
+
+/// d = min(d, rho - half_flat) for each path. `owners`, if not null, gets `ids[n]` where path n is nearer than before.
+void minimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, PlanField& d, const std::uint32_t* ids,
+                    PlanOwners* owners);
+void minimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
+                   PlanOwners* owners);
+
+/// out = max(d, 0)^2; returns the least of it.
+float squaredSides(const PlanField& d, PlanField& out);
+/// out = max(a, b); returns the least of it.
+float maximumOf(const PlanField& a, const PlanField& b, PlanField& out);
+
+/// One layer's part in one plane of a leaf.
+struct PlaneTerm {
+    const PlanField* sides2 = nullptr;
+    float dz2 = 0;  ///< squared height over the layer's centre plane
+};
+/// phi = min(phi, sqrt(min over terms (sides2 + dz2)) - radius): one root a sample for all layers of that radius.
+void expandLayers(std::span<const PlaneTerm> terms, float radius, PlanField& phi);
+
+/// phi = min(phi, max(d, bound)) where that is negative. `bound` must be.
+void expandWeld(const PlanField& d, float bound, PlanField& phi);
+
+/// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its centre line.
+void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+                PlanField& centre_z);
+/// up = (z - centre_z) cosine, lowered by reach below; phi = min(phi, sqrt(sides2 + up^2) - radius).
+struct SlopedTerm {
+    float cosine, reach, radius;
+};
+void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi);
+
+/// A straight round bead in 3-D. Perpendicular distances a = n0 + n.q in the plan, b = b0 + bx qx + by qy + bz z, and
+/// s = ux qx + uy qy + uz z along it with the segment at lo <= s <= hi.
+struct LocalRod {
+    float nx, ny, n0;
+    float bx, by, bz, b0;
+    float ux, uy, uz, lo, hi;
+    float radius;
+};
+void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi);
+
+/// What a finished leaf holds.
+enum class LeafContent : std::uint8_t { outside, inside, surface };
+
+/// Clamps to +-background and says what the leaf holds. Surface: some value is strictly within the background.
+LeafContent clampLeaf(LeafPlanes& phi, float background);
+/// Writes planes in leaf order (z fastest) and the mask of values strictly within the background, 8 words.
+void storeLeaf(const LeafPlanes& phi, float background, float* values, std::uint64_t* mask);
+
+/// Names of the instruction sets that this machine can run, best first; for tests and reports.
+const char* kernelTarget();
+
+}  // namespace stratum::voxelize
