@@ -36,7 +36,7 @@ LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
 }
 
 void LeafColumn::mergeRanges() {
-    std::sort(ranges_.begin(), ranges_.end());
+    if (!std::is_sorted(ranges_.begin(), ranges_.end())) std::sort(ranges_.begin(), ranges_.end());
     std::size_t kept = 0;
     for (const LeafRange& range : ranges_) {
         if (kept > 0 && range.first <= ranges_[kept - 1].second + 1) {

@@ -212,15 +212,27 @@ LeafContent ClampLeaf(LeafPlanes& phi, float background) {
     return LeafContent::surface;
 }
 
+// Packs test(n), a vector mask for values n and up, into 8 words.
+template <typename Test>
+HWY_INLINE void maskOf(const Test& test, std::uint64_t* HWY_RESTRICT mask) {
+    const F f;
+    const std::size_t lanes = hn::Lanes(f);
+    for (std::size_t word = 0; word < kColumnSamples * kLeafPlanes / 64; ++word) {
+        std::uint64_t bits = 0;
+        for (std::size_t n = 0; n < 64; n += lanes) {
+            // Stores whole bytes, and no more than two for 16 lanes.
+            std::uint8_t some[8] = {};
+            hn::StoreMaskBits(f, test(word * 64 + n), some);
+            bits |= static_cast<std::uint64_t>(some[0] | some[1] << 8) << n;
+        }
+        mask[word] = bits;
+    }
+}
+
 void StoreLeaf(const LeafPlanes& phi, float background, float* HWY_RESTRICT values, std::uint64_t* HWY_RESTRICT mask) {
 #if HWY_TARGET == HWY_SCALAR
     for (std::size_t z = 0; z < kLeafPlanes; ++z)
         for (std::size_t c = 0; c < kColumnSamples; ++c) values[c * kLeafPlanes + z] = phi.plane[z].v[c];
-    for (std::size_t word = 0; word < kColumnSamples * kLeafPlanes / 64; ++word) {
-        mask[word] = 0;
-        for (std::size_t n = 0; n < 64; ++n)
-            mask[word] |= std::uint64_t{std::abs(values[word * 64 + n]) < background} << n;
-    }
 #else
     // 4 x 4 blocks: four planes of four samples become four samples of four planes.
     const hn::FixedTag<float, 4> f4;
@@ -240,25 +252,15 @@ void StoreLeaf(const LeafPlanes& phi, float background, float* HWY_RESTRICT valu
             hn::StoreU(hn::InterleaveLower(f4, b, e), f4, out + 2 * kLeafPlanes);
             hn::StoreU(hn::InterleaveUpper(f4, b, e), f4, out + 3 * kLeafPlanes);
         }
+#endif
     const F f;
     const VF high = hn::Set(f, background);
-    std::uint8_t* bits = reinterpret_cast<std::uint8_t*>(mask);
-    const std::size_t lanes = hn::Lanes(f);
-    if (lanes >= 8) {
-        for (std::size_t n = 0; n < kColumnSamples * kLeafPlanes; n += lanes)
-            hn::StoreMaskBits(f, hn::Lt(hn::Abs(hn::LoadU(f, values + n)), high), bits + n / 8);
-    } else {
-        for (std::size_t n = 0; n < kColumnSamples * kLeafPlanes; n += 8) {
-            unsigned byte = 0;
-            for (std::size_t part = 0; part < 8; part += lanes) {
-                std::uint8_t some[8] = {};
-                hn::StoreMaskBits(f, hn::Lt(hn::Abs(hn::LoadU(f, values + n + part)), high), some);
-                byte |= static_cast<unsigned>(some[0]) << part;
-            }
-            bits[n / 8] = static_cast<std::uint8_t>(byte);
-        }
-    }
-#endif
+    maskOf([&](std::size_t n) HWY_ATTR { return hn::Lt(hn::Abs(hn::LoadU(f, values + n)), high); }, mask);
+}
+
+void MaskFrom(const float* HWY_RESTRICT values, float least, std::uint64_t* HWY_RESTRICT mask) {
+    const F f;
+    maskOf([&](std::size_t n) HWY_ATTR { return hn::Ge(hn::LoadU(f, values + n), hn::Set(f, least)); }, mask);
 }
 
 const char* KernelTarget() { return hwy::TargetName(HWY_TARGET); }
@@ -281,6 +283,7 @@ HWY_EXPORT(ExpandSloped);
 HWY_EXPORT(ExpandRod);
 HWY_EXPORT(ClampLeaf);
 HWY_EXPORT(StoreLeaf);
+HWY_EXPORT(MaskFrom);
 HWY_EXPORT(KernelTarget);
 
 ColumnGrid::ColumnGrid(float voxel) {
@@ -320,6 +323,9 @@ void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& 
 LeafContent clampLeaf(LeafPlanes& phi, float background) { return HWY_DYNAMIC_DISPATCH(ClampLeaf)(phi, background); }
 void storeLeaf(const LeafPlanes& phi, float background, float* values, std::uint64_t* mask) {
     HWY_DYNAMIC_DISPATCH(StoreLeaf)(phi, background, values, mask);
+}
+void maskFrom(const float* values, float least, std::uint64_t* mask) {
+    HWY_DYNAMIC_DISPATCH(MaskFrom)(values, least, mask);
 }
 const char* kernelTarget() { return HWY_DYNAMIC_DISPATCH(KernelTarget)(); }
 

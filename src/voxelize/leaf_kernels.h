@@ -89,7 +89,10 @@ LeafContent clampLeaf(LeafPlanes& phi, float background);
 /// Writes planes in leaf order (z fastest) and the mask of values strictly within the background, 8 words.
 void storeLeaf(const LeafPlanes& phi, float background, float* values, std::uint64_t* mask);
 
-/// Names of the instruction sets that this machine can run, best first; for tests and reports.
+/// The 8 words of the mask of values of `least` or more, in leaf order.
+void maskFrom(const float* values, float least, std::uint64_t* mask);
+
+/// The instruction set in use; for tests and reports.
 const char* kernelTarget();
 
 }  // namespace stratum::voxelize

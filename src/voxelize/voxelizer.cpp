@@ -3,17 +3,19 @@
 #include "io/error.h"
 #include "parallel/parallel_for.h"
 #include "voxelize/estimate.h"
+#include "voxelize/exterior.h"
 #include "voxelize/layer_stack.h"
 #include "voxelize/leaf_column.h"
 #include "voxelize/plan_bins.h"
 
 #include <fmt/format.h>
-#include <openvdb/tools/Prune.h>
+#include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <mutex>
@@ -55,12 +57,6 @@ private:
     std::mutex mutex_;
 };
 
-// What one column contributes to the grid. Leaves are owned by whoever takes them over.
-struct ColumnLeaves {
-    std::vector<Leaf*> leaves;
-    std::vector<openvdb::Coord> inside_tiles;  // origins of leaf positions that are deep inside
-};
-
 openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
     auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size * placement.unit);
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
@@ -68,73 +64,173 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
     return transform;
 }
 
-}  // namespace
+// Leaves at most this deep from what the outside reaches are kept when culling: a leaf's edge.
+constexpr int kDeepestBand = 8;
+constexpr std::size_t kColumnGrain = 16;
 
-openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
-                                 const Lattice& lattice, const VoxelizeOptions& options) {
-    const std::size_t limit = options.memory_limit != 0 ? options.memory_limit : availableMemory();
-    // Only what is hopeless is refused here, for the estimate can be off; the exact bound follows from the bins.
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::size_t memoryLimit(const VoxelizeOptions& options) {
+    return options.memory_limit != 0 ? options.memory_limit : availableMemory();
+}
+
+// Refuses what is hopeless by arithmetic alone, before any list is made.
+LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                         const Lattice& lattice, const VoxelizeOptions& options) {
+    const auto limit = static_cast<double>(memoryLimit(options));
     const double estimate =
         estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) * kBytesPerActiveVoxel;
-    if (estimate > 3 * static_cast<double>(limit))
+    // The estimate can be off, and culling leaves most of it out; the exact bound follows from the bins.
+    const double margin = options.interior == Interior::keep ? 3 : 30;
+    if (estimate > margin * limit)
         throw UsageError(fmt::format(
             "voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
             "(half the layer height is {:g} mm), fewer layers or features",
-            lattice.voxel_size, estimate * 1e-9, static_cast<double>(limit) * 1e-9, lattice.layer_height / 2));
-    const LayerStack stack = stackLayers(toolpath, selection);
-    const PlanBins bins(toolpath, stack, lattice, limit / 4);
-    const double scale = options.placement.unit;
+            lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2));
+    return stackLayers(toolpath, selection);
+}
 
-    tbb::enumerable_thread_specific<LeafColumn> scratch([&] { return LeafColumn(toolpath, stack, lattice, scale); });
-    constexpr std::size_t kGrain = 16;  // columns
+}  // namespace
+
+struct Voxelizer::State {
+    State(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& the_lattice,
+          VoxelizeOptions the_options)
+        : lattice(the_lattice),
+          options(std::move(the_options)),
+          stack(stackIfItFits(toolpath, selection, lattice, options)),
+          bins(toolpath, stack, lattice, memoryLimit(options) / 4),
+          scratch([this, &toolpath] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
+          background(static_cast<float>(lattice.background() * options.placement.unit)),
+          grid(openvdb::FloatGrid::create(background)) {
+        grid->setTransform(makeTransform(lattice, options.placement));
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        grid->setName("surface");
+    }
+
+    void refuseIfTooLarge();
+    void buildTouched(std::uint32_t end);
+    void buildReached(std::uint32_t end);
+
+    const Lattice& lattice;
+    const VoxelizeOptions options;
+    const LayerStack stack;
+    const PlanBins bins;
+    tbb::enumerable_thread_specific<LeafColumn> scratch;
+    const float background;
+    openvdb::FloatGrid::Ptr grid;
+    std::uint32_t printed = 0;
+    VoxelizeReport report;
+};
+
+void Voxelizer::State::refuseIfTooLarge() {
     std::atomic<std::size_t> leaf_bound{0};
-    parallelFor(bins.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = scratch.local();
         std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c)
             if (!bins[c].empty()) count += column.countLeaves(bins[c]);
         leaf_bound.fetch_add(count, std::memory_order_relaxed);
     });
+    report.leaf_positions = leaf_bound;
+    // Culling builds a fraction that only the flood can tell, and what it has built so far it can't take back: the
+    // machine's own limit must do.
+    if (options.interior == Interior::cull) return;
     const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
-    if (bytes > static_cast<double>(limit))
+    const auto limit = static_cast<double>(memoryLimit(options));
+    if (bytes > limit)
         throw UsageError(fmt::format(
-            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, "
-            "fewer "
-            "layers or features",
-            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()),
-            static_cast<double>(limit) * 1e-9));
+            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, fewer "
+            "layers or features, or --interior cull",
+            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
+}
 
-    std::vector<ColumnLeaves> built(bins.size());
+void Voxelizer::State::buildTouched(std::uint32_t end) {
+    // Leaves with something active; and, if there was a grid before, positions that are deep inside now.
+    struct Built {
+        std::vector<Leaf*> leaves;
+        std::vector<openvdb::Coord> inside;
+    };
+    std::vector<Built> built(bins.size());
+    std::atomic<std::size_t> evaluated{0};
     ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), options.progress);
-    parallelFor(bins.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = scratch.local();
+        std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c) {
             if (bins[c].empty()) continue;
-            column.open(bins.originI(c), bins.originJ(c), bins[c], std::numeric_limits<std::uint32_t>::max());
-            for (const LeafRange& range : column.touched())
+            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
+            for (const LeafRange& range : column.touched(printed))
                 for (int k = range.first; k <= range.second; ++k) {
+                    ++count;
                     const LeafContent content = column.evaluate(k);
-                    if (content == LeafContent::surface) built[c].leaves.push_back(column.makeLeaf());
-                    if (content == LeafContent::inside)
-                        built[c].inside_tiles.push_back(
-                            openvdb::Coord(bins.originI(c), bins.originJ(c), k * kLeafDim));
+                    if (content == LeafContent::surface)
+                        built[c].leaves.push_back(column.makeLeaf());
+                    else if (content == LeafContent::inside && printed > 0)
+                        built[c].inside.emplace_back(bins.originI(c), bins.originJ(c), k * kLeafDim);
                 }
             meter.advance(bins[c].size());
         }
+        evaluated.fetch_add(count, std::memory_order_relaxed);
     });
-
-    const auto background = static_cast<float>(lattice.background() * scale);
-    auto grid = openvdb::FloatGrid::create(background);
+    std::size_t made = 0;
     auto accessor = grid->getAccessor();
-    for (ColumnLeaves& column : built) {
+    for (const Built& column : built) {
+        made += column.leaves.size();
         for (Leaf* leaf : column.leaves) accessor.addLeaf(leaf);
-        for (const openvdb::Coord& origin : column.inside_tiles) accessor.addTile(1, origin, -background, false);
+        for (const openvdb::Coord& origin : column.inside) accessor.addTile(1, origin, -background, false);
     }
-    openvdb::tools::pruneLevelSet(grid->tree());
-    grid->setTransform(makeTransform(lattice, options.placement));
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    grid->setName("surface");
-    return grid;
+    report.leaves_evaluated = evaluated;
+    report.leaves_reused = grid->tree().leafCount() - made;
+}
+
+void Voxelizer::State::buildReached(std::uint32_t end) {
+    std::vector<std::vector<Leaf*>> leaves;
+    const int band = std::min(static_cast<int>(std::ceil(lattice.half_width)), kDeepestBand);
+    grid->tree().clear();
+    const ExteriorCounts counts = buildReachable(
+        bins, [this]() -> LeafColumn& { return scratch.local(); }, end, background, band, leaves);
+    auto accessor = grid->getAccessor();
+    for (const std::vector<Leaf*>& column : leaves)
+        for (Leaf* leaf : column) accessor.addLeaf(leaf);
+    report.leaf_positions = counts.positions;
+    report.leaves_evaluated = counts.evaluated;
+    report.flood_rounds = counts.rounds;
+    const double threads = counts.flood_seconds + counts.evaluate_seconds;
+    report.exterior_seconds = threads > 0 ? counts.flood_seconds / threads : 0;
+}
+
+Voxelizer::Voxelizer(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
+                     VoxelizeOptions options) {
+    const auto start = Clock::now();
+    state_ = std::make_unique<State>(toolpath, selection, lattice, std::move(options));
+    state_->refuseIfTooLarge();
+    state_->report.bin_seconds = secondsSince(start);
+}
+
+Voxelizer::~Voxelizer() = default;
+
+openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
+    const auto start = Clock::now();
+    if (state_->options.interior == Interior::keep)
+        state_->buildTouched(end);
+    else
+        state_->buildReached(end);
+    state_->printed = end;
+    // Tiles get the sign of the leaves beside them; leaves know theirs.
+    openvdb::tools::signedFloodFill(state_->grid->tree(), true, 1, 1);
+    VoxelizeReport& report = state_->report;
+    report.build_seconds = secondsSince(start);
+    report.exterior_seconds *= report.build_seconds;
+    return state_->grid;
+}
+
+const VoxelizeReport& Voxelizer::report() const { return state_->report; }
+
+openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                                 const Lattice& lattice, const VoxelizeOptions& options) {
+    return Voxelizer(toolpath, selection, lattice, options).printAll();
 }
 
 double enclosedVolume(const openvdb::FloatGrid& grid) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 
 namespace stratum::voxelize {
@@ -19,21 +20,63 @@ struct Placement {
     double offset[3] = {0, 0, 0};  ///< mm
 };
 
+/// What becomes of surfaces that no outside point can reach.
+enum class Interior : std::uint8_t {
+    keep,  ///< all are there: infill, gaps between beads
+    cull,  ///< they are filled, and their leaves never built; from outside not a bit differs
+};
+
 struct VoxelizeOptions {
     Placement placement;
+    Interior interior = Interior::keep;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
     /// Called now and then with the fraction done, 0..1, from any of the working threads, one call at a time.
     std::function<void(double)> progress;
 };
 
-/// Builds the narrow-band level set of the union of the selected beads (indices into toolpath.beads, ascending).
+/// What the last build did, for reports.
+struct VoxelizeReport {
+    std::size_t leaf_positions = 0;  ///< that beads touch
+    std::size_t leaves_evaluated = 0;
+    std::size_t leaves_reused = 0;  ///< unchanged since the partial print before
+    int flood_rounds = 0;
+    double bin_seconds = 0;       ///< wall
+    double exterior_seconds = 0;  ///< wall-time share of finding the exterior, distances not counted
+    double build_seconds = 0;     ///< wall, the exterior included
+};
+
+/// Voxelizes a print, whole or as a series of ever more of it on one lattice. Layers and bins are made once; each step
+/// evaluates the leaves that new beads touch.
 ///
 /// Values outside the solid are signed distances to the union, exact to float rounding; inside they are negative
-/// everywhere (layers are welded) but a bound, not a distance. Active voxels are those within the half-width; inactive
+/// everywhere (layers are welded) but a bound, not a distance. Active voxels are those within the half-width; with
+/// Interior::cull also within the half-width (at most 8 voxels) along each axis of what the outside reaches. Inactive
 /// voxels and tiles hold plus or minus the background. Every voxel's sign is set: a signed flood fill changes nothing.
-/// Parallel through TBB; the result does not depend on the number of threads. Throws UsageError with the estimate if
-/// the grid would not fit.
+/// Parallel through TBB; the result does not depend on the number of threads, nor on the steps before it.
+class Voxelizer {
+public:
+    /// `selection`: indices into toolpath.beads, ascending. `toolpath` and `lattice` must outlive the object. Throws
+    /// UsageError with the estimate if the grid would not fit.
+    Voxelizer(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
+              VoxelizeOptions options = {});
+    ~Voxelizer();
+    Voxelizer(const Voxelizer&) = delete;
+    Voxelizer& operator=(const Voxelizer&) = delete;
+
+    /// Brings the grid to what is printed by the selected beads before index `end` of the toolpath; steps may only
+    /// grow. The grid stays this object's and changes with the next step.
+    openvdb::FloatGrid::Ptr printUntil(std::uint32_t end);
+    openvdb::FloatGrid::Ptr printAll() { return printUntil(0xffffffff); }
+
+    const VoxelizeReport& report() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The whole selection at once.
 openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                                  const Lattice& lattice, const VoxelizeOptions& options = {});
 

@@ -1,0 +1,92 @@
+// What culling saves: a print with all its inner surfaces against the same print as the outside sees it.
+//
+// The peer is OpenVDB's extractEnclosedRegion, which finds the enclosed voids of a grid that has been built whole.
+#include "gcode/input_bytes.h"
+#include "gcode/reader.h"
+#include "voxelize/bead_field.h"
+#include "voxelize/selection.h"
+#include "voxelize/voxelizer.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <openvdb/tools/LevelSetUtil.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <ctime>
+
+namespace {
+
+using namespace stratum;
+using Clock = std::chrono::steady_clock;
+
+double peakGigabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024e-9;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Compares a kept and a culled grid of one print");
+    std::string input;
+    double voxel = 0.1;
+    bool keep = true;
+    std::size_t threads = 2;
+    app.add_option("input", input, "G-code")->required();
+    app.add_option("--voxel-size", voxel, "mm");
+    app.add_flag("!--no-keep", keep, "Cull only: for prints whose whole grid does not fit");
+    app.add_option("--threads", threads, "Of all");
+    CLI11_PARSE(app, argc, argv);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    openvdb::initialize();
+
+    const gcode::InputBytes file(input);
+    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), file.name());
+    const auto beads = voxelize::selectBeads(toolpath, {});
+    voxelize::LatticeRequest request;
+    request.voxel_size = voxel;
+    const auto lattice = voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
+    fmt::print("{}: {} beads, {:.1f} cm3, voxel {:g} mm\n", input, beads.size(), gcode::beadVolume(toolpath) * 1e-3,
+               voxel);
+
+    double active[2] = {};
+    double leaves[2] = {};
+    double seconds[2] = {};
+    for (const int cull : {1, 0}) {
+        if (cull == 0 && !keep) break;
+        voxelize::VoxelizeOptions options;
+        options.interior = cull != 0 ? voxelize::Interior::cull : voxelize::Interior::keep;
+        const auto start = Clock::now();
+        const std::clock_t cpu = std::clock();
+        voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
+        const auto grid = voxelizer.printAll();
+        seconds[cull] = std::chrono::duration<double>(Clock::now() - start).count();
+        const double cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+        active[cull] = static_cast<double>(grid->activeVoxelCount());
+        leaves[cull] = static_cast<double>(grid->tree().leafCount());
+        const auto& report = voxelizer.report();
+        fmt::print(
+            "{}: {:.2f} s (CPU {:.2f}; bins {:.2f}), {:.1f} M active, {:.0f} k leaves of {:.0f} k positions, {} evaluated, {:.2f} GB "
+            "grid, peak {:.2f} GB",
+            cull != 0 ? "cull" : "keep", seconds[cull], cpu_seconds, report.bin_seconds, active[cull] * 1e-6, leaves[cull] * 1e-3,
+            static_cast<double>(report.leaf_positions) * 1e-3, report.leaves_evaluated,
+            static_cast<double>(grid->memUsage()) * 1e-9, peakGigabytes());
+        if (cull != 0)
+            fmt::print(", {} rounds, exterior {:.2f} s ({:.0f} %)", report.flood_rounds, report.exterior_seconds,
+                       100 * report.exterior_seconds / seconds[cull]);
+        fmt::print("\n");
+        if (cull == 0) {
+            const auto begin = Clock::now();
+            const auto enclosed = openvdb::tools::extractEnclosedRegion(*grid);
+            fmt::print("extractEnclosedRegion: {:.2f} s\n",
+                       std::chrono::duration<double>(Clock::now() - begin).count());
+        }
+    }
+    if (keep)
+        fmt::print("keep / cull: {:.2f} x active, {:.2f} x leaves, {:.2f} x time\n", active[0] / active[1],
+                   leaves[0] / leaves[1], seconds[0] / seconds[1]);
+    return 0;
+}

@@ -1,0 +1,377 @@
+#include "voxelize/exterior.h"
+
+#include "parallel/parallel_for.h"
+#include "voxelize/leaf_mask.h"
+
+#include <tbb/concurrent_vector.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace stratum::voxelize {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A leaf position that the flood has reached. Only the thread that works on its column writes; the words of `reached`
+// are read by others meanwhile. They only ever gain bits, and whoever gains a bit queues the neighbours it concerns, so
+// what a reader misses it sees in the next round.
+struct Cell {
+    Leaf* leaf = nullptr;  // null if all outside or all inside
+    LeafMask open;         // samples with phi >= 0
+    std::array<std::atomic<std::uint64_t>, 8> reached{};
+
+    LeafMask load() const {
+        LeafMask mask;
+        for (std::size_t x = 0; x < 8; ++x) mask.word[x] = reached[x].load(std::memory_order_relaxed);
+        return mask;
+    }
+    void store(const LeafMask& mask) {
+        for (std::size_t x = 0; x < 8; ++x) reached[x].store(mask.word[x], std::memory_order_relaxed);
+    }
+};
+
+constexpr std::uint32_t kUnseen = 0xffffffff;
+constexpr std::size_t kColumnGrain = 8;
+
+// Marks of bits on the border of a leaf, by neighbour.
+bool touchesNeighbour(const LeafMask& mask, int dx, int dy, int dz) {
+    std::uint64_t any = 0;
+    for (int x = dx > 0 ? 7 : 0; x <= (dx < 0 ? 0 : 7); ++x) any |= mask.word[static_cast<std::size_t>(x)];
+    if (dy < 0) any &= 0xffu;
+    if (dy > 0) any &= std::uint64_t{0xff} << 56;
+    if (dz < 0) any &= 0x0101010101010101u;
+    if (dz > 0) any &= 0x8080808080808080u;
+    return any != 0;
+}
+
+class Flood {
+public:
+    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, float background)
+        : bins_(bins), columns_(columns), end_(end), background_(background) {}
+
+    ExteriorCounts run(int band, std::vector<std::vector<Leaf*>>& leaves) {
+        listRuns();
+        openAir();
+        while (anyQueued()) {
+            ++counts_.rounds;
+            spread();
+            openAir();
+        }
+        collect(band, leaves);
+        counts_.evaluate_seconds = evaluate_seconds_.load();
+        counts_.flood_seconds = thread_seconds_.load() - counts_.evaluate_seconds;
+        return counts_;
+    }
+
+private:
+    // Runs of leaf positions that beads touch, by column; between, below and above them is air. Air n of a column lies
+    // below its run n, and one more lies above the last.
+    struct Run {
+        int first, last;          // leaves along z
+        std::uint32_t slot;       // of `first`; the others follow
+    };
+
+    std::size_t airCount(std::size_t c) const { return run_offsets_[c + 1] - run_offsets_[c] + 1; }
+    std::size_t firstAir(std::size_t c) const { return run_offsets_[c] + c; }
+    std::span<const Run> runsOf(std::size_t c) const {
+        return {runs_.data() + run_offsets_[c], runs_.data() + run_offsets_[c + 1]};
+    }
+    bool inside(int i, int j) const {
+        return i >= 0 && j >= 0 && i < static_cast<int>(bins_.columnsI()) && j < static_cast<int>(bins_.columnsJ());
+    }
+    std::size_t columnAt(int i, int j) const {
+        return static_cast<std::size_t>(j) * bins_.columnsI() + static_cast<std::size_t>(i);
+    }
+    int columnI(std::size_t c) const { return static_cast<int>(c % bins_.columnsI()); }
+    int columnJ(std::size_t c) const { return static_cast<int>(c / bins_.columnsI()); }
+
+    // Either a slot of column c, or the number of its air that holds leaf k.
+    struct Place {
+        bool slot;
+        std::size_t index;
+    };
+    Place placeOf(std::size_t c, int k) const {
+        const auto runs = runsOf(c);
+        std::size_t n = 0;
+        while (n < runs.size() && runs[n].last < k) ++n;
+        if (n < runs.size() && runs[n].first <= k)
+            return {true, runs[n].slot + static_cast<std::size_t>(k - runs[n].first)};
+        return {false, firstAir(c) + n};
+    }
+
+    void listRuns() {
+        const auto start = Clock::now();
+        std::vector<std::vector<LeafRange>> ranges(bins_.size());
+        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+            LeafColumn& column = columns_();
+            for (std::size_t c = first; c != last; ++c) {
+                if (bins_[c].empty()) continue;
+                column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
+                const auto touched = column.touched();
+                ranges[c].assign(touched.begin(), touched.end());
+            }
+        });
+        run_offsets_.assign(bins_.size() + 1, 0);
+        std::uint32_t slot = 0;
+        for (std::size_t c = 0; c < bins_.size(); ++c) {
+            for (const LeafRange& range : ranges[c]) {
+                runs_.push_back({range.first, range.second, slot});
+                slot += static_cast<std::uint32_t>(range.second - range.first) + 1;
+            }
+            run_offsets_[c + 1] = runs_.size();
+        }
+        counts_.positions = slot;
+        cells_of_ = std::vector<std::atomic<std::uint32_t>>(slot);
+        for (auto& cell : cells_of_) cell.store(kUnseen, std::memory_order_relaxed);
+        queued_ = std::vector<std::atomic<std::uint8_t>>(slot);
+        dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
+        air_ = std::vector<std::atomic<std::uint8_t>>(runs_.size() + bins_.size());
+        // The air outside the rectangle of columns is open, and with it the air below and above every column.
+        for (std::size_t c = 0; c < bins_.size(); ++c) {
+            reachAir(c, 0);
+            reachAir(c, airCount(c) - 1);
+            const int i = columnI(c);
+            const int j = columnJ(c);
+            if (i > 0 && j > 0 && inside(i + 1, j + 1)) continue;
+            for (std::size_t n = 1; n + 1 < airCount(c); ++n) reachAir(c, n);
+            for (const Run& run : runsOf(c))
+                for (int k = run.first; k <= run.last; ++k) queue(c, run.slot + static_cast<std::size_t>(k - run.first));
+        }
+        addThreadSeconds(secondsSince(start));
+    }
+
+    void reachAir(std::size_t c, std::size_t n) {
+        if (air_[firstAir(c) + n].exchange(1, std::memory_order_relaxed) == 0) new_air_.push_back({c, n});
+    }
+
+    void queue(std::size_t c, std::size_t slot) {
+        queued_[slot].store(1, std::memory_order_relaxed);
+        dirty_[c].store(1, std::memory_order_relaxed);
+    }
+
+    bool anyQueued() const {
+        return std::any_of(dirty_.begin(), dirty_.end(),
+                           [](const auto& flag) { return flag.load(std::memory_order_relaxed) != 0; });
+    }
+
+    // Open air spreads to the air beside it and queues the leaves that it touches.
+    void openAir() {
+        const auto start = Clock::now();
+        new_air_.insert(new_air_.end(), found_air_.begin(), found_air_.end());
+        found_air_.clear();
+        while (!new_air_.empty()) {
+            const auto [c, n] = new_air_.back();
+            new_air_.pop_back();
+            const auto runs = runsOf(c);
+            const int low = n > 0 ? runs[n - 1].last + 1 : std::numeric_limits<int>::min() + 1;
+            const int high = n < runs.size() ? runs[n].first - 1 : std::numeric_limits<int>::max() - 1;
+            if (n > 0) queue(c, runs[n - 1].slot + static_cast<std::size_t>(runs[n - 1].last - runs[n - 1].first));
+            if (n < runs.size()) queue(c, runs[n].slot);
+            for (int dx = -1; dx <= 1; ++dx)
+                for (int dy = -1; dy <= 1; ++dy) {
+                    const int i = columnI(c) + dx;
+                    const int j = columnJ(c) + dy;
+                    if ((dx == 0 && dy == 0) || !inside(i, j)) continue;
+                    const std::size_t beside = columnAt(i, j);
+                    const auto other = runsOf(beside);
+                    for (const Run& run : other)
+                        for (int k = std::max(run.first, low - 1); k <= std::min(run.last, high + 1); ++k)
+                            queue(beside, run.slot + static_cast<std::size_t>(k - run.first));
+                    if (dx != 0 && dy != 0) continue;
+                    for (std::size_t m = 0; m <= other.size(); ++m) {
+                        const int from = m > 0 ? other[m - 1].last + 1 : std::numeric_limits<int>::min() + 1;
+                        const int to = m < other.size() ? other[m].first - 1 : std::numeric_limits<int>::max() - 1;
+                        if (std::max(from, low) <= std::min(to, high)) reachAir(beside, m);
+                    }
+                }
+        }
+        addThreadSeconds(secondsSince(start));
+    }
+
+    const LeafMask* reachedAt(int i, int j, int k, LeafMask& storage) const {
+        static const LeafMask kAll = LeafMask::full();
+        if (!inside(i, j)) return &kAll;
+        const Place place = placeOf(columnAt(i, j), k);
+        if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
+        const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
+        if (cell == kUnseen) return nullptr;
+        storage = cells_[cell].load();
+        return storage.empty() ? nullptr : &storage;
+    }
+
+    LeafMask seedsOf(std::size_t c, int k) const {
+        LeafMask storage[7];
+        Neighbourhood around{};
+        constexpr int kOffsets[7][3] = {{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+        for (std::size_t n = 0; n < 7; ++n) {
+            const auto [dx, dy, dz] = kOffsets[n];
+            around[neighbourIndex(dx, dy, dz)] = reachedAt(columnI(c) + dx, columnJ(c) + dy, k + dz, storage[n]);
+        }
+        return besides(around);
+    }
+
+    LeafMask dilated(std::size_t c, int k, int reach) const {
+        LeafMask storage[27];
+        Neighbourhood around{};
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const std::size_t n = neighbourIndex(dx, dy, dz);
+                    around[n] = reachedAt(columnI(c) + dx, columnJ(c) + dy, k + dz, storage[n]);
+                }
+        return dilate(around, reach);
+    }
+
+    Cell& cellAt(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
+        const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
+        if (known != kUnseen) return cells_[known];
+        const auto start = Clock::now();
+        if (!opened) column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
+        opened = true;
+        const auto it = cells_.emplace_back();
+        Cell& cell = *it;
+        switch (column.evaluate(k)) {
+            case LeafContent::outside: cell.open = LeafMask::full(); break;
+            case LeafContent::inside: break;
+            case LeafContent::surface: {
+                cell.leaf = column.makeLeaf();
+                maskFrom(cell.leaf->buffer().data(), background_/3*(float)atof(getenv("TAU")), cell.open.word.data());
+                break;
+            }
+        }
+        cells_of_[slot].store(static_cast<std::uint32_t>(it - cells_.begin()), std::memory_order_release);
+        evaluating += secondsSince(start);
+        return cell;
+    }
+
+    // One round: every queued leaf takes in what its neighbours have reached.
+    void spread() {
+        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+            const auto start = Clock::now();
+            double evaluating = 0;
+            LeafColumn& column = columns_();
+            for (std::size_t c = first; c != last; ++c) {
+                if (dirty_[c].exchange(0, std::memory_order_relaxed) == 0) continue;
+                bool opened = false;
+                for (const Run& run : runsOf(c))
+                    for (int k = run.first; k <= run.last; ++k) {
+                        const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
+                        if (queued_[slot].exchange(0, std::memory_order_relaxed) == 0) continue;
+                        visit(column, opened, c, k, slot, evaluating);
+                    }
+            }
+            addThreadSeconds(secondsSince(start));
+            evaluate_seconds_.fetch_add(evaluating, std::memory_order_relaxed);
+        });
+    }
+
+    void visit(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
+        const LeafMask seeds = seedsOf(c, k);
+        if (seeds.empty()) return;
+        Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
+        const LeafMask before = cell.load();
+        const LeafMask after = floodWithin(cell.open, seeds);
+        if (after == before) return;
+        cell.store(after);
+        LeafMask gained;
+        for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const int i = columnI(c) + dx;
+                    const int j = columnJ(c) + dy;
+                    if (std::abs(dx) + std::abs(dy) + std::abs(dz) != 1 || !inside(i, j) || !touchesNeighbour(gained, dx, dy, dz))
+                        continue;
+                    const std::size_t beside = columnAt(i, j);
+                    const Place place = placeOf(beside, k + dz);
+                    if (place.slot) {
+                        queue(beside, place.index);
+                    } else if (air_[place.index].exchange(1, std::memory_order_relaxed) == 0) {
+                        found_air_.push_back({beside, place.index - firstAir(beside)});
+                    }
+                }
+    }
+
+    // The masks are final: keep what lies within the band of what was reached, and turn the rest inside.
+    void collect(int band, std::vector<std::vector<Leaf*>>& leaves) {
+        std::atomic<std::size_t> kept{0};
+        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+            const auto start = Clock::now();
+            double evaluating = 0;
+            LeafColumn& column = columns_();
+            for (std::size_t c = first; c != last; ++c) {
+                bool opened = false;
+                for (const Run& run : runsOf(c))
+                    for (int k = run.first; k <= run.last; ++k) {
+                        const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
+                        const LeafMask near = dilated(c, k, band);
+                        if (near.empty()) continue;
+                        Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
+                        if (cell.leaf != nullptr && trim(cell, near)) {
+                            leaves[c].push_back(cell.leaf);
+                            cell.leaf = nullptr;
+                        }
+                    }
+                kept.fetch_add(leaves[c].size(), std::memory_order_relaxed);
+            }
+            addThreadSeconds(secondsSince(start));
+            evaluate_seconds_.fetch_add(evaluating, std::memory_order_relaxed);
+        });
+        for (Cell& cell : cells_) delete cell.leaf;
+        counts_.evaluated = cells_.size();
+        counts_.kept = kept;
+    }
+
+    // Turns inside what the outside does not reach. False if nothing active is left.
+    bool trim(Cell& cell, const LeafMask& near) const {
+        const LeafMask reached = cell.load();
+        float* values = cell.leaf->buffer().data();
+        std::uint64_t any = 0;
+        for (openvdb::Index x = 0; x < 8; ++x) {
+            std::uint64_t& active = cell.leaf->getValueMask().getWord<openvdb::Index64>(x);
+            // Outside but not reached, or inside and far from what is.
+            const std::uint64_t drop = (cell.open.word[x] & ~reached.word[x]) | (~cell.open.word[x] & ~near.word[x]);
+            for (std::uint64_t bits = drop; bits != 0; bits &= bits - 1)
+                values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -background_;
+            active &= ~drop;
+            any |= active;
+        }
+        return any != 0;
+    }
+
+    void addThreadSeconds(double seconds) { thread_seconds_.fetch_add(seconds, std::memory_order_relaxed); }
+
+    const PlanBins& bins_;
+    const ColumnSource& columns_;
+    const std::uint32_t end_;
+    const float background_;
+
+    std::vector<std::size_t> run_offsets_;
+    std::vector<Run> runs_;
+    std::vector<std::atomic<std::uint32_t>> cells_of_;  // by slot: index into cells_
+    tbb::concurrent_vector<Cell> cells_;
+    std::vector<std::atomic<std::uint8_t>> queued_, dirty_, air_;  // by slot, by column, by air
+    struct Air {
+        std::size_t column, number;
+    };
+    std::vector<Air> new_air_;
+    tbb::concurrent_vector<Air> found_air_;
+    std::atomic<double> thread_seconds_{0}, evaluate_seconds_{0};
+    ExteriorCounts counts_;
+};
+
+}  // namespace
+
+ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, float background,
+                              int band, std::vector<std::vector<Leaf*>>& leaves) {
+    leaves.assign(bins.size(), {});
+    return Flood(bins, columns, end, background).run(band, leaves);
+}
+
+}  // namespace stratum::voxelize

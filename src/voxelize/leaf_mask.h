@@ -1,0 +1,41 @@
+// 512 bits, one a voxel of a leaf, in OpenVDB's order: word x, bit y * 8 + z.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace stratum::voxelize {
+
+struct LeafMask {
+    std::array<std::uint64_t, 8> word{};
+
+    bool empty() const {
+        std::uint64_t any = 0;
+        for (const std::uint64_t w : word) any |= w;
+        return any == 0;
+    }
+    bool operator==(const LeafMask&) const = default;
+    static LeafMask full() {
+        LeafMask mask;
+        mask.word.fill(~std::uint64_t{0});
+        return mask;
+    }
+};
+
+/// The masks of a leaf and of its 26 neighbours; null stands for an empty one. Index (dx + 1) * 9 + (dy + 1) * 3 + dz + 1.
+using Neighbourhood = std::array<const LeafMask*, 27>;
+constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
+    return static_cast<std::size_t>((dx + 1) * 9 + (dy + 1) * 3 + dz + 1);
+}
+
+/// What of the middle leaf lies within `reach` voxels (1..8, along each axis) of a bit of the neighbourhood.
+LeafMask dilate(const Neighbourhood& around, int reach);
+
+/// What of the middle leaf shares a face with a bit of the neighbourhood, or is such a bit itself.
+LeafMask besides(const Neighbourhood& around);
+
+/// The bits of `open` that `seeds` reach through `open`, from face to face. `seeds` outside `open` are dropped.
+LeafMask floodWithin(const LeafMask& open, const LeafMask& seeds);
+
+}  // namespace stratum::voxelize
