@@ -23,7 +23,10 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 // what a reader misses it sees in the next round.
 struct Cell {
     Leaf* leaf = nullptr;  // null if all outside or all inside
-    LeafMask open;         // samples with phi >= 0
+    LeafMask wide;         // samples that the flood may take
+    LeafMask outside;      // samples with phi >= 0
+    LeafMask settled;      // what was reached, once the flood is over
+    LeafMask shown;        // of those, what is seen from outside: what was reached and a little around it
     std::array<std::atomic<std::uint64_t>, 8> reached{};
 
     LeafMask load() const {
@@ -52,10 +55,10 @@ bool touchesNeighbour(const LeafMask& mask, int dx, int dy, int dz) {
 
 class Flood {
 public:
-    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, float background)
-        : bins_(bins), columns_(columns), end_(end), background_(background) {}
+    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const ExteriorRule& rule)
+        : bins_(bins), columns_(columns), end_(end), rule_(rule) {}
 
-    ExteriorCounts run(int band, std::vector<std::vector<Leaf*>>& leaves) {
+    ExteriorCounts run(std::vector<std::vector<Leaf*>>& leaves) {
         listRuns();
         openAir();
         while (anyQueued()) {
@@ -63,7 +66,8 @@ public:
             spread();
             openAir();
         }
-        collect(band, leaves);
+        lookAround();
+        collect(leaves);
         counts_.evaluate_seconds = evaluate_seconds_.load();
         counts_.flood_seconds = thread_seconds_.load() - counts_.evaluate_seconds;
         return counts_;
@@ -130,6 +134,7 @@ private:
         cells_of_ = std::vector<std::atomic<std::uint32_t>>(slot);
         for (auto& cell : cells_of_) cell.store(kUnseen, std::memory_order_relaxed);
         queued_ = std::vector<std::atomic<std::uint8_t>>(slot);
+        near_ = std::vector<std::atomic<std::uint8_t>>(slot);
         dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
         air_ = std::vector<std::atomic<std::uint8_t>>(runs_.size() + bins_.size());
         // The air outside the rectangle of columns is open, and with it the air below and above every column.
@@ -151,6 +156,7 @@ private:
     }
 
     void queue(std::size_t c, std::size_t slot) {
+        near_[slot].store(1, std::memory_order_relaxed);
         queued_[slot].store(1, std::memory_order_relaxed);
         dirty_[c].store(1, std::memory_order_relaxed);
     }
@@ -216,16 +222,26 @@ private:
         return besides(around);
     }
 
-    LeafMask dilated(std::size_t c, int k, int reach) const {
-        LeafMask storage[27];
+    // What `of` says of the 27 leaves around leaf k of column c.
+    template <typename Of>
+    Neighbourhood neighbourhood(std::size_t c, int k, const Of& of) const {
         Neighbourhood around{};
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy)
-                for (int dz = -1; dz <= 1; ++dz) {
-                    const std::size_t n = neighbourIndex(dx, dy, dz);
-                    around[n] = reachedAt(columnI(c) + dx, columnJ(c) + dy, k + dz, storage[n]);
-                }
-        return dilate(around, reach);
+                for (int dz = -1; dz <= 1; ++dz)
+                    around[neighbourIndex(dx, dy, dz)] = of(columnI(c) + dx, columnJ(c) + dy, k + dz);
+        return around;
+    }
+
+    // A mask of the cell there once the flood is over: all of open air, null where nothing was reached.
+    const LeafMask* settledAt(int i, int j, int k, LeafMask Cell::*mask) const {
+        static const LeafMask kAll = LeafMask::full();
+        if (!inside(i, j)) return &kAll;
+        const Place place = placeOf(columnAt(i, j), k);
+        if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
+        const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_relaxed);
+        if (cell == kUnseen || (cells_[cell].*mask).empty()) return nullptr;
+        return &(cells_[cell].*mask);
     }
 
     Cell& cellAt(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
@@ -237,17 +253,32 @@ private:
         const auto it = cells_.emplace_back();
         Cell& cell = *it;
         switch (column.evaluate(k)) {
-            case LeafContent::outside: cell.open = LeafMask::full(); break;
+            case LeafContent::outside: cell.wide = cell.outside = LeafMask::full(); break;
             case LeafContent::inside: break;
             case LeafContent::surface: {
                 cell.leaf = column.makeLeaf();
-                maskFrom(cell.leaf->buffer().data(), background_/3*(float)atof(getenv("TAU")), cell.open.word.data());
+                maskFrom(cell.leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
+                maskFrom(cell.leaf->buffer().data(), 0, cell.outside.word.data());
                 break;
             }
         }
         cells_of_[slot].store(static_cast<std::uint32_t>(it - cells_.begin()), std::memory_order_release);
         evaluating += secondsSince(start);
         return cell;
+    }
+
+    // The leaves around one that is reached will be looked at when the flood is over.
+    void markNear(std::size_t c, int k) {
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int i = columnI(c) + dx;
+                const int j = columnJ(c) + dy;
+                if (!inside(i, j)) continue;
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const Place place = placeOf(columnAt(i, j), k + dz);
+                    if (place.slot) near_[place.index].store(1, std::memory_order_relaxed);
+                }
+            }
     }
 
     // One round: every queued leaf takes in what its neighbours have reached.
@@ -276,9 +307,10 @@ private:
         if (seeds.empty()) return;
         Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
         const LeafMask before = cell.load();
-        const LeafMask after = floodWithin(cell.open, seeds);
+        const LeafMask after = floodWithin(cell.wide, seeds);
         if (after == before) return;
         cell.store(after);
+        if (before.empty()) markNear(c, k);
         LeafMask gained;
         for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
         for (int dx = -1; dx <= 1; ++dx)
@@ -298,9 +330,9 @@ private:
                 }
     }
 
-    // The masks are final: keep what lies within the band of what was reached, and turn the rest inside.
-    void collect(int band, std::vector<std::vector<Leaf*>>& leaves) {
-        std::atomic<std::size_t> kept{0};
+    // Visits every leaf position beside one that was reached, on all threads.
+    template <typename Body>
+    void forEachNear(const Body& body) {
         parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
             const auto start = Clock::now();
             double evaluating = 0;
@@ -310,35 +342,54 @@ private:
                 for (const Run& run : runsOf(c))
                     for (int k = run.first; k <= run.last; ++k) {
                         const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
-                        const LeafMask near = dilated(c, k, band);
-                        if (near.empty()) continue;
-                        Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
-                        if (cell.leaf != nullptr && trim(cell, near)) {
-                            leaves[c].push_back(cell.leaf);
-                            cell.leaf = nullptr;
-                        }
+                        if (near_[slot].load(std::memory_order_relaxed) != 0)
+                            body(c, k, slot, [&]() -> Cell& {
+                                return cellAt(column, opened, c, k, slot, evaluating);
+                            });
                     }
-                kept.fetch_add(leaves[c].size(), std::memory_order_relaxed);
             }
             addThreadSeconds(secondsSince(start));
             evaluate_seconds_.fetch_add(evaluating, std::memory_order_relaxed);
         });
+    }
+
+    // What the flood left out for being narrow is seen all the same where it is shallow.
+    void lookAround() {
+        // First all leaves that matter, then what is shown of each: a look at a neighbour must find it complete.
+        forEachNear([](std::size_t, int, std::size_t, const auto& cell) { cell(); });
+        for (Cell& cell : cells_) cell.settled = cell.load();
+        forEachNear([this](std::size_t c, int k, std::size_t, const auto& cell) {
+            const auto outside = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::outside); });
+            const auto reached = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::settled); });
+            cell().shown = spreadThrough(outside, reached, rule_.depth);
+        });
+    }
+
+    // Keeps what lies within the band of what is shown, and turns the rest inside.
+    void collect(std::vector<std::vector<Leaf*>>& leaves) {
+        forEachNear([this, &leaves](std::size_t c, int k, std::size_t, const auto& of) {
+            Cell& cell = of();
+            if (cell.leaf == nullptr) return;
+            const auto shown = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::shown); });
+            if (!trim(cell, withinReach(shown, rule_.band))) return;
+            leaves[c].push_back(cell.leaf);
+            cell.leaf = nullptr;
+        });
         for (Cell& cell : cells_) delete cell.leaf;
         counts_.evaluated = cells_.size();
-        counts_.kept = kept;
+        for (const auto& column : leaves) counts_.kept += column.size();
     }
 
     // Turns inside what the outside does not reach. False if nothing active is left.
     bool trim(Cell& cell, const LeafMask& near) const {
-        const LeafMask reached = cell.load();
         float* values = cell.leaf->buffer().data();
         std::uint64_t any = 0;
         for (openvdb::Index x = 0; x < 8; ++x) {
             std::uint64_t& active = cell.leaf->getValueMask().getWord<openvdb::Index64>(x);
-            // Outside but not reached, or inside and far from what is.
-            const std::uint64_t drop = (cell.open.word[x] & ~reached.word[x]) | (~cell.open.word[x] & ~near.word[x]);
+            // Outside but not seen, or inside and far from what is.
+            const std::uint64_t drop = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
             for (std::uint64_t bits = drop; bits != 0; bits &= bits - 1)
-                values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -background_;
+                values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -rule_.background;
             active &= ~drop;
             any |= active;
         }
@@ -350,13 +401,14 @@ private:
     const PlanBins& bins_;
     const ColumnSource& columns_;
     const std::uint32_t end_;
-    const float background_;
+    const ExteriorRule rule_;
 
     std::vector<std::size_t> run_offsets_;
     std::vector<Run> runs_;
     std::vector<std::atomic<std::uint32_t>> cells_of_;  // by slot: index into cells_
     tbb::concurrent_vector<Cell> cells_;
-    std::vector<std::atomic<std::uint8_t>> queued_, dirty_, air_;  // by slot, by column, by air
+    std::vector<std::atomic<std::uint8_t>> queued_, near_;  // by slot
+    std::vector<std::atomic<std::uint8_t>> dirty_, air_;    // by column, by air
     struct Air {
         std::size_t column, number;
     };
@@ -368,10 +420,10 @@ private:
 
 }  // namespace
 
-ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, float background,
-                              int band, std::vector<std::vector<Leaf*>>& leaves) {
+ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves) {
     leaves.assign(bins.size(), {});
-    return Flood(bins, columns, end, background).run(band, leaves);
+    return Flood(bins, columns, end, rule).run(leaves);
 }
 
 }  // namespace stratum::voxelize

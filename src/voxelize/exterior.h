@@ -1,10 +1,12 @@
 // Builds only what the outside can reach.
 //
-// A closed print is mostly inner surfaces: infill, gaps between beads. The flood starts in the open air around the part
-// and evaluates a leaf when it arrives there, so leaves that no outside point reaches never exist. Two outside samples
-// (phi >= 0) of one cell, the cube of eight samples that a ray crosses, count as connected, even over a corner. Where a
-// ray can pass, the trilinear field is not negative somewhere on each cell face it crosses, so one of that face's
-// corners is outside, and it belongs to both cells: no ray gets anywhere that the flood does not.
+// A closed print is mostly inner surfaces: infill, channels between beads. The flood starts in the open air around the
+// part and evaluates a leaf when it arrives there, so leaves that no outside point reaches never exist.
+//
+// Printed parts are not tight: between beads laid side by side runs a channel, 0.27 layer heights wide where the planned
+// spacing is kept, and somewhere it meets the outside. So the flood takes only samples that keep a clearance from the
+// surface (a gap of twice the clearance is the narrowest it passes); what lies around them, up to a depth, is shown
+// whatever its width: grooves, steps, the sides of layers.
 #pragma once
 
 #include "voxelize/leaf_column.h"
@@ -29,11 +31,17 @@ struct ExteriorCounts {
     double evaluate_seconds = 0;  ///< thread time: distances
 };
 
-/// Leaves with at least one active voxel by column, to be owned by the caller. Values where the outside can reach are
-/// those of the whole level set, and so are those inside that lie within `band` voxels (1..8, along each axis) of a
-/// reachable sample; every other voxel is inside. `background` in world units. Parallel; the result does not depend on
-/// the number of threads. `progress` gets leaves evaluated so far.
-ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, float background,
-                              int band, std::vector<std::vector<Leaf*>>& leaves);
+struct ExteriorRule {
+    float background = 0;  ///< world units
+    float clearance = 0;   ///< world units: the flood passes where phi is at least this
+    int depth = 3;         ///< voxels, 1..8: narrow places are shown this far from where the flood came
+    double band = 2;       ///< voxels, 1..8: inside, what is this near to something shown stays active
+};
+
+/// Leaves with at least one active voxel by column, to be owned by the caller. Values that are shown are those of the
+/// whole level set, and so are those inside near them; every other voxel is inside. Parallel; the result does not
+/// depend on the number of threads.
+ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves);
 
 }  // namespace stratum::voxelize

@@ -36,7 +36,10 @@ LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
 }
 
 void LeafColumn::mergeRanges() {
-    if (!std::is_sorted(ranges_.begin(), ranges_.end())) std::sort(ranges_.begin(), ranges_.end());
+    // Those of the layers come first and ascend.
+    const auto rest = std::is_sorted_until(ranges_.begin(), ranges_.end());
+    std::sort(rest, ranges_.end());
+    std::inplace_merge(ranges_.begin(), rest, ranges_.end());
     std::size_t kept = 0;
     for (const LeafRange& range : ranges_) {
         if (kept > 0 && range.first <= ranges_[kept - 1].second + 1) {

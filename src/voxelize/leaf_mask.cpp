@@ -1,6 +1,7 @@
 #include "voxelize/leaf_mask.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace stratum::voxelize {
 namespace {
@@ -9,60 +10,104 @@ namespace {
 constexpr std::uint64_t lowZ(int n) { return 0x0101010101010101u * (0xffu >> n); }
 constexpr std::uint64_t highZ(int n) { return 0x0101010101010101u * ((0xffu << n) & 0xffu); }
 
-// A row of 24 bytes along y, or of 24 bits along z: what of the middle 8 lies within `reach` of a set one.
-std::uint64_t dilateY(std::uint64_t before, std::uint64_t middle, std::uint64_t after, int reach) {
-    std::uint64_t out = middle;
-    for (int n = 1; n <= reach; ++n) {
-        // A shift by 64 is undefined in C++; the neighbours' part then is the whole word.
-        if (n < 8) out |= (middle << (8 * n)) | (middle >> (8 * n));
-        const int rest = 8 * (8 - n);
-        out |= n == 8 ? before | after : (before >> rest) | (after << rest);
+// The middle leaf and a margin of `margin` voxels around it, as rows of bits along z: row (x, y), bit z + margin.
+class Rows {
+public:
+    Rows(const Neighbourhood& around, int margin) : margin_(margin), edge_(8 + 2 * margin) {
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const LeafMask* source = around[neighbourIndex(dx, dy, dz)];
+                    if (source == nullptr) continue;
+                    for (int x = std::max(0, -margin - 8 * dx); x < std::min(8, 8 + margin - 8 * dx); ++x) {
+                        const std::uint64_t word = source->word[static_cast<std::size_t>(x)];
+                        if (word == 0) continue;
+                        for (int y = std::max(0, -margin - 8 * dy); y < std::min(8, 8 + margin - 8 * dy); ++y) {
+                            const auto bits = static_cast<std::uint32_t>(word >> (8 * y)) & 0xffu;
+                            const int shift = 8 * dz + margin;
+                            at(x + 8 * dx, y + 8 * dy) |= (shift >= 0 ? bits << shift : bits >> -shift) & mask();
+                        }
+                    }
+                }
     }
-    return out;
-}
 
-std::uint64_t dilateZ(std::uint64_t before, std::uint64_t middle, std::uint64_t after, int reach) {
-    std::uint64_t out = middle;
-    for (int n = 1; n <= reach; ++n) {
-        if (n < 8) out |= ((middle & lowZ(n)) << n) | ((middle & highZ(n)) >> n);
-        const int rest = 8 - n;
-        out |= n == 8 ? before | after : ((before & highZ(rest)) >> rest) | ((after & lowZ(rest)) << rest);
+    /// -margin <= x, y < 8 + margin
+    std::uint32_t& at(int x, int y) { return row_[index(x, y)]; }
+    std::uint32_t at(int x, int y) const { return row_[index(x, y)]; }
+    std::uint32_t mask() const { return (1u << edge_) - 1; }
+    int margin() const { return margin_; }
+    int edge() const { return edge_; }
+    std::uint32_t* data() { return row_.data(); }
+    const std::uint32_t* data() const { return row_.data(); }
+    static constexpr std::size_t kStride = 8 + 2 * kFarthestReach;
+
+    LeafMask middle() const {
+        LeafMask out;
+        for (int x = 0; x < 8; ++x)
+            for (int y = 0; y < 8; ++y)
+                out.word[static_cast<std::size_t>(x)] |= std::uint64_t{(at(x, y) >> margin_) & 0xffu} << (8 * y);
+        return out;
     }
-    return out;
-}
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(x + margin_) * kStride + static_cast<std::size_t>(y + margin_);
+    }
+    int margin_, edge_;
+    std::array<std::uint32_t, kStride * kStride> row_{};
+};
 
 }  // namespace
 
-LeafMask dilate(const Neighbourhood& around, int reach) {
-    // Axis by axis: x first, for each of the nine columns of leaves along x; then y; then z.
-    LeafMask along_x[3][3];
-    bool any[3][3] = {};
-    for (int dy = 0; dy < 3; ++dy)
-        for (int dz = 0; dz < 3; ++dz)
-            for (int dx = -1; dx <= 1; ++dx) {
-                const LeafMask* source = around[neighbourIndex(dx, dy - 1, dz - 1)];
-                if (source == nullptr) continue;
-                any[dy][dz] = true;
-                LeafMask& out = along_x[dy][dz];
-                // Source word s lies at s + 8 dx.
-                for (int s = 0; s < 8; ++s) {
-                    const std::uint64_t w = source->word[static_cast<std::size_t>(s)];
-                    if (w == 0) continue;
-                    const int at = s + 8 * dx;
-                    for (int x = std::max(0, at - reach); x <= std::min(7, at + reach); ++x)
-                        out.word[static_cast<std::size_t>(x)] |= w;
-                }
+LeafMask withinReach(const Neighbourhood& around, double reach) {
+    const int r = static_cast<int>(reach);
+    // Rows already widened along z, by how far.
+    std::array<Rows, kFarthestReach + 1> wide{Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r),
+                                              Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r)};
+    wide[0] = Rows(around, r);
+    for (int n = 1; n <= r; ++n) {
+        const std::uint32_t* from = wide[static_cast<std::size_t>(n - 1)].data();
+        std::uint32_t* to = wide[static_cast<std::size_t>(n)].data();
+        for (std::size_t row = 0; row < Rows::kStride * Rows::kStride; ++row)
+            to[row] = from[row] | from[row] << 1 | from[row] >> 1;
+    }
+    Rows out({}, r);
+    for (int dx = -r; dx <= r; ++dx)
+        for (int dy = -r; dy <= r; ++dy) {
+            const double rest = reach * reach - dx * dx - dy * dy;
+            if (rest < 0) continue;
+            const Rows& source = wide[static_cast<std::size_t>(std::sqrt(rest))];
+            for (int x = 0; x < 8; ++x)
+                for (int y = 0; y < 8; ++y) out.at(x, y) |= source.at(x + dx, y + dy);
+        }
+    return out.middle();
+}
+
+LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, int steps) {
+    const Rows through(open, steps);
+    Rows reached(seeds, steps);
+    Rows wide({}, steps);
+    const int edge = reached.edge();
+    for (int step = 0; step < steps; ++step) {
+        for (int x = 0; x < edge; ++x) {
+            const std::uint32_t* row = reached.data() + static_cast<std::size_t>(x) * Rows::kStride;
+            std::uint32_t* to = wide.data() + static_cast<std::size_t>(x) * Rows::kStride;
+            for (int y = 0; y < edge; ++y) {
+                const std::uint32_t near = row[y] | (y > 0 ? row[y - 1] : 0) | (y + 1 < edge ? row[y + 1] : 0);
+                to[y] = near | near << 1 | near >> 1;
             }
-    LeafMask along_y[3];
-    for (int dz = 0; dz < 3; ++dz)
-        if (any[0][dz] || any[1][dz] || any[2][dz])
-            for (std::size_t x = 0; x < 8; ++x)
-                along_y[dz].word[x] =
-                    dilateY(along_x[0][dz].word[x], along_x[1][dz].word[x], along_x[2][dz].word[x], reach);
-    LeafMask out;
-    for (std::size_t x = 0; x < 8; ++x)
-        out.word[x] = dilateZ(along_y[0].word[x], along_y[1].word[x], along_y[2].word[x], reach);
-    return out;
+        }
+        for (int x = 0; x < edge; ++x) {
+            const std::size_t row = static_cast<std::size_t>(x) * Rows::kStride;
+            for (std::size_t y = 0; y < static_cast<std::size_t>(edge); ++y) {
+                std::uint32_t near = wide.data()[row + y];
+                if (x > 0) near |= wide.data()[row - Rows::kStride + y];
+                if (x + 1 < edge) near |= wide.data()[row + Rows::kStride + y];
+                reached.data()[row + y] |= near & through.data()[row + y];
+            }
+        }
+    }
+    return reached.middle();
 }
 
 LeafMask besides(const Neighbourhood& around) {
@@ -74,7 +119,9 @@ LeafMask besides(const Neighbourhood& around) {
     for (std::size_t x = 0; x < 8; ++x) {
         const std::uint64_t own = at(0, 0, 0, x);
         out.word[x] = own | (x > 0 ? at(0, 0, 0, x - 1) : at(-1, 0, 0, 7)) | (x < 7 ? at(0, 0, 0, x + 1) : at(1, 0, 0, 0)) |
-                      dilateY(at(0, -1, 0, x), own, at(0, 1, 0, x), 1) | dilateZ(at(0, 0, -1, x), own, at(0, 0, 1, x), 1);
+                      (own << 8) | (own >> 8) | (at(0, -1, 0, x) >> 56) | (at(0, 1, 0, x) << 56) |
+                      ((own & lowZ(1)) << 1) | ((own & highZ(1)) >> 1) | ((at(0, 0, -1, x) & highZ(7)) >> 7) |
+                      ((at(0, 0, 1, x) & lowZ(7)) << 7);
     }
     return out;
 }

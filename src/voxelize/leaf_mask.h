@@ -29,8 +29,15 @@ constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
     return static_cast<std::size_t>((dx + 1) * 9 + (dy + 1) * 3 + dz + 1);
 }
 
-/// What of the middle leaf lies within `reach` voxels (1..8, along each axis) of a bit of the neighbourhood.
-LeafMask dilate(const Neighbourhood& around, int reach);
+/// Farthest that a bit can be seen from in the functions below, voxels.
+constexpr int kFarthestReach = 8;
+
+/// What of the middle leaf lies within `reach` voxels (Euclidean, at most kFarthestReach) of a bit of the neighbourhood.
+LeafMask withinReach(const Neighbourhood& around, double reach);
+
+/// What of the middle leaf the bits of `seeds` reach in at most `steps` (1..kFarthestReach) steps over faces, edges and
+/// corners through `open`. Seeds count as reached, open or not.
+LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, int steps);
 
 /// What of the middle leaf shares a face with a bit of the neighbourhood, or is such a bit itself.
 LeafMask besides(const Neighbourhood& around);

@@ -64,8 +64,9 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
     return transform;
 }
 
-// Leaves at most this deep from what the outside reaches are kept when culling: a leaf's edge.
-constexpr int kDeepestBand = 8;
+// When culling, voxels: the masks look one leaf far.
+constexpr double kDeepestBand = 8;
+constexpr double kChannelRadius = 0.15;  // layer heights
 constexpr std::size_t kColumnGrain = 16;
 
 using Clock = std::chrono::steady_clock;
@@ -125,6 +126,8 @@ struct Voxelizer::State {
 };
 
 void Voxelizer::State::refuseIfTooLarge() {
+    // Culling builds a fraction that only the flood can tell.
+    if (options.interior == Interior::cull) return;
     std::atomic<std::size_t> leaf_bound{0};
     parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = scratch.local();
@@ -134,9 +137,6 @@ void Voxelizer::State::refuseIfTooLarge() {
         leaf_bound.fetch_add(count, std::memory_order_relaxed);
     });
     report.leaf_positions = leaf_bound;
-    // Culling builds a fraction that only the flood can tell, and what it has built so far it can't take back: the
-    // machine's own limit must do.
-    if (options.interior == Interior::cull) return;
     const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
     const auto limit = static_cast<double>(memoryLimit(options));
     if (bytes > limit)
@@ -187,10 +187,17 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
 
 void Voxelizer::State::buildReached(std::uint32_t end) {
     std::vector<std::vector<Leaf*>> leaves;
-    const int band = std::min(static_cast<int>(std::ceil(lattice.half_width)), kDeepestBand);
+    ExteriorRule rule;
+    rule.background = background;
+    // Half a voxel, so that the narrowest gap passed is a voxel wide; but not the channels of planned spacing, however
+    // fine the voxel: with h the layer height their clear radius is h (sqrt((pi / 8)^2 + 1 / 4) - 1 / 2) = 0.136 h.
+    rule.clearance = static_cast<float>(std::max(0.5 * lattice.voxel_size, kChannelRadius * lattice.layer_height) *
+                                        options.placement.unit);
+    // An outside sample next to the surface is up to a voxel from it.
+    rule.band = std::clamp(lattice.half_width - 1, 1.0, kDeepestBand);
     grid->tree().clear();
     const ExteriorCounts counts = buildReachable(
-        bins, [this]() -> LeafColumn& { return scratch.local(); }, end, background, band, leaves);
+        bins, [this]() -> LeafColumn& { return scratch.local(); }, end, rule, leaves);
     auto accessor = grid->getAccessor();
     for (const std::vector<Leaf*>& column : leaves)
         for (Leaf* leaf : column) accessor.addLeaf(leaf);
