@@ -222,26 +222,44 @@ private:
         return besides(around);
     }
 
-    // What `of` says of the 27 leaves around leaf k of column c.
-    template <typename Of>
-    Neighbourhood neighbourhood(std::size_t c, int k, const Of& of) const {
-        Neighbourhood around{};
+    // What is known of a leaf position once the flood is over: open air, a cell, or nothing (both empty).
+    struct Known {
+        bool air = false;
+        const Cell* cell = nullptr;
+    };
+    using Around = std::array<Known, 27>;
+
+    Around around(std::size_t c, int k) const {
+        Around known{};
         for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dz = -1; dz <= 1; ++dz)
-                    around[neighbourIndex(dx, dy, dz)] = of(columnI(c) + dx, columnJ(c) + dy, k + dz);
-        return around;
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int i = columnI(c) + dx;
+                const int j = columnJ(c) + dy;
+                const bool there = inside(i, j);
+                for (int dz = -1; dz <= 1; ++dz) {
+                    Known& out = known[neighbourIndex(dx, dy, dz)];
+                    if (!there) {
+                        out.air = true;
+                        continue;
+                    }
+                    const Place place = placeOf(columnAt(i, j), k + dz);
+                    if (!place.slot) {
+                        out.air = air_[place.index].load(std::memory_order_relaxed) != 0;
+                    } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_relaxed);
+                               cell != kUnseen) {
+                        out.cell = &cells_[cell];
+                    }
+                }
+            }
+        return known;
     }
 
-    // A mask of the cell there once the flood is over: all of open air, null where nothing was reached.
-    const LeafMask* settledAt(int i, int j, int k, LeafMask Cell::*mask) const {
+    static Neighbourhood masksOf(const Around& around, LeafMask Cell::*mask) {
         static const LeafMask kAll = LeafMask::full();
-        if (!inside(i, j)) return &kAll;
-        const Place place = placeOf(columnAt(i, j), k);
-        if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
-        const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_relaxed);
-        if (cell == kUnseen || (cells_[cell].*mask).empty()) return nullptr;
-        return &(cells_[cell].*mask);
+        Neighbourhood out{};
+        for (std::size_t n = 0; n < out.size(); ++n)
+            out[n] = around[n].air ? &kAll : around[n].cell != nullptr ? &(around[n].cell->*mask) : nullptr;
+        return out;
     }
 
     Cell& cellAt(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
@@ -355,23 +373,31 @@ private:
 
     // What the flood left out for being narrow is seen all the same where it is shallow.
     void lookAround() {
-        // First all leaves that matter, then what is shown of each: a look at a neighbour must find it complete.
-        forEachNear([](std::size_t, int, std::size_t, const auto& cell) { cell(); });
         for (Cell& cell : cells_) cell.settled = cell.load();
-        forEachNear([this](std::size_t c, int k, std::size_t, const auto& cell) {
-            const auto outside = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::outside); });
-            const auto reached = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::settled); });
-            cell().shown = spreadThrough(outside, reached, rule_.depth);
+        // First all leaves that matter, then what is shown of each: a look at a neighbour must find it complete.
+        forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen &&
+                anyWithin(masksOf(around(c, k), &Cell::settled), rule_.depth))
+                cell();
+        });
+        forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen) return;
+            const Around known = around(c, k);
+            cell().shown = spreadThrough(masksOf(known, &Cell::outside), masksOf(known, &Cell::settled), rule_.depth);
         });
     }
 
     // Keeps what lies within the band of what is shown, and turns the rest inside.
     void collect(std::vector<std::vector<Leaf*>>& leaves) {
-        forEachNear([this, &leaves](std::size_t c, int k, std::size_t, const auto& of) {
+        forEachNear([this, &leaves](std::size_t c, int k, std::size_t slot, const auto& of) {
+            const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
+            if (known != kUnseen && cells_[known].leaf == nullptr) return;
+            const Neighbourhood shown = masksOf(around(c, k), &Cell::shown);
+            if (known == kUnseen && !anyWithin(shown, static_cast<int>(rule_.band))) return;
+            const LeafMask near = withinReach(shown, rule_.band);
+            if (near.empty()) return;
             Cell& cell = of();
-            if (cell.leaf == nullptr) return;
-            const auto shown = neighbourhood(c, k, [this](int i, int j, int n) { return settledAt(i, j, n, &Cell::shown); });
-            if (!trim(cell, withinReach(shown, rule_.band))) return;
+            if (cell.leaf == nullptr || !trim(cell, near)) return;
             leaves[c].push_back(cell.leaf);
             cell.leaf = nullptr;
         });

@@ -10,104 +10,126 @@ namespace {
 constexpr std::uint64_t lowZ(int n) { return 0x0101010101010101u * (0xffu >> n); }
 constexpr std::uint64_t highZ(int n) { return 0x0101010101010101u * ((0xffu << n) & 0xffu); }
 
-// The middle leaf and a margin of `margin` voxels around it, as rows of bits along z: row (x, y), bit z + margin.
-class Rows {
-public:
-    Rows(const Neighbourhood& around, int margin) : margin_(margin), edge_(8 + 2 * margin) {
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dz = -1; dz <= 1; ++dz) {
-                    const LeafMask* source = around[neighbourIndex(dx, dy, dz)];
-                    if (source == nullptr) continue;
-                    for (int x = std::max(0, -margin - 8 * dx); x < std::min(8, 8 + margin - 8 * dx); ++x) {
-                        const std::uint64_t word = source->word[static_cast<std::size_t>(x)];
-                        if (word == 0) continue;
-                        for (int y = std::max(0, -margin - 8 * dy); y < std::min(8, 8 + margin - 8 * dy); ++y) {
-                            const auto bits = static_cast<std::uint32_t>(word >> (8 * y)) & 0xffu;
-                            const int shift = 8 * dz + margin;
-                            at(x + 8 * dx, y + 8 * dy) |= (shift >= 0 ? bits << shift : bits >> -shift) & mask();
-                        }
-                    }
-                }
-    }
+// The middle leaf and a margin around it, as rows of bits along z: row (x + margin, y + margin), bit z + margin. Only the
+// edge x edge rows in use are ever written or read.
+constexpr std::size_t kRowStride = 8 + 2 * kFarthestReach;
+using Rows = std::uint32_t[kRowStride * kRowStride];
 
-    /// -margin <= x, y < 8 + margin
-    std::uint32_t& at(int x, int y) { return row_[index(x, y)]; }
-    std::uint32_t at(int x, int y) const { return row_[index(x, y)]; }
-    std::uint32_t mask() const { return (1u << edge_) - 1; }
-    int margin() const { return margin_; }
-    int edge() const { return edge_; }
-    std::uint32_t* data() { return row_.data(); }
-    const std::uint32_t* data() const { return row_.data(); }
-    static constexpr std::size_t kStride = 8 + 2 * kFarthestReach;
+void fillRows(const Neighbourhood& around, int margin, Rows& rows) {
+    static constexpr LeafMask kNone{};
+    for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy) {
+            const LeafMask* along_z[3];
+            for (int dz = -1; dz <= 1; ++dz) {
+                const LeafMask* source = around[neighbourIndex(dx, dy, dz)];
+                along_z[dz + 1] = source != nullptr ? source : &kNone;
+            }
+            const int y0 = std::max(0, -margin - 8 * dy);
+            const int y1 = std::min(8, 8 + margin - 8 * dy);
+            for (int x = std::max(0, -margin - 8 * dx); x < std::min(8, 8 + margin - 8 * dx); ++x) {
+                const std::uint64_t below = along_z[0]->word[static_cast<std::size_t>(x)];
+                const std::uint64_t here = along_z[1]->word[static_cast<std::size_t>(x)];
+                const std::uint64_t above = along_z[2]->word[static_cast<std::size_t>(x)];
+                std::uint32_t* row = rows + static_cast<std::size_t>(x + 8 * dx + margin) * kRowStride + 8 * dy + margin;
+                const auto byte = [](std::uint64_t word, int y) {
+                    return static_cast<std::uint32_t>(word >> (8 * y)) & 0xffU;
+                };
+                const std::uint32_t top = (1U << margin) - 1;
+                for (int y = y0; y < y1; ++y)
+                    row[y] = byte(below, y) >> (8 - margin) | byte(here, y) << margin |
+                             (byte(above, y) & top) << (8 + margin);
+            }
+        }
+}
 
-    LeafMask middle() const {
-        LeafMask out;
-        for (int x = 0; x < 8; ++x)
-            for (int y = 0; y < 8; ++y)
-                out.word[static_cast<std::size_t>(x)] |= std::uint64_t{(at(x, y) >> margin_) & 0xffu} << (8 * y);
-        return out;
-    }
-
-private:
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(x + margin_) * kStride + static_cast<std::size_t>(y + margin_);
-    }
-    int margin_, edge_;
-    std::array<std::uint32_t, kStride * kStride> row_{};
-};
+LeafMask middleOf(const Rows& rows, int margin) {
+    LeafMask out;
+    for (std::size_t x = 0; x < 8; ++x)
+        for (std::size_t y = 0; y < 8; ++y) {
+            const std::size_t m = static_cast<std::size_t>(margin);
+            out.word[x] |= std::uint64_t{(rows[(x + m) * kRowStride + y + m] >> margin) & 0xffu} << (8 * y);
+        }
+    return out;
+}
 
 }  // namespace
 
+bool anyWithin(const Neighbourhood& around, int reach) {
+    // Bytes (y) and bits (z) of a word that lie that near, for a neighbour on the low side, here, and on the high side.
+    const int far = 8 - reach;
+    const std::uint64_t along_y[3] = {~std::uint64_t{0} << 8 * far % 64, ~std::uint64_t{0},
+                                      reach == 8 ? ~std::uint64_t{0} : (std::uint64_t{1} << 8 * reach) - 1};
+    const std::uint64_t along_z[3] = {highZ(far), ~std::uint64_t{0}, lowZ(far)};
+    for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dz = -1; dz <= 1; ++dz) {
+                const LeafMask* source = around[neighbourIndex(dx, dy, dz)];
+                if (source == nullptr) continue;
+                std::uint64_t any = 0;
+                for (int x = dx < 0 ? far : 0; x < (dx > 0 ? reach : 8); ++x)
+                    any |= source->word[static_cast<std::size_t>(x)];
+                if ((any & along_y[dy + 1] & along_z[dz + 1]) != 0) return true;
+            }
+    return false;
+}
+
 LeafMask withinReach(const Neighbourhood& around, double reach) {
     const int r = static_cast<int>(reach);
-    // Rows already widened along z, by how far.
-    std::array<Rows, kFarthestReach + 1> wide{Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r),
-                                              Rows({}, r), Rows({}, r), Rows({}, r), Rows({}, r)};
-    wide[0] = Rows(around, r);
-    for (int n = 1; n <= r; ++n) {
-        const std::uint32_t* from = wide[static_cast<std::size_t>(n - 1)].data();
-        std::uint32_t* to = wide[static_cast<std::size_t>(n)].data();
-        for (std::size_t row = 0; row < Rows::kStride * Rows::kStride; ++row)
-            to[row] = from[row] | from[row] << 1 | from[row] >> 1;
-    }
-    Rows out({}, r);
+    const int edge = 8 + 2 * r;
+    // Rows widened along z, by how far; not initialized, for few are used.
+    Rows wide[kFarthestReach + 1];
+    fillRows(around, r, wide[0]);
+    for (int n = 1; n <= r; ++n)
+        for (int x = 0; x < edge; ++x) {
+            const std::size_t row = static_cast<std::size_t>(x) * kRowStride;
+            for (std::size_t y = row; y < row + static_cast<std::size_t>(edge); ++y)
+                wide[n][y] = wide[n - 1][y] | wide[n - 1][y] << 1 | wide[n - 1][y] >> 1;
+        }
+    std::uint32_t near[8][8] = {};
     for (int dx = -r; dx <= r; ++dx)
         for (int dy = -r; dy <= r; ++dy) {
             const double rest = reach * reach - dx * dx - dy * dy;
             if (rest < 0) continue;
-            const Rows& source = wide[static_cast<std::size_t>(std::sqrt(rest))];
+            const std::uint32_t* source = wide[static_cast<int>(std::sqrt(rest))];
             for (int x = 0; x < 8; ++x)
-                for (int y = 0; y < 8; ++y) out.at(x, y) |= source.at(x + dx, y + dy);
+                for (int y = 0; y < 8; ++y)
+                    near[x][y] |= source[static_cast<std::size_t>(x + dx + r) * kRowStride +
+                                         static_cast<std::size_t>(y + dy + r)];
         }
-    return out.middle();
+    LeafMask out;
+    for (std::size_t x = 0; x < 8; ++x)
+        for (std::size_t y = 0; y < 8; ++y) out.word[x] |= std::uint64_t{(near[x][y] >> r) & 0xffu} << (8 * y);
+    return out;
 }
 
 LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, int steps) {
-    const Rows through(open, steps);
-    Rows reached(seeds, steps);
-    Rows wide({}, steps);
-    const int edge = reached.edge();
-    for (int step = 0; step < steps; ++step) {
-        for (int x = 0; x < edge; ++x) {
-            const std::uint32_t* row = reached.data() + static_cast<std::size_t>(x) * Rows::kStride;
-            std::uint32_t* to = wide.data() + static_cast<std::size_t>(x) * Rows::kStride;
-            for (int y = 0; y < edge; ++y) {
-                const std::uint32_t near = row[y] | (y > 0 ? row[y - 1] : 0) | (y + 1 < edge ? row[y + 1] : 0);
+    Rows through;
+    Rows reached;
+    Rows wide;
+    fillRows(open, steps, through);
+    fillRows(seeds, steps, reached);
+    const int edge = 8 + 2 * steps;
+    for (int step = 1; step <= steps; ++step) {
+        // What is farther from the middle than the steps that are left can't get there.
+        const int first = step - 1;
+        const int last = edge - step;
+        for (int x = first; x <= last; ++x) {
+            const std::uint32_t* row = reached + static_cast<std::size_t>(x) * kRowStride;
+            std::uint32_t* to = wide + static_cast<std::size_t>(x) * kRowStride;
+            for (int y = first + 1; y < last; ++y) {
+                const std::uint32_t near = row[y - 1] | row[y] | row[y + 1];
                 to[y] = near | near << 1 | near >> 1;
             }
         }
-        for (int x = 0; x < edge; ++x) {
-            const std::size_t row = static_cast<std::size_t>(x) * Rows::kStride;
-            for (std::size_t y = 0; y < static_cast<std::size_t>(edge); ++y) {
-                std::uint32_t near = wide.data()[row + y];
-                if (x > 0) near |= wide.data()[row - Rows::kStride + y];
-                if (x + 1 < edge) near |= wide.data()[row + Rows::kStride + y];
-                reached.data()[row + y] |= near & through.data()[row + y];
+        for (int x = first + 1; x < last; ++x) {
+            const std::size_t row = static_cast<std::size_t>(x) * kRowStride;
+            for (int y = first + 1; y < last; ++y) {
+                const std::size_t at = row + static_cast<std::size_t>(y);
+                reached[at] |= (wide[at - kRowStride] | wide[at] | wide[at + kRowStride]) & through[at];
             }
         }
     }
-    return reached.middle();
+    return middleOf(reached, steps);
 }
 
 LeafMask besides(const Neighbourhood& around) {

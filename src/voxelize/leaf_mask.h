@@ -32,6 +32,9 @@ constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
 /// Farthest that a bit can be seen from in the functions below, voxels.
 constexpr int kFarthestReach = 8;
 
+/// Whether a bit of the neighbourhood lies within `reach` voxels, along each axis, of the middle leaf, or in it.
+bool anyWithin(const Neighbourhood& around, int reach);
+
 /// What of the middle leaf lies within `reach` voxels (Euclidean, at most kFarthestReach) of a bit of the neighbourhood.
 LeafMask withinReach(const Neighbourhood& around, double reach);
 
