@@ -13,6 +13,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace stratum::gcode {
@@ -38,6 +42,40 @@ void checkOptions(const ReadOptions& options) {
                     name, counts.travels, counts.stationary));
 }
 
+// Cura's Griffin files (Ultimaker 3 and later) count mm of filament, do not say of which, but state its volume. 1.75 mm
+// was assumed while reading; the areas of all beads follow from what is left of it here.
+void takeDiameterFromFooter(const Settings& settings, const Machine& machine, Toolpath& toolpath,
+                            WarningLog& warnings) {
+    constexpr std::array kUsual{2.85, 3.0};  // mm
+    if (machine.filamentKnown() || settings.footer.volume.empty() || !(machine.filamentMm() > 0)) return;
+    const double stated = std::accumulate(settings.footer.volume.begin(), settings.footer.volume.end(), 0.0);
+    const double diameter = std::sqrt(stated / machine.filamentMm() * 4 / std::numbers::pi);
+    for (const double usual : kUsual) {
+        if (!(std::abs(diameter - usual) < 0.02 * usual)) continue;
+        const double ratio = usual / machine.filamentDiameter();
+        for (Bead& bead : toolpath.beads) bead.width *= static_cast<float>(ratio * ratio);
+        toolpath.extruded_mm3 *= ratio * ratio;
+        toolpath.filament_diameter = usual;
+        toolpath.extrusion_rule = fmt::format("mm of filament of {:g} mm (the volume that the file states)", usual);
+        warnings.add(fmt::format("the file states {:.0f} mm^3 for {:.0f} mm of filament: filament of {:g} mm is taken "
+                                 "(--filament-diameter if not)",
+                                 stated, machine.filamentMm(), usual),
+                     1);
+        return;
+    }
+}
+
+// In mm of filament, whatever the file's unit. A single number is the whole print's.
+void takeFooter(const Footer& footer, const Machine& machine, Toolpath& toolpath) {
+    std::vector<double> lengths = footer.length;
+    for (std::size_t tool = 0; tool < footer.volume.size(); ++tool) {
+        const double diameter = machine.filamentKnown() ? machine.filamentDiameter(tool) : toolpath.filament_diameter;
+        lengths.push_back(footer.volume[tool] / (std::numbers::pi / 4 * diameter * diameter));
+    }
+    toolpath.footer_mm = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    if (lengths.size() > 1) toolpath.footer_by_tool = std::move(lengths);
+}
+
 // What a file lost at a block's end leaves no other trace.
 void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_line, WarningLog& warnings) {
     if (program.filament_mm && filament_mm < 0.99 * *program.filament_mm)
@@ -52,7 +90,12 @@ void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
     checkOptions(options);
-    const Program program = openContainer(bytes, name, options.plate);
+    // Unpacking takes about as long as reading what came out of it.
+    constexpr double kUnpackingShare = 0.5;
+    Progress unpacking;
+    if (options.progress) unpacking = [&options](double fraction) { options.progress(kUnpackingShare * fraction); };
+    const Program program = openContainer(bytes, name, options.plate, {}, unpacking);
+    const double before = program.unpacked.size() > 0 ? kUnpackingShare : 0;
     const std::string_view text = program.text;
     refuseOtherFormats(text, name);
     Settings settings = readSettings(text);
@@ -69,24 +112,28 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
         machine.run(line);
         if (options.progress && lexer.offset() - reported >= kProgressBytes) {
             reported = lexer.offset();
-            options.progress(static_cast<double>(reported) / static_cast<double>(text.size()));
+            options.progress(before + (1 - before) * static_cast<double>(reported) / static_cast<double>(text.size()));
         }
     }
-    if (recorder.toolpath().empty()) refuseWithoutBeads(machine.counts(), name);
-    resolveSections(recorder.toolpath(), recorder.runZ(), nominal, warnings);
+    Toolpath& recorded = recorder.toolpath();
+    if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
+    recorded.filament_diameter = machine.filamentDiameter();
+    recorded.filament_mm = machine.filamentMm();
+    recorded.extruded_mm3 = machine.extrudedMm3();
+    recorded.extrusion_rule = machine.extrusionRule();
+    takeDiameterFromFooter(settings, machine, recorded, warnings);
+    takeFooter(settings.footer, machine, recorded);
+    resolveSections(recorded, recorder.runZ(), nominal, warnings);
     warnIfShort(machine.filamentMm(), program, line.number, warnings);
     if (options.progress) options.progress(1);
 
-    Toolpath toolpath = std::move(recorder.toolpath());
+    Toolpath toolpath = std::move(recorded);
     toolpath.warnings = warnings.take();
     toolpath.slicer = settings.slicer;
     toolpath.firmware = firmwareName(machine.firmware());
-    toolpath.filament_diameter = machine.filamentDiameter();
     toolpath.layer_height = nominal.value_or(0);
     for (const Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
     toolpath.format = program.format;
-    toolpath.filament_mm = machine.filamentMm();
-    toolpath.extruded_mm3 = machine.extrudedMm3();
     return toolpath;
 }
 

@@ -9,18 +9,26 @@
 namespace stratum::gcode {
 namespace {
 
+void compare(double measured, double footer, fmt::memory_buffer& out) {
+    fmt::format_to(std::back_inserter(out), "{:.2f} mm of filament", measured);
+    if (footer > 0)
+        fmt::format_to(std::back_inserter(out), "; the file says {:.2f} ({:+.2f} %)", footer,
+                       100 * (measured - footer) / footer);
+    out.push_back('\n');
+}
+
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
+    fmt::format_to(std::back_inserter(out), "E is {}\nall: ", toolpath.extrusion_rule);
+    compare(toolpath.filament_mm, toolpath.footer_mm, out);
+    if (tools == 1) return;
     for (std::size_t tool = 0; tool < tools; ++tool) {
         const double measured = at(toolpath.filament_by_tool, tool);
         const double footer = at(toolpath.footer_by_tool, tool);
         if (!(measured > 0) && !(footer > 0)) continue;
-        fmt::format_to(std::back_inserter(out), "T{}: {:.2f} mm of filament", tool, measured);
-        if (footer > 0)
-            fmt::format_to(std::back_inserter(out), "; the file says {:.2f} ({:+.2f} %)", footer,
-                           100 * (measured - footer) / footer);
-        out.push_back('\n');
+        fmt::format_to(std::back_inserter(out), "T{}: ", tool);
+        compare(measured, footer, out);
     }
 }
 
@@ -57,6 +65,8 @@ std::string summarize(const Toolpath& toolpath) {
                        featureName(static_cast<Feature>(i)), totals[i].beads, totals[i].length / 1000,
                        totals[i].volume);
     }
+    for (std::size_t i = 1; i < toolpath.objects.size(); ++i)
+        fmt::format_to(std::back_inserter(out), "  object {}: {}\n", i, toolpath.objects[i]);
     for (const Warning& warning : toolpath.warnings)
         fmt::format_to(std::back_inserter(out), "warning: line {}: {}{}\n", warning.first_line, warning.text,
                        warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");

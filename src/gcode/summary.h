@@ -19,7 +19,7 @@ struct FeatureTotal {
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 
 /// Slicer, container and firmware rules with their reason; layers, beads, length, volume; filament per tool beside what
-/// the file itself says; features; warnings with count and first line. Ends with a line end.
+/// the file itself says; features; objects; warnings with count and first line. Ends with a line end.
 std::string summarize(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

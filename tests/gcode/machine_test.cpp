@@ -33,7 +33,7 @@ TEST(Machine, AbsoluteByDefault) {
     EXPECT_DOUBLE_EQ(toolpath.filament_mm, 3);
     EXPECT_NEAR(toolpath.extruded_mm3, 3 * kFilamentArea, 1e-12);
     EXPECT_NEAR(volumeOf(toolpath, toolpath.beads[0]), 2 * kFilamentArea, 1e-5);
-    EXPECT_EQ(toolpath.beads[0].line, 2U);
+    EXPECT_EQ(toolpath.lineOf(toolpath.beads[0]), 2U);
     EXPECT_EQ(toolpath.runs[0].speed, 50.0F);
     EXPECT_EQ(toolpath.firmware, "marlin");
     EXPECT_EQ(warningCount(toolpath, "neither M82 nor M83"), 1U);

@@ -75,7 +75,7 @@ TEST(Reader, LineEndsMakeNoDifference) {
         const Toolpath toolpath = readProgram(program + std::string(end));
         ASSERT_EQ(toolpath.beads.size(), expected.beads.size());
         for (std::size_t i = 0; i < expected.beads.size(); ++i)
-            EXPECT_EQ(toolpath.beads[i].line, expected.beads[i].line);
+            EXPECT_EQ(toolpath.lineOf(toolpath.beads[i]), expected.lineOf(expected.beads[i]));
         EXPECT_EQ(toolpath.runs, expected.runs);
     }
 }
@@ -204,7 +204,7 @@ TEST(CorpusFiles, ASpiralHasItsNominalHeight) {
     for (const Bead& bead : toolpath.beads) {
         // Where the wall overhangs, the slicer lays round threads and says their height.
         if (std::abs(bead.z1 - bead.z0) < 1e-6 || toolpath.runOf(bead).feature == Feature::overhang_perimeter) continue;
-        ASSERT_FLOAT_EQ(toolpath.runOf(bead).height, 0.2F) << bead.line;
+        ASSERT_FLOAT_EQ(toolpath.runOf(bead).height, 0.2F) << toolpath.lineOf(bead);
     }
 }
 
