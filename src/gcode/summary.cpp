@@ -9,6 +9,14 @@
 namespace stratum::gcode {
 namespace {
 
+void count(const Toolpath& toolpath, const Bead& bead, FeatureTotal& total) {
+    const double length = beadLength(toolpath, bead);
+    ++total.beads;
+    total.length += length;
+    total.volume +=
+        length * sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
+}
+
 void compare(double measured, double footer, fmt::memory_buffer& out) {
     fmt::format_to(std::back_inserter(out), "{:.2f} mm of filament", measured);
     if (footer > 0)
@@ -36,14 +44,14 @@ void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
 
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath) {
     std::array<FeatureTotal, kFeatureCount> totals{};
-    for (const Bead& bead : toolpath.beads) {
-        const Run& run = toolpath.runOf(bead);
-        FeatureTotal& total = totals[static_cast<std::size_t>(run.feature)];
-        const double length = beadLength(toolpath, bead);
-        ++total.beads;
-        total.length += length;
-        total.volume += length * sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height));
-    }
+    for (const Bead& bead : toolpath.beads)
+        count(toolpath, bead, totals[static_cast<std::size_t>(toolpath.runOf(bead).feature)]);
+    return totals;
+}
+
+std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath) {
+    std::vector<FeatureTotal> totals(toolpath.objects.size());
+    for (const Bead& bead : toolpath.beads) count(toolpath, bead, totals[toolpath.runOf(bead).object]);
     return totals;
 }
 
@@ -65,8 +73,12 @@ std::string summarize(const Toolpath& toolpath) {
                        featureName(static_cast<Feature>(i)), totals[i].beads, totals[i].length / 1000,
                        totals[i].volume);
     }
-    for (std::size_t i = 1; i < toolpath.objects.size(); ++i)
-        fmt::format_to(std::back_inserter(out), "  object {}: {}\n", i, toolpath.objects[i]);
+    if (toolpath.objects.size() > 1) {
+        const auto objects = objectTotals(toolpath);
+        for (std::size_t i = 1; i < objects.size(); ++i)
+            fmt::format_to(std::back_inserter(out), "  object {}, {}: {} beads, {:.2f} mm^3\n", i, toolpath.objects[i],
+                           objects[i].beads, objects[i].volume);
+    }
     for (const Warning& warning : toolpath.warnings)
         fmt::format_to(std::back_inserter(out), "warning: line {}: {}{}\n", warning.first_line, warning.text,
                        warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");

@@ -41,7 +41,7 @@ TEST(Summary, OneNumberOfAFooterIsTheWholePrints) {
 
 TEST(Summary, Objects) {
     const std::string text = summarize(readProgram("M83\nG1 Z.2\n; printing object a.stl\nG1 X9 E4\n"));
-    EXPECT_NE(text.find("  object 1: a.stl\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("  object 1, a.stl: 1 beads, 9.62 mm^3\n"), std::string::npos) << text;
 }
 
 }  // namespace
