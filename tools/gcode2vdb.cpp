@@ -99,9 +99,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::PositiveNumber)
         ->type_name("N")
         ->group(reading);
-    app.add_option("--filament-diameter", o.read.filament_diameter, "Overrides the file's settings")
+    app.add_option("--filament-diameter", o.read.filament_diameters, "By tool; overrides the file's settings")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::Range(0.1, 20.0))
-        ->type_name("MM")
+        ->type_name("MM,...")
         ->group(reading);
     app.add_option("--layer-height", o.read.layer_height, "Where neither tags nor Z moves tell")
         ->check(CLI::Range(0.001, 50.0))

@@ -57,7 +57,7 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
       recorder_(recorder),
       warnings_(warnings),
       firmware_(chooseFirmware(settings, options)),
-      filament_override_(options.filament_diameter),
+      filament_override_(options.filament_diameters),
       volumetric_reason_(settings.volumetric_reason),
       nominal_height_(options.layer_height.value_or(settings.layer_height.value_or(0))),
       // RepRapFirmware starts in G54, Marlin in the machine's own coordinates.
@@ -326,22 +326,21 @@ void Machine::labelObject(const Command& command) {
 }
 
 bool Machine::filamentKnown() const {
-    return volumetric_ || filament_override_ || m200_diameter_ || !settings_.filament_diameters.empty();
+    return volumetric_ || !filament_override_.empty() || m200_diameter_ || !settings_.filament_diameters.empty();
 }
 
 std::string Machine::extrusionRule() const {
     if (settings_.extrusion.drive == ExtrusionScan::Drive::switched) return "nothing: M101 and M103 switch the motor";
     if (volumetric_) return fmt::format("mm^3 ({})", volumetric_reason_);
-    return fmt::format("mm of filament of {:g} mm ({})", filamentDiameter(),
-                       filament_override_                      ? "as asked for"
+    return fmt::format("mm of filament of {:g} mm ({})", filamentDiameter(0),
+                       !filament_override_.empty()             ? "as asked for"
                        : !settings_.filament_diameters.empty() ? "the file's settings"
                        : m200_diameter_                        ? "an earlier M200"
                                                                : "assumed; the file doesn't say");
 }
 
 double Machine::filamentDiameter(std::size_t tool) const {
-    if (filament_override_) return *filament_override_;
-    const auto& list = settings_.filament_diameters;
+    const auto& list = filament_override_.empty() ? settings_.filament_diameters : filament_override_;
     if (!list.empty()) return list[std::min(tool, list.size() - 1)];
     return m200_diameter_.value_or(1.75);
 }

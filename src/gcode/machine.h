@@ -23,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stratum::gcode {
 
@@ -46,7 +47,6 @@ public:
 
     const MoveCounts& counts() const { return counts_; }
     Firmware firmware() const { return firmware_; }
-    double filamentDiameter() const { return filamentDiameter(0); }
     double filamentDiameter(std::size_t tool) const;
     /// False where neither an option, nor the settings, nor M200 told the diameter, and E's volume depends on it.
     bool filamentKnown() const;
@@ -126,7 +126,7 @@ private:
     BeadRecorder& recorder_;
     WarningLog& warnings_;
     Firmware firmware_ = Firmware::marlin;
-    std::optional<double> filament_override_;
+    std::vector<double> filament_override_;
     std::optional<double> m200_diameter_;
     std::string volumetric_reason_;
     double nominal_height_;

@@ -2,6 +2,7 @@
 
 #include "gcode/bead_recorder.h"
 #include "gcode/container.h"
+#include "gcode/filament.h"
 #include "gcode/lexer.h"
 #include "gcode/machine.h"
 #include "gcode/sections.h"
@@ -13,10 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace stratum::gcode {
@@ -26,9 +23,9 @@ constexpr std::size_t kProgressBytes = std::size_t{1} << 20;
 constexpr std::size_t kBytesPerBead = 26;  // the densest real files have 30; memory never touched costs nothing
 
 void checkOptions(const ReadOptions& options) {
-    if (options.filament_diameter && !(*options.filament_diameter >= 0.1 && *options.filament_diameter <= 100))
-        throw UsageError(
-            fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", *options.filament_diameter));
+    for (const double diameter : options.filament_diameters)
+        if (!(diameter >= 0.1 && diameter <= 100))
+            throw UsageError(fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", diameter));
     if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
         throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
 }
@@ -40,40 +37,6 @@ void checkOptions(const ReadOptions& options) {
         fmt::format("{}: no extruding move: {} travel moves, {} primes on the spot, no motion with rising E; is this a "
                     "laser or CNC program, or a tool test?",
                     name, counts.travels, counts.stationary));
-}
-
-// Cura's Griffin files (Ultimaker 3 and later) count mm of filament, do not say of which, but state its volume. 1.75 mm
-// was assumed while reading; the areas of all beads follow from what is left of it here.
-void takeDiameterFromFooter(const Settings& settings, const Machine& machine, Toolpath& toolpath,
-                            WarningLog& warnings) {
-    constexpr std::array kUsual{2.85, 3.0};  // mm
-    if (machine.filamentKnown() || settings.footer.volume.empty() || !(machine.filamentMm() > 0)) return;
-    const double stated = std::accumulate(settings.footer.volume.begin(), settings.footer.volume.end(), 0.0);
-    const double diameter = std::sqrt(stated / machine.filamentMm() * 4 / std::numbers::pi);
-    for (const double usual : kUsual) {
-        if (!(std::abs(diameter - usual) < 0.02 * usual)) continue;
-        const double ratio = usual / machine.filamentDiameter();
-        for (Bead& bead : toolpath.beads) bead.width *= static_cast<float>(ratio * ratio);
-        toolpath.extruded_mm3 *= ratio * ratio;
-        toolpath.filament_diameter = usual;
-        toolpath.extrusion_rule = fmt::format("mm of filament of {:g} mm (the volume that the file states)", usual);
-        warnings.add(fmt::format("the file states {:.0f} mm^3 for {:.0f} mm of filament: filament of {:g} mm is taken "
-                                 "(--filament-diameter if not)",
-                                 stated, machine.filamentMm(), usual),
-                     1);
-        return;
-    }
-}
-
-// In mm of filament, whatever the file's unit. A single number is the whole print's.
-void takeFooter(const Footer& footer, const Machine& machine, Toolpath& toolpath) {
-    std::vector<double> lengths = footer.length;
-    for (std::size_t tool = 0; tool < footer.volume.size(); ++tool) {
-        const double diameter = machine.filamentKnown() ? machine.filamentDiameter(tool) : toolpath.filament_diameter;
-        lengths.push_back(footer.volume[tool] / (std::numbers::pi / 4 * diameter * diameter));
-    }
-    toolpath.footer_mm = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-    if (lengths.size() > 1) toolpath.footer_by_tool = std::move(lengths);
 }
 
 // What a file lost at a block's end leaves no other trace.
@@ -117,13 +80,9 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     }
     Toolpath& recorded = recorder.toolpath();
     if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
-    recorded.filament_diameter = machine.filamentDiameter();
-    recorded.filament_mm = machine.filamentMm();
-    recorded.extruded_mm3 = machine.extrudedMm3();
-    recorded.extrusion_rule = machine.extrusionRule();
-    takeDiameterFromFooter(settings, machine, recorded, warnings);
-    takeFooter(settings.footer, machine, recorded);
+    takeFilament(settings.footer, machine, recorded, warnings);
     resolveSections(recorded, recorder.runZ(), nominal, warnings);
+    warnOfMixedFilaments(machine, recorded, warnings);
     warnIfShort(machine.filamentMm(), program, line.number, warnings);
     if (options.progress) options.progress(1);
 

@@ -162,7 +162,7 @@ TEST(Machine, FilamentDiameter) {
     const std::string program = "M83\nG1 Z.2\nG1 X9 E1\nT1\nG1 X0 E1\n; filament_diameter = 1.75,3\n";
     EXPECT_NEAR(readProgram(program).extruded_mm3, kPi / 4 * (1.75 * 1.75 + 9), 1e-12);
     ReadOptions options;
-    options.filament_diameter = 2;
+    options.filament_diameters = {2};
     EXPECT_NEAR(readProgram(program, options).extruded_mm3, 2 * kPi, 1e-12);
 }
 

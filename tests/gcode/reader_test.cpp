@@ -36,7 +36,7 @@ TEST(Reader, OtherFormatsAreRefused) {
 TEST(Reader, OptionsOutOfRangeAreUsageErrors) {
     ReadOptions options;
     for (const double diameter : {0.0, -1.75, 1e9, std::nan("")}) {
-        options.filament_diameter = diameter;
+        options.filament_diameters = {1.75, diameter};
         EXPECT_THROW(readProgram("G1 X1 E1\n", options), UsageError) << diameter;
     }
     options = {};

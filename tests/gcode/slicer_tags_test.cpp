@@ -62,7 +62,8 @@ TEST(SlicerTags, Heights) {
 
 TEST(SlicerTags, HeightsThatNoLayerHas) {
     const std::string digits(60, '3');
-    for (const std::string& number : {std::string("101"), digits, digits + digits + digits + digits + digits + digits}) {
+    for (const std::string& number :
+         {std::string("101"), digits, digits + digits + digits + digits + digits + digits}) {
         EXPECT_EQ(parseTag("HEIGHT:" + number).kind, Kind::none) << number;
         EXPECT_EQ(parseTag(" tool H" + number).kind, Kind::none) << number;
         EXPECT_EQ(parseTag("; --- layer 0 (" + number + " @ 0.255) ---").height, 0) << number;
