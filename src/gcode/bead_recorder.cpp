@@ -118,6 +118,8 @@ void BeadRecorder::add(const Point& from, const Point& to, const std::optional<A
     bead.width = static_cast<float>(volume / length);
     bead.run = static_cast<std::uint32_t>(toolpath_.runs.size() - 1);
     if (arc) {
+        // Room at once: growing would hold them twice, and pages that are never touched cost nothing.
+        if (toolpath_.arcs.empty()) toolpath_.arcs.reserve(toolpath_.beads.capacity() / 2);
         bead.arc = static_cast<std::int32_t>(toolpath_.arcs.size());
         toolpath_.arcs.push_back(*arc);
         toolpath_.arcs.back().line = line;
