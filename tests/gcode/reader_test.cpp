@@ -1,6 +1,7 @@
 #include "gcode/reader.h"
 
 #include "corpus.h"
+#include "gcode/container_samples.h"
 #include "gcode/program.h"
 #include "io/mapped_file.h"
 
@@ -64,6 +65,23 @@ TEST(Reader, ProgressRisesToOne) {
     EXPECT_GE(fractions.size(), 3U);
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
     EXPECT_EQ(fractions.back(), 1);
+}
+
+TEST(Reader, ProgressWhileUnpacking) {
+    // 40 MB, of which the unpacking reports about every 16.
+    std::string text = "M83\nG1 Z.2\nG1 X1 E1\n";
+    const std::string comment = ";" + std::string(98, '-') + "\n";
+    while (text.size() < std::size_t{40} << 20) text += comment;
+    for (const std::string& file : {sample::gzip(text), sample::ufp(text)}) {
+        std::vector<double> fractions;
+        ReadOptions options;
+        options.progress = [&](double fraction) { fractions.push_back(fraction); };
+        const Toolpath toolpath = readProgram(file, options);
+        EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << toolpath.format;
+        EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0 && f < 0.5; }), 1);
+        EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0.5 && f < 1; }), 10);
+        EXPECT_EQ(fractions.back(), 1);
+    }
 }
 
 TEST(Reader, LineEndsMakeNoDifference) {
