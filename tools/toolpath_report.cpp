@@ -2,19 +2,14 @@
 
 #include "gcode/summary.h"
 
-#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace stratum::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Names come from files, which need not be UTF-8, as JSON must.
-std::string printable(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '?');
-    return text;
-}
 
 Json describeFeatures(const gcode::Toolpath& toolpath) {
     Json features = Json::object();
@@ -39,11 +34,11 @@ Json describeTools(const gcode::Toolpath& toolpath) {
 }
 
 Json describeObjects(const gcode::Toolpath& toolpath) {
-    std::vector<gcode::FeatureTotal> totals = gcode::objectTotals(toolpath);
+    const std::vector<gcode::FeatureTotal> totals = gcode::objectTotals(toolpath);
     Json objects = Json::array();
     for (std::size_t i = 1; i < totals.size(); ++i)
         objects.push_back({{"number", i},
-                           {"name", printable(toolpath.objects[i])},
+                           {"name", toolpath.objects[i]},
                            {"beads", totals[i].beads},
                            {"length_mm", totals[i].length},
                            {"volume_mm3", totals[i].volume}});
@@ -61,8 +56,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
     }
     Json warnings = Json::array();
     for (const gcode::Warning& warning : toolpath.warnings)
-        warnings.push_back(
-            {{"text", printable(warning.text)}, {"first_line", warning.first_line}, {"count", warning.count}});
+        warnings.push_back({{"text", warning.text}, {"first_line", warning.first_line}, {"count", warning.count}});
     Json footer = nullptr;
     if (toolpath.footer_mm > 0) footer = toolpath.footer_mm;
     return {{"beads", toolpath.beads.size()},
@@ -75,8 +69,8 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"volume_mm3", volume},
             {"extruded_mm3", toolpath.extruded_mm3},
             {"firmware", toolpath.firmware},
-            {"firmware_reason", printable(toolpath.firmware_reason)},
-            {"extrusion", printable(toolpath.extrusion_rule)},
+            {"firmware_reason", toolpath.firmware_reason},
+            {"extrusion", toolpath.extrusion_rule},
             {"cut_short", toolpath.cut_short},
             {"features", describeFeatures(toolpath)},
             {"tools", describeTools(toolpath)},
