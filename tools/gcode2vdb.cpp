@@ -1,5 +1,6 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "command_line.h"
+#include "toolpath_report.h"
 
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
@@ -31,6 +32,7 @@ Examples:
   gcode2vdb part.gcode                              part.vdb, voxel size chosen from the layer height
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
+  gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender and Houdini
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
@@ -45,6 +47,7 @@ struct Options {
     bool summary = false;
     voxelize::LatticeRequest lattice;
     std::string layers, features, snapshots;
+    std::vector<std::string> objects;
     std::string unit = "mm", origin = "bed";
     gcode::ReadOptions read;
     voxelize::FileOptions file;
@@ -84,6 +87,10 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--features", o.features, "Only (+NAME,...) or all but (-NAME,...) these features")
         ->type_name("LIST")
         ->group(what);
+    app.add_option("--object", o.objects, "Only this object of the print; may be given again for more")
+        ->allow_extra_args(false)
+        ->type_name("NAME|NUMBER")
+        ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10")
         ->type_name("LIST")
         ->group(what);
@@ -92,9 +99,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::PositiveNumber)
         ->type_name("N")
         ->group(reading);
-    app.add_option("--filament-diameter", o.read.filament_diameter, "Overrides the file's settings")
+    app.add_option("--filament-diameter", o.read.filament_diameters, "By tool; overrides the file's settings")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::Range(0.1, 20.0))
-        ->type_name("MM")
+        ->type_name("MM,...")
         ->group(reading);
     app.add_option("--layer-height", o.read.layer_height, "Where neither tags nor Z moves tell")
         ->check(CLI::Range(0.001, 50.0))
@@ -171,25 +180,6 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath, std
     return jobs;
 }
 
-Json describeToolpath(const gcode::Toolpath& toolpath, const voxelize::Bounds& selected) {
-    double length = 0;
-    for (const gcode::Bead& bead : toolpath.beads) length += gcode::beadLength(toolpath, bead);
-    Json warnings = Json::array();
-    for (const gcode::Warning& warning : toolpath.warnings)
-        warnings.push_back({{"text", warning.text}, {"first_line", warning.first_line}, {"count", warning.count}});
-    return {{"beads", toolpath.beads.size()},
-            {"arcs", toolpath.arcs.size()},
-            {"layers", toolpath.layer_count},
-            {"length_mm", length},
-            {"filament_mm", toolpath.filament_mm},
-            {"filament_diameter_mm", toolpath.filament_diameter},
-            {"volume_mm3", gcode::beadVolume(toolpath)},
-            {"extruded_mm3", toolpath.extruded_mm3},
-            {"firmware", toolpath.firmware},
-            {"selected_bbox_mm", {selected.min, selected.max}},
-            {"warnings", warnings}};
-}
-
 Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     const openvdb::Vec3d low = grid.indexToWorld(box.min());
@@ -235,6 +225,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     voxelize::Selection filter;
     if (!o.layers.empty()) voxelize::parseLayers(o.layers, filter);
     if (!o.features.empty()) voxelize::parseFeatures(o.features, filter);
+    for (const std::string& object : o.objects) voxelize::chooseObject(object, toolpath, filter);
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, filter);
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
@@ -247,9 +238,12 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.source_sha256 = sha256Hex(file.bytes());
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
-    if (!o.layers.empty()) provenance.selection += "layers " + o.layers;
-    if (!o.features.empty())
-        provenance.selection += (provenance.selection.empty() ? "features " : "; features ") + o.features;
+    const auto note = [&provenance](const std::string& what, const std::string& value) {
+        if (!value.empty()) provenance.selection += (provenance.selection.empty() ? "" : "; ") + what + " " + value;
+    };
+    note("layers", o.layers);
+    note("features", o.features);
+    for (const std::string& object : o.objects) note("object", object);
 
     voxelize::VoxelizeOptions options;
     options.placement = placementFor(o, bounds);
@@ -291,6 +285,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     skipped.push_back({{"what", "distances inside the solid"},
                        {"why", "the surface needs only their sign"},
                        {"saved", "a fast-sweeping pass over the grid"}});
+    Json toolpath_report = tools::describeToolpath(toolpath);
+    toolpath_report["selected_bbox_mm"] = {bounds.min, bounds.max};
     const double total_seconds = total.lap();
     tools::say(o.common, fmt::format("  done in {:.2f} s", total_seconds));
     return {{"input",
@@ -299,7 +295,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
               {"sha256", provenance.source_sha256},
               {"slicer", toolpath.slicer},
               {"format", toolpath.format}}},
-            {"toolpath", describeToolpath(toolpath, bounds)},
+            {"toolpath", toolpath_report},
             {"grid", grid_report},
             {"files", files},
             {"skipped", skipped},

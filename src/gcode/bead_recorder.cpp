@@ -117,10 +117,14 @@ void BeadRecorder::add(const Point& from, const Point& to, const std::optional<A
     Bead bead{.x0 = from.x, .y0 = from.y, .z0 = from.z, .x1 = to.x, .y1 = to.y, .z1 = to.z};
     bead.width = static_cast<float>(volume / length);
     bead.run = static_cast<std::uint32_t>(toolpath_.runs.size() - 1);
-    bead.line = line;
     if (arc) {
+        // Room at once: growing would hold them twice, and pages that are never touched cost nothing.
+        if (toolpath_.arcs.empty()) toolpath_.arcs.reserve(toolpath_.beads.capacity() / 2);
         bead.arc = static_cast<std::int32_t>(toolpath_.arcs.size());
         toolpath_.arcs.push_back(*arc);
+        toolpath_.arcs.back().line = line;
+    } else {
+        bead.arc = -static_cast<std::int32_t>(std::min<std::uint32_t>(line, std::numeric_limits<std::int32_t>::max()));
     }
     toolpath_.beads.push_back(bead);
 }

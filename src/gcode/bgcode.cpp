@@ -35,7 +35,8 @@ std::string findLostEnd(std::string_view text) {
 
 bool isBgcode(std::string_view bytes) { return bytes.starts_with("GCDE"); }
 
-Program openBgcode(std::string_view bytes, std::string_view name, const ContainerLimits& limits) {
+Program openBgcode(std::string_view bytes, std::string_view name, const ContainerLimits& limits,
+                   const Progress& progress) {
     const std::size_t most = limits.bytesFrom(bytes.size());
     Program program;
     program.format = "bgcode";
@@ -45,6 +46,7 @@ Program openBgcode(std::string_view bytes, std::string_view name, const Containe
     std::size_t gcode_blocks = 0;
     std::size_t metadata_bytes = 0;
     while (reader.next(block)) {
+        if (progress) progress(static_cast<double>(block.offset) / static_cast<double>(bytes.size()));
         if (block.type == BlockType::thumbnail) continue;
         const bool gcode = block.type == BlockType::gcode;
         const bool packed = gcode && block.encoding != kPlainText;

@@ -19,14 +19,14 @@ std::size_t ContainerLimits::bytesFrom(std::size_t packed) const {
 }
 
 Program openContainer(std::string_view bytes, std::string_view name, std::optional<int> plate,
-                      const ContainerLimits& limits) {
+                      const ContainerLimits& limits, const Progress& progress) {
     Program program;
     if (isGzip(bytes)) {
-        program = openGzip(bytes, name, limits);
+        program = openGzip(bytes, name, limits, progress);
     } else if (isBgcode(bytes)) {
-        program = openBgcode(bytes, name, limits);
+        program = openBgcode(bytes, name, limits, progress);
     } else if (isZip(bytes)) {
-        program = openZip(bytes, name, plate, limits);
+        program = openZip(bytes, name, plate, limits, progress);
     } else if (isGx(bytes)) {
         program = openGx(bytes, name);
     } else {

@@ -13,6 +13,7 @@
 #include "gcode/byte_buffer.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,10 +44,13 @@ struct Program {
     std::string cut_short;              ///< why the program seems to end too early; empty if it doesn't
 };
 
+/// Called now and then with the fraction done, 0..1. May be empty.
+using Progress = std::function<void(double)>;
+
 /// Opens what `bytes` are; they must outlive the result. `plate` chooses one of several programs (3mf only). `name`
 /// stands in messages. Throws InputError for a damaged, truncated or oversized container, naming block or byte, and
 /// UsageError for a plate that isn't there. Text that is no container is handed back as it is: "ascii".
 Program openContainer(std::string_view bytes, std::string_view name, std::optional<int> plate = {},
-                      const ContainerLimits& limits = {});
+                      const ContainerLimits& limits = {}, const Progress& progress = {});
 
 }  // namespace stratum::gcode

@@ -15,6 +15,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+constexpr std::size_t kReport = std::size_t{16} << 20;  // between two reports of progress
 
 // Members may be padded with zeros (tapes do that); anything else behind them is damage, or a member that was one.
 bool onlyZeros(std::string_view bytes) { return bytes.find_first_not_of('\0') == std::string_view::npos; }
@@ -23,7 +24,8 @@ bool onlyZeros(std::string_view bytes) { return bytes.find_first_not_of('\0') ==
 
 bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"sv); }
 
-Program openGzip(std::string_view bytes, std::string_view name, const ContainerLimits& limits) {
+Program openGzip(std::string_view bytes, std::string_view name, const ContainerLimits& limits,
+                 const Progress& progress) {
     const std::size_t most = limits.bytesFrom(bytes.size());
     Program program;
     program.format = "gzip";
@@ -42,9 +44,9 @@ Program openGzip(std::string_view bytes, std::string_view name, const ContainerL
         throw InputError(fmt::format("{}: gzip member {} at byte {}: {}", name, member, stream.next_in - begin, what));
     };
     while (true) {
-        // Fill what is reserved before growing, in chunks that fit zlib's 32-bit counts.
+        // Fill what is reserved before growing.
         const std::size_t before = program.unpacked.size();
-        const std::size_t room = std::clamp(program.unpacked.spare(), kChunk, std::size_t{1} << 30);
+        const std::size_t room = std::clamp(program.unpacked.spare(), kChunk, kReport);
         stream.next_out = reinterpret_cast<Bytef*>(program.unpacked.extend(room));
         stream.avail_out = static_cast<uInt>(room);
         stream.avail_in = static_cast<uInt>(
@@ -54,6 +56,7 @@ Program openGzip(std::string_view bytes, std::string_view name, const ContainerL
         if (program.unpacked.size() > most)
             fail(fmt::format("unpacks to more than {} bytes from {}; this is no G-code (or unpack it with gunzip)",
                              most, bytes.size()));
+        if (progress) progress(static_cast<double>(stream.next_in - begin) / static_cast<double>(bytes.size()));
         if (status == Z_STREAM_END) {
             const std::string_view rest = bytes.substr(static_cast<std::size_t>(stream.next_in - begin));
             if (onlyZeros(rest)) break;

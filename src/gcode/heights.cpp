@@ -176,7 +176,8 @@ std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_
     roundByFeature(toolpath, heights);
 
     std::vector<std::uint32_t> lines(count);
-    for (auto bead = toolpath.beads.rbegin(); bead != toolpath.beads.rend(); ++bead) lines[bead->run] = bead->line;
+    for (auto bead = toolpath.beads.rbegin(); bead != toolpath.beads.rend(); ++bead)
+        lines[bead->run] = toolpath.lineOf(*bead);
     Nominal fallback(nominal, warnings);
     for (std::size_t k = 0; k < count; ++k) {
         const Run& run = toolpath.runs[k];

@@ -57,7 +57,8 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
       recorder_(recorder),
       warnings_(warnings),
       firmware_(chooseFirmware(settings, options)),
-      filament_override_(options.filament_diameter),
+      filament_override_(options.filament_diameters),
+      volumetric_reason_(settings.volumetric_reason),
       nominal_height_(options.layer_height.value_or(settings.layer_height.value_or(0))),
       // RepRapFirmware starts in G54, Marlin in the machine's own coordinates.
       frame_(firmware_ == Firmware::reprap ? 1 : 0),
@@ -70,7 +71,6 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
     Toolpath& toolpath = recorder_.toolpath();
     toolpath.tool_colors = settings.tool_colors;
     toolpath.cut_short = settings.cut_short;
-    toolpath.footer_by_tool = settings.footer_by_tool;
     toolpath.firmware_reason = options.firmware != Firmware::automatic    ? "as asked for"
                                : settings.firmware != Firmware::automatic ? settings.firmware_reason
                                                                           : "the file doesn't say otherwise";
@@ -152,6 +152,10 @@ void Machine::executeG(const Command& command) {
         case 58:
         case 59:
             return frame_.select(workspaceOf(command));
+        case 60:
+            return storePlace(command);
+        case 61:
+            return returnToPlace(command);
         case 90:
             return setAbsolute(command.subcode == 1 ? absolute_ : true);
         case 91:
@@ -193,6 +197,8 @@ void Machine::executeM(const Command& command) {
 void Machine::selectTool(const Command& command) {
     // Numbers from 255 up are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
     if (command.code < 0 || command.code >= 255) return;
+    constexpr int kToolChange = 2;  // the slot that RepRapFirmware fills itself
+    if (firmware_ == Firmware::reprap) stored_.insert_or_assign(kToolChange, Stored{frame_.position(), e_});
     useTool(static_cast<std::size_t>(command.code));
 }
 
@@ -266,12 +272,17 @@ void Machine::setHomeOffset(const Command& command) {
 
 void Machine::setVolumetric(const Command& command) {
     if (command.hasValue('S') && !command.has('D')) volumetric_ = command.value('S') > 0;  // Marlin 2's switch
-    if (!command.hasValue('D')) return;
+    if (!command.hasValue('D')) {
+        if (volumetric_) volumetric_reason_ = fmt::format("M200 in line {}", line_);
+        return;
+    }
     const double diameter = command.value('D') * unit_;
     if (!(diameter >= 0 && diameter <= kMaxFilament))
         refuse(fmt::format("M200 D{} is no filament diameter in mm", command.value('D')));
     volumetric_ = diameter > 0;
-    if (volumetric_) m200_diameter_ = diameter;
+    if (!volumetric_) return;
+    m200_diameter_ = diameter;
+    volumetric_reason_ = fmt::format("M200 in line {}", line_);
 }
 
 void Machine::setSpeedFactor(const Command& command) {
@@ -314,9 +325,22 @@ void Machine::labelObject(const Command& command) {
     if (!text.empty()) recorder_.renameObject(text, line_);
 }
 
+bool Machine::filamentKnown() const {
+    return volumetric_ || !filament_override_.empty() || m200_diameter_ || !settings_.filament_diameters.empty();
+}
+
+std::string Machine::extrusionRule() const {
+    if (settings_.extrusion.drive == ExtrusionScan::Drive::switched) return "nothing: M101 and M103 switch the motor";
+    if (volumetric_) return fmt::format("mm^3 ({})", volumetric_reason_);
+    return fmt::format("mm of filament of {:g} mm ({})", filamentDiameter(0),
+                       !filament_override_.empty()             ? "as asked for"
+                       : !settings_.filament_diameters.empty() ? "the file's settings"
+                       : m200_diameter_                        ? "an earlier M200"
+                                                               : "assumed; the file doesn't say");
+}
+
 double Machine::filamentDiameter(std::size_t tool) const {
-    if (filament_override_) return *filament_override_;
-    const auto& list = settings_.filament_diameters;
+    const auto& list = filament_override_.empty() ? settings_.filament_diameters : filament_override_;
     if (!list.empty()) return list[std::min(tool, list.size() - 1)];
     return m200_diameter_.value_or(1.75);
 }

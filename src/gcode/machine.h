@@ -3,8 +3,9 @@
 // Lengths are mm, E is mm of filament or mm^3, feed rates mm/s. Where nothing has been said the machine stands at 0.
 // Its methods live in machine.cpp (what commands set), machine_motion.cpp (moves and what they deposit) and
 // machine_macro.cpp (Klipper's named commands).
-// Sources: marlinfw.org/docs/gcode (G0-G5, G10, G17-G20, G28, G53-G59, G90, G92, M82, M200, M206, M218, M220, M221,
-// M486); docs.duet3d.com (G10, G53, G92, M221, M486) and klipper3d.org/G-Codes.html (G90/G91 leave E alone there).
+// Sources: marlinfw.org/docs/gcode (G0-G5, G10, G17-G20, G28, G53-G61, G90, G92, M82, M200, M206, M218, M220, M221,
+// M486); docs.duet3d.com (G1 R, G10, G53, G60, G92, M221, M486) and klipper3d.org/G-Codes.html (G90/G91 leave E alone
+// there).
 #pragma once
 
 #include "gcode/arc.h"
@@ -22,6 +23,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stratum::gcode {
 
@@ -45,7 +47,11 @@ public:
 
     const MoveCounts& counts() const { return counts_; }
     Firmware firmware() const { return firmware_; }
-    double filamentDiameter() const { return filamentDiameter(0); }
+    double filamentDiameter(std::size_t tool) const;
+    /// False where neither an option, nor the settings, nor M200 told the diameter, and E's volume depends on it.
+    bool filamentKnown() const;
+    /// In words: what E counted at the end, and who said so.
+    std::string extrusionRule() const;
     double filamentMm() const { return filament_mm_; }
     double extrudedMm3() const { return extruded_mm3_; }
 
@@ -60,6 +66,12 @@ private:
         bool e_absolute = true;
     };
 
+    // What G60 keeps.
+    struct Stored {
+        Point place;
+        double e = 0;
+    };
+
     void execute(const Command& command);
     void executeG(const Command& command);
     void executeM(const Command& command);
@@ -67,6 +79,8 @@ private:
     void selectTool(const Command& command);
     void useTool(std::size_t tool);
     void setOffsets(const Command& command);
+    void storePlace(const Command& command);
+    void returnToPlace(const Command& command);
     void setPosition(const Command& command);
     void setAbsolute(bool absolute);
     void setHomeOffset(const Command& command);
@@ -93,13 +107,16 @@ private:
     double switchedExtrusion(double length);
 
     double takeAxis(const Command& command, char letter, std::size_t axis) const;
+    /// The stored place that RepRapFirmware's R word names, or nullptr.
+    const Point* restorePoint(const Command& command, int motion);
+    /// A stored place on the axes that are named, each moved by its number.
+    Point placeFrom(const Point& stored, const Command& command) const;
     double takeExtrusion(const Command& command);
     char drivingLetter(const Command& command);
     void assumeExtruderMode();
     /// The part of a push or pull of E that isn't spent on fetching unloaded filament back to the nozzle.
     double leavesNozzle(double drive, bool in_place);
     double eUnit() const { return volumetric_ ? unit_ * unit_ * unit_ : unit_; }
-    double filamentDiameter(std::size_t tool) const;
     double filamentArea() const;
     [[noreturn]] void refuse(std::string_view what) const;
     void warn(std::string_view text) { warnings_.add(text, line_); }
@@ -109,8 +126,9 @@ private:
     BeadRecorder& recorder_;
     WarningLog& warnings_;
     Firmware firmware_ = Firmware::marlin;
-    std::optional<double> filament_override_;
+    std::vector<double> filament_override_;
     std::optional<double> m200_diameter_;
+    std::string volumetric_reason_;
     double nominal_height_;
 
     std::uint32_t line_ = 0;
@@ -133,6 +151,7 @@ private:
     std::array<double, 256> drawn_back_{};  // mm of filament, by tool
     std::array<bool, 256> unloaded_{};
     std::map<std::string, Saved, std::less<>> saved_;
+    std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
 
     MoveCounts counts_;

@@ -23,6 +23,11 @@ constexpr double kSwitchedAspect = 1.6;   // their usual width over height (Skei
 // Not std::hypot, which guards against overflow that kMaxCoordinate excludes, and costs a quarter of the reading time.
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
 
+// The number of a stored place; 0 where none is given, 255 for what is none.
+int slotOf(const Command& command, char letter) {
+    return command.hasValue(letter) ? static_cast<int>(std::clamp(command.value(letter), 0.0, 255.0)) : 0;
+}
+
 double distance(const Point& a, const Point& b) { return norm(norm(b.x - a.x, b.y - a.y), b.z - a.z); }
 
 }  // namespace
@@ -89,7 +94,8 @@ void Machine::move(const Command& command, int motion) {
         recorder_.setSpeed(feed_ * speed_factor_);
     }
     const Point& at = frame_.position();
-    const Point target{takeAxis(command, 'X', 0), takeAxis(command, 'Y', 1), takeAxis(command, 'Z', 2)};
+    Point target{takeAxis(command, 'X', 0), takeAxis(command, 'Y', 1), takeAxis(command, 'Z', 2)};
+    if (const Point* stored = restorePoint(command, motion)) target = placeFrom(*stored, command);
     const double drive = takeExtrusion(command);
     const bool in_place = target.x == at.x && target.y == at.y && motion < 2;
     double extrusion = drive != 0 ? leavesNozzle(drive, in_place) : 0;
@@ -105,6 +111,48 @@ void Machine::move(const Command& command, int motion) {
         ++counts_.travels;
     }
     frame_.moveTo(target);
+}
+
+Point Machine::placeFrom(const Point& stored, const Command& command) const {
+    constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
+    Point target = frame_.position();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (command.has(kAxes[axis])) target[axis] = stored[axis] + placeOf(command, kAxes[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(std::abs(target[axis]) <= kMaxCoordinate))
+            refuse(fmt::format("{} = {} is no place on a printer (limit {} mm); is the file damaged?", kAxes[axis],
+                               target[axis], kMaxCoordinate));
+    return target;
+}
+
+const Point* Machine::restorePoint(const Command& command, int motion) {
+    if (firmware_ != Firmware::reprap || motion > 1 || !command.hasValue('R')) return nullptr;
+    const auto found = stored_.find(slotOf(command, 'R'));
+    if (found != stored_.end()) return &found->second.place;
+    warn("R names a place that was never stored; it is ignored");
+    return nullptr;
+}
+
+void Machine::storePlace(const Command& command) {
+    if (command.has('Q')) return returnToPlace(command);
+    if (!command.has('D')) {
+        stored_.insert_or_assign(slotOf(command, 'S'), Stored{frame_.position(), e_});
+    } else if (command.hasValue('D')) {
+        stored_.erase(slotOf(command, 'D'));
+    } else {
+        stored_.clear();
+    }
+}
+
+void Machine::returnToPlace(const Command& command) {
+    const auto found = stored_.find(slotOf(command, command.has('Q') ? 'Q' : 'S'));
+    if (found == stored_.end()) return warn("G61 to a place that was never stored; ignored");
+    const Stored& stored = found->second;
+    if (command.has('E')) e_ = stored.e;
+    ++counts_.travels;
+    const bool all = !command.has('X') && !command.has('Y') && !command.has('Z');
+    if (all && command.has('E')) return;
+    frame_.moveTo(all ? stored.place : placeFrom(stored.place, command));
 }
 
 void Machine::runPath(const Point& target, const std::optional<Arc>& arc, double extrusion) {

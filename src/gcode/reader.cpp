@@ -2,6 +2,7 @@
 
 #include "gcode/bead_recorder.h"
 #include "gcode/container.h"
+#include "gcode/filament.h"
 #include "gcode/lexer.h"
 #include "gcode/machine.h"
 #include "gcode/sections.h"
@@ -22,9 +23,9 @@ constexpr std::size_t kProgressBytes = std::size_t{1} << 20;
 constexpr std::size_t kBytesPerBead = 26;  // the densest real files have 30; memory never touched costs nothing
 
 void checkOptions(const ReadOptions& options) {
-    if (options.filament_diameter && !(*options.filament_diameter >= 0.1 && *options.filament_diameter <= 100))
-        throw UsageError(
-            fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", *options.filament_diameter));
+    for (const double diameter : options.filament_diameters)
+        if (!(diameter >= 0.1 && diameter <= 100))
+            throw UsageError(fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", diameter));
     if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
         throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
 }
@@ -52,7 +53,12 @@ void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
     checkOptions(options);
-    const Program program = openContainer(bytes, name, options.plate);
+    // Unpacking takes about as long as reading what came out of it.
+    constexpr double kUnpackingShare = 0.5;
+    Progress unpacking;
+    if (options.progress) unpacking = [&options](double fraction) { options.progress(kUnpackingShare * fraction); };
+    const Program program = openContainer(bytes, name, options.plate, {}, unpacking);
+    const double before = program.unpacked.size() > 0 ? kUnpackingShare : 0;
     const std::string_view text = program.text;
     refuseOtherFormats(text, name);
     Settings settings = readSettings(text);
@@ -69,24 +75,24 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
         machine.run(line);
         if (options.progress && lexer.offset() - reported >= kProgressBytes) {
             reported = lexer.offset();
-            options.progress(static_cast<double>(reported) / static_cast<double>(text.size()));
+            options.progress(before + (1 - before) * static_cast<double>(reported) / static_cast<double>(text.size()));
         }
     }
-    if (recorder.toolpath().empty()) refuseWithoutBeads(machine.counts(), name);
-    resolveSections(recorder.toolpath(), recorder.runZ(), nominal, warnings);
+    Toolpath& recorded = recorder.toolpath();
+    if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
+    takeFilament(settings.footer, machine, recorded, warnings);
+    resolveSections(recorded, recorder.runZ(), nominal, warnings);
+    warnOfMixedFilaments(machine, recorded, warnings);
     warnIfShort(machine.filamentMm(), program, line.number, warnings);
     if (options.progress) options.progress(1);
 
-    Toolpath toolpath = std::move(recorder.toolpath());
+    Toolpath toolpath = std::move(recorded);
     toolpath.warnings = warnings.take();
     toolpath.slicer = settings.slicer;
     toolpath.firmware = firmwareName(machine.firmware());
-    toolpath.filament_diameter = machine.filamentDiameter();
     toolpath.layer_height = nominal.value_or(0);
     for (const Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
     toolpath.format = program.format;
-    toolpath.filament_mm = machine.filamentMm();
-    toolpath.extruded_mm3 = machine.extrudedMm3();
     return toolpath;
 }
 

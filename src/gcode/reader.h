@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stratum::gcode {
 
@@ -20,9 +21,9 @@ enum class Firmware : std::uint8_t { automatic, marlin, klipper, reprap };
 struct ReadOptions {
     ExtruderMode extruder_mode = ExtruderMode::automatic;
     Firmware firmware = Firmware::automatic;
-    std::optional<double> filament_diameter;  ///< mm; overrides the file's settings
-    std::optional<double> layer_height;       ///< mm; used where neither tags nor Z moves tell
-    std::optional<int> plate;                 ///< which program of a .gcode.3mf; needed only if it has several
+    std::vector<double> filament_diameters;  ///< mm by tool, the last one also beyond; overrides the file's settings
+    std::optional<double> layer_height;      ///< mm; used where neither tags nor Z moves tell
+    std::optional<int> plate;                ///< which program of a .gcode.3mf; needed only if it has several
     /// Called now and then with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;
 };

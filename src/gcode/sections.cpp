@@ -22,11 +22,11 @@ double widthOf(const Toolpath& toolpath, const Bead& bead, double area, double h
     const double length = beadLength(toolpath, bead);
     if (width > kBlobLengths * length) {
         warnings.add("blob: far more material than a bead of this length holds; drawn as a disc of that volume",
-                     bead.line);
+                     toolpath.lineOf(bead));
         return std::min(2 * std::sqrt(area * length / (std::numbers::pi * height)), kMostHeights * height);
     }
     if (width > kMostHeights * height) {
-        warnings.add("bead wider than 100 layer heights; cut to that", bead.line);
+        warnings.add("bead wider than 100 layer heights; cut to that", toolpath.lineOf(bead));
         return kMostHeights * height;
     }
     return width;
@@ -50,7 +50,7 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
         const Bead& last = toolpath.beads.back();
         warnings.add(fmt::format("the program seems to be cut short ({}); its last layer is {}, at z = {:g} mm",
                                  toolpath.cut_short, toolpath.runOf(last).layer, last.z1),
-                     last.line);
+                     toolpath.lineOf(last));
     }
 }
 

@@ -82,21 +82,6 @@ std::vector<Point> offsets(std::string_view text) {
     return any ? values : std::vector<Point>{};
 }
 
-// Numbers separated by commas, with or without a unit behind each, times `scale`.
-std::vector<double> amounts(std::string_view text, double scale) {
-    std::vector<double> values;
-    while (!text.empty() && values.size() < 256) {
-        const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trim(text.substr(0, cut));
-        const char* p = one.data();
-        double value = 0;
-        if (!parseNumber(p, p + one.size(), value) || !(value >= 0 && value < 1e9)) return {};
-        values.push_back(value * scale);
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
-    return values;
-}
-
 // The firmware of a flavour's name. PrusaSlicer's and Slic3r's "reprap" means RepRap/Sprinter, Marlin's forebear;
 // Cura's "RepRap" means RepRapFirmware and is handled where it is read.
 Firmware firmwareOfFlavor(std::string_view flavor) {
@@ -148,6 +133,7 @@ private:
             settings.relative_e = flag(value);
         } else if (key == "use_volumetric_e") {
             settings.volumetric_e = flag(value);
+            settings.volumetric_reason = "the file's use_volumetric_e is 1";
         } else if (key == "single_extruder_multi_material") {
             settings.shared_nozzle = flag(value).value_or(false);
         } else if (key == "extruder_colour") {
@@ -188,36 +174,13 @@ private:
             const auto diameter =
                 colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
-        } else if (footer(text)) {
+        } else if (readFooter(text, settings.footer)) {
             return;
         } else if (take(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
         } else if (take(text, "filamentDiameters,")) {
             if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
         }
-    }
-
-    // What the slicer says it used: "filament used [mm] = 1.5, 2", "filament used = 290.4mm", Cura's "Filament used:
-    // 0.27387m, 0m", Simplify3D's "Filament length: 2706.2 mm", ideaMaker's and Kiri:Moto's.
-    bool footer(std::string_view text) {
-        if (take(text, "filament used [mm] =") || take(text, "filament used =") || take(text, "Filament length:") ||
-            take(text, "--- filament used:")) {
-            if (auto list = amounts(text, 1); !list.empty()) settings.footer_by_tool = std::move(list);
-            return true;
-        }
-        if (take(text, "Filament used:")) {
-            settings.footer_by_tool = amounts(text, 1000);
-            return true;
-        }
-        if (!take(text, "Material#")) return false;
-        const auto used = text.find(" Used:");
-        if (used != 1 || text[0] < '1' || text[0] > '9') return false;
-        const std::vector<double> list = amounts(trim(text.substr(used + 6)), 1);
-        const auto tool = static_cast<std::size_t>(text[0] - '1');
-        if (list.empty()) return false;
-        if (settings.footer_by_tool.size() <= tool) settings.footer_by_tool.resize(tool + 1);
-        settings.footer_by_tool[tool] = list[0];
-        return true;
     }
 
     void name(std::string_view text) {
@@ -227,8 +190,11 @@ private:
     void curaFlavor(std::string_view flavor) {
         settings.firmware = flavor == "RepRap" ? Firmware::reprap : Firmware::marlin;
         settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
-        // The Ultimaker flavours count mm^3 and leave it to the printer to know that; M200 in the file says otherwise.
-        if (flavor == "Griffin" || flavor == "UltiGCode") settings.volumetric_e = true;
+        // Two of Cura's flavours count mm^3 and leave it to the printer to know that; M200 in the file says otherwise.
+        // Griffin (Ultimaker 3 and later) is not among them.
+        if (flavor != "UltiGCode" && flavor != "Marlin(Volumetric)") return;
+        settings.volumetric_e = true;
+        settings.volumetric_reason = std::string("the file's FLAVOR is ").append(flavor);
     }
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gcode/extrusion_scan.h"
+#include "gcode/footer.h"
 #include "gcode/frame.h"
 #include "gcode/reader.h"
 
@@ -23,6 +24,7 @@ struct Settings {
     std::optional<double> layer_height;                    ///< mm
     std::optional<bool> relative_e;                        ///< E words are increments
     std::optional<bool> volumetric_e;                      ///< E words are mm^3
+    std::string volumetric_reason;                         ///< where the file says so
     std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool: the extruder's colour, else the filament's
     std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
     std::optional<double> nozzle_diameter;  ///< mm, of the first tool
@@ -31,8 +33,8 @@ struct Settings {
     std::string cut_short;                  ///< why the program seems to end too early; empty if it doesn't
     bool shared_nozzle = false;             ///< several filaments take turns in one nozzle
     Firmware firmware = Firmware::automatic;
-    std::string firmware_reason;         ///< what the file says about it
-    std::vector<double> footer_by_tool;  ///< mm of filament that the file says it uses
+    std::string firmware_reason;  ///< what the file says about it
+    Footer footer;                ///< what the file says it uses
 };
 
 /// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends

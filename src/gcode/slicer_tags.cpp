@@ -1,6 +1,7 @@
 #include "gcode/slicer_tags.h"
 
 #include "gcode/feature_names.h"
+#include "gcode/limits.h"
 #include "gcode/number.h"
 
 namespace stratum::gcode {
@@ -18,15 +19,17 @@ bool take(std::string_view& text, std::string_view prefix) {
     return true;
 }
 
-// The positive number at the start of the text, else 0.
-double positive(std::string_view text) {
+constexpr double kMostHeight = 100;  // mm; a layer that is higher is a damaged number
+
+// The positive number up to `most` at the start of the text, else 0.
+double positive(std::string_view text, double most) {
     const char* p = text.data();
     double value = 0;
-    return parseNumber(p, p + text.size(), value) && value > 0 ? value : 0;
+    return parseNumber(p, p + text.size(), value) && value > 0 && value <= most ? value : 0;
 }
 
 Tag ofHeight(std::string_view text) {
-    const double height = positive(text);
+    const double height = positive(text, kMostHeight);
     return height > 0 ? Tag{.kind = Tag::Kind::height, .height = height} : Tag{};
 }
 
@@ -44,7 +47,7 @@ Tag layerChange(double height = 0) { return {.kind = Tag::Kind::layer_change, .h
 Tag ofKiriLayer(std::string_view text) {
     const auto open = text.find('(');
     if (open == std::string_view::npos || text.find('@') == std::string_view::npos) return {};
-    return layerChange(positive(text.substr(open + 1)));
+    return layerChange(positive(text.substr(open + 1), kMostHeight));
 }
 
 // Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not. With several processes a layer is announced by each.
@@ -54,7 +57,7 @@ Tag ofNumberedLayer(std::string_view text) {
     text.remove_prefix(digits);
     if (!take(text, ", Z =")) return {};
     Tag tag = layerChange();
-    tag.z = positive(text);
+    tag.z = positive(text, kMaxCoordinate);
     return tag;
 }
 

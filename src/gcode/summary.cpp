@@ -9,18 +9,34 @@
 namespace stratum::gcode {
 namespace {
 
+void count(const Toolpath& toolpath, const Bead& bead, FeatureTotal& total) {
+    const double length = beadLength(toolpath, bead);
+    ++total.beads;
+    total.length += length;
+    total.volume +=
+        length * sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
+}
+
+void compare(double measured, double footer, fmt::memory_buffer& out) {
+    fmt::format_to(std::back_inserter(out), "{:.2f} mm of filament", measured);
+    if (footer > 0)
+        fmt::format_to(std::back_inserter(out), "; the file says {:.2f} ({:+.2f} %)", footer,
+                       100 * (measured - footer) / footer);
+    out.push_back('\n');
+}
+
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
+    fmt::format_to(std::back_inserter(out), "E is {}\nall: ", toolpath.extrusion_rule);
+    compare(toolpath.filament_mm, toolpath.footer_mm, out);
+    if (tools == 1) return;
     for (std::size_t tool = 0; tool < tools; ++tool) {
         const double measured = at(toolpath.filament_by_tool, tool);
         const double footer = at(toolpath.footer_by_tool, tool);
         if (!(measured > 0) && !(footer > 0)) continue;
-        fmt::format_to(std::back_inserter(out), "T{}: {:.2f} mm of filament", tool, measured);
-        if (footer > 0)
-            fmt::format_to(std::back_inserter(out), "; the file says {:.2f} ({:+.2f} %)", footer,
-                           100 * (measured - footer) / footer);
-        out.push_back('\n');
+        fmt::format_to(std::back_inserter(out), "T{}: ", tool);
+        compare(measured, footer, out);
     }
 }
 
@@ -28,14 +44,14 @@ void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
 
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath) {
     std::array<FeatureTotal, kFeatureCount> totals{};
-    for (const Bead& bead : toolpath.beads) {
-        const Run& run = toolpath.runOf(bead);
-        FeatureTotal& total = totals[static_cast<std::size_t>(run.feature)];
-        const double length = beadLength(toolpath, bead);
-        ++total.beads;
-        total.length += length;
-        total.volume += length * sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height));
-    }
+    for (const Bead& bead : toolpath.beads)
+        count(toolpath, bead, totals[static_cast<std::size_t>(toolpath.runOf(bead).feature)]);
+    return totals;
+}
+
+std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath) {
+    std::vector<FeatureTotal> totals(toolpath.objects.size());
+    for (const Bead& bead : toolpath.beads) count(toolpath, bead, totals[toolpath.runOf(bead).object]);
     return totals;
 }
 
@@ -56,6 +72,12 @@ std::string summarize(const Toolpath& toolpath) {
         fmt::format_to(std::back_inserter(out), "  {:<20}{:>9} beads {:>10.2f} m {:>11.2f} mm^3\n",
                        featureName(static_cast<Feature>(i)), totals[i].beads, totals[i].length / 1000,
                        totals[i].volume);
+    }
+    if (toolpath.objects.size() > 1) {
+        const auto objects = objectTotals(toolpath);
+        for (std::size_t i = 1; i < objects.size(); ++i)
+            fmt::format_to(std::back_inserter(out), "  object {}, {}: {} beads, {:.2f} mm^3\n", i, toolpath.objects[i],
+                           objects[i].beads, objects[i].volume);
     }
     for (const Warning& warning : toolpath.warnings)
         fmt::format_to(std::back_inserter(out), "warning: line {}: {}{}\n", warning.first_line, warning.text,

@@ -4,11 +4,13 @@
 #include "gcode/toolpath.h"
 
 #include <array>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace stratum::gcode {
 
-/// Of one feature: what lies under its name.
+/// Of one feature or object: what lies under its name.
 struct FeatureTotal {
     std::size_t beads = 0;
     double length = 0;  ///< mm
@@ -18,8 +20,11 @@ struct FeatureTotal {
 /// By Feature.
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 
+/// By index into Toolpath::objects; [0] is what belongs to none.
+std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath);
+
 /// Slicer, container and firmware rules with their reason; layers, beads, length, volume; filament per tool beside what
-/// the file itself says; features; warnings with count and first line. Ends with a line end.
+/// the file itself says; features; objects; warnings with count and first line. Ends with a line end.
 std::string summarize(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

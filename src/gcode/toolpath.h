@@ -4,6 +4,8 @@
 // Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
 #pragma once
 
+#include "gcode/packed_double.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -43,10 +45,22 @@ Feature featureNamed(std::string_view name);
 /// |sweep| <= 2 pi) about the centre, with z linear in the angle. Its radius is the mean of the distances of start and
 /// end from the centre, so that a file's rounding (a micrometre) is shared by both ends.
 struct Arc {
-    double center_x = 0;  ///< mm
-    double center_y = 0;  ///< mm
-    double sweep = 0;     ///< radians
+    double center_x = 0;     ///< mm
+    double center_y = 0;     ///< mm
+    double sweep = 0;        ///< radians
+    std::uint32_t line = 0;  ///< 1-based line in the source
 };
+
+/// One extruding move. Coordinates are of the nozzle: z is the top of the bead. Millions of these are the memory of a
+/// large print, so nothing is padded.
+struct Bead {
+    PackedDouble x0{}, y0{}, z0{};  ///< mm, start
+    PackedDouble x1{}, y1{}, z1{};  ///< mm, end
+    float width = 0;                ///< mm; width >= height: stadium section; width < height: round, of this diameter
+    std::uint32_t run = 0;          ///< index into Toolpath::runs
+    std::int32_t arc = -1;          ///< >= 0: index into Toolpath::arcs; < 0: straight, minus its line in the source
+};
+static_assert(sizeof(Bead) == 60);
 
 /// What neighbouring beads have in common; a bead names its run by index.
 struct Run {
@@ -58,17 +72,6 @@ struct Run {
     Feature feature = Feature::unknown;
     bool operator==(const Run&) const = default;
 };
-
-/// One extruding move. Coordinates are of the nozzle: z is the top of the bead.
-struct Bead {
-    double x0 = 0, y0 = 0, z0 = 0;  ///< mm, start
-    double x1 = 0, y1 = 0, z1 = 0;  ///< mm, end
-    float width = 0;                ///< mm; width >= height: stadium section; width < height: round, of this diameter
-    std::uint32_t run = 0;          ///< index into Toolpath::runs
-    std::int32_t arc = -1;          ///< index into Toolpath::arcs; -1 is a straight bead
-    std::uint32_t line = 0;         ///< 1-based line in the source
-};
-static_assert(sizeof(Bead) == 64);
 
 /// A remark about the input that changed nothing fatal. Equal texts are counted, not repeated.
 struct Warning {
@@ -101,13 +104,19 @@ struct Toolpath {
     std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool, from the file's settings; may be short
     std::vector<ColorChange> color_changes;                ///< in print order
     std::vector<double> filament_by_tool;                  ///< mm as the file counts it, by T number; may be short
-    std::vector<double> footer_by_tool;  ///< mm that the file itself says it uses; empty if it doesn't say
+    std::vector<double> footer_by_tool;  ///< mm that the file itself says each tool uses; empty if it doesn't say
+    double footer_mm = 0;                ///< mm that the file says all tools use; 0 if it doesn't say
+    std::string extrusion_rule;          ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
     std::string firmware_reason;         ///< why that rule set was chosen
     std::string cut_short;               ///< why the program seems to end too early; empty if it doesn't
     double filament_mm = 0;              ///< positive E of the beads as the file counts it, in mm of filament
     double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
+    /// 1-based line in the source; what lies beyond line 2147483647 is said to lie there.
+    std::uint32_t lineOf(const Bead& bead) const {
+        return bead.arc < 0 ? static_cast<std::uint32_t>(-bead.arc) : arcs[static_cast<std::size_t>(bead.arc)].line;
+    }
     bool empty() const { return beads.empty(); }
 };
 

@@ -34,7 +34,7 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
     for (const Bead& bead : toolpath.beads) {
         const Run& run = toolpath.runOf(bead);
         const double length = beadLength(toolpath, bead);
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},", bead.line, run.layer,
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},", toolpath.lineOf(bead), run.layer,
                        featureName(run.feature), run.tool, run.object, bead.x0, bead.y0, bead.z0, bead.x1, bead.y1,
                        bead.z1);
         if (bead.arc >= 0) {

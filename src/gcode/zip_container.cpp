@@ -17,6 +17,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr zip_int64_t kMostEntries = 65536;
+constexpr std::size_t kChunk = std::size_t{16} << 20;  // between two reports of progress
 
 // libzip's errors carry their text only for as long as they live.
 std::string reasonOf(zip_error_t& error) {
@@ -112,7 +113,8 @@ zip_uint64_t choosePlate(const std::vector<Plate>& plates, std::string_view name
         fmt::format("{}: --plate {}: there is no such plate; it has {}", name, *wanted, listPlates(plates)));
 }
 
-void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std::size_t most, ByteBuffer& text) {
+void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std::size_t most, ByteBuffer& text,
+                 const Progress& progress) {
     const char* raw = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
     const std::string entry = raw != nullptr ? raw : "";
     const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}: {}", name, entry, what)); };
@@ -130,12 +132,14 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
     char* const start = text.extend(status.size + 1);
     std::size_t done = 0;
     while (done <= status.size) {
-        const zip_int64_t got = zip_fread(file.get(), start + done, status.size + 1 - done);
+        const zip_int64_t got =
+            zip_fread(file.get(), start + done, std::min<zip_uint64_t>(status.size + 1 - done, kChunk));
         if (got < 0)
             fail(fmt::format("unzipping stops after {} of {} bytes ({}); the file is damaged: copy or export it again",
                              done, status.size, zip_file_strerror(file.get())));
         if (got == 0) break;
         done += static_cast<std::size_t>(got);
+        if (progress) progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(status.size)));
     }
     const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(start), std::min<std::size_t>(done, status.size));
     if (done != status.size || crc != status.crc)
@@ -149,8 +153,8 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
 
 bool isZip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"sv) || bytes.starts_with("PK\x05\x06"sv); }
 
-Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate,
-                const ContainerLimits& limits) {
+Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate, const ContainerLimits& limits,
+                const Progress& progress) {
     const Archive archive = openArchive(bytes, name);
     const Contents contents = listContents(archive.get(), name);
     Program program;
@@ -169,7 +173,7 @@ Program openZip(std::string_view bytes, std::string_view name, std::optional<int
                         "/3D/model.gcode (ufp); unzip the G-code from it first",
                         name, contents.entries));
     }
-    unpackEntry(archive.get(), index, name, limits.bytesFrom(bytes.size()), program.unpacked);
+    unpackEntry(archive.get(), index, name, limits.bytesFrom(bytes.size()), program.unpacked, progress);
     program.text = program.unpacked.view();
     return program;
 }

@@ -10,6 +10,7 @@ bool isZip(std::string_view bytes);
 
 /// Unpacks the chosen plate of a 3mf, the only one by default, or the model of an ufp, and checks its CRC32. Throws
 /// InputError for damage and for zip files with no or several programs, UsageError for a plate that isn't there.
-Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate, const ContainerLimits& limits);
+Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate, const ContainerLimits& limits,
+                const Progress& progress = {});
 
 }  // namespace stratum::gcode

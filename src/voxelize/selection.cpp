@@ -84,12 +84,34 @@ void parseFeatures(std::string_view text, Selection& selection) {
     }
 }
 
+void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpath, Selection& selection) {
+    const auto& objects = toolpath.objects;
+    const auto named = std::find(objects.begin() + 1, objects.end(), name_or_number);
+    if (named != objects.end()) return selection.objects.push_back(static_cast<std::uint16_t>(named - objects.begin()));
+    const auto number = parseNumber<std::uint16_t>(name_or_number);
+    if (number && *number < objects.size()) return selection.objects.push_back(*number);
+    if (objects.size() == 1)
+        throw UsageError(
+            fmt::format("--object {}: the file names no objects; the slicer's option to label objects "
+                        "makes it do so",
+                        name_or_number));
+    constexpr std::size_t kMostListed = 50;
+    std::string list;
+    for (std::size_t i = 1; i < std::min(objects.size(), kMostListed + 1); ++i)
+        list += fmt::format("\n  {}: {}", i, objects[i]);
+    if (objects.size() > kMostListed + 1) list += fmt::format("\n  and {} more", objects.size() - 1 - kMostListed);
+    throw UsageError(
+        fmt::format("--object {}: there is no such object; by number or name it is one of{}", name_or_number, list));
+}
+
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection) {
+    std::vector<char> object_kept(toolpath.objects.size(), selection.objects.empty() ? 1 : 0);
+    for (const std::uint16_t object : selection.objects) object_kept[object] = 1;
     std::vector<char> run_kept;
     run_kept.reserve(toolpath.runs.size());
     for (const gcode::Run& run : toolpath.runs)
         run_kept.push_back(run.layer >= selection.first_layer && run.layer <= selection.last_layer &&
-                           selection.features[static_cast<std::size_t>(run.feature)]);
+                           object_kept[run.object] != 0 && selection.features[static_cast<std::size_t>(run.feature)]);
     std::vector<std::uint32_t> beads;
     for (std::uint32_t i = 0; i < toolpath.beads.size(); ++i)
         if (run_kept[toolpath.beads[i].run]) beads.push_back(i);
@@ -99,8 +121,9 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
         std::string names;
         for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
             if (present[f]) names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-        throw InputError(fmt::format("no bead is left by --layers and --features; the print has layers 1 to {} and{}",
-                                     toolpath.layer_count, names));
+        throw InputError(
+            fmt::format("no bead is left by --layers, --features and --object; the print has layers 1 to {} and{}",
+                        toolpath.layer_count, names));
     }
     return beads;
 }

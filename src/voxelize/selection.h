@@ -1,4 +1,4 @@
-// Which beads become voxels: layers, features and partial prints.
+// Which beads become voxels: layers, features, objects and partial prints.
 #pragma once
 
 #include "gcode/toolpath.h"
@@ -17,6 +17,7 @@ struct Selection {
     std::uint32_t first_layer = 1;  ///< inclusive; 0 also takes what is extruded before the first layer (prime lines)
     std::uint32_t last_layer = 0xffffffff;
     std::array<bool, gcode::kFeatureCount> features;
+    std::vector<std::uint16_t> objects;  ///< indices into Toolpath::objects; empty takes all beads, labelled or not
 
     Selection() { features.fill(true); }
 };
@@ -28,6 +29,10 @@ void parseLayers(std::string_view text, Selection& selection);
 /// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list
 /// of names for an unknown one.
 void parseFeatures(std::string_view text, Selection& selection);
+
+/// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 is what
+/// belongs to no object). Throws UsageError with the list of objects if there is none.
+void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpath, Selection& selection);
 
 /// Indices of the selected beads, ascending. Throws InputError, saying what there is, if none is left.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);

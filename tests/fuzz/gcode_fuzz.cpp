@@ -9,6 +9,7 @@
 // FOLDER collects the inputs that reach new code; tests/fuzz/gcode holds the smallest set of them so far. The first
 // byte chooses the options, so that one folder serves all firmwares.
 #include "gcode/reader.h"
+#include "gcode/summary.h"
 #include "io/error.h"
 
 #include <cmath>
@@ -27,6 +28,7 @@ void check(const stratum::gcode::Toolpath& toolpath) {
     for (const stratum::gcode::Bead& bead : toolpath.beads) {
         require(bead.run < toolpath.runs.size());
         require(bead.arc < static_cast<std::int32_t>(toolpath.arcs.size()));
+        require(toolpath.lineOf(bead) > 0);
         require(std::isfinite(bead.width) && bead.width > 0);
         for (const double place : {bead.x0, bead.y0, bead.z0, bead.x1, bead.y1, bead.z1}) require(std::isfinite(place));
         const stratum::gcode::Run& run = toolpath.runOf(bead);
@@ -35,6 +37,7 @@ void check(const stratum::gcode::Toolpath& toolpath) {
         require(std::isfinite(stratum::gcode::beadLength(toolpath, bead)));
     }
     require(std::isfinite(toolpath.extruded_mm3));
+    require(!stratum::gcode::summarize(toolpath).empty());
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -26,13 +28,15 @@ struct Outcome {
 class Damage {
 public:
     explicit Damage(const std::string& file, double allowed_loss_mm = 0)
-        : file_(file), expected_(readProgram(file)), allowed_loss_mm_(allowed_loss_mm) {}
+        : file_(file), expected_(readProgram(file)), allowed_loss_mm_(allowed_loss_mm) {
+        EXPECT_EQ(alarms(expected_), 0U) << "the whole file is said to be short: nothing would be compared";
+    }
 
     // Reads a damaged file and fails the test on a print that is not the same and does not say so.
     void read(std::string_view damaged, std::size_t place) {
         try {
             const Toolpath toolpath = readProgram(damaged);
-            if (warningCount(toolpath, "may be cut off") + warningCount(toolpath, "seems to be cut short") > 0) {
+            if (alarms(toolpath) > 0) {
                 ++outcome.warned;
             } else if (allowed_loss_mm_ == 0 || toolpath.filament_mm < expected_.filament_mm - allowed_loss_mm_) {
                 EXPECT_TRUE(sample::samePrint(toolpath, expected_))
@@ -63,12 +67,16 @@ public:
     Outcome outcome;
 
 private:
+    static std::size_t alarms(const Toolpath& toolpath) {
+        return warningCount(toolpath, "may be cut off") + warningCount(toolpath, "seems to be cut short");
+    }
+
     std::string file_;
     Toolpath expected_;
     double allowed_loss_mm_;
 };
 
-std::string print() { return sample::program(60); }
+std::string print() { return sample::program(60) + "; filament used [g] = 1\n"; }
 
 void cutAndFlip(const std::string& file) {
     Damage damage(file);
@@ -80,6 +88,59 @@ void cutAndFlip(const std::string& file) {
 TEST(ContainerDamage, Gzip) { cutAndFlip(sample::gzip(print())); }
 TEST(ContainerDamage, Ufp) { cutAndFlip(sample::ufp(print())); }
 TEST(ContainerDamage, ThreeMf) { cutAndFlip(sample::zip({{"a", "b"}, {"Metadata/plate_1.gcode", print()}})); }
+
+// Plain text has nothing to notice a turned bit by: a digit is a digit. What is read must still be a print.
+void flipText(std::string text) {
+    const std::size_t step = std::max<std::size_t>(1, text.size() / kPlaces);
+    std::size_t places = 0;
+    for (std::size_t at = 0, bit = 0; at < text.size(); at += step, bit = (bit + 3) % 8, ++places) {
+        const char whole = text[at];
+        text[at] = static_cast<char>(whole ^ 1 << bit);
+        try {
+            const Toolpath toolpath = readProgram(text);
+            EXPECT_FALSE(toolpath.empty());
+            EXPECT_TRUE(std::isfinite(beadVolume(toolpath))) << at;
+            EXPECT_GT(beadVolume(toolpath), 0) << at;
+        } catch (const InputError& error) {
+            EXPECT_TRUE(std::string_view(error.what()).starts_with("test.gcode:")) << error.what();
+        }
+        text[at] = whole;
+    }
+    EXPECT_GE(places, kPlaces);
+}
+
+// A cut is named with the last layer, unless nothing is lost but comments.
+void cutText(std::string_view text) {
+    const Toolpath whole = readProgram(text);
+    const std::size_t step = std::max<std::size_t>(1, text.size() / kPlaces);
+    std::size_t named = 0;
+    for (std::size_t n = 1; n < text.size(); n += step) {
+        try {
+            const Toolpath toolpath = readProgram(std::string(text.substr(0, n)));
+            const std::uint32_t last = toolpath.runOf(toolpath.beads.back()).layer;
+            const std::string layer = "its last layer is " + std::to_string(last) + ", at z = ";
+            if (warningCount(toolpath, layer) == 1)
+                ++named;
+            else
+                EXPECT_TRUE(sample::samePrint(toolpath, whole)) << "cut at " << n;
+        } catch (const InputError& error) {
+            EXPECT_TRUE(std::string_view(error.what()).starts_with("test.gcode:")) << error.what();
+        }
+    }
+    EXPECT_GT(named, kPlaces * 8 / 10);
+}
+
+TEST(ContainerDamage, Text) {
+    cutText(print());
+    flipText(print());
+}
+
+TEST(ContainerDamage, TheCorpusText) {
+    STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-slic3r.gcode");
+    const MappedFile file(path);
+    cutText(file.bytes());
+    flipText(std::string(file.bytes()));
+}
 
 TEST(ContainerDamage, Bgcode) {
     // What the slicer says is used, so that a file that ends with a block is seen to be short.

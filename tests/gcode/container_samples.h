@@ -198,9 +198,10 @@ inline testing::AssertionResult samePrint(const Toolpath& a, const Toolpath& b) 
     for (std::size_t i = 0; i < a.beads.size(); ++i) {
         const Bead& p = a.beads[i];
         const Bead& q = b.beads[i];
+        const bool curved = p.arc >= 0;  // a straight bead's number is its line
         if (p.x0 != q.x0 || p.y0 != q.y0 || p.z0 != q.z0 || p.x1 != q.x1 || p.y1 != q.y1 || p.z1 != q.z1 ||
-            p.width != q.width || p.run != q.run || p.arc != q.arc)
-            return testing::AssertionFailure() << "bead " << i << " of lines " << p.line << " and " << q.line;
+            p.width != q.width || p.run != q.run || curved != (q.arc >= 0) || (curved && p.arc != q.arc))
+            return testing::AssertionFailure() << "bead " << i << " of lines " << a.lineOf(p) << " and " << b.lineOf(q);
     }
     if (a.arcs.size() != b.arcs.size()) return testing::AssertionFailure() << "arcs";
     for (std::size_t i = 0; i < a.arcs.size(); ++i)

@@ -43,7 +43,7 @@ TEST(CorpusDialects, TheRippleVasesPitchIsMeasured) {
     EXPECT_NEAR(toolpath.layer_count, 167, 2);
     for (const Bead& bead : toolpath.beads) {
         if (bead.z0 == bead.z1) continue;
-        ASSERT_NEAR(static_cast<double>(toolpath.runOf(bead).height), 0.36, 0.01) << bead.line;
+        ASSERT_NEAR(static_cast<double>(toolpath.runOf(bead).height), 0.36, 0.01) << toolpath.lineOf(bead);
     }
     EXPECT_TRUE(toolpath.warnings.empty());
 }

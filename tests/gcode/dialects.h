@@ -1,13 +1,18 @@
 // One case of a dialect: a small program, what it must come to, and who says so. docs/gcode.md lists them all.
 #pragma once
 
+#include "corpus.h"
 #include "gcode/frame.h"
 #include "gcode/program.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <ostream>
+#include <string>
 #include <string_view>
 
 namespace stratum::gcode {
@@ -43,8 +48,22 @@ inline void expectPlace(const Point& expected, double x, double y, double z) {
     EXPECT_NEAR(z, expected.z, 1e-9);
 }
 
+/// Whether the table of cases in docs/gcode.md has a row for it with its source.
+inline bool isDocumented(const Dialect& dialect) {
+    static const std::string page = [] {
+        std::ifstream file(test::sourceDir() / "docs/gcode.md");
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    }();
+    std::string row = "\n| " + std::string(dialect.name) + " | `";
+    std::replace(row.begin(), row.end(), '_', ' ');
+    const auto at = page.find(row);
+    return at != std::string::npos &&
+           page.substr(at + 1, page.find('\n', at + 1) - at - 1).ends_with("| " + std::string(dialect.document) + " |");
+}
+
 inline void expectDialect(const Dialect& dialect) {
     SCOPED_TRACE(dialect.document);
+    EXPECT_TRUE(isDocumented(dialect)) << "docs/gcode.md has no row \"" << dialect.name << "\" with that source";
     ReadOptions options;
     options.firmware = dialect.firmware;
     const Toolpath toolpath = readProgram(dialect.program, options);

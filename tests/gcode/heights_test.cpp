@@ -31,7 +31,7 @@ std::string spiral(int turns, Pitch pitch) {
 TEST(Heights, ASpiralsHeightIsItsRiseOverOneTurn) {
     const Toolpath toolpath = readProgram(spiral(20, [](int) { return 0.36; }));
     for (const Bead& bead : toolpath.beads)
-        ASSERT_NEAR(static_cast<double>(toolpath.runOf(bead).height), 0.36, 0.01) << bead.line;
+        ASSERT_NEAR(static_cast<double>(toolpath.runOf(bead).height), 0.36, 0.01) << toolpath.lineOf(bead);
     EXPECT_NEAR(toolpath.layer_count, 20, 1);
     EXPECT_EQ(warningCount(toolpath, "doesn't tell its layer height"), 0U);
 }

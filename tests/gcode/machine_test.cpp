@@ -33,7 +33,7 @@ TEST(Machine, AbsoluteByDefault) {
     EXPECT_DOUBLE_EQ(toolpath.filament_mm, 3);
     EXPECT_NEAR(toolpath.extruded_mm3, 3 * kFilamentArea, 1e-12);
     EXPECT_NEAR(volumeOf(toolpath, toolpath.beads[0]), 2 * kFilamentArea, 1e-5);
-    EXPECT_EQ(toolpath.beads[0].line, 2U);
+    EXPECT_EQ(toolpath.lineOf(toolpath.beads[0]), 2U);
     EXPECT_EQ(toolpath.runs[0].speed, 50.0F);
     EXPECT_EQ(toolpath.firmware, "marlin");
     EXPECT_EQ(warningCount(toolpath, "neither M82 nor M83"), 1U);
@@ -162,7 +162,7 @@ TEST(Machine, FilamentDiameter) {
     const std::string program = "M83\nG1 Z.2\nG1 X9 E1\nT1\nG1 X0 E1\n; filament_diameter = 1.75,3\n";
     EXPECT_NEAR(readProgram(program).extruded_mm3, kPi / 4 * (1.75 * 1.75 + 9), 1e-12);
     ReadOptions options;
-    options.filament_diameter = 2;
+    options.filament_diameters = {2};
     EXPECT_NEAR(readProgram(program, options).extruded_mm3, 2 * kPi, 1e-12);
 }
 

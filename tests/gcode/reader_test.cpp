@@ -1,6 +1,7 @@
 #include "gcode/reader.h"
 
 #include "corpus.h"
+#include "gcode/container_samples.h"
 #include "gcode/program.h"
 #include "io/mapped_file.h"
 
@@ -36,7 +37,7 @@ TEST(Reader, OtherFormatsAreRefused) {
 TEST(Reader, OptionsOutOfRangeAreUsageErrors) {
     ReadOptions options;
     for (const double diameter : {0.0, -1.75, 1e9, std::nan("")}) {
-        options.filament_diameter = diameter;
+        options.filament_diameters = {1.75, diameter};
         EXPECT_THROW(readProgram("G1 X1 E1\n", options), UsageError) << diameter;
     }
     options = {};
@@ -66,6 +67,23 @@ TEST(Reader, ProgressRisesToOne) {
     EXPECT_EQ(fractions.back(), 1);
 }
 
+TEST(Reader, ProgressWhileUnpacking) {
+    // 40 MB, of which the unpacking reports about every 16.
+    std::string text = "M83\nG1 Z.2\nG1 X1 E1\n";
+    const std::string comment = ";" + std::string(98, '-') + "\n";
+    while (text.size() < std::size_t{40} << 20) text += comment;
+    for (const std::string& file : {sample::gzip(text), sample::ufp(text)}) {
+        std::vector<double> fractions;
+        ReadOptions options;
+        options.progress = [&](double fraction) { fractions.push_back(fraction); };
+        const Toolpath toolpath = readProgram(file, options);
+        EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << toolpath.format;
+        EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0 && f < 0.5; }), 1);
+        EXPECT_GE(std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0.5 && f < 1; }), 10);
+        EXPECT_EQ(fractions.back(), 1);
+    }
+}
+
 TEST(Reader, LineEndsMakeNoDifference) {
     std::string unix_program = "M83\n;LAYER_CHANGE\n;HEIGHT:0.2\nG1 Z.2\nG1 X1 E1 ; a\nG1 X2 E1";
     const Toolpath expected = readProgram(unix_program);
@@ -75,7 +93,7 @@ TEST(Reader, LineEndsMakeNoDifference) {
         const Toolpath toolpath = readProgram(program + std::string(end));
         ASSERT_EQ(toolpath.beads.size(), expected.beads.size());
         for (std::size_t i = 0; i < expected.beads.size(); ++i)
-            EXPECT_EQ(toolpath.beads[i].line, expected.beads[i].line);
+            EXPECT_EQ(toolpath.lineOf(toolpath.beads[i]), expected.lineOf(expected.beads[i]));
         EXPECT_EQ(toolpath.runs, expected.runs);
     }
 }
@@ -204,7 +222,7 @@ TEST(CorpusFiles, ASpiralHasItsNominalHeight) {
     for (const Bead& bead : toolpath.beads) {
         // Where the wall overhangs, the slicer lays round threads and says their height.
         if (std::abs(bead.z1 - bead.z0) < 1e-6 || toolpath.runOf(bead).feature == Feature::overhang_perimeter) continue;
-        ASSERT_FLOAT_EQ(toolpath.runOf(bead).height, 0.2F) << bead.line;
+        ASSERT_FLOAT_EQ(toolpath.runOf(bead).height, 0.2F) << toolpath.lineOf(bead);
     }
 }
 

@@ -49,7 +49,9 @@ TEST(Settings, Firmware) {
     EXPECT_EQ(readSettings(";FLAVOR:Marlin").firmware, Firmware::marlin);
     EXPECT_EQ(readSettings(";FLAVOR:RepRap").firmware, Firmware::reprap);
     EXPECT_EQ(readSettings("G1").firmware, Firmware::automatic);
-    EXPECT_EQ(readSettings(";FLAVOR:Griffin").volumetric_e, true);
+    EXPECT_FALSE(readSettings(";FLAVOR:Griffin").volumetric_e.has_value());
+    EXPECT_EQ(readSettings(";FLAVOR:UltiGCode").volumetric_e, true);
+    EXPECT_EQ(readSettings(";FLAVOR:Marlin(Volumetric)").volumetric_e, true);
     EXPECT_FALSE(readSettings(";FLAVOR:Marlin").volumetric_e.has_value());
 }
 

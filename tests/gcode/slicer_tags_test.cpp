@@ -60,6 +60,16 @@ TEST(SlicerTags, Heights) {
         EXPECT_EQ(parseTag(comment).kind, Kind::none) << comment;
 }
 
+TEST(SlicerTags, HeightsThatNoLayerHas) {
+    const std::string digits(60, '3');
+    for (const std::string& number :
+         {std::string("101"), digits, digits + digits + digits + digits + digits + digits}) {
+        EXPECT_EQ(parseTag("HEIGHT:" + number).kind, Kind::none) << number;
+        EXPECT_EQ(parseTag(" tool H" + number).kind, Kind::none) << number;
+        EXPECT_EQ(parseTag("; --- layer 0 (" + number + " @ 0.255) ---").height, 0) << number;
+    }
+}
+
 TEST(SlicerTags, Layers) {
     for (const auto* comment : {"LAYER_CHANGE", "LAYER:0", "LAYER:-3", " CHANGE_LAYER", " layer 12, Z = 2.400",
                                 "; --- layer 3 (0.200 @ 0.85) ---"})

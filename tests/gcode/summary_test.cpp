@@ -32,17 +32,16 @@ TEST(Summary, Features) {
     EXPECT_NEAR(perimeter.volume, 4 * kFilamentArea, 1e-4);
 }
 
-TEST(Summary, FootersOfSeveralSlicers) {
-    using List = std::vector<double>;
-    const auto footer = [](std::string_view text) {
-        return readProgram("M83\nG1 Z.2\nG1 X10 E1\n" + std::string(text) + "\n").footer_by_tool;
-    };
-    EXPECT_EQ(footer("; filament used = 290.4mm (0.7cm3)"), (List{290.4}));
-    EXPECT_EQ(footer(";Filament used: 0.5m, 0m"), (List{500, 0}));
-    EXPECT_EQ(footer(";   Filament length: 2706.2 mm (2.71 m)"), (List{2706.2}));
-    EXPECT_EQ(footer(";Material#2 Used: 3.5"), (List{0, 3.5}));
-    EXPECT_EQ(footer("; --- filament used: 225.03 mm ---"), (List{225.03}));
-    EXPECT_EQ(footer("; filament used [mm] = much"), (List{}));
+TEST(Summary, OneNumberOfAFooterIsTheWholePrints) {
+    const std::string text = summarize(readProgram("M83\nG1 Z.2\nG1 X9 E4\nT1\nG1 X0 E1\n;   Filament length: 5 mm\n"));
+    for (const auto* part : {"all: 5.00 mm of filament; the file says 5.00 (+0.00 %)\n", "T0: 4.00 mm of filament\n",
+                             "T1: 1.00 mm of filament\n", "E is mm of filament of 1.75 mm (assumed"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST(Summary, Objects) {
+    const std::string text = summarize(readProgram("M83\nG1 Z.2\n; printing object a.stl\nG1 X9 E4\n"));
+    EXPECT_NE(text.find("  object 1, a.stl: 1 beads, 9.62 mm^3\n"), std::string::npos) << text;
 }
 
 }  // namespace

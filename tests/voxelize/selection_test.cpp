@@ -62,6 +62,59 @@ TEST(Selection, FeaturesKeepOrDrop) {
         EXPECT_THROW(parseFeatures(bad, selection), UsageError) << bad;
 }
 
+// As tenLayers(), the odd layers of "boat", the even ones of "7"; infill belongs to no object.
+gcode::Toolpath twoObjects() {
+    gcode::Toolpath toolpath = tenLayers();
+    toolpath.objects = {"", "boat", "7"};
+    for (gcode::Run& run : toolpath.runs)
+        if (run.feature == gcode::Feature::perimeter) run.object = run.layer % 2 == 1 ? 1 : 2;
+    return toolpath;
+}
+
+TEST(Selection, ObjectsByNameAndNumber) {
+    const gcode::Toolpath toolpath = twoObjects();
+    const auto kept = [&](std::initializer_list<std::string_view> names) {
+        Selection selection;
+        selection.last_layer = 3;
+        for (const std::string_view name : names) chooseObject(name, toolpath, selection);
+        return selectBeads(toolpath, selection);
+    };
+    using Beads = std::vector<std::uint32_t>;
+    EXPECT_EQ(kept({"boat"}), (Beads{0, 4}));
+    EXPECT_EQ(kept({"1"}), (Beads{0, 4}));
+    EXPECT_EQ(kept({"7"}), (Beads{2}));  // the name, though there is no object of that number
+    EXPECT_EQ(kept({"2"}), (Beads{2}));
+    EXPECT_EQ(kept({"2", "boat"}), (Beads{0, 2, 4}));
+    EXPECT_EQ(kept({"0"}), (Beads{1, 3, 5}));
+}
+
+TEST(Selection, AnUnknownObjectGetsTheList) {
+    Selection selection;
+    for (const char* bad : {"ship", "3", "-1", "", "boat "}) {
+        try {
+            chooseObject(bad, twoObjects(), selection);
+            ADD_FAILURE() << bad;
+        } catch (const UsageError& error) {
+            EXPECT_NE(std::string_view(error.what()).find("\n  1: boat\n  2: 7"), std::string_view::npos)
+                << error.what();
+        }
+    }
+    try {
+        chooseObject("1", tenLayers(), selection);
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string_view(error.what()).find("names no objects"), std::string_view::npos) << error.what();
+    }
+}
+
+TEST(Selection, AnObjectWithoutBeadsLeavesNone) {
+    gcode::Toolpath toolpath = twoObjects();
+    toolpath.objects.emplace_back("defined but never printed");
+    Selection selection;
+    chooseObject("3", toolpath, selection);
+    EXPECT_THROW(selectBeads(toolpath, selection), InputError);
+}
+
 TEST(Snapshots, PercentLayerAndEvery) {
     const gcode::Toolpath toolpath = tenLayers();
     const auto snapshots = parseSnapshots("50%,layer:3,every:4,25%", toolpath);

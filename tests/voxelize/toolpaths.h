@@ -55,8 +55,8 @@ inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Be
         const double length = std::hypot(ux, uy);
         double along = 0;
         if (length > 0) along = std::min(std::max(((x - bead.x0) * ux + (y - bead.y0) * uy) / length, 0.0), length);
-        const double nx = length > 0 ? bead.x0 + along * ux / length : bead.x0;
-        const double ny = length > 0 ? bead.y0 + along * uy / length : bead.y0;
+        const double nx = length > 0 ? bead.x0 + along * ux / length : double{bead.x0};
+        const double ny = length > 0 ? bead.y0 + along * uy / length : double{bead.y0};
         rho = std::hypot(x - nx, y - ny);
     } else {
         const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];

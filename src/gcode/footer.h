@@ -1,0 +1,24 @@
+// What a file itself says that it uses: the slicer's sums in its header or trailer, for comparison with what was read.
+// Sources: PrusaSlicer and its kin ("filament used [mm] = 1.5, 2"), Slic3r ("filament used = 290.4mm"), Cura ("Filament
+// used: 0.27387m, 0m", or in mm3 where its E is), Griffin headers ("EXTRUDER_TRAIN.0.MATERIAL.VOLUME_USED:12034"),
+// Simplify3D ("Filament length: 2706.2 mm"), ideaMaker ("Material#1 Used: 422.7"), Kiri:Moto ("--- filament used:
+// 225").
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// By tool; a list of one is the whole print's, whatever its tools. At most one of the two is filled.
+struct Footer {
+    std::vector<double> length;  ///< mm of filament
+    std::vector<double> volume;  ///< mm^3
+
+    bool empty() const { return length.empty() && volume.empty(); }
+};
+
+/// Takes in a comment (without its ';', trimmed) if it is such a statement; the last one counts. False if it is none.
+bool readFooter(std::string_view comment, Footer& footer);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,81 @@
+#include "toolpath_report.h"
+
+#include "gcode/summary.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stratum::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describeFeatures(const gcode::Toolpath& toolpath) {
+    Json features = Json::object();
+    const auto totals = gcode::featureTotals(toolpath);
+    for (std::size_t i = 0; i < totals.size(); ++i)
+        if (totals[i].beads > 0)
+            features[std::string(gcode::featureName(static_cast<gcode::Feature>(i)))] = {
+                {"beads", totals[i].beads}, {"length_mm", totals[i].length}, {"volume_mm3", totals[i].volume}};
+    return features;
+}
+
+// What was read beside what the file says of itself; null where it says nothing.
+Json describeTools(const gcode::Toolpath& toolpath) {
+    Json tools = Json::array();
+    for (std::size_t tool = 0; tool < toolpath.filament_by_tool.size(); ++tool) {
+        if (!(toolpath.filament_by_tool[tool] > 0)) continue;
+        Json entry = {{"tool", tool}, {"filament_mm", toolpath.filament_by_tool[tool]}, {"footer_mm", nullptr}};
+        if (tool < toolpath.footer_by_tool.size()) entry["footer_mm"] = toolpath.footer_by_tool[tool];
+        tools.push_back(std::move(entry));
+    }
+    return tools;
+}
+
+Json describeObjects(const gcode::Toolpath& toolpath) {
+    const std::vector<gcode::FeatureTotal> totals = gcode::objectTotals(toolpath);
+    Json objects = Json::array();
+    for (std::size_t i = 1; i < totals.size(); ++i)
+        objects.push_back({{"number", i},
+                           {"name", toolpath.objects[i]},
+                           {"beads", totals[i].beads},
+                           {"length_mm", totals[i].length},
+                           {"volume_mm3", totals[i].volume}});
+    return objects;
+}
+
+}  // namespace
+
+Json describeToolpath(const gcode::Toolpath& toolpath) {
+    double length = 0;
+    double volume = 0;
+    for (const gcode::FeatureTotal& total : gcode::featureTotals(toolpath)) {
+        length += total.length;
+        volume += total.volume;
+    }
+    Json warnings = Json::array();
+    for (const gcode::Warning& warning : toolpath.warnings)
+        warnings.push_back({{"text", warning.text}, {"first_line", warning.first_line}, {"count", warning.count}});
+    Json footer = nullptr;
+    if (toolpath.footer_mm > 0) footer = toolpath.footer_mm;
+    return {{"beads", toolpath.beads.size()},
+            {"arcs", toolpath.arcs.size()},
+            {"layers", toolpath.layer_count},
+            {"length_mm", length},
+            {"filament_mm", toolpath.filament_mm},
+            {"footer_mm", footer},
+            {"filament_diameter_mm", toolpath.filament_diameter},
+            {"volume_mm3", volume},
+            {"extruded_mm3", toolpath.extruded_mm3},
+            {"firmware", toolpath.firmware},
+            {"firmware_reason", toolpath.firmware_reason},
+            {"extrusion", toolpath.extrusion_rule},
+            {"cut_short", toolpath.cut_short},
+            {"features", describeFeatures(toolpath)},
+            {"tools", describeTools(toolpath)},
+            {"objects", describeObjects(toolpath)},
+            {"warnings", warnings}};
+}
+
+}  // namespace stratum::tools
