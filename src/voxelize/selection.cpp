@@ -48,6 +48,16 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
     return toolpath.beads.size();
 }
 
+std::size_t endOfTime(const gcode::Toolpath& toolpath, double seconds) {
+    double time = 0;
+    for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
+        const double speed = toolpath.runOf(toolpath.beads[i]).speed;
+        if (speed > 0) time += gcode::beadLength(toolpath, toolpath.beads[i]) / speed;
+        if (time > seconds) return i;
+    }
+    return toolpath.beads.size();
+}
+
 }  // namespace
 
 void parseLayers(std::string_view text, Selection& selection) {
@@ -133,7 +143,7 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
-                fmt::format("--snapshots {}: expected N% (0 to 100), layer:N or every:N, separated by "
+                fmt::format("--snapshots {}: expected N% (0 to 100), layer:N, every:N or time:MINUTES, separated by "
                             "commas; the print has layers 1 to {}",
                             part, toolpath.layer_count));
         };
@@ -150,6 +160,10 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
             if (!step || *step == 0) throw bad();
             for (std::uint32_t layer = *step; layer <= toolpath.layer_count; layer += *step)
                 snapshots.push_back({fmt::format("layer{:04}", layer), endOfLayer(toolpath, layer)});
+        } else if (part.starts_with("time:")) {
+            const auto minutes = parseNumber<double>(part.substr(5));
+            if (!minutes || !(*minutes > 0)) throw bad();
+            snapshots.push_back({fmt::format("{:g}min", *minutes), endOfTime(toolpath, *minutes * 60)});
         } else {
             throw bad();
         }

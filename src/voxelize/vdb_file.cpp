@@ -23,16 +23,18 @@ void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance
     text("snapshot", provenance.snapshot);
     text("selection", provenance.selection);
     text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");
-    text("interior", "negative bound, not a distance");
+    text("interior", provenance.swept ? "distance" : "negative bound, not a distance");
+    text("enclosed", provenance.culled ? "filled: only what the outside can reach is there" : "kept");
     number("voxel_size_mm", lattice.voxel_size);
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);
+    // The file_* statistics that production loaders look for, e.g. file_mem_bytes.
     grid.addStatsMetadata();
 }
 
-void writeVdb(const openvdb::FloatGrid::Ptr& grid, const std::filesystem::path& path, const FileOptions& options) {
+void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options) {
     AtomicFile output(path);
-    grid->setSaveFloatAsHalf(options.half);
+    for (const openvdb::GridBase::Ptr& grid : grids) grid->setSaveFloatAsHalf(options.half);
     try {
         openvdb::io::File file(output.temporary().string());
         std::uint32_t flags = openvdb::io::COMPRESS_NONE;
@@ -42,7 +44,7 @@ void writeVdb(const openvdb::FloatGrid::Ptr& grid, const std::filesystem::path& 
         if (options.compression == Compression::zip)
             flags = openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK;
         file.setCompression(flags);
-        file.write(openvdb::GridCPtrVec{grid});
+        file.write(grids);
         file.close();
     } catch (const openvdb::Exception& error) {
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));

@@ -19,6 +19,8 @@ struct Provenance {
     std::string unit = "mm";    ///< "unit": of world space
     std::string snapshot;       ///< "snapshot": label of a partial print, left out if empty
     std::string selection;      ///< "selection": --layers and --features, left out if empty
+    bool culled = false;        ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool swept = false;         ///< "interior": whether negative values are distances
 };
 
 enum class Compression : std::uint8_t { blosc, zip, none };
@@ -32,7 +34,8 @@ struct FileOptions {
 /// "program", creator, and OpenVDB's own file statistics.
 void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance& provenance);
 
-/// Writes one grid to `path`. Throws OutputError; the old file then stays.
-void writeVdb(const openvdb::FloatGrid::Ptr& grid, const std::filesystem::path& path, const FileOptions& options = {});
+/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old file
+/// then stays.
+void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options = {});
 
 }  // namespace stratum::voxelize

@@ -14,10 +14,12 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -96,13 +98,14 @@ LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::u
 }  // namespace
 
 struct Voxelizer::State {
-    State(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& the_lattice,
+    State(const gcode::Toolpath& the_toolpath, std::span<const std::uint32_t> selection, const Lattice& the_lattice,
           VoxelizeOptions the_options)
-        : lattice(the_lattice),
+        : toolpath(the_toolpath),
+          lattice(the_lattice),
           options(std::move(the_options)),
           stack(stackIfItFits(toolpath, selection, lattice, options)),
           bins(toolpath, stack, lattice, memoryLimit(options) / 4),
-          scratch([this, &toolpath] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
+          scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
           grid(openvdb::FloatGrid::create(background)) {
         grid->setTransform(makeTransform(lattice, options.placement));
@@ -114,6 +117,7 @@ struct Voxelizer::State {
     void buildTouched(std::uint32_t end);
     void buildReached(std::uint32_t end);
 
+    const gcode::Toolpath& toolpath;
     const Lattice& lattice;
     const VoxelizeOptions options;
     const LayerStack stack;
@@ -231,6 +235,36 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
     report.build_seconds = secondsSince(start);
     report.exterior_seconds *= report.build_seconds;
     return state_->grid;
+}
+
+std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attribute> wanted) const {
+    const State& s = *state_;
+    std::vector<openvdb::GridBase::Ptr> grids = makeAttributeGrids(s.toolpath, wanted, *s.grid);
+    if (wanted.empty()) return grids;
+    const BeadAttributes values(s.toolpath, wanted);
+    constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+    tbb::enumerable_thread_specific<LeafColumn> owning(
+        [&s] { return LeafColumn(s.toolpath, s.stack, s.lattice, s.options.placement.unit, true); });
+    parallelFor(s.bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = owning.local();
+        std::array<std::uint32_t, Leaf::SIZE> owners{};
+        for (std::size_t c = first; c != last; ++c) {
+            if (s.bins[c].empty()) continue;
+            column.open(s.bins.originI(c), s.bins.originJ(c), s.bins[c], s.printed);
+            for (const LeafRange& range : column.touched())
+                for (int k = range.first; k <= range.second; ++k) {
+                    const openvdb::Coord origin(s.bins.originI(c), s.bins.originJ(c), k * kLeafDim);
+                    if (s.grid->tree().probeConstLeaf(origin) == nullptr) continue;
+                    column.evaluate(k);
+                    column.owners(owners);
+                    for (std::uint32_t& owner : owners)
+                        if (owner != kNobody) owner = s.stack.beads[owner];
+                    for (std::size_t n = 0; n < wanted.size(); ++n)
+                        fillLeaf(*grids[n], wanted[n], origin, values, owners);
+                }
+        }
+    });
+    return grids;
 }
 
 const VoxelizeReport& Voxelizer::report() const { return state_->report; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath.h"
+#include "voxelize/attributes.h"
 #include "voxelize/lattice.h"
 
 #include <openvdb/openvdb.h>
@@ -11,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace stratum::voxelize {
 
@@ -68,6 +70,9 @@ public:
     /// grow. The grid stays this object's and changes with the next step.
     openvdb::FloatGrid::Ptr printUntil(std::uint32_t end);
     openvdb::FloatGrid::Ptr printAll() { return printUntil(0xffffffff); }
+
+    /// Attribute grids over the active voxels of the grid as it is now, in the given order.
+    std::vector<openvdb::GridBase::Ptr> attributes(std::span<const Attribute> wanted) const;
 
     const VoxelizeReport& report() const;
 

@@ -1,0 +1,162 @@
+#include "voxelize/attributes.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr std::array<std::string_view, 8> kNames{"layer", "time", "feature", "tool", "object", "width", "speed", "color"};
+constexpr float kGrey = 0.8f;
+
+enum class Kind : std::uint8_t { integer, number, color };
+
+Kind kindOf(Attribute attribute) {
+    switch (attribute) {
+        case Attribute::time:
+        case Attribute::width:
+        case Attribute::speed: return Kind::number;
+        case Attribute::color: return Kind::color;
+        default: return Kind::integer;
+    }
+}
+
+// IEC 61966-2-1.
+float linear(std::uint8_t srgb) {
+    const double v = srgb / 255.0;
+    return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+}
+
+template <typename Grid>
+openvdb::GridBase::Ptr emptyGrid(const openvdb::FloatGrid& surface) {
+    using Value = typename Grid::ValueType;
+    return Grid::create(
+        typename Grid::TreePtrType(new typename Grid::TreeType(surface.tree(), Value(0), openvdb::TopologyCopy())));
+}
+
+template <typename Grid, typename ValueOf>
+void fill(openvdb::GridBase& base, const openvdb::Coord& origin, std::span<const std::uint32_t> beads,
+          const ValueOf& value_of) {
+    auto* leaf = static_cast<Grid&>(base).tree().probeLeaf(origin);
+    if (leaf == nullptr) return;
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) {
+        const std::uint32_t bead = beads[voxel.pos()];
+        if (bead != std::numeric_limits<std::uint32_t>::max()) voxel.setValue(value_of(bead));
+    }
+}
+
+}  // namespace
+
+std::string_view attributeName(Attribute attribute) { return kNames[static_cast<std::size_t>(attribute)]; }
+
+std::vector<Attribute> parseGrids(std::string_view text) {
+    std::vector<Attribute> attributes;
+    while (!text.empty()) {
+        const std::size_t comma = text.find(',');
+        const std::string_view name = text.substr(0, comma);
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+        if (name == "surface") continue;
+        const auto known = std::find(kNames.begin(), kNames.end(), name);
+        if (known == kNames.end())
+            throw UsageError(fmt::format("--grids {}: expected names separated by commas, of surface, {}", name,
+                                         fmt::join(kNames, ", ")));
+        const auto attribute = static_cast<Attribute>(known - kNames.begin());
+        if (std::find(attributes.begin(), attributes.end(), attribute) == attributes.end())
+            attributes.push_back(attribute);
+    }
+    return attributes;
+}
+
+BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes)
+    : toolpath_(toolpath) {
+    if (std::find(attributes.begin(), attributes.end(), Attribute::time) == attributes.end()) return;
+    start_.reserve(toolpath.beads.size());
+    double time = 0;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        start_.push_back(static_cast<float>(time));
+        const double speed = toolpath.runOf(bead).speed;
+        if (speed > 0) time += gcode::beadLength(toolpath, bead) / speed;
+    }
+}
+
+std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) const {
+    const gcode::Run& run = toolpath_.runOf(toolpath_.beads[bead]);
+    switch (attribute) {
+        case Attribute::layer: return static_cast<std::int32_t>(run.layer);
+        case Attribute::feature: return static_cast<std::int32_t>(run.feature);
+        case Attribute::object: return run.object;
+        default: return run.tool;
+    }
+}
+
+float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
+    if (attribute == Attribute::time) return start_[bead];
+    return attribute == Attribute::width ? toolpath_.beads[bead].width : toolpath_.runOf(toolpath_.beads[bead]).speed;
+}
+
+openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {
+    const std::uint8_t tool = toolpath_.runOf(toolpath_.beads[bead]).tool;
+    std::array<std::uint8_t, 3> srgb{};
+    bool known = false;
+    if (tool < toolpath_.tool_colors.size()) {
+        srgb = toolpath_.tool_colors[tool];
+        known = true;
+    }
+    for (const gcode::ColorChange& change : toolpath_.color_changes) {
+        if (change.first_bead > bead) break;
+        if (change.tool != tool) continue;
+        srgb = change.color;
+        known = true;
+    }
+    return known ? openvdb::Vec3f(linear(srgb[0]), linear(srgb[1]), linear(srgb[2])) : openvdb::Vec3f(kGrey);
+}
+
+std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& toolpath,
+                                                       std::span<const Attribute> attributes,
+                                                       const openvdb::FloatGrid& surface) {
+    std::vector<openvdb::GridBase::Ptr> grids;
+    for (const Attribute attribute : attributes) {
+        openvdb::GridBase::Ptr grid;
+        switch (kindOf(attribute)) {
+            case Kind::integer: grid = emptyGrid<openvdb::Int32Grid>(surface); break;
+            case Kind::number: grid = emptyGrid<openvdb::FloatGrid>(surface); break;
+            case Kind::color: grid = emptyGrid<openvdb::Vec3SGrid>(surface); break;
+        }
+        grid->setName(std::string(attributeName(attribute)));
+        grid->setTransform(surface.transform().copy());
+        std::string names;
+        if (attribute == Attribute::feature)
+            for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
+                names += fmt::format("{}{} {}", f > 0 ? ", " : "", f, gcode::featureName(static_cast<gcode::Feature>(f)));
+        if (attribute == Attribute::object)
+            for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
+                names += fmt::format("{}{} {}", n > 1 ? ", " : "", n, toolpath.objects[n]);
+        if (!names.empty()) grid->insertMeta("names", openvdb::StringMetadata(names));
+        grids.push_back(std::move(grid));
+    }
+    return grids;
+}
+
+void fillLeaf(openvdb::GridBase& grid, Attribute attribute, const openvdb::Coord& origin, const BeadAttributes& values,
+              std::span<const std::uint32_t> beads_of_voxels) {
+    switch (kindOf(attribute)) {
+        case Kind::integer:
+            return fill<openvdb::Int32Grid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.integer(attribute, bead); });
+        case Kind::number:
+            return fill<openvdb::FloatGrid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.number(attribute, bead); });
+        case Kind::color:
+            return fill<openvdb::Vec3SGrid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.color(bead); });
+    }
+}
+
+}  // namespace stratum::voxelize

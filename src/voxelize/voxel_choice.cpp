@@ -1,0 +1,96 @@
+#include "voxelize/voxel_choice.h"
+
+#include "io/error.h"
+#include "voxelize/layer_stack.h"
+#include "voxelize/leaf_column.h"
+#include "voxelize/plan_bins.h"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr int kMostVoxelsPerLayer = 64;
+constexpr int kMostWithinBudget = 16;
+// A leaf's values, mask and header, and its share of the nodes above.
+constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
+// Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
+constexpr double kFloodFactor = 1.35;
+
+}  // namespace
+
+int voxelsPerLayerForTolerance(double layer_height, double tolerance) {
+    if (!(std::isfinite(tolerance) && tolerance > 0))
+        throw UsageError(fmt::format("--tolerance {}: expected a number of mm above 0, e.g. 0.02", tolerance));
+    const double count = std::ceil(kLargestErrorVoxels * layer_height / tolerance - 1e-9);
+    if (count > kMostVoxelsPerLayer)
+        throw UsageError(fmt::format("--tolerance {:g} mm needs {:.0f} voxels a layer of {:g} mm, at most {} are made; "
+                                     "the finest tolerance is {:g} mm",
+                                     tolerance, count, layer_height, kMostVoxelsPerLayer,
+                                     kLargestErrorVoxels * layer_height / kMostVoxelsPerLayer));
+    return std::max(1, static_cast<int>(count));
+}
+
+double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
+                     Interior interior) {
+    if (interior == Interior::cull) {
+        Lattice coarse = lattice;
+        coarse.voxel_size = lattice.layer_height;
+        VoxelizeOptions options;
+        options.interior = Interior::cull;
+        const auto leaves = static_cast<double>(voxelize(toolpath, selection, coarse, options)->tree().leafCount());
+        const double finer = coarse.voxel_size / lattice.voxel_size;
+        return leaves * finer * finer * kBytesPerLeaf * kFloodFactor;
+    }
+    const LayerStack stack = stackLayers(toolpath, selection);
+    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
+    LeafColumn column(toolpath, stack, lattice, 1);
+    std::size_t leaves = 0;
+    for (std::size_t c = 0; c < bins.size(); ++c)
+        if (!bins[c].empty()) leaves += column.countLeaves(bins[c]);
+    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes());
+}
+
+int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                         const Lattice& one_per_layer, Interior interior) {
+    Lattice lattice = one_per_layer;
+    lattice.voxel_size = lattice.layer_height;
+    const double coarsest = estimateBytes(toolpath, selection, lattice, interior);
+    if (coarsest > budget)
+        throw UsageError(fmt::format("--memory-budget: one voxel a layer of {:g} mm takes about {:.3g} MB already; give "
+                                     "that much, fewer layers or features{}",
+                                     lattice.layer_height, coarsest * 1e-6,
+                                     interior == Interior::keep ? ", or --interior cull" : ""));
+    int best = 1;
+    for (int count = 2; count <= kMostWithinBudget; ++count) {
+        // Finer never takes less than the square; no need to list what that alone rules out.
+        if (coarsest * count * count > 1.5 * budget) break;
+        lattice.voxel_size = lattice.layer_height / count;
+        const double bytes = interior == Interior::cull ? coarsest * count * count
+                                                        : estimateBytes(toolpath, selection, lattice, interior);
+        if (bytes > budget) break;
+        best = count;
+    }
+    return best;
+}
+
+double parseSize(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+    std::string suffix;
+    for (const char* p = end; p != text.data() + text.size(); ++p)
+        if (*p != ' ') suffix += static_cast<char>(std::tolower(static_cast<unsigned char>(*p)));
+    if (suffix.ends_with('b')) suffix.pop_back();
+    const double unit = suffix.empty() ? 1 : suffix == "k" ? 1e3 : suffix == "m" ? 1e6 : suffix == "g" ? 1e9 : 0;
+    if (error != std::errc{} || !(value > 0) || !std::isfinite(value) || unit == 0)
+        throw UsageError(fmt::format("{}: expected a size such as 800MB or 4GB", text));
+    return value * unit;
+}
+
+}  // namespace stratum::voxelize
