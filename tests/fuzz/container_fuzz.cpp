@@ -7,9 +7,9 @@
 //   build/fuzz/bin/container_fuzz -max_total_time=300 -rss_limit_mb=4096 -max_len=65536 FOLDER
 //
 // FOLDER collects the inputs that reach new code; start it with a copy of tests/fuzz/container, which the tests run too
-// and whose successor is: container_fuzz -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW tests/fuzz/container
-// FOLDER Checksums are what a fuzzer can't guess, so the CRC32s of a binary G-code file are put right before it is
-// read.
+// and whose successor comes out of:
+//   container_fuzz -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW tests/fuzz/container FOLDER
+// Checksums are what a fuzzer can't guess, so the CRC32s of a binary G-code file are put right before it is read.
 #include "gcode/bgcode.h"
 #include "gcode/container.h"
 #include "gcode/little_endian.h"
