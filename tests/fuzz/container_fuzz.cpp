@@ -7,7 +7,8 @@
 //   build/fuzz/bin/container_fuzz -max_total_time=300 -rss_limit_mb=4096 -max_len=65536 FOLDER
 //
 // FOLDER collects the inputs that reach new code; start it with a copy of tests/fuzz/container, which the tests run too
-// and which is brought up to date with: container_fuzz -merge=1 -max_len=4096 tests/fuzz/container FOLDER
+// and whose successor comes out of:
+//   container_fuzz -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW tests/fuzz/container FOLDER
 // Checksums are what a fuzzer can't guess, so the CRC32s of a binary G-code file are put right before it is read.
 #include "gcode/bgcode.h"
 #include "gcode/container.h"
