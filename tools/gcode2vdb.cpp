@@ -9,12 +9,16 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "voxelize/attributes.h"
+#include "voxelize/interior_distance.h"
 #include "voxelize/selection.h"
 #include "voxelize/vdb_file.h"
+#include "voxelize/voxel_choice.h"
 #include "voxelize/voxelizer.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -34,7 +38,9 @@ Examples:
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
-  gcode2vdb part.gcode --unit m --origin center     for Blender and Houdini
+  gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
+  gcode2vdb part.gcode --interior cull --voxel-size 0.05   only what is seen from outside
+  gcode2vdb part.gcode --grids layer,color          what each voxel was printed as
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
@@ -46,6 +52,12 @@ struct Options {
     std::string dump_toolpath;
     bool summary = false;
     voxelize::LatticeRequest lattice;
+    std::optional<double> tolerance;
+    std::string memory_budget;
+    std::string interior = "keep";
+    bool interior_distance = false;
+    std::string grids;
+    std::string up = "z";
     std::string layers, features, snapshots;
     std::vector<std::string> objects;
     std::string unit = "mm", origin = "bed";
@@ -69,6 +81,17 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("N")
         ->excludes(size)
         ->group(lattice);
+    app.add_option("--tolerance", o.tolerance, "Coarsest voxel whose surface stays this near to the beads")
+        ->type_name("MM")
+        ->excludes("--voxel-size")
+        ->excludes("--voxels-per-layer")
+        ->group(lattice);
+    app.add_option("--memory-budget", o.memory_budget, "Finest voxel that fits, e.g. 4GB")
+        ->type_name("SIZE")
+        ->excludes("--voxel-size")
+        ->excludes("--voxels-per-layer")
+        ->excludes("--tolerance")
+        ->group(lattice);
     app.add_option("--half-width", o.lattice.half_width, "Narrow band to each side (default 3)")
         ->type_name("VOXELS")
         ->group(lattice);
@@ -80,7 +103,20 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::IsMember({"bed", "center", "min"}))
         ->type_name("WHERE")
         ->group(lattice);
+    app.add_option("--up", o.up, "z as printed, or y for programs whose up is y")
+        ->check(CLI::IsMember({"z", "y"}))
+        ->type_name("AXIS")
+        ->group(lattice);
     const char* what = "What to convert";
+    app.add_option("--interior", o.interior, "keep all inner surfaces, or cull what no outside point can reach")
+        ->check(CLI::IsMember({"keep", "cull"}))
+        ->type_name("HOW")
+        ->group(what);
+    app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
+        ->group(what);
+    app.add_option("--grids", o.grids, "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
+        ->type_name("LIST")
+        ->group(what);
     app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
         ->type_name("A:B")
         ->group(what);
@@ -91,7 +127,7 @@ void addOptions(CLI::App& app, Options& o) {
         ->allow_extra_args(false)
         ->type_name("NAME|NUMBER")
         ->group(what);
-    app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10")
+    app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
         ->type_name("LIST")
         ->group(what);
     const char* reading = "Reading";
@@ -159,31 +195,57 @@ voxelize::Placement placementFor(const Options& o, const voxelize::Bounds& bound
 struct Job {
     std::string label;
     fs::path path;
-    std::vector<std::uint32_t> beads;
+    std::size_t beads = 0;  // of the selection
+    std::uint32_t end = 0;  // all selected beads before this one
 };
 
-std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath, std::vector<std::uint32_t> selection,
-                          const fs::path& output) {
+std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
+                          const std::vector<std::uint32_t>& selection, const fs::path& output) {
     std::vector<Job> jobs;
     if (!o.snapshots.empty()) {
         for (const voxelize::Snapshot& snapshot : voxelize::parseSnapshots(o.snapshots, toolpath)) {
             fs::path path = output;
             path.replace_filename(
                 fmt::format("{}.{}{}", output.stem().string(), snapshot.label, output.extension().string()));
-            Job job{snapshot.label, path, {}};
-            for (const std::uint32_t bead : selection)
-                if (bead < snapshot.bead_count) job.beads.push_back(bead);
-            if (!job.beads.empty()) jobs.push_back(std::move(job));
+            const auto end = static_cast<std::uint32_t>(snapshot.bead_count);
+            const auto beads = std::lower_bound(selection.begin(), selection.end(), end) - selection.begin();
+            if (beads > 0) jobs.push_back({snapshot.label, path, static_cast<std::size_t>(beads), end});
         }
     }
-    jobs.push_back({"", output, std::move(selection)});
+    jobs.push_back({"", output, selection.size(), static_cast<std::uint32_t>(toolpath.beads.size())});
     return jobs;
+}
+
+// --tolerance and --memory-budget become voxels a layer; everything else is the lattice's own choice.
+voxelize::Lattice latticeFor(const Options& o, const gcode::Toolpath& toolpath,
+                             const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
+                             voxelize::Interior interior) {
+    voxelize::LatticeRequest request = o.lattice;
+    if (!o.tolerance && o.memory_budget.empty())
+        return voxelize::chooseLattice(toolpath, selection, bounds, request);
+    request.voxels_per_layer = 1;
+    const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
+    std::string why;
+    if (o.tolerance) {
+        request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *o.tolerance);
+        why = fmt::format("errors of half a voxel at most stay within {:g} mm", *o.tolerance);
+    } else {
+        const double budget = voxelize::parseSize(o.memory_budget);
+        request.voxels_per_layer =
+            voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
+        why = fmt::format("the finest within {}", tools::humanBytes(budget));
+    }
+    voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
+    lattice.reason += "; " + why;
+    return lattice;
 }
 
 Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    const openvdb::Vec3d low = grid.indexToWorld(box.min());
-    const openvdb::Vec3d high = grid.indexToWorld(box.max());
+    const openvdb::Vec3d a = grid.indexToWorld(box.min());
+    const openvdb::Vec3d b = grid.indexToWorld(box.max());
+    const openvdb::Vec3d low = openvdb::math::minComponent(a, b);
+    const openvdb::Vec3d high = openvdb::math::maxComponent(a, b);
     const double unit = grid.voxelSize()[0] / lattice.voxel_size;
     return {
         {"voxel_size_mm", lattice.voxel_size},
@@ -229,7 +291,9 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, filter);
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
-    const voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, o.lattice);
+    const auto interior = o.interior == "cull" ? voxelize::Interior::cull : voxelize::Interior::keep;
+    const std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
+    const voxelize::Lattice lattice = latticeFor(o, toolpath, selection, bounds, interior);
     tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
                                      lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
 
@@ -245,28 +309,45 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     note("features", o.features);
     for (const std::string& object : o.objects) note("object", object);
 
+    provenance.culled = interior == voxelize::Interior::cull;
+    provenance.swept = o.interior_distance;
+
     voxelize::VoxelizeOptions options;
     options.placement = placementFor(o, bounds);
-    double voxelize_seconds = 0;
+    options.placement.up_y = o.up == "y";
+    options.interior = interior;
+    tools::ProgressBar bar("voxelizing", o.common.quiet);
+    options.progress = bar.callback();
+    voxelize::Voxelizer voxelizer(toolpath, selection, lattice, options);
+    double voxelize_seconds = watch.lap();
+    double cull_seconds = 0;
     double write_seconds = 0;
     Json files = Json::array();
     Json grid_report;
-    for (const Job& job : planJobs(o, toolpath, std::move(selection), output)) {
-        tools::ProgressBar bar(job.label.empty() ? "voxelizing" : job.label, o.common.quiet);
-        options.progress = bar.callback();
+    for (const Job& job : planJobs(o, toolpath, selection, output)) {
         watch.lap();
-        const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, job.beads, lattice, options);
+        openvdb::FloatGrid::Ptr grid = voxelizer.printUntil(job.end);
+        openvdb::GridPtrVec grids = voxelizer.attributes(attributes);
+        if (o.interior_distance) {
+            // The voxelizer goes on from its own values at the next step.
+            grid = grid->deepCopy();
+            voxelize::sweepInterior(*grid);
+        }
         voxelize_seconds += watch.lap();
+        cull_seconds += voxelizer.report().exterior_seconds;
         provenance.snapshot = job.label;
         voxelize::describe(*grid, lattice, provenance);
-        voxelize::writeVdb(grid, job.path, o.file);
+        grids.insert(grids.begin(), grid);
+        voxelize::writeVdb(grids, job.path, o.file);
         write_seconds += watch.lap();
         const auto bytes = fs::file_size(job.path);
         files.push_back({{"path", job.path.string()},
                          {"snapshot", job.label},
                          {"bytes", bytes},
-                         {"beads", job.beads.size()},
-                         {"active_voxels", grid->activeVoxelCount()}});
+                         {"beads", job.beads},
+                         {"active_voxels", grid->activeVoxelCount()},
+                         {"leaves_evaluated", voxelizer.report().leaves_evaluated},
+                         {"leaves_reused", voxelizer.report().leaves_reused}});
         tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
                                          tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
@@ -282,9 +363,22 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         skipped.push_back({{"what", "beads"}, {"why", why}, {"saved", count}});
         tools::say(o.common, fmt::format("  left out {}: {}", count, why));
     }
-    skipped.push_back({{"what", "distances inside the solid"},
-                       {"why", "the surface needs only their sign"},
-                       {"saved", "a fast-sweeping pass over the grid"}});
+    if (!o.interior_distance)
+        skipped.push_back({{"what", "distances inside the solid"},
+                           {"why", "the surface needs only their sign"},
+                           {"saved", "a fast-sweeping pass over the grid"}});
+    if (attributes.empty())
+        skipped.push_back({{"what", "attribute grids"},
+                           {"why", "none asked for (--grids)"},
+                           {"saved", "a nearest-bead search and four bytes a voxel for each"}});
+    if (provenance.culled) {
+        const auto& report = voxelizer.report();
+        skipped.push_back({{"what", "leaves that the outside can't reach"},
+                           {"why", "--interior cull"},
+                           {"saved", fmt::format("{} of {} leaf positions were never evaluated",
+                                                 report.leaf_positions - report.leaves_evaluated,
+                                                 report.leaf_positions)}});
+    }
     Json toolpath_report = tools::describeToolpath(toolpath);
     toolpath_report["selected_bbox_mm"] = {bounds.min, bounds.max};
     const double total_seconds = total.lap();
@@ -301,8 +395,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             {"skipped", skipped},
             {"seconds",
              {{"parse", parse_seconds},
-              {"cull", 0.0},
-              {"voxelize", voxelize_seconds},
+              {"cull", cull_seconds},
+              {"voxelize", voxelize_seconds - cull_seconds},
               {"write", write_seconds},
               {"total", total_seconds}}},
             {"peak_rss_bytes", tools::peakRssBytes()},

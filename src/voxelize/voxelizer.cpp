@@ -63,6 +63,9 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
     auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size * placement.unit);
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
                                             (placement.offset[2] + lattice.origin_z) * placement.unit));
+    // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
+    if (placement.up_y)
+        transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
     return transform;
 }
 

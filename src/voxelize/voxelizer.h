@@ -20,6 +20,7 @@ namespace stratum::voxelize {
 struct Placement {
     double unit = 1;               ///< world units a mm: 1 for mm, 0.1 for cm, 0.001 for m
     double offset[3] = {0, 0, 0};  ///< mm
+    bool up_y = false;             ///< turn print z to world y: (x, y, z) becomes (x, z, -y)
 };
 
 /// What becomes of surfaces that no outside point can reach.

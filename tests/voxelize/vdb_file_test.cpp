@@ -36,7 +36,7 @@ TEST_F(VdbFile, KeepsEveryValueWithEveryCompression) {
     const auto grid = oneBead(lattice);
     describe(*grid, lattice, {});
     for (const Compression compression : {Compression::blosc, Compression::zip, Compression::none}) {
-        writeVdb(grid, path_, {false, compression});
+        writeVdb({grid}, path_, {false, compression});
         const auto back = readBack(path_);
         ASSERT_EQ(back->activeVoxelCount(), grid->activeVoxelCount());
         const auto accessor = back->getConstAccessor();
@@ -52,7 +52,7 @@ TEST_F(VdbFile, SaysWhereItCameFrom) {
     provenance.source_sha256 = "00ff";
     provenance.slicer = "PrusaSlicer 2.5.0";
     describe(*grid, lattice, provenance);
-    writeVdb(grid, path_);
+    writeVdb({grid}, path_);
     const auto back = readBack(path_);
     EXPECT_EQ(back->metaValue<std::string>("source_file"), "tile.gcode");
     EXPECT_EQ(back->metaValue<std::string>("source_sha256"), "00ff");
@@ -68,7 +68,7 @@ TEST_F(VdbFile, SaysWhereItCameFrom) {
 TEST_F(VdbFile, HalfPrecisionIsGoodToAThousandthOfTheBand) {
     Lattice lattice;
     const auto grid = oneBead(lattice);
-    writeVdb(grid, path_, {true, Compression::blosc});
+    writeVdb({grid}, path_, {true, Compression::blosc});
     const auto back = readBack(path_);
     const auto accessor = back->getConstAccessor();
     for (auto it = grid->cbeginValueOn(); it; ++it)
@@ -78,7 +78,7 @@ TEST_F(VdbFile, HalfPrecisionIsGoodToAThousandthOfTheBand) {
 TEST_F(VdbFile, AnUnwritablePlaceIsAnErrorThatLeavesNothing) {
     Lattice lattice;
     const auto grid = oneBead(lattice);
-    EXPECT_THROW(writeVdb(grid, "/nonexistent/folder/out.vdb"), OutputError);
+    EXPECT_THROW(writeVdb({grid}, "/nonexistent/folder/out.vdb"), OutputError);
 }
 
 }  // namespace

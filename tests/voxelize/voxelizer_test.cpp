@@ -1,6 +1,7 @@
 #include "voxelize/voxelizer.h"
 
 #include "io/error.h"
+#include "plain_field.h"
 #include "toolpaths.h"
 
 #include <gtest/gtest.h>
@@ -93,6 +94,62 @@ TEST(Voxelizer, EveryVoxelAgreesWithBruteForce) {
         }
         EXPECT_GT(compared, 10000U);
     }
+}
+
+TEST(Voxelizer, InsideTheValuesAreThoseOfThePlainLoopsWeldsIncluded) {
+    const gcode::Toolpath toolpath = smallPrint();
+    const test::PlainField plain(toolpath);
+    for (const double voxel : {0.1, 0.05, 0.037, 0.33}) {
+        const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOf(voxel));
+        const auto accessor = grid->getConstAccessor();
+        openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+        box.expand(1);
+        const double background = grid->background();
+        std::size_t inside = 0;
+        for (auto c = box.begin(); c; ++c) {
+            if (voxel < 0.05 && ((*c)[0] + (*c)[1]) % 3 != 0) continue;
+            const openvdb::Vec3d p = grid->indexToWorld(*c);
+            const double expected = std::clamp(plain(p[0], p[1], p[2]), -background, background);
+            ASSERT_NEAR(accessor.getValue(*c), expected, 2e-6) << *c << " at " << voxel;
+            if (expected < 0) ++inside;
+        }
+        EXPECT_GT(inside, 100U);
+    }
+}
+
+TEST(Voxelizer, APartialPrintIsTheSameHoweverItWasReached) {
+    const gcode::Toolpath toolpath = smallPrint();
+    const auto beads = allBeads(toolpath);
+    for (const Interior interior : {Interior::keep, Interior::cull}) {
+        VoxelizeOptions options;
+        options.interior = interior;
+        for (const double voxel : {0.1, 0.03}) {
+            const Lattice lattice = latticeOf(voxel);
+            Voxelizer series(toolpath, beads, lattice, options);
+            for (const std::uint32_t end : {5U, 17U, 18U, 40U, 61U, 72U}) {
+                const auto grown = series.printUntil(end);
+                const std::vector<std::uint32_t> part(beads.begin(), beads.begin() + end);
+                const auto fresh = voxelize(toolpath, part, lattice, options);
+                expectSame(*fresh, *grown);
+                // Steps that change little evaluate little.
+                if (end == 18 && interior == Interior::keep) {
+                    EXPECT_LT(series.report().leaves_evaluated, fresh->tree().leafCount());
+                    EXPECT_GT(series.report().leaves_reused, 0U);
+                }
+            }
+        }
+    }
+}
+
+TEST(Voxelizer, UpYTurnsTheWorldAndNothingElse) {
+    const gcode::Toolpath toolpath = smallPrint();
+    VoxelizeOptions options;
+    options.placement.up_y = true;
+    options.placement.offset[1] = 2;
+    const auto turned = voxelize(toolpath, allBeads(toolpath), latticeOf(0.1), options);
+    const openvdb::Vec3d p = turned->indexToWorld(openvdb::Coord(10, 20, 5));
+    EXPECT_EQ(p, openvdb::Vec3d(1.0, 0.5, -4.0));
+    expectNothingWrong(*turned);
 }
 
 TEST(Voxelizer, IsALevelSetThatOpenVdbFindsNothingWrongWith) {
