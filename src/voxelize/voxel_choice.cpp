@@ -20,6 +20,8 @@ constexpr int kMostVoxelsPerLayer = 64;
 constexpr int kMostWithinBudget = 16;
 // A leaf's values, mask and header, and its share of the nodes above.
 constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
+// The nodes above, of however small a grid.
+constexpr double kBytesOfTree = 5e5;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
 constexpr double kFloodFactor = 1.35;
 
@@ -46,7 +48,7 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
         options.interior = Interior::cull;
         const auto leaves = static_cast<double>(voxelize(toolpath, selection, coarse, options)->tree().leafCount());
         const double finer = coarse.voxel_size / lattice.voxel_size;
-        return leaves * finer * finer * kBytesPerLeaf * kFloodFactor;
+        return leaves * finer * finer * kBytesPerLeaf * kFloodFactor + kBytesOfTree;
     }
     const LayerStack stack = stackLayers(toolpath, selection);
     const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
@@ -54,7 +56,7 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
     std::size_t leaves = 0;
     for (std::size_t c = 0; c < bins.size(); ++c)
         if (!bins[c].empty()) leaves += column.countLeaves(bins[c]);
-    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes());
+    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes()) + kBytesOfTree;
 }
 
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
