@@ -79,8 +79,19 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--brdf", o.scene.brdf, "lambert:R,G,B or plastic:R,G,B,ALPHA (GGX alpha)")
         ->type_name("SPEC")
         ->group(light);
-    app.add_option("--env", o.scene.env, "studio or constant:R,G,B (default studio)")->type_name("SPEC")->group(light);
-    app.add_option("--light", o.scene.lights, "directional:X,Y,Z,R,G,B, towards the light; may be repeated")
+    app.add_option(
+           "--env", o.scene.env,
+           "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map (default studio)")
+        ->type_name("SPEC|FILE")
+        ->group(light);
+    app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
+        ->type_name("DEG")
+        ->group(light);
+    app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps")->type_name("EV")->group(light);
+    app.add_option("--light", o.scene.lights,
+                   "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
+                   "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges, "
+                   "radiance), ambient:R,G,B; may be repeated")
         ->type_name("SPEC")
         ->group(light);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
@@ -209,7 +220,7 @@ void run(Options& o) {
         skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
     };
     if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
-    if (scene.lights.empty()) skip("directional lights", "none asked for", "one shadow ray a hit and light");
+    if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
     if (o.render.integrator.name != "path" && o.render.integrator.name != "direct")
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
     tools::writeStats(
