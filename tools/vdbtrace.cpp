@@ -5,10 +5,12 @@
 #include "march/brick_intersector.h"
 #include "march/level_set_file.h"
 #include "march/vdb_intersector.h"
+#include "shade/brdf_file.h"
 #include "shade/picture.h"
 #include "shade/render.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -35,7 +37,7 @@ Examples:
 
 struct Options {
     tools::CommonOptions common;
-    std::string input, output, grid, march = "auto", size = "1280x960", view = "iso", crop;
+    std::string input, output, grid, march = "auto", size = "1280x960", view = "iso", crop, write_brdf;
     std::vector<double> eye, look_at, up;
     shade::SceneOptions scene;
     shade::RenderOptions render;
@@ -76,8 +78,10 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(light);
-    app.add_option("--brdf", o.scene.brdf, "lambert:R,G,B or plastic:R,G,B,ALPHA (GGX alpha)")
-        ->type_name("SPEC")
+    app.add_option("--brdf", o.scene.brdf,
+                   "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
+                   "EXR), or the name of one in data/brdf, e.g. pla-blue")
+        ->type_name("SPEC|FILE|NAME")
         ->group(light);
     app.add_option(
            "--env", o.scene.env,
@@ -93,6 +97,9 @@ void addOptions(CLI::App& app, Options& o) {
                    "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges, "
                    "radiance), ambient:R,G,B; may be repeated")
         ->type_name("SPEC")
+        ->group(light);
+    app.add_option("--write-brdf", o.write_brdf, "Also write the material as a MERL .binary or an .exr texture")
+        ->type_name("FILE")
         ->group(light);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
 
@@ -185,6 +192,8 @@ void run(Options& o) {
     const auto intersector = o.march == "vdb" ? march::makeVdbIntersector(grid) : march::makeBrickIntersector(*grid);
     grid.reset();  // bricks hold all that rays need
     const shade::SceneDescription scene = shade::makeScene(o.scene, *intersector, o.render.width, o.render.height);
+    for (const std::string& note : scene.material->notes()) tools::say(o.common, "  material: " + note);
+    if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene.material);
     const double build_seconds = watch.lap();
     shade::RenderResult result;
     {
@@ -206,6 +215,8 @@ void run(Options& o) {
                              {"Seed", std::to_string(o.render.seed)},
                              {"Brdf", o.scene.brdf},
                              {"Environment", o.scene.env}};
+    if (!scene.material->notes().empty())
+        metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
     picture.write(result.film, metadata, o.tone);
     const double write_seconds = watch.lap();
     const double total_seconds = total.lap();
@@ -233,6 +244,7 @@ void run(Options& o) {
          {"march", intersector->name()},
          {"march_bytes", intersector->bytes()},
          {"integrator", o.render.integrator.name},
+         {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
          {"seconds",
           {{"load", load_seconds},
            {"build", build_seconds},
