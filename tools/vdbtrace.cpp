@@ -78,9 +78,10 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(light);
-    app.add_option("--brdf", o.scene.brdf,
-                   "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
-                   "EXR), or the name of one in data/brdf, e.g. pla-blue")
+    app.add_option(
+           "--brdf", o.scene.brdf,
+           "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
+           "EXR), or the name of one in data/brdf, e.g. pla-blue")
         ->type_name("SPEC|FILE|NAME")
         ->group(light);
     app.add_option(

@@ -117,9 +117,10 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
                         return std::get<0>(r.first) == i.first && std::get<2>(r.first) == 0;
                     });
                 if (found == readings.end())
-                    text.fail(fmt::format("no reading at theta_i {:g}, phi_s - phi_i {:g}, theta_s {:g} degrees; they "
-                                          "must form a grid",
-                                          i.second * 180.0 / kPiD, a.second * 180.0 / kPiD, p.second * 180.0 / kPiD));
+                    text.fail(
+                        fmt::format("no reading at theta_i {:g}, phi_s - phi_i {:g}, theta_s {:g} degrees; they "
+                                    "must form a grid",
+                                    i.second * 180.0 / kPiD, a.second * 180.0 / kPiD, p.second * 180.0 / kPiD));
                 scan.values.push_back(found->second);
             }
         }

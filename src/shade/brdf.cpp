@@ -32,18 +32,21 @@ std::string namesIn(const std::filesystem::path& folder) {
         if (name.ends_with(kEnding)) names.push_back(name.substr(0, name.size() - kEnding.size()));
     }
     std::sort(names.begin(), names.end());
-    return names.empty() ? fmt::format("none; {} has no tables", folder.string()) : fmt::format("{}", fmt::join(names, ", "));
+    return names.empty() ? fmt::format("none; {} has no tables", folder.string())
+                         : fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     std::error_code error;
-    if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error)) return readBrdfFile(text);
+    if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
+        return readBrdfFile(text);
     const bool plain = text.find_first_of(":/.") == std::string_view::npos && !text.empty();
     const std::filesystem::path path = tableFolder() / (std::string(text) + ".bsdf.gz");
     if (plain && std::filesystem::is_regular_file(path, error)) return readBrdfFile(path);
-    throw UsageError(fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-                                 "a file, or one of: {}",
-                                 text, namesIn(tableFolder())));
+    throw UsageError(
+        fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+                    "a file, or one of: {}",
+                    text, namesIn(tableFolder())));
 }
 
 }  // namespace

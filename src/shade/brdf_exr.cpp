@@ -48,8 +48,9 @@ double seamContrast(const ExrImage& image, Layout layout) {
     double at_seams = 0.0, elsewhere = 1e-6;
     std::size_t seams = 0, others = 0;
     const auto value = [&](int x, int y) {
-        const Color& c = image.rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                   static_cast<std::size_t>(x)];
+        const Color& c =
+            image
+                .rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
         return std::log(std::max(static_cast<double>(luminance(c)), 1e-7));
     };
     const auto add = [&](double jump, bool seam) {
@@ -174,8 +175,9 @@ BrdfScan readBrdfExr(const std::filesystem::path& path) {
         const int y0 = tile / layout.columns * tile_h;
         for (int x = 0; x < tile_w; ++x)
             for (int y = 0; y < tile_h; ++y)
-                scan.values.push_back(image.rgb[static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(image.width) +
-                                                static_cast<std::size_t>(x0 + x)]);
+                scan.values.push_back(
+                    image.rgb[static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(image.width) +
+                              static_cast<std::size_t>(x0 + x)]);
     }
     scan.check(name);
     const auto meaning = words.find({"meaning"});

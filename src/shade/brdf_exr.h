@@ -14,9 +14,11 @@ namespace stratum::shade {
 ///   layout   "CxR" tiles across and down, or numbers `columns` and `rows` (also tilesX, tilesY). Else 4x1, 1x4 or 2x2,
 ///            the one at whose seams the picture jumps most.
 ///   thetaI   (also theta_i, incidences) angles of incidence in degrees, separated by commas. Else 0, 20, 40, 60.
-///   sampling "nodes": the first and last texel lie on the ends of the range; "centers": half a texel inside. Else nodes
+///   sampling "nodes": the first and last texel lie on the ends of the range; "centers": half a texel inside. Else
+///   nodes
 ///            along odd sizes and centers along even ones.
-///   meaning  "detector": angles of the detector; "half": of the half vector. Else by where the highlight sits: near the
+///   meaning  "detector": angles of the detector; "half": of the half vector. Else by where the highlight sits: near
+///   the
 ///            mirror direction, or at the top of all tiles.
 /// The mirror side's azimuth is found by its brightness, as in all scans.
 /// Source of the layout: J. Spilar, "Visualization of 3D printing via ray tracing", CTU Prague 2025.

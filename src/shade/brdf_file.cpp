@@ -10,8 +10,8 @@
 #include "shade/zemax_reader.h"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <zlib.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -39,7 +39,8 @@ std::string gunzip(const std::filesystem::path& path) {
                                          path.string(), gzerror(file.get(), &status)));
         text.append(chunk.data(), static_cast<std::size_t>(count));
         if (text.size() > kMostText)
-            throw InputError(fmt::format("{}: unpacks to more than {} bytes; this is no BRDF", path.string(), kMostText));
+            throw InputError(
+                fmt::format("{}: unpacks to more than {} bytes; this is no BRDF", path.string(), kMostText));
         if (count == 0) break;
     }
     int status = Z_OK;
@@ -51,11 +52,9 @@ std::string gunzip(const std::filesystem::path& path) {
 
 /// What a table looks like through a scatterometer, to steer its sampling by.
 BrdfScan scanOfTable(const HalfDiffTable& table, std::vector<double> incidences) {
-    return makeScan(
-        [&table](const glm::dvec3& light, const glm::dvec3& detector) {
-            return table.at(glm::vec3(detector), glm::vec3(light));
-        },
-        std::move(incidences), evenAngles(0.0, std::numbers::pi, 37), evenAngles(0.0, 89.0 * kRadians, 90));
+    return makeScan([&table](const glm::dvec3& light,
+                             const glm::dvec3& detector) { return table.at(glm::vec3(detector), glm::vec3(light)); },
+                    std::move(incidences), evenAngles(0.0, std::numbers::pi, 37), evenAngles(0.0, 89.0 * kRadians, 90));
 }
 
 std::shared_ptr<const TableBrdf> fromScan(const BrdfScan& raw, std::string kind) {
@@ -85,7 +84,8 @@ std::shared_ptr<const TableBrdf> readBrdfFile(const std::filesystem::path& path)
     }
     if (isMerl(bytes)) {
         HalfDiffTable table = readMerl(bytes, name);
-        const auto lobes = fitLobes(scanOfTable(table, {0.0, 20 * kRadians, 40 * kRadians, 60 * kRadians, 75 * kRadians}));
+        const auto lobes =
+            fitLobes(scanOfTable(table, {0.0, 20 * kRadians, 40 * kRadians, 60 * kRadians, 75 * kRadians}));
         return std::make_shared<TableBrdf>(std::move(table), lobes, std::vector<std::string>{"MERL table"});
     }
     if (bytes.size() > kMostText)
@@ -93,9 +93,10 @@ std::shared_ptr<const TableBrdf> readBrdfFile(const std::filesystem::path& path)
     if (isZemax(bytes)) return fromScan(readZemax(bytes, name), "Zemax");
     if (isMiniDiff(bytes)) return fromScan(readMiniDiff(bytes, name), "Mini-Diff");
     if (isAstm(bytes)) return fromScan(readAstm(bytes, name), "ASTM E1392");
-    throw InputError(fmt::format("{}: is no BRDF that can be read; expected Mini-Diff (LightTools), Zemax or ASTM E1392 "
-                                 "text, a MERL .binary or an EXR texture",
-                                 name));
+    throw InputError(
+        fmt::format("{}: is no BRDF that can be read; expected Mini-Diff (LightTools), Zemax or ASTM E1392 "
+                    "text, a MERL .binary or an EXR texture",
+                    name));
 }
 
 void writeBrdfFile(const std::filesystem::path& path, const Brdf& brdf) {

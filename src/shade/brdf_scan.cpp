@@ -54,11 +54,11 @@ void BrdfScan::check(std::string_view name) const {
     bool black = true;
     for (std::size_t n = 0; n < values.size(); ++n) {
         if (!isFinite(values[n]))
-            throw InputError(fmt::format("{}: the value at incidence {:g}, azimuth {:g}, polar angle {:g} degrees is no "
-                                         "number",
-                                         name, incidences[n / polars.size() / azimuths.size()] * kDegrees,
-                                         azimuths[n / polars.size() % azimuths.size()] * kDegrees,
-                                         polars[n % polars.size()] * kDegrees));
+            throw InputError(fmt::format(
+                "{}: the value at incidence {:g}, azimuth {:g}, polar angle {:g} degrees is no "
+                "number",
+                name, incidences[n / polars.size() / azimuths.size()] * kDegrees,
+                azimuths[n / polars.size() % azimuths.size()] * kDegrees, polars[n % polars.size()] * kDegrees));
         black = black && !(maxComponent(values[n]) > 0.0f);
     }
     if (black) throw InputError(fmt::format("{}: reflects nothing at all; all values are 0 or less", name));
@@ -81,7 +81,7 @@ glm::dvec3 scanAt(const BrdfScan& scan, std::size_t incidence, double azimuth, d
     const std::vector<double>& nodes = scan.azimuths;
     // A half scan is its own mirror image; a full one goes on behind its last node with its first.
     double phi = wrapped(azimuth);
-    if (nodes.back() <= kPiD * (1.0 + 1e-9) && nodes.front() < 0.5 * kPiD) {
+    if (nodes.back() <= kPiD + 1e-4 && nodes.front() < 0.5 * kPiD) {
         phi = std::min(phi, 2.0 * kPiD - phi);
     } else if (phi < nodes.front() || phi > nodes.back()) {
         const double gap = nodes.front() + 2.0 * kPiD - nodes.back();
@@ -97,9 +97,9 @@ BrdfScan foldScan(const BrdfScan& scan) {
     BrdfScan folded{scan.incidences, {}, scan.polars, {}, scan.notes};
     for (const double a : scan.azimuths) folded.azimuths.push_back(std::min(wrapped(a), 2.0 * kPiD - wrapped(a)));
     std::sort(folded.azimuths.begin(), folded.azimuths.end());
-    folded.azimuths.erase(std::unique(folded.azimuths.begin(), folded.azimuths.end(),
-                                      [](double a, double b) { return b - a < 1e-6; }),
-                          folded.azimuths.end());
+    folded.azimuths.erase(
+        std::unique(folded.azimuths.begin(), folded.azimuths.end(), [](double a, double b) { return b - a < 1e-6; }),
+        folded.azimuths.end());
     std::size_t negative = 0;
     for (std::size_t i = 0; i < folded.incidences.size(); ++i) {
         for (const double azimuth : folded.azimuths) {

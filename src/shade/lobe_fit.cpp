@@ -106,8 +106,7 @@ double Lobes::gloss(double alpha, const glm::dvec3& light, const glm::dvec3& det
     const double parallel = (kEta * c - t) / (kEta * c + t);
     const double perpendicular = (c - kEta * t) / (c + kEta * t);
     const double fresnel = 0.5 * (parallel * parallel + perpendicular * perpendicular) / kF0;
-    const double visibility =
-        0.5 / std::max(stretch(detector) * light.z + stretch(light) * detector.z, 1e-12);
+    const double visibility = 0.5 / std::max(stretch(detector) * light.z + stretch(light) * detector.z, 1e-12);
     return fresnel * a2 / (kPiD * k * k) * visibility;
 }
 

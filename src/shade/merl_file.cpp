@@ -38,7 +38,8 @@ HalfDiffTable readMerl(std::string_view bytes, std::string_view name) {
         bool measured = true;
         for (std::size_t c = 0; c < 3; ++c) {
             double v = 0.0;
-            std::memcpy(&v, bytes.data() + sizeof(kSizes) + (c * HalfDiffTable::kCells + n) * sizeof(double), sizeof(v));
+            std::memcpy(&v, bytes.data() + sizeof(kSizes) + (c * HalfDiffTable::kCells + n) * sizeof(double),
+                        sizeof(v));
             if (!std::isfinite(v) || v > 1e12)
                 throw InputError(fmt::format("{}: cell {} of channel {} is {}; the file is damaged", name, n, c, v));
             measured = measured && v >= 0.0;

@@ -73,10 +73,11 @@ File readBlocks(ScanText& text) {
             if (file.blocks.size() >= kMostBlocks || readings > kMostReadings)
                 text.fail(fmt::format("more than {} blocks or {} readings; this is no scan of a surface", kMostBlocks,
                                       kMostReadings));
-            if (block.readings.size() > count) text.fail(fmt::format("{} readings; expected {}", block.readings.size(), count));
-            const std::string what = fmt::format("reading of block {} (AOI {:g}, {:g} nm), {} x {}",
-                                                 file.blocks.size() + 1, block.aoi, block.wavelength,
-                                                 file.azimuths.size(), file.radials.size());
+            if (block.readings.size() > count)
+                text.fail(fmt::format("{} readings; expected {}", block.readings.size(), count));
+            const std::string what =
+                fmt::format("reading of block {} (AOI {:g}, {:g} nm), {} x {}", file.blocks.size() + 1, block.aoi,
+                            block.wavelength, file.azimuths.size(), file.radials.size());
             if (block.readings.size() < count) {
                 const std::vector<double> rest = text.numbers(count - block.readings.size(), what);
                 block.readings.insert(block.readings.end(), rest.begin(), rest.end());
@@ -95,7 +96,8 @@ File readBlocks(ScanText& text) {
 
 bool isMiniDiff(std::string_view text) {
     const std::string_view head = text.substr(0, 65536);
-    return head.find("ScatterRadial") != std::string_view::npos && head.find("AngleOfIncidence") == std::string_view::npos;
+    return head.find("ScatterRadial") != std::string_view::npos &&
+           head.find("AngleOfIncidence") == std::string_view::npos;
 }
 
 BrdfScan readMiniDiff(std::string_view bytes, std::string_view name) {
@@ -127,7 +129,8 @@ BrdfScan readMiniDiff(std::string_view bytes, std::string_view name) {
         for (std::size_t n = 0; n < r.size(); ++n) scan.values.emplace_back(r[n], g[n], b[n]);
     }
     scan.check(name);
-    if (file.skipped > 0) scan.notes.push_back(fmt::format("{} blocks of other sides or kinds were skipped", file.skipped));
+    if (file.skipped > 0)
+        scan.notes.push_back(fmt::format("{} blocks of other sides or kinds were skipped", file.skipped));
 
     const double mirror = findMirrorAzimuth(scan);
     scan.notes.push_back(fmt::format("mirror direction at azimuth {:g} degrees", mirror / kRadians));

@@ -15,7 +15,8 @@ namespace stratum::shade {
 ///    neighbours, in a map of the unit disc of projected directions that carries the one mirror direction to the other
 ///    and leaves the rim in place: along the straight ray from the mirror point to the rim. Past the last incidence the
 ///    last one's is taken.
-/// 3. F(light, detector) and F(detector, light) are both such answers. They are blended, each weighted to the side whose
+/// 3. F(light, detector) and F(detector, light) are both such answers. They are blended, each weighted to the side
+/// whose
 ///    incidence is nearer to a measured one, so that the result is reciprocal and still exact at measured incidences.
 ///    Beyond the last measured incidence distance counts threefold: there nothing holds the answer on the far side.
 /// Isotropic. Immutable; safe to share between threads.

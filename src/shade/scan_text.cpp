@@ -46,7 +46,8 @@ std::vector<double> ScanText::numbers(std::size_t count, std::string_view what) 
         const std::vector<double> some = parse(expect(what), what);
         all.insert(all.end(), some.begin(), some.end());
     }
-    if (all.size() > count) fail(fmt::format("has {} numbers too many; expected {} {}", all.size() - count, count, what));
+    if (all.size() > count)
+        fail(fmt::format("has {} numbers too many; expected {} {}", all.size() - count, count, what));
     return all;
 }
 

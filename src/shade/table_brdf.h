@@ -14,8 +14,8 @@ namespace stratum::shade {
 /// Looks a table up and draws from a mixture of the cosine and the GGX lobe fitted to it.
 ///
 /// What is measured need not conserve energy, least of all where it is extrapolated. The directional albedo a is
-/// tabulated at construction and every value scaled by min(s(wo), s(wi)), s = min(1, 1 / a) per channel: reciprocal, and
-/// no albedo above 1.
+/// tabulated at construction and every value scaled by min(s(wo), s(wi)), s = min(1, 1 / a) per channel: reciprocal,
+/// and no albedo above 1.
 class TableBrdf final : public Brdf {
 public:
     /// @param lobes  per channel, fitted to the table: they only steer the sampling

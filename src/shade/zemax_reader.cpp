@@ -69,7 +69,8 @@ File readFile(ScanText& text) {
             if (file.incidences.empty() || file.azimuths.empty() || file.radials.size() < 2)
                 text.fail("DataBegin before AngleOfIncidence, ScatterAzimuth and ScatterRadial");
             if (file.rotations.empty()) file.rotations = {0.0};
-            if (file.rotations.size() * file.incidences.size() * file.azimuths.size() > kMostReadings / file.radials.size())
+            if (file.rotations.size() * file.incidences.size() * file.azimuths.size() >
+                kMostReadings / file.radials.size())
                 text.fail(fmt::format("more than {} readings; this is no scan of a surface", kMostReadings));
             if (channel >= 3) text.fail("more than three channels");
             file.channels[channel++] = readChannel(text, file);
@@ -84,7 +85,8 @@ File readFile(ScanText& text) {
 
 bool isZemax(std::string_view text) {
     const std::string_view head = text.substr(0, 65536);
-    return head.find("ScatterRadial") != std::string_view::npos && head.find("AngleOfIncidence") != std::string_view::npos;
+    return head.find("ScatterRadial") != std::string_view::npos &&
+           head.find("AngleOfIncidence") != std::string_view::npos;
 }
 
 BrdfScan readZemax(std::string_view bytes, std::string_view name) {
