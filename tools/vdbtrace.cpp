@@ -39,6 +39,7 @@ struct Options {
     tools::CommonOptions common;
     std::string input, output, grid, march = "auto", size = "1280x960", view = "iso", crop, write_brdf;
     std::vector<double> eye, look_at, up;
+    std::vector<float> phong;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
@@ -69,10 +70,20 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
 
     const char* light = "Light and material";
-    app.add_option("--integrator", o.render.integrator.name, "path, direct, ao, normal, depth (default path)")
+    app.add_option("--integrator", o.render.integrator.name,
+                   "path, direct, environment-sum, phong, ao, normal, depth, position, mask (default path)")
         ->type_name("NAME")
         ->group(light);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
+        ->type_name("N")
+        ->group(light);
+    app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
+        ->delimiter(',')
+        ->expected(5)
+        ->type_name("KA,KD,KS,SHININESS,KR")
+        ->group(light);
+    app.add_option("--environment-rows", o.render.integrator.environment_rows,
+                   "environment-sum: rows of its map, twice as many columns (default 32)")
         ->type_name("N")
         ->group(light);
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
@@ -142,6 +153,7 @@ void applyText(Options& o) {
         const auto c = parseIntegers<4>(o.crop, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
         o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
     }
+    if (!o.phong.empty()) o.render.integrator.phong = {o.phong[0], o.phong[1], o.phong[2], o.phong[3], o.phong[4]};
     o.scene.camera.view = shade::parseView(o.view);
     o.scene.camera.eye = toVector(o.eye);
     o.scene.camera.look_at = toVector(o.look_at);
@@ -233,7 +245,7 @@ void run(Options& o) {
     };
     if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
     if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
-    if (o.render.integrator.name != "path" && o.render.integrator.name != "direct")
+    if (result.film.content() != shade::FilmContent::radiance)
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
     tools::writeStats(
         o.common,

@@ -5,6 +5,7 @@
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/preset.h"
+#include "shade/sampling.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -54,6 +55,11 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
 const std::vector<std::string>& Brdf::notes() const {
     static const std::vector<std::string> none;
     return none;
+}
+
+Color reflectanceFactor(const Brdf& brdf) {
+    const float s = std::sqrt(0.5f);
+    return kPi * brdf.eval({0.0f, 0.0f, 1.0f}, {s, 0.0f, s});
 }
 
 const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";

@@ -41,6 +41,9 @@ public:
     virtual const std::vector<std::string>& notes() const;
 };
 
+/// pi f with the viewer above and the light at 45 degrees: the colour that a colorimeter (geometry 45/0) reads.
+Color reflectanceFactor(const Brdf& brdf);
+
 /// What a print is made of when nobody says: satin orange PLA.
 extern const char* const kDefaultBrdf;
 

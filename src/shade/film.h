@@ -23,6 +23,7 @@ enum class FilmContent {
     unit,      ///< a share in [0, 1], e.g. ambient occlusion
     normal,    ///< world-space unit vectors, components in [-1, 1], times alpha
     depth,     ///< distance along the ray in world units, times alpha
+    position,  ///< world-space position in world units, times alpha
 };
 
 /// Mean values of one pixel. rgb is premultiplied by alpha.

@@ -34,11 +34,13 @@ HalfDiffTable HalfDiffTable::bake(const std::function<glm::dvec3(const glm::dvec
     constexpr std::size_t kRows = std::size_t{kHalf} * kDiff;
     parallelFor(kRows, 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t row = first; row != last; ++row) {
-            for (int turn = 0; turn < kTurn; ++turn) {
+            for (int turn = 0; turn < kTurn / 2; ++turn) {
                 glm::dvec3 wo;
                 glm::dvec3 wi;
                 directionsOf(static_cast<int>(row / kDiff), static_cast<int>(row % kDiff), turn, wo, wi);
-                values[row * kTurn + static_cast<std::size_t>(turn)] = Color(brdf(wo, wi));
+                const Color value(brdf(wo, wi));
+                values[row * kTurn + static_cast<std::size_t>(turn)] = value;
+                values[row * kTurn + static_cast<std::size_t>(kTurn - 1 - turn)] = value;
             }
         }
     });

@@ -27,7 +27,8 @@ public:
     /// @param values  kCells, 1/sr, finite, >= 0: turn fastest, then difference, then half angle
     explicit HalfDiffTable(std::vector<Color> values) : values_(std::move(values)) {}
 
-    /// Bakes a reciprocal function of unit vectors towards light and viewer, on all threads. It is asked also for pairs
+    /// Bakes a reciprocal, isotropic function of unit vectors towards light and viewer that is its own mirror image
+    /// (half of the cells are filled by that symmetry), on all threads. It is asked also for pairs
     /// of which one lies below the horizon, z <= 0: it must answer as for the nearest above, or so.
     static HalfDiffTable bake(const std::function<glm::dvec3(const glm::dvec3&, const glm::dvec3&)>& brdf);
 
