@@ -2,12 +2,14 @@
 #include "command_line.h"
 
 #include "io/error.h"
+#include "io/mapped_file.h"
 #include "march/brick_intersector.h"
 #include "march/level_set_file.h"
 #include "march/vdb_intersector.h"
 #include "shade/brdf_file.h"
 #include "shade/picture.h"
 #include "shade/render.h"
+#include "shade/scene_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,6 +19,7 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,22 +40,35 @@ Examples:
 
 struct Options {
     tools::CommonOptions common;
-    std::string input, output, grid, march = "auto", size = "1280x960", view = "iso", crop, write_brdf;
+    std::string input, output, grid, march = "auto", size, view, crop, write_brdf, aov;
     std::vector<double> eye, look_at, up;
     std::vector<float> phong;
+    bool spp_given = false;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
 };
 
 void addOptions(CLI::App& app, Options& o) {
-    app.add_option("IN", o.input, "A level set")->required()->type_name("FILE.vdb");
+    app.add_option("IN", o.input, "A level set, or a scene that names one; options override the scene")
+        ->required()
+        ->type_name("FILE.vdb|SCENE.json");
     app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
 
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
-    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16)")->type_name("N")->group(picture);
+    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16)")
+        ->each([&o](const std::string&) { o.spp_given = true; })
+        ->type_name("N")
+        ->group(picture);
+    app.add_option("--noise", o.render.noise,
+                   "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
+        ->type_name("T")
+        ->group(picture);
+    app.add_option("--aov", o.aov, "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples")
+        ->type_name("NAME,...")
+        ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
     app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
     app.add_option("--exposure", o.tone.exposure, "Stops, for .png")->type_name("EV")->group(picture);
@@ -146,18 +162,21 @@ std::optional<glm::dvec3> toVector(const std::vector<double>& values) {
 }
 
 void applyText(Options& o) {
-    const auto size = parseIntegers<2>(o.size, 'x', "--size", "WxH in pixels, e.g. 1280x960");
-    o.render.width = size[0];
-    o.render.height = size[1];
+    if (!o.size.empty()) {
+        const auto size = parseIntegers<2>(o.size, 'x', "--size", "WxH in pixels, e.g. 1280x960");
+        o.render.width = size[0];
+        o.render.height = size[1];
+    }
     if (!o.crop.empty()) {
         const auto c = parseIntegers<4>(o.crop, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
         o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
     }
     if (!o.phong.empty()) o.render.integrator.phong = {o.phong[0], o.phong[1], o.phong[2], o.phong[3], o.phong[4]};
-    o.scene.camera.view = shade::parseView(o.view);
-    o.scene.camera.eye = toVector(o.eye);
-    o.scene.camera.look_at = toVector(o.look_at);
-    o.scene.camera.up = toVector(o.up);
+    if (!o.aov.empty()) o.render.aovs = shade::parseAovs(o.aov);
+    if (!o.view.empty()) o.scene.camera.view = shade::parseView(o.view);
+    if (!o.eye.empty()) o.scene.camera.eye = toVector(o.eye);
+    if (!o.look_at.empty()) o.scene.camera.look_at = toVector(o.look_at);
+    if (!o.up.empty()) o.scene.camera.up = toVector(o.up);
     o.render.validate();
     o.scene.camera.validate();
     o.tone.validate();
@@ -183,7 +202,29 @@ std::string unitOf(const openvdb::FloatGrid& grid) {
     return unit ? unit->value() : "world units";
 }
 
-void run(Options& o) {
+// If the input is a scene, its values become the defaults and the command line is read once more over them.
+void readScene(Options& o, int argc, char** argv) {
+    const fs::path path = o.input;
+    if (!shade::isSceneFile(MappedFile(path).bytes())) return;
+    const shade::SceneFile file = shade::readSceneFile(path);
+    const auto over = std::make_unique<Options>();
+    over->scene = file.scene;
+    over->render = file.render;
+    over->tone = file.tone;
+    over->spp_given = file.spp_given;
+    CLI::App app;
+    addOptions(app, *over);
+    app.parse(argc, argv);
+    over->input = file.print;
+    if (over->grid.empty()) over->grid = file.grid;
+    if (over->output.empty())
+        over->output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
+    o = *over;
+}
+
+void run(Options& o, int argc, char** argv) {
+    readScene(o, argc, argv);
+    if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
     applyText(o);
     const tools::ThreadLimit limit(o.common.threads);
     tools::Stopwatch total;
@@ -191,6 +232,8 @@ void run(Options& o) {
     if (o.output.empty()) o.output = fs::path(o.input).filename().replace_extension(".png").string();
     refuseOtherFormats(o.input);
     shade::PictureFile picture(o.output);
+    if (!o.render.aovs.empty() && !picture.linear())
+        throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
 
     openvdb::initialize();
     openvdb::FloatGrid::ConstPtr grid = march::readLevelSet(o.input, o.grid);
@@ -224,7 +267,7 @@ void run(Options& o) {
     shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
                              {"Source", source},
                              {"Integrator", o.render.integrator.name},
-                             {"SamplesPerPixel", std::to_string(o.render.spp)},
+                             {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
                              {"Seed", std::to_string(o.render.seed)},
                              {"Brdf", o.scene.brdf},
                              {"Environment", o.scene.env}};
@@ -236,8 +279,8 @@ void run(Options& o) {
 
     const shade::RayCounts& rays = result.rays;
     const double mrays = static_cast<double>(rays.total()) / render_seconds * 1e-6;
-    tools::say(o.common, fmt::format("  {}: {} x {} at {} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", o.output,
-                                     o.render.width, o.render.height, o.render.spp,
+    tools::say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", o.output,
+                                     o.render.width, o.render.height, result.mean_spp,
                                      tools::humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
     Json skipped = Json::array();
     const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
@@ -251,7 +294,11 @@ void run(Options& o) {
         o.common,
         {{"input", input},
          {"output", o.output},
-         {"image", {{"width", o.render.width}, {"height", o.render.height}, {"spp", o.render.spp}}},
+         {"image",
+          {{"width", o.render.width},
+           {"height", o.render.height},
+           {"spp", o.render.spp},
+           {"mean_spp", result.mean_spp}}},
          {"rays",
           {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
          {"march", intersector->name()},
@@ -276,5 +323,5 @@ int main(int argc, char** argv) {
     CLI::App app("Ray-traces an OpenVDB level set into a picture.", "vdbtrace");
     Options options;
     addOptions(app, options);
-    return tools::runTool(app, argc, argv, [&options] { run(options); });
+    return tools::runTool(app, argc, argv, [&] { run(options, argc, argv); });
 }

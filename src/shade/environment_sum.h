@@ -10,9 +10,9 @@ namespace stratum::shade {
 
 /// The environment is averaged over `rows` x 2 `rows` cells of a latitude-longitude map. At each point that the camera
 /// sees, the cells above the surface are added, each with one shadow ray to its middle, weighed by the BRDF, its solid
-/// angle and the cosine; lamps with extent shine from their middle. One scattering. Free of noise, but biased: shadows are those of a few hundred hard
-/// lights, and highlights narrower than a cell are lost.
-/// Source: J. Spilar, "Visualization of 3D printing via ray tracing", CTU Prague 2025.
+/// angle and the cosine; lamps with extent shine from their middle. One scattering. Free of noise, but biased: shadows
+/// are those of a few hundred hard lights, and highlights narrower than a cell are lost. Source: J. Spilar,
+/// "Visualization of 3D printing via ray tracing", CTU Prague 2025.
 class EnvironmentSum final : public Integrator {
 public:
     EnvironmentSum(const SceneDescription& scene, const march::Intersector& print, int rows);
