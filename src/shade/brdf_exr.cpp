@@ -106,6 +106,7 @@ Layout layoutOf(const Words& words, std::size_t tiles, std::vector<std::string>&
 
 std::vector<double> axis(int count, double last, bool nodes) {
     std::vector<double> angles;
+    angles.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) angles.push_back(last * (nodes ? i / (count - 1.0) : (i + 0.5) / count));
     return angles;
 }

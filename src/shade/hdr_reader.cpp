@@ -57,7 +57,7 @@ Header readHeader(std::string_view bytes, std::string_view name) {
     for (;;) {
         const std::size_t end = bytes.find('\n');
         ++line_number;
-        if (end == std::string_view::npos || end > 4096 || line_number > 1000)
+        if (end > 4096 || line_number > 1000)  // also where there is no end
             throw InputError(
                 fmt::format("{}: line {}: the header does not end; the file is damaged", name, line_number));
         std::string_view line = bytes.substr(0, end);

@@ -80,7 +80,9 @@ Lobes fitChannel(const std::vector<Reading>& readings) {
         }
     }
     // Halving steps around the best.
-    for (double s = 0.5 * step; s > 1e-3; s *= 0.5) {
+    double s = step;
+    for (int halving = 0; halving < 7; ++halving) {
+        s *= 0.5;
         for (const double candidate : {best_log - s, best_log + s}) {
             if (candidate < low || candidate > 0.0) continue;
             const Fit fit = fitAt(readings, std::exp(candidate));

@@ -105,7 +105,7 @@ std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
     constexpr int kHeight = 256;
     constexpr double kGround = 0.2;  // reflectance of the land around
     const Model model(options);
-    LightMap map{2 * kHeight, kHeight, std::vector<Color>(2 * kHeight * kHeight)};
+    LightMap map{2 * kHeight, kHeight, std::vector<Color>(std::size_t{2} * kHeight * kHeight)};
     glm::dvec3 irradiance(0.0);
     for (int y = 0; y < kHeight / 2; ++y) {
         const double theta = kPiD * (y + 0.5) / kHeight;
@@ -114,7 +114,8 @@ std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
             const glm::dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
             const glm::dvec3 c = model.radiance(d);
             irradiance += c * (std::sin(theta) * std::cos(theta) * kPiD / kHeight * 2.0 * kPiD / map.width);
-            map.texels[static_cast<std::size_t>(y * map.width + x)] = Color(c);
+            map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
+                       static_cast<std::size_t>(x)] = Color(c);
         }
     }
     const glm::dvec3 sun = model.sunlight(options.turbidity);
