@@ -60,6 +60,7 @@ public:
         : environment_(environment),
           table_(cosineWeights(environment.map_), environment.map_.width, environment.map_.height) {}
     EnvironmentSample sample(const glm::vec2& u) const override { return environment_.draw(table_, u); }
+    float pdf(const glm::vec3& direction) const override { return environment_.density(table_, direction); }
 
 private:
     const MapEnvironment& environment_;
@@ -117,13 +118,15 @@ EnvironmentSample MapEnvironment::draw(const BilinearDistribution& table, const 
 
 EnvironmentSample MapEnvironment::sample(const glm::vec2& u) const { return draw(table_, u); }
 
-float MapEnvironment::pdf(const glm::vec3& direction) const {
+float MapEnvironment::density(const BilinearDistribution& table, const glm::vec3& direction) const {
     double sine = 0.0;
     const glm::dvec2 p = place(direction, sine);
     if (!(sine > 0.0)) return 0.0f;
-    const auto density = static_cast<float>(table_.pdf(p) / (2.0 * kPiD * kPiD * sine));
-    return std::isfinite(density) ? density : 0.0f;
+    const auto result = static_cast<float>(table.pdf(p) / (2.0 * kPiD * kPiD * sine));
+    return std::isfinite(result) ? result : 0.0f;
 }
+
+float MapEnvironment::pdf(const glm::vec3& direction) const { return density(table_, direction); }
 
 std::unique_ptr<const BedLight> MapEnvironment::makeBedLight() const { return std::make_unique<MapBedLight>(*this); }
 

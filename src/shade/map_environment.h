@@ -29,6 +29,7 @@ private:
     glm::dvec2 place(const glm::vec3& direction, double& sine) const;
     Color lookUp(const glm::dvec2& place) const;
     EnvironmentSample draw(const BilinearDistribution& table, const glm::vec2& u) const;
+    float density(const BilinearDistribution& table, const glm::vec3& direction) const;
 
     LightMap map_;
     double rotation_;

@@ -5,6 +5,13 @@
 #include <limits>
 
 namespace stratum::shade {
+namespace {
+
+/// What a cosine sample of the bed counts in its weight against one of BedLight. With 1 the open bed would be as noisy
+/// as the cosine is; with 0 the shadow of a sun would be lit by the few samples that miss the sun.
+constexpr float kBedShare = 0.25f;
+
+}  // namespace
 
 PathIntegrator::PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces)
     : scene_(scene), surfaces_(scene, print), bounces_(bounces) {
@@ -61,7 +68,8 @@ Color PathIntegrator::fromEnvironment(const SurfacePoint& point, const Frame& fr
     const EnvironmentSample light = point.bed ? bed_light_->sample(draw) : scene_.environment->sample(draw);
     const glm::vec3 wi = frame.toLocal(light.direction);
     if (!(light.pdf > 0.0f && wi.z > 0.0f)) return Color(0.0f);
-    const float weight = point.bed ? 1.0f : balanceHeuristic(light.pdf, point.brdf->pdf(wo, wi));
+    const float other = (point.bed ? kBedShare : 1.0f) * point.brdf->pdf(wo, wi);
+    const float weight = balanceHeuristic(light.pdf, other);
     const Color value = point.brdf->eval(wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
     if (!(maxComponent(value) > 0.0f)) return Color(0.0f);
     ++context.rays.shadow;
@@ -92,7 +100,9 @@ Color PathIntegrator::scattered(SurfacePoint point, glm::dvec3 direction, TraceC
         // What the ray brings home if it meets nothing.
         constexpr double kFar = std::numeric_limits<double>::infinity();
         Color escaped = fromLamps(ray, kFar, next->pdf);
-        if (!point.bed) escaped += environment.radiance(way) * balanceHeuristic(next->pdf, environment.pdf(way));
+        const float drawn = (point.bed ? kBedShare : 1.0f) * next->pdf;
+        escaped += environment.radiance(way) *
+                   balanceHeuristic(drawn, point.bed ? bed_light_->pdf(way) : environment.pdf(way));
         const bool last = bounce == bounces_;
         if (last && !(maxComponent(escaped) > 0.0f)) return sum;
         ++context.rays.bounce;

@@ -12,8 +12,8 @@
 namespace stratum::shade {
 
 /// Path tracing. At each of `bounces` scattering events on the print the environment is sampled both by its own density
-/// and by the BRDF's, joined by multiple importance sampling; on the bed by BedLight alone. Lamps are summed; those
-/// with extent are sampled in both ways, too. Unbiased for paths of that length; nothing is clamped.
+/// and by the BRDF's, joined by multiple importance sampling; on the bed by BedLight first of all. Lamps are summed;
+/// those with extent are sampled in both ways, too. Unbiased for paths of that length; nothing is clamped.
 class PathIntegrator final : public Integrator {
 public:
     PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces);
