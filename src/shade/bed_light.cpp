@@ -20,9 +20,10 @@ SphereDistribution tableOf(const Environment& environment) {
 
 }  // namespace
 
-BedLight::BedLight(const Environment& environment) : environment_(environment), table_(tableOf(environment)) {}
+TabulatedBedLight::TabulatedBedLight(const Environment& environment)
+    : environment_(environment), table_(tableOf(environment)) {}
 
-EnvironmentSample BedLight::sample(const glm::vec2& u) const {
+EnvironmentSample TabulatedBedLight::sample(const glm::vec2& u) const {
     EnvironmentSample result;
     result.direction = table_.sample(u, result.pdf);
     if (result.pdf > 0.0f) result.radiance = environment_.radiance(result.direction);

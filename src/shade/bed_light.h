@@ -7,13 +7,23 @@
 namespace stratum::shade {
 
 /// Draws directions by radiance times the cosine to +z: what a horizontal matt surface scatters. Where nothing is in
-/// the way every sample has nearly the same value, so the open bed, most of a picture, is free of noise. Complete on
-/// its own (pdf > 0 over the whole upper hemisphere): needs no second strategy. Keeps a reference to the environment.
+/// the way every sample has nearly the same value, so the open bed, most of a picture, is nearly free of noise.
+/// Complete on its own: pdf > 0 wherever light comes from above. Keeps a reference to the environment.
 class BedLight {
 public:
-    explicit BedLight(const Environment& environment);
+    virtual ~BedLight() = default;
     /// @param u  uniform in [0, 1)^2
-    EnvironmentSample sample(const glm::vec2& u) const;
+    virtual EnvironmentSample sample(const glm::vec2& u) const = 0;
+    /// Density of sample() per steradian.
+    virtual float pdf(const glm::vec3& direction) const = 0;
+};
+
+/// For light without small details: by a table of probes.
+class TabulatedBedLight final : public BedLight {
+public:
+    explicit TabulatedBedLight(const Environment& environment);
+    EnvironmentSample sample(const glm::vec2& u) const override;
+    float pdf(const glm::vec3& direction) const override { return table_.pdf(direction); }
 
 private:
     const Environment& environment_;

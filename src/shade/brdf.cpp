@@ -1,18 +1,73 @@
 #include "shade/brdf.h"
 
 #include "io/error.h"
+#include "shade/brdf_file.h"
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/preset.h"
+#include "shade/sampling.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 
 namespace stratum::shade {
+
+namespace {
+
+/// The tables that come with the project.
+std::filesystem::path tableFolder() {
+    if (const char* data = std::getenv("STRATUM_DATA")) return std::filesystem::path(data) / "brdf";
+    return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
+}
+
+std::string namesIn(const std::filesystem::path& folder) {
+    constexpr std::string_view kEnding = ".bsdf.gz";
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.ends_with(kEnding)) names.push_back(name.substr(0, name.size() - kEnding.size()));
+    }
+    std::sort(names.begin(), names.end());
+    return names.empty() ? fmt::format("none; {} has no tables", folder.string())
+                         : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::shared_ptr<const Brdf> readNamed(std::string_view text) {
+    std::error_code error;
+    if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
+        return readBrdfFile(text);
+    const bool plain = text.find_first_of(":/.") == std::string_view::npos && !text.empty();
+    const std::filesystem::path path = tableFolder() / (std::string(text) + ".bsdf.gz");
+    if (plain && std::filesystem::is_regular_file(path, error)) return readBrdfFile(path);
+    throw UsageError(
+        fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+                    "a file, or one of: {}",
+                    text, namesIn(tableFolder())));
+}
+
+}  // namespace
+
+const std::vector<std::string>& Brdf::notes() const {
+    static const std::vector<std::string> none;
+    return none;
+}
+
+Color reflectanceFactor(const Brdf& brdf) {
+    const float s = std::sqrt(0.5f);
+    return kPi * brdf.eval({0.0f, 0.0f, 1.0f}, {s, 0.0f, s});
+}
 
 const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";
+    const std::string_view name = text.substr(0, text.find(':'));
+    if (name != "lambert" && name != "plastic") return readNamed(text);
     const Preset preset = parsePreset(text, kOption);
     const auto colour = [&] {
         for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
@@ -22,12 +77,9 @@ std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
         requireValues(preset, 3, kOption, "lambert:R,G,B");
         return std::make_shared<Lambert>(colour());
     }
-    if (preset.name == "plastic") {
-        requireValues(preset, 4, kOption, "plastic:R,G,B,ALPHA");
-        requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
-        return std::make_shared<Plastic>(colour(), preset.values[3]);
-    }
-    throw UsageError(fmt::format("{} {}: unknown material; write lambert:R,G,B or plastic:R,G,B,ALPHA", kOption, text));
+    requireValues(preset, 4, kOption, "plastic:R,G,B,ALPHA");
+    requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
+    return std::make_shared<Plastic>(colour(), preset.values[3]);
 }
 
 }  // namespace stratum::shade

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stratum::shade {
 
@@ -36,7 +37,12 @@ public:
     virtual std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const = 0;
     /// Density of sample() per steradian.
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
+    /// What a report must say of it: where a table came from, and whether it was measured.
+    virtual const std::vector<std::string>& notes() const;
 };
+
+/// pi f with the viewer above and the light at 45 degrees: the colour that a colorimeter (geometry 45/0) reads.
+Color reflectanceFactor(const Brdf& brdf);
 
 /// What a print is made of when nobody says: satin orange PLA.
 extern const char* const kDefaultBrdf;
@@ -44,7 +50,9 @@ extern const char* const kDefaultBrdf;
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
-/// Throws UsageError.
+///   FILE                 a measured table, see readBrdfFile
+///   NAME                 a table of data/brdf, e.g. pla-blue; looked for in $STRATUM_DATA/brdf, or where it was built
+/// Throws UsageError, InputError.
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text);
 
 }  // namespace stratum::shade

@@ -1,26 +1,48 @@
 #include "shade/directional.h"
 
-#include "io/error.h"
-#include "shade/preset.h"
+#include "shade/frame.h"
+#include "shade/sampling.h"
 
-#include <fmt/format.h>
-#include <glm/geometric.hpp>
+#include <cmath>
+#include <numbers>
 
 namespace stratum::shade {
 
-DirectionalLight parseDirectionalLight(std::string_view text) {
-    constexpr std::string_view kOption = "--light";
-    constexpr std::string_view kForm = "directional:X,Y,Z,R,G,B";
-    const Preset preset = parsePreset(text, kOption);
-    if (preset.name != "directional")
-        throw UsageError(fmt::format("{} {}: unknown light; write {}", kOption, text, kForm));
-    requireValues(preset, 6, kOption, kForm);
-    for (std::size_t i = 3; i < 6; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "an irradiance");
-    const glm::dvec3 travel(preset.values[0], preset.values[1], preset.values[2]);
-    if (!(glm::length(travel) > 0.0))
-        throw UsageError(
-            fmt::format("{} {}: the direction is zero; write e.g. directional:1,1,-2,3,3,3", kOption, text));
-    return {glm::vec3(-glm::normalize(travel)), Color(preset.values[3], preset.values[4], preset.values[5])};
+std::optional<LightSample> DirectionalLight::sample(const glm::dvec3&, const glm::vec2&) const {
+    LightSample result;
+    result.direction = to_light_;
+    result.light = irradiance_;
+    return result;
+}
+
+SunLight::SunLight(const glm::vec3& to_light, const Color& irradiance, float diameter) : to_light_(to_light) {
+    const double half = 0.5 * static_cast<double>(diameter) * std::numbers::pi / 180.0;
+    const double s = std::sin(0.5 * half);
+    lift_ = 2.0 * s * s;
+    pdf_ = static_cast<float>(1.0 / (2.0 * std::numbers::pi * lift_));
+    // Integral of the cosine over the cap.
+    radiance_ = irradiance / static_cast<float>(std::numbers::pi * std::sin(half) * std::sin(half));
+}
+
+std::optional<LightSample> SunLight::sample(const glm::dvec3&, const glm::vec2& u) const {
+    // Uniform on the cap by the disc below it, which keeps neighbours together.
+    const glm::dvec2 d(toDisc(u));
+    const double r2 = glm::dot(d, d);
+    const double drop = r2 * lift_;
+    const double s = std::sqrt(lift_ * (2.0 - drop));
+    LightSample result;
+    const Frame frame(to_light_);
+    result.direction = glm::normalize(frame.toWorld(glm::vec3(s * d.x, s * d.y, 1.0 - drop)));
+    result.light = radiance_;
+    result.pdf = pdf_;
+    return result;
+}
+
+std::optional<LightMeeting> SunLight::meet(const march::Ray& ray) const {
+    // |a - b|^2 = 2 (1 - cos) has the digits that the dot product lacks.
+    const glm::dvec3 apart = ray.direction - glm::dvec3(to_light_);
+    if (0.5 * glm::dot(apart, apart) > lift_) return std::nullopt;
+    return LightMeeting{std::numeric_limits<double>::infinity(), radiance_, pdf_};
 }
 
 }  // namespace stratum::shade

@@ -1,28 +1,71 @@
 #include "shade/environment.h"
 
 #include "io/error.h"
+#include "shade/bed_light.h"
 #include "shade/constant.h"
+#include "shade/map_environment.h"
 #include "shade/preset.h"
 #include "shade/sampling.h"
+#include "shade/sky.h"
 #include "shade/studio.h"
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 namespace stratum::shade {
 
+namespace {
+
+constexpr std::string_view kOption = "--env";
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlacement& placement) {
+    SkyOptions sky;
+    // Behind the camera's left shoulder: from its right-hand side a quarter turn back, and as much again.
+    sky.azimuth = placement.azimuth - 0.75 * std::numbers::pi;
+    if (!preset.values.empty()) {
+        if (preset.values.size() == 2) preset.values.push_back(static_cast<float>(sky.turbidity));
+        requireValues(preset, 3, kOption, "sky:ELEVATION,AZIMUTH,TURBIDITY");
+        requireRange(preset, 0, 1.0f, 90.0f, kOption, "the sun's elevation in degrees");
+        requireRange(preset, 1, -360.0f, 360.0f, kOption, "the sun's azimuth in degrees");
+        requireRange(preset, 2, 2.0f, 8.0f, kOption, "the turbidity");
+        sky.elevation = static_cast<double>(preset.values[0]) * kRadians;
+        sky.azimuth = static_cast<double>(preset.values[1]) * kRadians;
+        sky.turbidity = static_cast<double>(preset.values[2]);
+    }
+    sky.azimuth += placement.rotation;
+    return makeSky(sky);
+}
+
+}  // namespace
+
+std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<TabulatedBedLight>(*this); }
+
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement) {
-    constexpr std::string_view kOption = "--env";
+    if (!(placement.exposure >= -30.0 && placement.exposure <= 30.0))
+        throw UsageError(fmt::format("--env-exposure {}: must be from -30 to 30 stops", placement.exposure));
+    if (!std::isfinite(placement.rotation)) throw UsageError("--env-rotation: must be a number of degrees");
+    if (std::error_code error; !text.empty() && std::filesystem::exists(std::filesystem::path(text), error))
+        return std::make_shared<MapEnvironment>(readLightMap(text), placement.rotation,
+                                                static_cast<float>(std::exp2(placement.exposure)));
+    const std::string name(text.substr(0, text.find(':')));
+    if (name != "studio" && name != "constant" && name != "sky")
+        throw UsageError(fmt::format(
+            "{} {}: is no file; write the name of a .hdr or .exr map, studio, sky or constant:R,G,B", kOption, text));
     const Preset preset = parsePreset(text, kOption);
-    if (preset.name == "studio") {
+    if (placement.exposure != 0.0)
+        throw UsageError(fmt::format("--env-exposure is for maps from files; --env {} needs none", text));
+    if (name == "sky") return skyOf(preset, placement);
+    if (name == "studio") {
         requireValues(preset, 0, kOption, "studio");
-        return std::make_shared<StudioEnvironment>(placement);
+        EnvironmentPlacement turned = placement;
+        turned.azimuth += placement.rotation;
+        return std::make_shared<StudioEnvironment>(turned);
     }
-    if (preset.name == "constant") {
-        requireValues(preset, 3, kOption, "constant:R,G,B");
-        for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");
-        return std::make_shared<ConstantEnvironment>(Color(preset.values[0], preset.values[1], preset.values[2]));
-    }
-    throw UsageError(fmt::format("{} {}: unknown environment; write studio or constant:R,G,B", kOption, text));
+    requireValues(preset, 3, kOption, "constant:R,G,B");
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");
+    return std::make_shared<ConstantEnvironment>(Color(preset.values[0], preset.values[1], preset.values[2]));
 }
 
 Color irradianceFromAbove(const Environment& environment) {

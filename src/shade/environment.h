@@ -11,6 +11,9 @@
 
 namespace stratum::shade {
 
+class BedLight;
+class Light;
+
 /// A direction drawn by Environment::sample.
 struct EnvironmentSample {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
@@ -18,8 +21,10 @@ struct EnvironmentSample {
     float pdf = 0.0f;                       ///< per steradian; 0 means "no sample"
 };
 
-/// Radiance by direction (see color.h for the unit). World space, z up. pdf > 0 wherever radiance > 0.
-/// Immutable; shared by all threads.
+/// Radiance by direction (see color.h for the unit). World space, z up.
+///
+/// sample() is made to be joined with samples of a BRDF by multiple importance sampling: pdf may be 0 where radiance is
+/// small and finds its way by the BRDF. Alone it is not enough. Immutable; shared by all threads.
 class Environment {
 public:
     virtual ~Environment() = default;
@@ -31,18 +36,27 @@ public:
     virtual float pdf(const glm::vec3& direction) const = 0;
     /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
     virtual bool visible() const { return true; }
+    /// What a horizontal matt surface draws by. The environment must outlive it.
+    virtual std::unique_ptr<const BedLight> makeBedLight() const;
+    /// A lamp that belongs to it and is not in radiance(): too small for a table. Null if there is none.
+    virtual std::shared_ptr<const Light> sun() const { return nullptr; }
 };
 
-/// Where the environment stands; used by the built-in ones that follow the camera.
+/// Where the environment stands.
 struct EnvironmentPlacement {
-    double azimuth = 0.0;  ///< radians about +z, from +x: where the camera's right-hand side points
-    bool bed = true;       ///< a bed hides the lower hemisphere, so a studio needs no light from below
+    double azimuth = 0.0;   ///< radians about +z, from +x: where the camera's right-hand side points
+    bool bed = true;        ///< a bed hides the lower hemisphere, so a studio needs no light from below
+    double rotation = 0.0;  ///< --env-rotation, radians: turns the light counter-clockwise as seen from above
+    double exposure = 0.0;  ///< --env-exposure, stops: radiance of a map is scaled by 2^exposure, in [-30, 30]
 };
 
 /// An environment from the text of --env.
 ///   studio            softboxes that turn with the camera's azimuth, as on a photographer's turntable
+///   sky               a clear day, the sun behind the camera's left shoulder
+///   sky:ELEVATION,AZIMUTH[,TURBIDITY]  the sun in degrees above the horizon and from +x; haze from 2 to 8
 ///   constant:R,G,B    the same radiance from everywhere
-/// Throws UsageError.
+///   anything else     a .hdr or .exr file, see MapEnvironment
+/// Throws UsageError, InputError.
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement);
 
 /// Irradiance on a horizontal surface that looks up, from the upper hemisphere, by quadrature. (relative, times pi)

@@ -44,6 +44,16 @@ void writeExr(const std::filesystem::path& path, const Film& film, const std::ma
         header.channels().insert(kNames[c], Imf::Channel(Imf::FLOAT));
         buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, data, kStepX, step_y));
     }
+    for (const FilmLayer& layer : film.layers()) {
+        const std::size_t pixel = sizeof(float) * layer.channels.size();
+        for (std::size_t c = 0; c < layer.channels.size(); ++c) {
+            const std::string name = layer.name + "." + layer.channels[c];
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            // OpenEXR's frame buffers are for reading, too, and so want no const; it writes to none of ours.
+            buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(layer.values.data()) + c, data, pixel,
+                                                 pixel * static_cast<std::size_t>(film.width())));
+        }
+    }
     try {
         Imf::OutputFile file(path.c_str(), header, 0);
         file.setFrameBuffer(buffer);

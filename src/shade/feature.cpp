@@ -19,4 +19,19 @@ Pixel DepthIntegrator::radiance(const march::Ray& ray, TraceContext& context) co
     return alpha > 0.0f ? Pixel{Color(static_cast<float>(point.t)) * alpha, alpha} : Pixel{};
 }
 
+Pixel PositionIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
+    SurfacePoint point;
+    ++context.rays.primary;
+    if (!surfaces_.nearest(ray, context.tracer, point)) return {};
+    const float alpha = 1.0f - surfaces_.fade(point);
+    return {alpha * Color(point.position), alpha};
+}
+
+Pixel MaskIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
+    SurfacePoint point;
+    ++context.rays.primary;
+    if (!surfaces_.nearest(ray, context.tracer, point) || point.bed) return {};
+    return {Color(1.0f), 1.0f};
+}
+
 }  // namespace stratum::shade

@@ -28,4 +28,26 @@ private:
     Surfaces surfaces_;
 };
 
+/// World-space positions. Alpha 0 where there is nothing; the far bed fades out.
+class PositionIntegrator final : public Integrator {
+public:
+    PositionIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    FilmContent content() const override { return FilmContent::position; }
+
+private:
+    Surfaces surfaces_;
+};
+
+/// 1 on the print, 0 on the bed and beside both; alpha is the same.
+class MaskIntegrator final : public Integrator {
+public:
+    MaskIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    FilmContent content() const override { return FilmContent::unit; }
+
+private:
+    Surfaces surfaces_;
+};
+
 }  // namespace stratum::shade

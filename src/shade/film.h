@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace stratum::shade {
@@ -23,12 +24,20 @@ enum class FilmContent {
     unit,      ///< a share in [0, 1], e.g. ambient occlusion
     normal,    ///< world-space unit vectors, components in [-1, 1], times alpha
     depth,     ///< distance along the ray in world units, times alpha
+    position,  ///< world-space position in world units, times alpha
 };
 
 /// Mean values of one pixel. rgb is premultiplied by alpha.
 struct Pixel {
     Color rgb{0.0f};
     float alpha = 0.0f;
+};
+
+/// A named set of channels beside the picture, e.g. "normal" with X, Y, Z.
+struct FilmLayer {
+    std::string name;
+    std::vector<std::string> channels;
+    std::vector<float> values;  ///< channel fastest, then pixels row by row from the top
 };
 
 /// The finished pixels of one region of a frame. Different pixels may be written by different threads.
@@ -51,16 +60,20 @@ public:
     const Pixel& at(int x, int y) const { return pixels_[index(x, y)]; }
     /// Row by row from the top.
     const std::vector<Pixel>& pixels() const { return pixels_; }
-
-private:
+    /// Where a pixel lies in pixels() and in each layer.
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width()) +
                static_cast<std::size_t>(x - region_.x0);
     }
+    std::vector<FilmLayer>& layers() { return layers_; }
+    const std::vector<FilmLayer>& layers() const { return layers_; }
+
+private:
     int frame_width_ = 0, frame_height_ = 0;
     PixelBox region_;
     FilmContent content_ = FilmContent::radiance;
     std::vector<Pixel> pixels_;
+    std::vector<FilmLayer> layers_;
 };
 
 }  // namespace stratum::shade

@@ -2,10 +2,13 @@
 
 #include "io/error.h"
 #include "shade/ambient_occlusion.h"
+#include "shade/environment_sum.h"
 #include "shade/feature.h"
 #include "shade/path.h"
+#include "shade/phong.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <string_view>
@@ -13,15 +16,23 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames = {"path", "direct", "ao", "normal", "depth"};
+constexpr std::array<std::string_view, 9> kNames = {"path",   "direct", "environment-sum", "phong", "ao",
+                                                    "normal", "depth",  "position",        "mask"};
 
 }  // namespace
 
 void IntegratorOptions::validate() const {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-        throw UsageError(fmt::format("--integrator {}: unknown; choose path, direct, ao, normal or depth", name));
+        throw UsageError(fmt::format("--integrator {}: unknown; choose {}", name, fmt::join(kNames, ", ")));
     if (bounces < 1 || bounces > 64)
         throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
+    const auto within = [](float value, float high) { return value >= 0.0f && value <= high; };
+    if (!within(phong.ambient, 100.0f) || !within(phong.diffuse, 100.0f) || !within(phong.specular, 100.0f) ||
+        !within(phong.shininess, 1e6f) || !within(phong.reflective, 1.0f))
+        throw UsageError(
+            "--phong KA,KD,KS,SHININESS,KR: weights from 0 to 100, an exponent to 1e6, a mirror's share to 1");
+    if (environment_rows < 2 || environment_rows > 512)
+        throw UsageError(fmt::format("--environment-rows {}: must be from 2 to 512", environment_rows));
     if (!(ao_distance > 0.0))
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
 }
@@ -33,6 +44,11 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "ao") return std::make_unique<AmbientOcclusion>(scene, print, options.ao_distance);
     if (options.name == "normal") return std::make_unique<NormalIntegrator>(scene, print);
     if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
+    if (options.name == "position") return std::make_unique<PositionIntegrator>(scene, print);
+    if (options.name == "mask") return std::make_unique<MaskIntegrator>(scene, print);
+    if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
+    if (options.name == "environment-sum")
+        return std::make_unique<EnvironmentSum>(scene, print, options.environment_rows);
     return std::make_unique<PathIntegrator>(scene, print, options.bounces);
 }
 

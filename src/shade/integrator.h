@@ -36,9 +36,18 @@ struct TraceContext {
     RayCounts& rays;
 };
 
+/// How PhongIntegrator weighs its terms.
+struct PhongOptions {
+    float ambient = 1.0f, diffuse = 1.0f, specular = 1.0f;  ///< ka, kd, ks, each in [0, 100]
+    float shininess = 500.0f;                               ///< exponent, in [0, 1e6]
+    float reflective = 0.2f;                                ///< kr, the mirror's share, in [0, 1]
+};
+
 struct IntegratorOptions {
-    std::string name = "path";  ///< path, direct, ao, normal, depth
+    std::string name = "path";  ///< path, direct, environment-sum, phong, ao, normal, depth, position, mask
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
+    PhongOptions phong;
+    int environment_rows = 32;  ///< environment-sum: rows of its map, 2 to 512; twice as many columns
     double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther things don't occlude
 
     /// Throws UsageError.

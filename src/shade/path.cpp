@@ -2,11 +2,22 @@
 
 #include "shade/sampling.h"
 
+#include <limits>
+
 namespace stratum::shade {
+namespace {
+
+/// What a cosine sample of the bed counts in its weight against one of BedLight. With 1 the open bed would be as noisy
+/// as the cosine is; with 0 the shadow of a sun would be lit by the few samples that miss the sun.
+constexpr float kBedShare = 0.25f;
+
+}  // namespace
 
 PathIntegrator::PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces)
     : scene_(scene), surfaces_(scene, print), bounces_(bounces) {
-    if (scene.bed) bed_light_.emplace(*scene.environment);
+    if (scene.bed) bed_light_ = scene.environment->makeBedLight();
+    for (const auto& light : scene.lights)
+        if (light->hasExtent()) lamps_.push_back(light.get());
 }
 
 Pixel PathIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
@@ -21,16 +32,31 @@ Pixel PathIntegrator::radiance(const march::Ray& ray, TraceContext& context) con
     return {(1.0f - fade) * scattered(point, ray.direction, context) + fade * behind, 1.0f};
 }
 
-/// Sum over the directional lights of what they send to the viewer by this point.
+/// Sum over the lamps of what they send to the viewer by this point.
 Color PathIntegrator::fromLights(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo,
                                  TraceContext& context) const {
     Color sum(0.0f);
-    for (const DirectionalLight& light : scene_.lights) {
-        const glm::vec3 wi = frame.toLocal(light.to_light);
-        const Color value = point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * light.irradiance;
+    for (const auto& light : scene_.lights) {
+        const glm::vec2 draw = light->hasExtent() ? context.sampler.next2D() : glm::vec2(0.0f);
+        const std::optional<LightSample> sample = light->sample(point.position, draw);
+        if (!sample) continue;
+        const glm::vec3 wi = frame.toLocal(sample->direction);
+        Color value = point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * sample->light;
+        if (sample->pdf > 0.0f) value *= powerHeuristic(sample->pdf, point.brdf->pdf(wo, wi)) / sample->pdf;
         if (!(maxComponent(value) > 0.0f)) continue;
+        march::Ray ray = surfaces_.leave(point, sample->direction);
+        ray.t_max = sample->distance;
         ++context.rays.shadow;
-        if (!surfaces_.occluded(surfaces_.leave(point, light.to_light), context.tracer)) sum += value;
+        if (!surfaces_.occluded(ray, context.tracer)) sum += value;
+    }
+    return sum;
+}
+
+Color PathIntegrator::fromLamps(const march::Ray& ray, double t, float pdf) const {
+    Color sum(0.0f);
+    for (const Light* lamp : lamps_) {
+        const std::optional<LightMeeting> meeting = lamp->meet(ray);
+        if (meeting && meeting->t <= t) sum += meeting->radiance * powerHeuristic(pdf, meeting->pdf);
     }
     return sum;
 }
@@ -42,7 +68,8 @@ Color PathIntegrator::fromEnvironment(const SurfacePoint& point, const Frame& fr
     const EnvironmentSample light = point.bed ? bed_light_->sample(draw) : scene_.environment->sample(draw);
     const glm::vec3 wi = frame.toLocal(light.direction);
     if (!(light.pdf > 0.0f && wi.z > 0.0f)) return Color(0.0f);
-    const float weight = point.bed ? 1.0f : powerHeuristic(light.pdf, point.brdf->pdf(wo, wi));
+    const float other = (point.bed ? kBedShare : 1.0f) * point.brdf->pdf(wo, wi);
+    const float weight = balanceHeuristic(light.pdf, other);
     const Color value = point.brdf->eval(wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
     if (!(maxComponent(value) > 0.0f)) return Color(0.0f);
     ++context.rays.shadow;
@@ -67,22 +94,24 @@ Color PathIntegrator::scattered(SurfacePoint point, glm::dvec3 direction, TraceC
         if (!next) return sum;
         throughput *= next->f * (next->wi.z / next->pdf);
         if (!(maxComponent(throughput) > 0.0f)) return sum;
+        sum += throughput * scene_.ambient;
         const glm::vec3 way = frame.toWorld(next->wi);
         const march::Ray ray = surfaces_.leave(point, way);
         // What the ray brings home if it meets nothing.
-        Color escaped(0.0f);
-        if (!point.bed)
-            escaped = throughput * environment.radiance(way) * powerHeuristic(next->pdf, environment.pdf(way));
-        const bool bright = maxComponent(escaped) > 0.0f;
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        Color escaped = fromLamps(ray, kFar, next->pdf);
+        const float drawn = (point.bed ? kBedShare : 1.0f) * next->pdf;
+        escaped += environment.radiance(way) *
+                   balanceHeuristic(drawn, point.bed ? bed_light_->pdf(way) : environment.pdf(way));
         const bool last = bounce == bounces_;
-        if (last && !bright) return sum;
+        if (last && !(maxComponent(escaped) > 0.0f)) return sum;
         ++context.rays.bounce;
-        if (last ? surfaces_.occluded(ray, context.tracer) : surfaces_.nearest(ray, context.tracer, point)) {
-            if (last) return sum;
-            direction = ray.direction;
-        } else {
-            return sum + escaped;
-        }
+        if (last && lamps_.empty()) return surfaces_.occluded(ray, context.tracer) ? sum : sum + throughput * escaped;
+        if (!surfaces_.nearest(ray, context.tracer, point)) return sum + throughput * escaped;
+        // Lamps stand in nobody's way, so that one may lie before the surface.
+        sum += throughput * fromLamps(ray, point.t, next->pdf);
+        if (last) return sum;
+        direction = ray.direction;
     }
 }
 

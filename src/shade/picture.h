@@ -20,6 +20,8 @@ class PictureFile {
 public:
     /// Throws UsageError if the name ends neither in .png nor in .exr, OutputError if it can't be written.
     explicit PictureFile(const std::filesystem::path& path);
+    /// Whether it keeps linear values and layers: an EXR.
+    bool linear() const { return exr_; }
     /// Writes all of it and puts it in its place. `tone` is for PNG only. Throws OutputError.
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {});
 

@@ -8,6 +8,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 namespace stratum::shade {
@@ -22,7 +23,32 @@ struct Worker {
     std::unique_ptr<march::Tracer> tracer;
     Sampler sampler;
     RayCounts rays;
+    std::uint64_t samples = 0;
 };
+
+/// A pixel in the making.
+struct Sums {
+    glm::dvec3 rgb{0.0};
+    double alpha = 0.0;
+    double luminance = 0.0, square = 0.0;  // sums of luminance and of its square
+
+    /// Variance of the mean luminance of `count` samples as if they were independent.
+    double variance(int count) const {
+        const double n = count;
+        const double mean = luminance / n;
+        return std::max(0.0, square / n - mean * mean) / std::max(n - 1.0, 1.0);
+    }
+};
+
+/// Root mean square of the relative standard errors of a tile's pixels.
+double errorOf(const std::vector<Sums>& tile, int count) {
+    double sum = 0.0;
+    for (const Sums& s : tile) {
+        const double mean = s.luminance / count;
+        sum += s.variance(count) / (mean * mean + 0.01);
+    }
+    return std::sqrt(sum / static_cast<double>(tile.size()));
+}
 
 std::vector<PixelBox> tilesOf(const PixelBox& region) {
     std::vector<PixelBox> tiles;
@@ -42,6 +68,10 @@ void RenderOptions::validate() const {
                  crop->y0 >= crop->y1))
         throw UsageError(fmt::format("--crop {},{},{},{}: must be a part of the {}x{} picture, X0 < X1 and Y0 < Y1",
                                      crop->x0, crop->y0, crop->x1, crop->y1, width, height));
+    if (!(noise >= 0.0 && noise <= 1.0))
+        throw UsageError(fmt::format("--noise {}: must be above 0 and at most 1", noise));
+    if (spp < 2 && std::find(aovs.begin(), aovs.end(), Aov::variance) != aovs.end())
+        throw UsageError("--aov variance needs --spp 2 or more: one sample has no spread");
     integrator.validate();
 }
 
@@ -54,25 +84,57 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
     const auto integrator = makeIntegrator(options.integrator, scene, print);
     const PixelFilter filter;
     const PixelBox region = options.crop.value_or(PixelBox{0, 0, options.width, options.height});
-    RenderResult result{Film(options.width, options.height, region, integrator->content()), {}};
+    RenderResult result{Film(options.width, options.height, region, integrator->content()), 0.0, {}};
+    const AovRecorder recorder(scene, print, options.aovs);
+    result.film.layers() = makeLayers(options.aovs, result.film.pixels().size());
 
-    const auto renderPixel = [&](int x, int y, Worker& worker) {
+    const auto renderTile = [&](const PixelBox& tile, Worker& worker) {
         TraceContext context{*worker.tracer, worker.sampler, worker.rays};
-        glm::dvec3 rgb(0.0);
-        double alpha = 0.0;
-        for (int s = 0; s < options.spp; ++s) {
-            worker.sampler.start(x, y, static_cast<std::uint32_t>(s));
-            const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(worker.sampler.next2D());
-            const Pixel sample = integrator->radiance(scene.camera.ray(place), context);
-            rgb += glm::dvec3(sample.rgb);
-            alpha += static_cast<double>(sample.alpha);
+        const auto count = static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height());
+        std::vector<Sums> sums(count);
+        std::vector<double> layers(count * recorder.size(), 0.0);
+        const auto samplePixel = [&](int x, int y, int first, int last, Sums& sum, double* layer) {
+            for (int s = first; s < last; ++s) {
+                worker.sampler.start(x, y, static_cast<std::uint32_t>(s));
+                const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(worker.sampler.next2D());
+                const march::Ray ray = scene.camera.ray(place);
+                const Pixel sample = integrator->radiance(ray, context);
+                sum.rgb += glm::dvec3(sample.rgb);
+                sum.alpha += static_cast<double>(sample.alpha);
+                const auto y_sample = static_cast<double>(luminance(sample.rgb));
+                sum.luminance += y_sample;
+                sum.square += y_sample * y_sample;
+                recorder.add(ray, context, layer);
+            }
+        };
+        int done = 0;
+        int target = options.noise > 0.0 ? std::min(16, options.spp) : options.spp;
+        for (;;) {
+            std::size_t n = 0;
+            for (int y = tile.y0; y < tile.y1; ++y)
+                for (int x = tile.x0; x < tile.x1; ++x, ++n)
+                    samplePixel(x, y, done, target, sums[n], layers.data() + n * recorder.size());
+            done = target;
+            if (done == options.spp || errorOf(sums, done) <= options.noise) break;
+            target = std::min(2 * done, options.spp);
         }
-        return Pixel{Color(rgb / static_cast<double>(options.spp)), static_cast<float>(alpha / options.spp)};
+        worker.samples += static_cast<std::uint64_t>(done) * count;
+        std::size_t n = 0;
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x, ++n) {
+                result.film.at(x, y) = {Color(sums[n].rgb / static_cast<double>(done)),
+                                        static_cast<float>(sums[n].alpha / done)};
+                recorder.store(layers.data() + n * recorder.size(),
+                               {sums[n].variance(done), static_cast<std::uint32_t>(done)}, result.film.layers(),
+                               result.film.index(x, y));
+            }
+        }
     };
 
     const std::vector<PixelBox> tiles = tilesOf(region);
     tbb::enumerable_thread_specific<Worker> workers([&] {
-        return Worker{print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{}};
+        return Worker{print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{},
+                      0};
     });
     std::mutex progress_mutex;
     std::uint64_t done = 0;
@@ -82,15 +144,19 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
         Worker& worker = workers.local();
         for (std::size_t i = first; i != last; ++i) {
             const PixelBox& tile = tiles[i];
-            for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; ++x) result.film.at(x, y) = renderPixel(x, y, worker);
+            renderTile(tile, worker);
             if (!progress) continue;
             const std::lock_guard lock(progress_mutex);
             done += static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height());
             progress(done, total);
         }
     });
-    for (const Worker& worker : workers) result.rays += worker.rays;
+    std::uint64_t samples = 0;
+    for (const Worker& worker : workers) {
+        result.rays += worker.rays;
+        samples += worker.samples;
+    }
+    result.mean_spp = static_cast<double>(samples) / static_cast<double>(total);
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "march/intersector.h"
+#include "shade/aov.h"
 #include "shade/film.h"
 #include "shade/integrator.h"
 #include "shade/scene.h"
@@ -13,9 +14,13 @@
 namespace stratum::shade {
 
 struct RenderOptions {
-    int width = 1280;              ///< pixels, 1 to 32768
-    int height = 960;              ///< pixels, 1 to 32768
-    int spp = 16;                  ///< samples a pixel, 1 to 65536; powers of two are best
+    int width = 1280;  ///< pixels, 1 to 32768
+    int height = 960;  ///< pixels, 1 to 32768
+    int spp = 16;      ///< samples a pixel, 1 to 65536; powers of two are best. With `noise`: at most
+    /// --noise: 0, or the relative standard error at which a tile of 32 x 32 pixels is good enough, in (0, 1]: its root
+    /// mean square over the tile, of luminance, against luminance^2 + 0.01. Begins with 16 samples and doubles.
+    double noise = 0.0;
+    std::vector<Aov> aovs;         ///< --aov: layers of the film
     std::uint32_t seed = 0;        ///< another seed, another noise
     std::optional<PixelBox> crop;  ///< --crop: only this part of the same picture; must lie in the frame
     IntegratorOptions integrator;
@@ -26,7 +31,8 @@ struct RenderOptions {
 
 struct RenderResult {
     Film film;
-    RayCounts rays;  ///< the same for any number of threads
+    double mean_spp = 0.0;  ///< samples a pixel
+    RayCounts rays;         ///< the same for any number of threads
 };
 
 /// Called now and then from any thread, never from two at once, with the number of finished pixels.

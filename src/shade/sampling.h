@@ -48,4 +48,8 @@ inline float powerHeuristic(float a, float b) {
     return 1.0f / (1.0f + r * r);
 }
 
+/// The same by the balance heuristic (Veach): for strategies that were made to complement each other, as compensated
+/// maps of light are.
+inline float balanceHeuristic(float a, float b) { return a > 0.0f ? 1.0f / (1.0f + b / a) : 0.0f; }
+
 }  // namespace stratum::shade

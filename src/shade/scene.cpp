@@ -11,10 +11,9 @@ namespace stratum::shade {
 namespace {
 
 /// Radiance of the bare paper far from the print.
-Color paperRadiance(const SceneDescription& scene, const Color& albedo) {
-    Color irradiance = irradianceFromAbove(*scene.environment);
-    for (const DirectionalLight& light : scene.lights)
-        irradiance += light.irradiance * std::max(0.0f, light.to_light.z);
+Color paperRadiance(const SceneDescription& scene, const Color& albedo, const glm::dvec3& point) {
+    Color irradiance = irradianceFromAbove(*scene.environment) + kPi * scene.ambient;
+    for (const auto& light : scene.lights) irradiance += irradianceFrom(*light, point);
     return albedo * irradiance * kInvPi;
 }
 
@@ -45,24 +44,33 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
                            .material = makeBrdf(options.brdf),
                            .environment = nullptr,
                            .lights = {},
+                           .ambient = Color(0.0f),
                            .bed = std::nullopt,
                            .backdrop = std::nullopt};
-    for (const std::string& light : options.lights) scene.lights.push_back(parseDirectionalLight(light));
+    for (const std::string& light : options.lights) {
+        if (const auto ambient = parseAmbient(light))
+            scene.ambient += *ambient;
+        else
+            scene.lights.push_back(parseLight(light));
+    }
 
     EnvironmentPlacement placement;
     placement.azimuth = std::atan2(scene.camera.right().y, scene.camera.right().x);
     placement.bed = false;
+    placement.rotation = options.env_rotation * std::numbers::pi / 180.0;
+    placement.exposure = options.env_exposure;
     Bed bed;
     if (options.bed) {
         bed.z = restingHeight(print);
         placement.bed = scene.camera.eye().z > bed.z;
     }
     scene.environment = makeEnvironment(options.env, placement);
+    if (auto sun = scene.environment->sun()) scene.lights.push_back(std::move(sun));
 
-    const Color paper = paperRadiance(scene, bed.albedo);
+    bed.centre = {0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y)};
+    const Color paper = paperRadiance(scene, bed.albedo, {bed.centre.x, bed.centre.y, bed.z});
     if (placement.bed) {
         const double reach = 0.5 * glm::length(box.max - box.min);
-        bed.centre = {0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y)};
         bed.fade_begin = 1.0 * reach;
         bed.fade_end = 7.0 * reach;
         scene.bed = bed;

@@ -5,8 +5,8 @@
 #include "shade/bed.h"
 #include "shade/brdf.h"
 #include "shade/camera.h"
-#include "shade/directional.h"
 #include "shade/environment.h"
+#include "shade/light.h"
 
 #include <memory>
 #include <optional>
@@ -19,7 +19,9 @@ namespace stratum::shade {
 struct SceneOptions {
     std::string brdf = kDefaultBrdf;  ///< --brdf, see makeBrdf
     std::string env = "studio";       ///< --env, see makeEnvironment
-    std::vector<std::string> lights;  ///< --light, see parseDirectionalLight; they add to the environment
+    double env_rotation = 0.0;        ///< --env-rotation, degrees counter-clockwise as seen from above
+    double env_exposure = 0.0;        ///< --env-exposure, stops
+    std::vector<std::string> lights;  ///< --light, see parseLight and parseAmbient; they add to the environment
     bool bed = true;                  ///< a sweep under the print
     bool backdrop = true;             ///< false: nothing behind the print, alpha 0 there
     CameraOptions camera;
@@ -30,7 +32,8 @@ struct SceneDescription {
     Camera camera;
     std::shared_ptr<const Brdf> material;            ///< of the print; never null
     std::shared_ptr<const Environment> environment;  ///< never null
-    std::vector<DirectionalLight> lights;
+    std::vector<std::shared_ptr<const Light>> lights;
+    Color ambient{0.0f};  ///< radiance that reaches every point from everywhere
     std::optional<Bed> bed;
     std::optional<Backdrop>
         backdrop;  ///< what the camera sees behind everything; without it, a visible environment or nothing

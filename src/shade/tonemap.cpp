@@ -40,6 +40,20 @@ DepthRange depthRange(const Film& film) {
     return range;
 }
 
+struct PositionRange {
+    Color low{std::numeric_limits<float>::infinity()};
+    Color high{-std::numeric_limits<float>::infinity()};
+};
+PositionRange positionRange(const Film& film) {
+    PositionRange range;
+    for (const Pixel& p : film.pixels()) {
+        if (!(p.alpha > 0.5f)) continue;
+        range.low = glm::min(range.low, p.rgb / p.alpha);
+        range.high = glm::max(range.high, p.rgb / p.alpha);
+    }
+    return range;
+}
+
 }  // namespace
 
 void ToneOptions::validate() const {
@@ -71,6 +85,7 @@ std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options
     options.validate();
     const float scale = static_cast<float>(std::exp2(options.exposure));
     const DepthRange range = film.content() == FilmContent::depth ? depthRange(film) : DepthRange{};
+    const PositionRange box = film.content() == FilmContent::position ? positionRange(film) : PositionRange{};
     std::vector<std::uint8_t> bytes;
     bytes.reserve(film.pixels().size() * 3);
     for (int y = film.region().y0; y < film.region().y1; ++y) {
@@ -90,6 +105,12 @@ std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options
                     break;
                 case FilmContent::normal:
                     c = 0.5f * (c + Color(1.0f));
+                    break;
+                case FilmContent::position:
+                    for (int k = 0; k < 3 && pixel.alpha > 0.0f; ++k) {
+                        const float span = std::max(box.high[k] - box.low[k], std::numeric_limits<float>::min());
+                        c[k] = pixel.alpha * std::clamp((c[k] / pixel.alpha - box.low[k]) / span, 0.0f, 1.0f);
+                    }
                     break;
                 case FilmContent::depth: {
                     // 0.1 is the farthest surface; black is left for "nothing".

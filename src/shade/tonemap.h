@@ -25,7 +25,8 @@ Color toneMapNeutral(Color color);
 float encodeSrgb(float linear);
 
 /// 8-bit RGB, row by row from the top.
-/// Radiance is tone-mapped; shares are sRGB-encoded; normals become (n + 1) / 2; depth goes from white (near) to black.
+/// Radiance is tone-mapped; shares are sRGB-encoded; normals become (n + 1) / 2; depth goes from white (near) to black;
+/// positions from black to the primaries along each axis' range.
 /// Light gets a fixed dither of half a step so that a smooth backdrop shows no bands.
 std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options = {});
 

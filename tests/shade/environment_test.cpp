@@ -105,7 +105,7 @@ TEST(Studio, HasNoLightBelowABed) {
 TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
     for (const char* text : {"constant:1,1,1", "studio"}) {
         const auto env = makeEnvironment(text, {0.3, true});
-        const shade::BedLight light(*env);
+        const shade::TabulatedBedLight light(*env);
         const double expected = double(shade::luminance(shade::irradianceFromAbove(*env)));
         double sum = 0.0;
         double squares = 0.0;
@@ -126,7 +126,8 @@ TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
 }
 
 TEST(MakeEnvironment, RefusesNonsense) {
-    for (const char* text : {"", "sky", "studio:1", "constant", "constant:1,2", "constant:-1,0,0", "constant:1,1,x"})
+    for (const char* text : {"", "skies", "sky:1", "sky:0,0", "sky:45,0,99", "no_such.hdr", "studio:1", "constant",
+                             "constant:1,2", "constant:-1,0,0", "constant:1,1,x"})
         EXPECT_THROW(makeEnvironment(text, {}), UsageError) << text;
 }
 

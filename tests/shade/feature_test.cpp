@@ -31,6 +31,14 @@ TEST(Features, OfASphere) {
     EXPECT_EQ(depth.radiance(ray, context).alpha, 0.0f);
     EXPECT_EQ(rays.primary, 4u);
     EXPECT_EQ(rays.total(), 4u);
+
+    const shade::PositionIntegrator position(scene, ball);
+    const shade::MaskIntegrator mask(scene, ball);
+    EXPECT_EQ(mask.radiance(ray, context).alpha, 0.0f);
+    ray.origin = {0, -5, 0};
+    ray.direction = {0, 1, 0};
+    EXPECT_EQ(mask.radiance(ray, context).rgb, shade::Color(1.0f));
+    EXPECT_EQ(position.radiance(ray, context).rgb, shade::Color(0, -2, 0));
 }
 
 }  // namespace

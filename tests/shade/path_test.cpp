@@ -2,7 +2,9 @@
 
 #include "shade/analytic_prints.h"
 #include "shade/constant.h"
+#include "shade/directional.h"
 #include "shade/plastic.h"
+#include "shade/rectangle_light.h"
 #include "shade/render.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +74,7 @@ TEST(Path, FurnaceOnAConcaveBodyIsWhiteWhenAllBouncesCount) {
 TEST(Path, DirectionalLightOnPaper) {
     const auto none = test::nothing();
     auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);
-    scene.lights.push_back({glm::normalize(glm::vec3(0, 3, 4)), Color(2.0f)});
+    scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0.6f, 0.8f), Color(2.0f)));
     scene.backdrop.reset();
     const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 3, 16);
     EXPECT_NEAR(c.r, scene.bed->albedo.r * 2.0f * 0.8f / 3.14159265f, 1e-5f);
@@ -82,9 +84,44 @@ TEST(Path, ShadowOfADirectionalLight) {
     const auto ball = test::sphere({0, 0, 3}, 1.0);
     auto scene = sceneOf(ball, "lambert:0,0,0", "constant:0,0,0", true);
     scene.bed->z = 0.0;
-    scene.lights.push_back({glm::vec3(0, 0, 1), Color(1.0f)});
+    scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0, 1), Color(1.0f)));
     EXPECT_EQ(mean(ball, scene, towards({5, 0, 1}, {0.9, 0, 0}), 1, 16).r, 0.0f);
     EXPECT_GT(mean(ball, scene, towards({5, 0, 1}, {1.1, 0, 0}), 1, 16).r, 0.1f);
+}
+
+TEST(Path, LampsWithExtentAreSampledInBothWaysToTheSameEnd) {
+    // The same integral by the lamp's samples alone. A near lamp over a glossy ball: here both ways have work to do.
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    auto scene = sceneOf(ball, "plastic:0.6,0.3,0.1,0.15", "constant:0,0,0", false);
+    const shade::RectangleLight lamp({0, 0, 2}, {1, 0, 0}, {0, -1, 0}, Color(3.0f));
+    scene.lights.push_back(std::make_shared<shade::RectangleLight>(lamp));
+    const march::Ray ray = towards({2, 0, 2}, glm::normalize(glm::dvec3(0.4, 0, 1)));
+    const auto tracer = ball.makeTracer();
+    march::Hit hit;
+    ASSERT_TRUE(tracer->intersect(ray, hit));
+    const shade::Frame frame{glm::vec3(hit.normal)};
+    const glm::vec3 wo = frame.toLocal(glm::vec3(-ray.direction));
+    double expected = 0.0;
+    constexpr int kSide = 512;
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            const auto s = lamp.sample(hit.position, {(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+            const glm::vec3 wi = frame.toLocal(s->direction);
+            if (wi.z > 0.0f) expected += double(scene.material->eval(wo, wi).r * wi.z * s->light.r / s->pdf);
+        }
+    }
+    expected /= kSide * kSide;
+    EXPECT_NEAR(mean(ball, scene, ray, 1, 16384).r, expected, 0.01 * expected);
+    // The camera doesn't see it.
+    EXPECT_EQ(mean(ball, scene, towards({0.9, 0, 1.5}, {0.9, 0, 3}), 1, 4).r, 0.0f);
+}
+
+TEST(Path, AmbientLightReachesEverywhere) {
+    const auto none = test::nothing();
+    auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);
+    scene.ambient = Color(0.5f);
+    scene.backdrop.reset();
+    EXPECT_NEAR(mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 1, 64).r, 0.5f * scene.bed->albedo.r, 1e-5f);
 }
 
 TEST(Path, EnvironmentSamplingIsUnbiased) {

@@ -1,0 +1,116 @@
+#include "shade/aov.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace stratum::shade {
+namespace {
+
+struct Kind {
+    Aov aov;
+    std::string_view name;
+    std::vector<std::string> channels;
+};
+
+const std::array<Kind, 7>& kinds() {
+    static const std::array<Kind, 7> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
+                                             {Aov::depth, "depth", {"Z"}},
+                                             {Aov::position, "position", {"X", "Y", "Z"}},
+                                             {Aov::albedo, "albedo", {"R", "G", "B"}},
+                                             {Aov::mask, "mask", {"V"}},
+                                             {Aov::variance, "variance", {"V"}},
+                                             {Aov::samples, "samples", {"V"}}}};
+    return all;
+}
+
+const Kind& kindOf(Aov aov) { return kinds()[static_cast<std::size_t>(aov)]; }
+
+bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
+
+}  // namespace
+
+std::vector<Aov> parseAovs(std::string_view text) {
+    std::vector<Aov> aovs;
+    while (!text.empty()) {
+        const std::string_view word = text.substr(0, text.find(','));
+        text.remove_prefix(std::min(text.size(), word.size() + 1));
+        const auto found =
+            std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
+        if (found == kinds().end())
+            throw UsageError(fmt::format(
+                "--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, samples", word));
+        if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
+    }
+    return aovs;
+}
+
+std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels) {
+    std::vector<FilmLayer> layers;
+    for (const Aov aov : aovs) {
+        const Kind& kind = kindOf(aov);
+        layers.push_back({std::string(kind.name), kind.channels, std::vector<float>(pixels * kind.channels.size())});
+    }
+    return layers;
+}
+
+AovRecorder::AovRecorder(const SceneDescription& scene, const march::Intersector& print, std::vector<Aov> aovs)
+    : surfaces_(scene, print),
+      aovs_(std::move(aovs)),
+      print_(reflectanceFactor(*scene.material)),
+      paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {
+    for (const Aov aov : aovs_)
+        if (geometric(aov)) size_ += kindOf(aov).channels.size();
+}
+
+void AovRecorder::add(const march::Ray& ray, TraceContext& context, double* sums) const {
+    if (size_ == 0) return;
+    SurfacePoint point;
+    ++context.rays.primary;
+    if (!surfaces_.nearest(ray, context.tracer, point)) return;
+    const auto add3 = [&sums](const glm::dvec3& v) {
+        for (int k = 0; k < 3; ++k) *sums++ += v[k];
+    };
+    const double share = 1.0 - static_cast<double>(surfaces_.fade(point));
+    for (const Aov aov : aovs_) {
+        switch (aov) {
+            case Aov::normal:
+                add3(share * point.normal);
+                break;
+            case Aov::depth:
+                *sums++ += share * point.t;
+                break;
+            case Aov::position:
+                add3(share * point.position);
+                break;
+            case Aov::albedo:
+                add3(share * glm::dvec3(point.bed ? paper_ : print_));
+                break;
+            case Aov::mask:
+                *sums++ += point.bed ? 0.0 : 1.0;
+                break;
+            case Aov::variance:
+            case Aov::samples:
+                break;
+        }
+    }
+}
+
+void AovRecorder::store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
+                        std::size_t pixel) const {
+    for (std::size_t n = 0; n < aovs_.size(); ++n) {
+        const std::size_t channels = layers[n].channels.size();
+        float* out = &layers[n].values[pixel * channels];
+        if (aovs_[n] == Aov::variance)
+            *out = static_cast<float>(statistics.variance);
+        else if (aovs_[n] == Aov::samples)
+            *out = static_cast<float>(statistics.samples);
+        else
+            for (std::size_t c = 0; c < channels; ++c) out[c] = static_cast<float>(*sums++ / statistics.samples);
+    }
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,57 @@
+// What else a pixel can hold besides its light: layers for compositing, denoising and computer vision.
+#pragma once
+
+#include "shade/film.h"
+#include "shade/integrator.h"
+#include "shade/surface.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::shade {
+
+/// One kind of layer. Of geometry the mean over all samples, 0 where there is nothing: "times coverage", as film
+/// colours are.
+enum class Aov {
+    normal,    ///< X, Y, Z: world-space unit, on the side that is seen
+    depth,     ///< Z: world units along the ray
+    position,  ///< X, Y, Z: world space
+    albedo,    ///< R, G, B: reflectanceFactor of the material
+    mask,      ///< V: share of the pixel that the print covers
+    variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
+               ///< stratified samples do better, so it is an upper estimate
+    samples,   ///< V: samples taken
+};
+
+/// The layers of --aov: "normal,depth,...". Throws UsageError.
+std::vector<Aov> parseAovs(std::string_view text);
+
+/// Empty layers of a film of this many pixels.
+std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
+
+/// Sees what a camera ray meets first. Immutable; shared by all threads.
+class AovRecorder {
+public:
+    AovRecorder(const SceneDescription& scene, const march::Intersector& print, std::vector<Aov> aovs);
+    /// Numbers that one pixel needs: those of all geometric layers.
+    std::size_t size() const { return size_; }
+    /// Adds one sample to size() sums. One ray, counted as primary, if there is any geometric layer.
+    void add(const march::Ray& ray, TraceContext& context, double* sums) const;
+    /// What only the renderer knows.
+    struct PixelStatistics {
+        double variance = 0.0;
+        std::uint32_t samples = 0;
+    };
+    /// Writes the means of one pixel into the film's layers.
+    void store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
+               std::size_t pixel) const;
+
+private:
+    Surfaces surfaces_;
+    std::vector<Aov> aovs_;
+    std::size_t size_ = 0;
+    Color print_, paper_;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,31 @@
+// A picture of light from all around: latitude-longitude radiance, as .hdr and .exr files hold it.
+#pragma once
+
+#include "shade/color.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace stratum::shade {
+
+/// Radiance by direction, row by row from straight up to straight down. Texel (x, y) is the radiance at its centre:
+/// azimuth (x + 0.5) / width of a turn, polar angle (y + 0.5) / height of pi.
+struct LightMap {
+    int width = 0;   ///< texels
+    int height = 0;  ///< texels
+    std::vector<Color> texels;
+
+    const Color& at(int x, int y) const {
+        return texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+    }
+};
+
+/// The largest map that is read: 2^27 texels, 1.6 GB. 16384 x 8192 is the largest that people publish.
+inline constexpr std::size_t kMostMapTexels = std::size_t{1} << 27;
+
+/// Reads a .hdr or .exr map, told apart by content. Throws InputError: missing, of another kind, damaged, too large,
+/// not twice as wide as high, with texels that are negative or no number, or black all over.
+LightMap readLightMap(const std::filesystem::path& path);
+
+}  // namespace stratum::shade

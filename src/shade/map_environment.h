@@ -1,0 +1,39 @@
+// Light from a map: a photograph of all directions, or a tabulated sky.
+#pragma once
+
+#include "shade/bilinear_distribution.h"
+#include "shade/environment.h"
+#include "shade/light_map.h"
+
+namespace stratum::shade {
+
+/// A latitude-longitude map, interpolated bilinearly. The map's middle column lies towards +x and azimuth grows to the
+/// left, as in Blender, so that a scene looks the same in both.
+///
+/// sample() is one half of multiple importance sampling and knows it: it draws where the map is brighter than its mean
+/// and leaves the rest to the BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling
+/// Techniques in Multiple Importance Sampling", SIGGRAPH Asia 2019. makeBedLight() draws alone and is complete.
+class MapEnvironment final : public Environment {
+public:
+    /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
+    /// @param scale     of radiance, > 0
+    MapEnvironment(LightMap map, double rotation, float scale);
+    Color radiance(const glm::vec3& direction) const override;
+    EnvironmentSample sample(const glm::vec2& u) const override;
+    float pdf(const glm::vec3& direction) const override;
+    std::unique_ptr<const BedLight> makeBedLight() const override;
+
+private:
+    friend class MapBedLight;
+    /// Place in the map, [0, 1)^2, and the sine of the polar angle.
+    glm::dvec2 place(const glm::vec3& direction, double& sine) const;
+    Color lookUp(const glm::dvec2& place) const;
+    EnvironmentSample draw(const BilinearDistribution& table, const glm::vec2& u) const;
+    float density(const BilinearDistribution& table, const glm::vec3& direction) const;
+
+    LightMap map_;
+    double rotation_;
+    BilinearDistribution table_;
+};
+
+}  // namespace stratum::shade

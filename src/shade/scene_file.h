@@ -1,0 +1,32 @@
+// A picture described in a file: JSON.
+#pragma once
+
+#include "shade/render.h"
+#include "shade/scene.h"
+#include "shade/tonemap.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace stratum::shade {
+
+/// All that makes a picture. docs/shading.md has the schema with an example.
+struct SceneFile {
+    std::string print;   ///< the level set; relative to the scene file
+    std::string grid;    ///< empty: chosen as by --grid
+    std::string output;  ///< empty: named after the scene file; relative to the working directory
+    SceneOptions scene;
+    RenderOptions render;
+    bool spp_given = false;  ///< whether the file says how many samples, or leaves them to the default
+    ToneOptions tone;
+};
+
+/// Whether a text looks like a scene: its first character is a brace.
+bool isSceneFile(std::string_view text);
+
+/// Reads a scene. File names in it are relative to its own folder. Throws InputError: place of a syntax error, the path
+/// of a value of the wrong kind, an unknown key and the known one that is most like it.
+SceneFile readSceneFile(const std::filesystem::path& path);
+
+}  // namespace stratum::shade

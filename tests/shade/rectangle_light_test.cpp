@@ -1,0 +1,73 @@
+#include "shade/rectangle_light.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace stratum {
+namespace {
+
+using shade::Color;
+using shade::RectangleLight;
+
+/// Irradiance of a horizontal surface from a horizontal rectangle above, by area.
+double byArea(double cx, double cy, double z, double a, double b) {
+    constexpr int kSide = 600;
+    double sum = 0.0;
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            const double x = cx + a * (2.0 * (i + 0.5) / kSide - 1.0);
+            const double y = cy + b * (2.0 * (j + 0.5) / kSide - 1.0);
+            const double r2 = x * x + y * y + z * z;
+            sum += z * z / (r2 * r2);
+        }
+    }
+    return sum * 4.0 * a * b / kSide / kSide;
+}
+
+TEST(RectangleLight, GivesTheIrradianceOfItsArea) {
+    struct Case {
+        double x, y, z, a, b;
+    };
+    for (const Case c :
+         {Case{0, 0, 2, 1, 1}, {3, -1, 0.5, 2, 0.3}, {0.1, 0.2, 0.05, 1, 2}, {0, 5, 300, 2, 3}, {10, 20, 5000, 1, 1}}) {
+        const RectangleLight light({c.x, c.y, c.z}, {c.a, 0, 0}, {0, -c.b, 0}, Color(1.0f));
+        const double expected = byArea(c.x, c.y, c.z, c.a, c.b);
+        EXPECT_NEAR(double(shade::irradianceFrom(light, glm::dvec3(0.0)).r), expected, 3e-3 * expected)
+            << c.x << " " << c.z;
+    }
+}
+
+TEST(RectangleLight, SamplesAndMeetingsAgree) {
+    const RectangleLight light({1, 0, 3}, {0, 1, 0}, {2, 0, 0}, Color(3.0f));
+    const glm::dvec3 point(0.2, 0.4, 1.0);
+    double solid_angle = 0.0;
+    for (int i = 0; i < 32; ++i) {
+        for (int j = 0; j < 32; ++j) {
+            const auto s = light.sample(point, {(i + 0.5f) / 32, (j + 0.5f) / 32});
+            ASSERT_TRUE(s);
+            march::Ray ray;
+            ray.origin = point;
+            ray.direction = glm::normalize(glm::dvec3(s->direction));
+            const auto met = light.meet(ray);
+            ASSERT_TRUE(met);
+            EXPECT_NEAR(met->t, s->distance, 1e-5);
+            EXPECT_NEAR(met->pdf, s->pdf, 1e-5f * s->pdf);
+            solid_angle += 1.0 / double(s->pdf) / 1024.0;
+        }
+    }
+    EXPECT_GT(solid_angle, 0.0);
+    EXPECT_LT(solid_angle, 2.0 * std::numbers::pi);
+    // From behind, from beside and away.
+    EXPECT_FALSE(light.sample({0, 0, 4}, {0.5f, 0.5f}));
+    EXPECT_FALSE(light.sample({0, 0, 3}, {0.5f, 0.5f}));
+    march::Ray away;
+    away.origin = point;
+    away.direction = {0, 0, -1};
+    EXPECT_FALSE(light.meet(away));
+}
+
+}  // namespace
+}  // namespace stratum
