@@ -24,6 +24,8 @@ constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
 constexpr double kBytesOfTree = 5e5;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
 constexpr double kFloodFactor = 1.35;
+// Voxels a layer of the culled build that finer ones are scaled from.
+constexpr int kScaledFrom = 2;
 
 }  // namespace
 
@@ -43,7 +45,7 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
                      Interior interior) {
     if (interior == Interior::cull) {
         Lattice coarse = lattice;
-        coarse.voxel_size = lattice.layer_height;
+        coarse.voxel_size = std::max(lattice.voxel_size, lattice.layer_height / kScaledFrom);
         VoxelizeOptions options;
         options.interior = Interior::cull;
         const auto leaves = static_cast<double>(voxelize(toolpath, selection, coarse, options)->tree().leafCount());
@@ -70,12 +72,20 @@ int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::sp
                                      lattice.layer_height, coarsest * 1e-6,
                                      interior == Interior::keep ? ", or --interior cull" : ""));
     int best = 1;
+    double scaled = 0;
     for (int count = 2; count <= kMostWithinBudget; ++count) {
         // Finer never takes less than the square; no need to list what that alone rules out.
         if (coarsest * count * count > 1.5 * budget) break;
         lattice.voxel_size = lattice.layer_height / count;
-        const double bytes = interior == Interior::cull ? coarsest * count * count
-                                                        : estimateBytes(toolpath, selection, lattice, interior);
+        if (interior == Interior::cull && count > kScaledFrom) {
+            // From here on it grows like a surface; see estimateBytes.
+            const double finer = static_cast<double>(count) / kScaledFrom;
+            if (scaled * finer * finer > budget) break;
+            best = count;
+            continue;
+        }
+        const double bytes = estimateBytes(toolpath, selection, lattice, interior);
+        scaled = bytes;
         if (bytes > budget) break;
         best = count;
     }

@@ -20,7 +20,8 @@ constexpr double kLargestErrorVoxels = 0.5;
 int voxelsPerLayerForTolerance(double layer_height, double tolerance);
 
 /// Bytes of a grid and of what it takes to build it. `keep`: counted from the z extents of the beads of every leaf
-/// column, a few per cent too many. `cull`: a culled build at one voxel a layer, scaled like a surface.
+/// column, a few per cent too many. `cull`: a culled build at no more than two voxels a layer, scaled
+/// like a surface.
 double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
                      Interior interior);
 
