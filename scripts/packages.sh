@@ -20,6 +20,6 @@ install_packages() {
 # What the tools are built with.
 BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
-    zlib1g-dev libzip-dev pkg-config)
+    zlib1g-dev libzip-dev libhwy-dev pkg-config)
 # What the tests need besides: the test library and the real programs that our files must work in.
 TEST_PACKAGES=(libgtest-dev libopenvdb-tools blender python3 prusa-slicer)

@@ -77,6 +77,10 @@ public:
     const Surface& surface(std::size_t brick) const { return surfaces_[brick]; }
     const float* samples(std::size_t brick) const { return samples_[brick].data(); }
 
+    /// The same as arrays, for vector code.
+    const MacroCell* macroCells() const { return macro_cells_.data(); }
+    const Surface* surfaces() const { return surfaces_.data(); }
+
     std::size_t brickCount() const { return surfaces_.size(); }
     std::size_t bytes() const;
 
