@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace stratum::march {
 namespace {
@@ -93,7 +94,8 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
             fmt::format("the level set spans {} x {} x {} voxels, too far apart to lay out for rays; split "
                         "it or use --march vdb",
                         size_[0], size_[1], size_[2]));
-    macro_cells_.resize(static_cast<std::size_t>(cells));
+    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+    std::fill(macro_cells_.begin(), macro_cells_.end(), MacroCell{});
 
     // First the masks, which tell what is kept; then the samples of that alone.
     std::vector<Surface> masks(leaves.size());
@@ -123,8 +125,8 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         macro.first_brick = count;
         count += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
-    surfaces_.resize(count);
-    samples_.resize(count);
+    surfaces_ = HugeArray<Surface>(count);
+    samples_ = HugeArray<Samples>(count);
     parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
         Accessor accessor = grid.getConstAccessor();
         for (std::size_t n = first; n != last; ++n) {
@@ -174,9 +176,6 @@ void BrickGrid::measureEmptySpace() {
     for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
 }
 
-std::size_t BrickGrid::bytes() const {
-    return macro_cells_.size() * sizeof(MacroCell) + surfaces_.size() * sizeof(Surface) +
-           samples_.size() * sizeof(Samples);
-}
+std::size_t BrickGrid::bytes() const { return macro_cells_.bytes() + surfaces_.bytes() + samples_.bytes(); }
 
 }  // namespace stratum::march

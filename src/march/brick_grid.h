@@ -7,13 +7,14 @@
 // Only bricks with a surface cell are kept. All coordinates are cells, counted from the grid's lowest corner.
 #pragma once
 
+#include "march/huge_array.h"
+
 #include <openvdb/openvdb.h>
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace stratum::march {
 
@@ -90,9 +91,9 @@ private:
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};
     std::array<int, 3> size_{};
-    std::vector<MacroCell> macro_cells_;
-    std::vector<Surface> surfaces_;
-    std::vector<Samples> samples_;
+    HugeArray<MacroCell> macro_cells_;
+    HugeArray<Surface> surfaces_;
+    HugeArray<Samples> samples_;
 };
 
 }  // namespace stratum::march

@@ -53,8 +53,8 @@ using M = hn::Mask<D>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr unsigned kAllLanes = (1U << kLanes) - 1;
 constexpr int kPackets = 2;
-constexpr int kHold = kLanes / 2;              // lanes in surface cells that make a test worth its turn
-constexpr int kRefill = 1;                     // lanes without a ray that make a visit to the queue worth it
+constexpr int kHold = kLanes * 3 / 8;          // lanes in surface cells that make a test worth its turn
+constexpr int kRefill = 2;                     // lanes without a ray that make a visit to the queue worth it
 constexpr int kQueue = 8 * kLanes;             // rays
 constexpr double kShift = 4503599627370496.0;  // 2^52: adding it leaves a whole number in the low bits of a double
 
@@ -90,18 +90,25 @@ HWY_INLINE VI product(VI a, VI b) {
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
 
-/// Where the bits of the lanes of a mask go when they are filled from a row: lane -> rank among those set.
-struct RankTable {
-    std::uint8_t rank[1U << kLanes][8] = {};
-    constexpr RankTable() {
+/// For every mask of lanes, which lane of a row goes where.
+struct LaneTable {
+    std::uint8_t rank[kAllLanes + 1][8] = {};   // to spread a row over the lanes set: lane -> how many are set below it
+    std::uint8_t place[kAllLanes + 1][8] = {};  // to gather the lanes set in a row: n -> the n-th lane set
+    constexpr LaneTable() {
         for (unsigned mask = 0; mask <= kAllLanes; ++mask)
             for (unsigned lane = 0, count = 0; lane < static_cast<unsigned>(kLanes); ++lane) {
                 rank[mask][lane] = static_cast<std::uint8_t>(count);
-                count += mask >> lane & 1;
+                if ((mask >> lane & 1) != 0) place[mask][count++] = static_cast<std::uint8_t>(lane);
             }
     }
 };
-inline constexpr RankTable kRanks;
+inline constexpr LaneTable kTable;
+
+HWY_INLINE auto tableIndices(const std::uint8_t (&row)[8]) {
+    alignas(64) std::int64_t source[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) source[lane] = row[lane];
+    return hn::SetTableIndices(D(), source);
+}
 
 /// What a lane keeps; one array each.
 enum Field {
@@ -170,6 +177,8 @@ private:
         static_assert(sizeof(Ray) == 8 * sizeof(double));
         const VI row = hn::ShiftLeft<3>(hn::IfThenElse(hn::Gt(lane, last), last, lane));
         const double* base = &rays_[next_].origin.x;
+        for (std::size_t n = next_ + kLanes; n < std::min(next_ + 2 * kLanes, rays_.size()); ++n)
+            hwy::Prefetch(&rays_[n]);
         V in[8];
         for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, base, row + whole(n));
         const V zero = hn::Zero(d);
@@ -217,8 +226,13 @@ private:
         out[kEnd] = end - start;
         out[kStart] = start;
         out[kIndex] = fromWhole(lane + whole(static_cast<std::int64_t>(next_)));
-        for (int n = 0; n < kQueued; ++n) hn::StoreU(hn::Compress(out[n], good), d, queue_[n] + tail_);
-        tail_ += std::popcount(bitsOf(good));
+        const unsigned kept = bitsOf(good);
+        if (kept != kAllLanes) {
+            const auto table = tableIndices(kTable.place[kept]);
+            for (V& v : out) v = hn::TableLookupLanes(v, table);
+        }
+        for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], d, queue_[n] + tail_);
+        tail_ += std::popcount(kept);
         next_ += count;
     }
 
@@ -233,11 +247,8 @@ private:
         }
         if (head_ == tail_) return;
         unsigned idle = kAllLanes & ~p.alive;
-        const std::uint8_t* rank = kRanks.rank[idle];
+        const auto table = tableIndices(kTable.rank[idle]);
         while (std::popcount(idle) > tail_ - head_) idle &= ~std::bit_floor(idle);
-        alignas(64) std::int64_t source[kLanes];
-        for (int lane = 0; lane < kLanes; ++lane) source[lane] = rank[lane];
-        const auto table = hn::SetTableIndices(d, source);
         const M taken = maskOf(idle);
         for (int n = 0; n < kQueued; ++n) {
             const V row = hn::LoadU(d, queue_[n] + head_);
