@@ -2,9 +2,12 @@
 //
 // Each peer traces each set of rays once per round, in turn with the others, so that what disturbs the machine disturbs
 // all. Reported are medians over rounds, their spread, ratios, and how answers differ from the scalar exact ones.
+#include "march_embree.h"
 #include "march_peer.h"
 #include "march_rays.h"
 
+#include "gcode/reader.h"
+#include "io/mapped_file.h"
 #include "march/brick_intersector.h"
 #include "march/level_set_file.h"
 #include "march/vdb_intersector.h"
@@ -32,7 +35,7 @@ using bench::Peer;
 using Json = nlohmann::ordered_json;
 
 struct Options {
-    std::string grid, json;
+    std::string grid, gcode, json;
     std::vector<std::string> peers;
     int side = 1024, rounds = 7, threads = 2;
 };
@@ -100,20 +103,25 @@ void run(const Options& o) {
     const auto wanted = [&](const std::string& name) {
         return o.peers.empty() || std::find(o.peers.begin(), o.peers.end(), name) != o.peers.end();
     };
-    const auto add = [&](const std::string& name, bool streams, const auto& make) {
-        std::unique_ptr<march::Intersector> made;
-        const double seconds = secondsOf([&] { made = make(); });
-        peers.push_back(bench::marchPeer(name, std::move(made), streams, seconds));
-    };
-    const auto brick = [&] { return march::makeBrickIntersector(*grid); };
-    if (wanted("brick scalar")) add("brick scalar", false, brick);
-    if (wanted("brick")) add("brick", true, brick);
-    if (wanted("vdb")) add("vdb", false, [&] { return march::makeVdbIntersector(grid); });
+    std::shared_ptr<const march::Intersector> brick;
+    const double brick_seconds = secondsOf([&] { brick = march::makeBrickIntersector(*grid); });
+    if (wanted("brick scalar")) peers.push_back(bench::marchPeer("brick scalar", brick, false, brick_seconds));
+    if (wanted("brick")) peers.push_back(bench::marchPeer("brick", brick, true, brick_seconds));
+    if (wanted("vdb")) peers.push_back(bench::marchPeer("vdb", march::makeVdbIntersector(grid), false, 0));
+    if (wanted("mesh")) peers.push_back(bench::embreeMesh(*grid));
+    if (!o.gcode.empty()) {
+        const MappedFile file(o.gcode);
+        const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), o.gcode);
+        for (const double split : {0.0, 16.0, 8.0})
+            if (wanted("beads")) peers.push_back(bench::embreeBeads(toolpath, split));
+        for (const int corners : {4, 6, 10})
+            if (wanted("prisms")) peers.push_back(bench::embreePrisms(toolpath, corners, 8));
+    }
 
     for (const auto& peer : peers)
         fmt::print("  {:<28} built in {:6.2f} s, {:8.1f} MB\n", peer->name, peer->build_seconds, 1e-6 * peer->bytes);
 
-    const auto sets = bench::makeRaySets(*march::makeBrickIntersector(*grid), o.side, 0.1 * voxel);
+    const auto sets = bench::makeRaySets(*brick, o.side, 0.1 * voxel);
     Json report{{"grid", o.grid}, {"active_voxels", grid->activeVoxelCount()}, {"read_seconds", read_seconds}};
     for (const bench::RaySet& set : sets) {
         std::vector<std::unique_ptr<bench::Prepared>> prepared;
@@ -170,7 +178,9 @@ int main(int argc, char** argv) {
     CLI::App app("Rays a second of intersectors and their peers.", "bench_march");
     Options o;
     app.add_option("GRID", o.grid, "A level set")->required();
-    app.add_option("--peers", o.peers, "Only these (default: all)")->delimiter(',');
+    app.add_option("--gcode", o.gcode, "What it was made from: adds peers that trace beads");
+    app.add_option("--peers", o.peers, "Only these of: brick scalar, brick, vdb, mesh, beads, prisms (default: all)")
+        ->delimiter(',');
     app.add_option("--side", o.side, "Pixels of the picture, a multiple of 32 (default 1024)");
     app.add_option("--rounds", o.rounds, "Timed rounds (default 7)");
     app.add_option("--threads", o.threads, "Threads (default 2)");

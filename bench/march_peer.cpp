@@ -48,20 +48,20 @@ private:
 
 class MarchPeer final : public Peer {
 public:
-    MarchPeer(std::unique_ptr<march::Intersector> intersector, bool streams)
+    MarchPeer(std::shared_ptr<const march::Intersector> intersector, bool streams)
         : intersector_(std::move(intersector)), streams_(streams) {}
     std::unique_ptr<Prepared> prepare(std::span<const march::Ray> rays, bool) override {
         return std::make_unique<MarchRays>(*intersector_, rays, streams_);
     }
 
 private:
-    std::unique_ptr<march::Intersector> intersector_;
+    std::shared_ptr<const march::Intersector> intersector_;
     bool streams_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> marchPeer(std::string name, std::unique_ptr<march::Intersector> intersector, bool streams,
+std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const march::Intersector> intersector, bool streams,
                                 double build_seconds) {
     const double bytes = static_cast<double>(intersector->bytes());
     auto peer = std::make_unique<MarchPeer>(std::move(intersector), streams);

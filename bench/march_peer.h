@@ -31,7 +31,7 @@ struct Peer {
 };
 
 /// An intersector of src/march; `streams` by its stream forms, else ray by ray.
-std::unique_ptr<Peer> marchPeer(std::string name, std::unique_ptr<march::Intersector> intersector, bool streams,
+std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const march::Intersector> intersector, bool streams,
                                 double build_seconds);
 
 }  // namespace stratum::bench

@@ -4,7 +4,11 @@
 #include "march/brick_walk.h"
 #include "march/level_set_file.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
 
 namespace stratum::march {
 namespace {
@@ -71,9 +75,12 @@ public:
     std::string_view name() const override { return "brick"; }
     Box bounds() const override { return bounds_; }
     double voxelSize() const override { return voxel_size_; }
-    // Hits are exact, so a thousandth of a voxel clears the surface; it is far above the rounding of doubles for any
-    // part that OpenVDB can index.
-    double surfaceOffset() const override { return 1e-3 * voxel_size_; }
+    // Hits are exact, so a thousandth of a voxel clears the surface, unless the coordinates themselves are rounded more
+    // coarsely than that.
+    double surfaceOffset() const override {
+        const double farthest = glm::length(glm::max(glm::abs(bounds_.min), glm::abs(bounds_.max)));
+        return std::max(1e-3 * voxel_size_, 4 * std::numeric_limits<double>::epsilon() * farthest);
+    }
     std::size_t bytes() const override { return bricks_.bytes(); }
 
 private:
