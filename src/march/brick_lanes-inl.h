@@ -14,7 +14,9 @@
 #endif
 
 #include "march/brick_walk.h"
+#include "march/cell_lanes-inl.h"
 #include "march/intersector.h"
+#include "march/lanes-inl.h"
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -26,90 +28,16 @@
 #include <limits>
 #include <span>
 
-#undef STRATUM_WIDE_LANES
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-#define STRATUM_WIDE_LANES 1
-#else
-#define STRATUM_WIDE_LANES 0  // two lanes don't pay for their gathers
-#endif
-
 #if STRATUM_WIDE_LANES
 HWY_BEFORE_NAMESPACE();
 namespace stratum::march {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<double, 8>;
-using DI = hn::RebindToSigned<D>;
-using DU = hn::RebindToUnsigned<D>;
-using DU32 = hn::Repartition<std::uint32_t, D>;
-using DF = hn::Rebind<float, D>;
-using DHalfU32 = hn::Rebind<std::uint32_t, D>;
-using V = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using M = hn::Mask<D>;
-
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-constexpr unsigned kAllLanes = (1U << kLanes) - 1;
-constexpr int kPackets = 2;
-constexpr int kHold = kLanes * 3 / 8;          // lanes in surface cells that make a test worth its turn
-constexpr int kRefill = 2;                     // lanes without a ray that make a visit to the queue worth it
-constexpr int kQueue = 8 * kLanes;             // rays
-constexpr double kShift = 4503599627370496.0;  // 2^52: adding it leaves a whole number in the low bits of a double
-
-struct Vec3 {
-    V v[3];
-};
-
-HWY_INLINE V constant(double value) { return hn::Set(D(), value); }
-HWY_INLINE VI whole(std::int64_t value) { return hn::Set(DI(), value); }
-HWY_INLINE M maskOf(unsigned bits) {
-    alignas(8) const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
-    return hn::LoadMaskBits(D(), bytes);
-}
-HWY_INLINE unsigned bitsOf(M mask) {
-    alignas(8) std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(D(), mask, bytes);
-    return bytes[0] & kAllLanes;
-}
-HWY_INLINE M toDouble(hn::Mask<DI> mask) { return hn::RebindMask(D(), mask); }
-/// Whole numbers in [0, 2^52).
-HWY_INLINE VI toWhole(V v) {
-    const V shift = constant(kShift);
-    return hn::Xor(hn::BitCast(DI(), v + shift), hn::BitCast(DI(), shift));
-}
-HWY_INLINE V fromWhole(VI v) {
-    const V shift = constant(kShift);
-    return hn::BitCast(D(), hn::Or(v, hn::BitCast(DI(), shift))) - shift;
-}
-/// Of whole numbers in [0, 2^32).
-HWY_INLINE VI product(VI a, VI b) {
-    return hn::BitCast(DI(), hn::MulEven(hn::BitCast(DU32(), a), hn::BitCast(DU32(), b)));
-}
-/// std::clamp, operand for operand.
-HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
-
-/// For every mask of lanes, which lane of a row goes where.
-struct LaneTable {
-    std::uint8_t rank[kAllLanes + 1][8] = {};   // to spread a row over the lanes set: lane -> how many are set below it
-    std::uint8_t place[kAllLanes + 1][8] = {};  // to gather the lanes set in a row: n -> the n-th lane set
-    constexpr LaneTable() {
-        for (unsigned mask = 0; mask <= kAllLanes; ++mask)
-            for (unsigned lane = 0, count = 0; lane < static_cast<unsigned>(kLanes); ++lane) {
-                rank[mask][lane] = static_cast<std::uint8_t>(count);
-                if ((mask >> lane & 1) != 0) place[mask][count++] = static_cast<std::uint8_t>(lane);
-            }
-    }
-};
-inline constexpr LaneTable kTable;
-
-HWY_INLINE auto tableIndices(const std::uint8_t (&row)[8]) {
-    alignas(64) std::int64_t source[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) source[lane] = row[lane];
-    return hn::SetTableIndices(D(), source);
-}
-
+// Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
+constexpr int kPackets = 6;
+constexpr int kHold = kLanes * 3 / 8;  // lanes in surface cells that make a test worth its turn
+constexpr int kRefill = kLanes / 4;    // lanes without a ray that make a visit to the queue worth it
+constexpr int kQueue = 8 * kLanes;     // rays
 /// What a lane keeps; one array each.
 enum Field {
     kO,
@@ -394,6 +322,8 @@ private:
             const float* corner = grid_.samples(0) + p.sample[std::countr_zero(rest)];
             hwy::Prefetch(corner);
             hwy::Prefetch(corner + BrickGrid::kStrideX);
+            hwy::Prefetch(corner + BrickGrid::kStrideY + 1);
+            hwy::Prefetch(corner + BrickGrid::kStrideX + BrickGrid::kStrideY + 1);
         }
     }
 
@@ -408,19 +338,6 @@ private:
         };
         here = floats(pair);
         next = floats(hn::ShiftRight<32>(pair));
-    }
-
-    static HWY_INLINE V interpolated(const V v[8], const Vec3& p) {
-        const V one = constant(1);
-        const V x1 = p.v[0];
-        const V x0 = one - x1;
-        const V y1 = p.v[1];
-        const V y0 = one - y1;
-        const V y0z0 = v[0] * x0 + v[4] * x1;
-        const V y0z1 = v[1] * x0 + v[5] * x1;
-        const V y1z0 = v[2] * x0 + v[6] * x1;
-        const V y1z1 = v[3] * x0 + v[7] * x1;
-        return (y0z0 * y0 + y1z0 * y1) * (one - p.v[2]) + (y0z1 * y0 + y1z1 * y1) * p.v[2];
     }
 
     // SegmentCubic, firstCrossing() and refineRoot() for the waiting lanes. Those that don't hit walk on.
@@ -442,50 +359,30 @@ private:
         const V t_out = hn::Min(exit.t, load(p, kEnd));
         const M whole_cell = hn::Le(exit.t, load(p, kEnd));
         const V face = load(p, kFace);
-        Vec3 from;
-        Vec3 to;
+        LaneCell in;
         for (int axis = 0; axis < 3; ++axis) {
             const V o = load(p, kO + axis);
             const V dir = load(p, kD + axis);
             const V enter = clampTo(o + t * dir - cell[axis], zero, one);
             const V leave = clampTo(o + t_out * dir - cell[axis], zero, one);
             const M by_this = hn::Eq(face, constant(axis));
-            from.v[axis] = hn::IfThenElse(by_this, hn::IfThenElse(forth[axis], zero, one), enter);
-            to.v[axis] =
+            in.from.v[axis] = hn::IfThenElse(by_this, hn::IfThenElse(forth[axis], zero, one), enter);
+            in.to.v[axis] =
                 hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::IfThenElse(forth[axis], one, zero), leave);
         }
         // Lanes that don't wait read where they last stood, or the first sample, and are ignored.
         const VI sample = hn::Load(DI(), p.sample);
-        V v[8];
+        V* v = in.v;
         samplesAt(sample, v[0], v[1]);
         samplesAt(sample + whole(BrickGrid::kStrideY), v[2], v[3]);
         samplesAt(sample + whole(BrickGrid::kStrideX), v[4], v[5]);
         samplesAt(sample + whole(BrickGrid::kStrideX + BrickGrid::kStrideY), v[6], v[7]);
 
-        const V c0 = interpolated(v, from);
-        const V end = interpolated(v, to);
-        const V kx = v[4] - v[0];
-        const V ky = v[2] - v[0];
-        const V kz = v[1] - v[0];
-        const V kxy = v[6] - v[4] - ky;
-        const V kzx = v[5] - v[4] - kz;
-        const V kyz = v[3] - v[2] - kz;
-        const V kxyz = v[7] - v[6] - v[5] + v[4] - kyz;
-        const V a = to.v[0] - from.v[0];
-        const V b = to.v[1] - from.v[1];
-        const V c = to.v[2] - from.v[2];
-        const V fx = from.v[0];
-        const V fy = from.v[1];
-        const V fz = from.v[2];
-        const V c3 = kxyz * a * b * c;
-        const V c2 = a * b * (kxy + kxyz * fz) + b * c * (kyz + kxyz * fx) + a * c * (kzx + kxyz * fy);
-        const V c1 = a * (kx + kxy * fy + kzx * fz + kxyz * fy * fz) + b * (ky + kxy * fx + kyz * fz + kxyz * fx * fz) +
-                     c * (kz + kzx * fx + kyz * fy + kxyz * fx * fy);
-
-        const M in0 = hn::Lt(c0, zero);
-        const M in1 = hn::Lt(c0 + c1 / constant(3), zero);
-        const M in2 = hn::Lt(c0 + (constant(2) * c1 + c2) / constant(3), zero);
-        const M in3 = hn::Lt(end, zero);
+        const LaneCubic f = cubicOf(in);
+        const M in0 = hn::Lt(f.c0, zero);
+        const M in1 = hn::Lt(f.c0 + f.c1 / constant(3), zero);
+        const M in2 = hn::Lt(f.c0 + (constant(2) * f.c1 + f.c2) / constant(3), zero);
+        const M in3 = hn::Lt(f.end, zero);
         const M differ = hn::Xor(in0, in3);
         const M between = hn::Or(hn::Xor(in0, in1), hn::Xor(in1, in2));
         // Signs that change once, or more than once.
@@ -496,104 +393,32 @@ private:
         const unsigned rare = bitsOf(twice);
         V s = zero;
         if constexpr (!kAny)
-            if (hit != 0) s = refined(c0, c1, c2, c3, end, maskOf(hit));
-        if (rare != 0) hit |= solveOneByOne(rare, v, from, to, s);
+            if (hit != 0) s = refined(f, maskOf(hit));
+        if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
         p.waiting = 0;
         if (hit != 0) {
             if constexpr (kAny)
                 for (unsigned rest = hit; rest != 0; rest &= rest - 1)
                     blocked_[static_cast<std::size_t>(p.field[kIndex][std::countr_zero(rest)])] = 1;
             else
-                report(p, hit, v, from, to, s, t_out);
+                report(p, hit, in, s, t_out);
             p.alive &= ~hit;
         }
         advance(p, plane, exit, hn::AndNot(maskOf(hit), waiting));
     }
 
-    // refineRoot() in the bracket [0, 1].
-    static HWY_INLINE V refined(V c0, V c1, V c2, V c3, V end, M active) {
-        const D d;
-        const V zero = hn::Zero(d);
-        const V half = constant(0.5);
-        const V step = constant(kRootStep);
-        const V slope3 = constant(3) * c3;
-        const V slope2 = constant(2) * c2;
-        const M in_low = hn::Lt(c0, zero);
-        V low = zero;
-        V high = constant(1);
-        V s = hn::IfThenElse(hn::Eq(c0, end), half, clampTo(c0 / (c0 - end), low, high));
-        V result = s;
-        for (int n = 0; n < kRootSteps; ++n) {
-            const V value = ((c3 * s + c2) * s + c1) * s + c0;
-            const M exact = hn::Eq(value, zero);
-            const M same = hn::Not(hn::Xor(hn::Lt(value, zero), in_low));
-            low = hn::IfThenElse(same, s, low);
-            high = hn::IfThenElse(same, high, s);
-            const V newton = s - value / ((slope3 * s + slope2) * s + c1);
-            const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
-            V next = hn::IfThenElse(inside, newton, half * (low + high));
-            next = hn::IfThenElse(exact, s, next);
-            const M done = hn::Or(hn::Le(hn::Abs(next - s), step), hn::Or(hn::Eq(next, low), hn::Eq(next, high)));
-            result = hn::IfThenElse(active, next, result);
-            active = hn::AndNot(done, active);
-            if (hn::AllFalse(d, active)) break;
-            s = next;
-        }
-        return result;
-    }
-
-    // Cells whose sign may change more than once along the ray are rare: the scalar code answers.
-    HWY_NOINLINE static unsigned solveOneByOne(unsigned rare, const V v[8], const Vec3& from, const Vec3& to, V& s) {
-        const D d;
-        HWY_ALIGN double corners[8][kLanes];
-        HWY_ALIGN double ends[6][kLanes];
-        HWY_ALIGN double roots[kLanes];
-        for (int n = 0; n < 8; ++n) hn::Store(v[n], d, corners[n]);
-        for (int axis = 0; axis < 3; ++axis) {
-            hn::Store(from.v[axis], d, ends[axis]);
-            hn::Store(to.v[axis], d, ends[3 + axis]);
-        }
-        hn::Store(s, d, roots);
-        unsigned hit = 0;
-        for (unsigned rest = rare; rest != 0; rest &= rest - 1) {
-            const int lane = std::countr_zero(rest);
-            Corners values;
-            for (std::size_t n = 0; n < 8; ++n) values[n] = corners[n][lane];
-            const SegmentCubic field(values, {ends[0][lane], ends[1][lane], ends[2][lane]},
-                                     {ends[3][lane], ends[4][lane], ends[5][lane]});
-            const auto bracket = firstCrossing(field);
-            if (!bracket) continue;
-            hit |= 1U << lane;
-            if constexpr (!kAny) roots[lane] = refineRoot(field, *bracket);
-        }
-        s = hn::Load(d, roots);
-        return hit;
-    }
-
     // BrickTracer::report().
-    HWY_INLINE void report(const Packet& p, unsigned hit, const V v[8], const Vec3& from, const Vec3& to, V s,
-                           V t_out) {
+    HWY_INLINE void report(const Packet& p, unsigned hit, const LaneCell& cell, V s, V t_out) {
         const D d;
-        const V one = constant(1);
         const V t = load(p, kT);
         HWY_ALIGN double times[kLanes];
         HWY_ALIGN double normals[3][kLanes];
         hn::Store(load(p, kStart) + (t + s * (t_out - t)), d, times);
-        V q[3];
-        V r[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            q[axis] = from.v[axis] + s * (to.v[axis] - from.v[axis]);
-            r[axis] = one - q[axis];
-        }
-        const V g[3] = {
-            r[1] * (r[2] * (v[4] - v[0]) + q[2] * (v[5] - v[1])) + q[1] * (r[2] * (v[6] - v[2]) + q[2] * (v[7] - v[3])),
-            r[0] * (r[2] * (v[2] - v[0]) + q[2] * (v[3] - v[1])) + q[0] * (r[2] * (v[6] - v[4]) + q[2] * (v[7] - v[5])),
-            r[0] * (r[1] * (v[1] - v[0]) + q[1] * (v[3] - v[2])) +
-                q[0] * (r[1] * (v[5] - v[4]) + q[1] * (v[7] - v[6]))};
+        const Vec3 g = gradientOf(cell, s);
         V n[3];
         for (int axis = 0; axis < 3; ++axis)
-            n[axis] = constant(map_.to_cells[axis][0]) * g[0] + constant(map_.to_cells[axis][1]) * g[1] +
-                      constant(map_.to_cells[axis][2]) * g[2];
+            n[axis] = constant(map_.to_cells[axis][0]) * g.v[0] + constant(map_.to_cells[axis][1]) * g.v[1] +
+                      constant(map_.to_cells[axis][2]) * g.v[2];
         const V length = hn::Sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         const unsigned flat = bitsOf(hn::Not(hn::Gt(length, hn::Zero(d))));
         for (int axis = 0; axis < 3; ++axis) hn::Store(n[axis] / length, d, normals[axis]);

@@ -74,7 +74,7 @@ public:
         t_ = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double last = size[static_cast<std::size_t>(axis)] - 1;
-            cell_[axis] = static_cast<int>(std::clamp(std::floor(origin_[axis]), 0.0, last));
+            cell_[axis] = static_cast<int>(std::clamp(origin_[axis], 0.0, last));  // not below 0: this is floor
         }
         return true;
     }
@@ -109,7 +109,7 @@ public:
             } else if (d != 0) {
                 const double least = d > 0 ? cell_[axis] : low[axis];
                 const double most = d > 0 ? high[axis] - 1 : cell_[axis];
-                cell_[axis] = static_cast<int>(std::clamp(std::floor(place(axis, t_exit_)), least, most));
+                cell_[axis] = static_cast<int>(std::clamp(place(axis, t_exit_), least, most));
             }
         }
         t_ = t_exit_;
