@@ -9,23 +9,21 @@ namespace stratum::shade {
 /// World-space unit normals, on the side that is seen. Alpha 0 where there is nothing; the far bed fades out.
 class NormalIntegrator final : public Integrator {
 public:
-    NormalIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    NormalIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::normal; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 /// Distance from the eye in world units. Alpha 0 where there is nothing; the far bed fades out.
 class DepthIntegrator final : public Integrator {
 public:
-    DepthIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    DepthIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::depth; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 }  // namespace stratum::shade

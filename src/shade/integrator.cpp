@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -24,6 +26,23 @@ void IntegratorOptions::validate() const {
         throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
     if (!(ao_distance > 0.0))
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
+}
+
+Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
+    SurfacePoint point;
+    ++context.rays.primary;
+    return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
+}
+
+void Integrator::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
+                                RayCounts& counts, std::span<Pixel> pixels) const {
+    std::vector<SurfacePoint> points(rays.size());
+    counts.primary += rays.size();
+    surfaces_.nearest(rays, tracer, points);
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        TraceContext context{tracer, samplers[n], counts};
+        pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);
+    }
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,

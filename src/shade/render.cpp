@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -17,11 +18,21 @@ constexpr int kTile = 32;  // pixels a side: work enough for a task, few enough 
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
 
+constexpr std::size_t kStream = 1024;  // samples on the way at a time: enough to fill vectors, few enough for a cache
+
+/// Camera rays on the way, with their samplers.
+struct Stream {
+    std::vector<march::Ray> rays;
+    std::vector<Sampler> samplers;
+    std::vector<Pixel> pixels;
+};
+
 /// What a thread has to itself.
 struct Worker {
     std::unique_ptr<march::Tracer> tracer;
     Sampler sampler;
     RayCounts rays;
+    Stream stream;
 };
 
 std::vector<PixelBox> tilesOf(const PixelBox& region) {
@@ -56,23 +67,47 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
     const PixelBox region = options.crop.value_or(PixelBox{0, 0, options.width, options.height});
     RenderResult result{Film(options.width, options.height, region, integrator->content()), {}};
 
-    const auto renderPixel = [&](int x, int y, Worker& worker) {
-        TraceContext context{*worker.tracer, worker.sampler, worker.rays};
+    // Samples of a tile go to the integrator in streams, pixel by pixel, and are summed in that order.
+    const auto renderTile = [&](const PixelBox& tile, Worker& worker) {
+        Stream& stream = worker.stream;
         glm::dvec3 rgb(0.0);
         double alpha = 0.0;
-        for (int s = 0; s < options.spp; ++s) {
-            worker.sampler.start(x, y, static_cast<std::uint32_t>(s));
-            const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(worker.sampler.next2D());
-            const Pixel sample = integrator->radiance(scene.camera.ray(place), context);
-            rgb += glm::dvec3(sample.rgb);
-            alpha += static_cast<double>(sample.alpha);
-        }
-        return Pixel{Color(rgb / static_cast<double>(options.spp)), static_cast<float>(alpha / options.spp)};
+        std::size_t summed = 0;  // samples of the tile so far
+        const auto spp = static_cast<std::size_t>(options.spp);
+        const auto width = static_cast<std::size_t>(tile.width());
+        const auto flush = [&] {
+            stream.pixels.resize(stream.rays.size());
+            integrator->radianceStream(stream.rays, stream.samplers, *worker.tracer, worker.rays, stream.pixels);
+            for (const Pixel& sample : stream.pixels) {
+                rgb += glm::dvec3(sample.rgb);
+                alpha += static_cast<double>(sample.alpha);
+                if (++summed % spp != 0) continue;
+                const std::size_t pixel = summed / spp - 1;
+                result.film.at(tile.x0 + static_cast<int>(pixel % width), tile.y0 + static_cast<int>(pixel / width)) = {
+                    Color(rgb / static_cast<double>(options.spp)), static_cast<float>(alpha / options.spp)};
+                rgb = glm::dvec3(0.0);
+                alpha = 0.0;
+            }
+            stream.rays.clear();
+            stream.samplers.clear();
+        };
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x)
+                for (int s = 0; s < options.spp; ++s) {
+                    Sampler sampler = worker.sampler;
+                    sampler.start(x, y, static_cast<std::uint32_t>(s));
+                    const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
+                    stream.rays.push_back(scene.camera.ray(place));
+                    stream.samplers.push_back(sampler);
+                    if (stream.rays.size() == kStream) flush();
+                }
+        flush();
     };
 
     const std::vector<PixelBox> tiles = tilesOf(region);
     tbb::enumerable_thread_specific<Worker> workers([&] {
-        return Worker{print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{}};
+        return Worker{
+            print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{}, {}};
     });
     std::mutex progress_mutex;
     std::uint64_t done = 0;
@@ -82,8 +117,7 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
         Worker& worker = workers.local();
         for (std::size_t i = first; i != last; ++i) {
             const PixelBox& tile = tiles[i];
-            for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; ++x) result.film.at(x, y) = renderPixel(x, y, worker);
+            renderTile(tile, worker);
             if (!progress) continue;
             const std::lock_guard lock(progress_mutex);
             done += static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height());
