@@ -93,7 +93,9 @@ void run(const Options& o) {
                                       static_cast<std::size_t>(o.threads));
     openvdb::initialize();
     openvdb::FloatGrid::Ptr grid;
-    const double read_seconds = secondsOf([&] { grid = march::readLevelSet(o.grid, ""); });
+    double read_cpu = 0;
+    const double read_seconds =
+        secondsOf([&] { read_cpu = cpuSecondsOf([&] { grid = march::readLevelSet(o.grid, ""); }); });
     const double voxel = grid->voxelSize()[0];
     fmt::print("{}: {:.1f} M active voxels of {:g}, {:.2f} GB, read in {:.2f} s; {} threads, {} rounds\n", o.grid,
                1e-6 * static_cast<double>(grid->activeVoxelCount()), voxel,
@@ -104,7 +106,9 @@ void run(const Options& o) {
         return o.peers.empty() || std::find(o.peers.begin(), o.peers.end(), name) != o.peers.end();
     };
     std::shared_ptr<const march::Intersector> brick;
-    const double brick_seconds = secondsOf([&] { brick = march::makeBrickIntersector(*grid); });
+    double brick_cpu = 0;
+    const double brick_seconds =
+        secondsOf([&] { brick_cpu = cpuSecondsOf([&] { brick = march::makeBrickIntersector(*grid); }); });
     if (wanted("brick scalar")) peers.push_back(bench::marchPeer("brick scalar", brick, false, brick_seconds));
     if (wanted("brick")) peers.push_back(bench::marchPeer("brick", brick, true, brick_seconds));
     if (wanted("vdb")) peers.push_back(bench::marchPeer("vdb", march::makeVdbIntersector(grid), false, 0));
@@ -118,11 +122,16 @@ void run(const Options& o) {
             if (wanted("prisms")) peers.push_back(bench::embreePrisms(toolpath, corners, 8));
     }
 
+    fmt::print("  reading took {:.2f} s of CPU time, building bricks {:.2f} s\n", read_cpu, brick_cpu);
     for (const auto& peer : peers)
         fmt::print("  {:<28} built in {:6.2f} s, {:8.1f} MB\n", peer->name, peer->build_seconds, 1e-6 * peer->bytes);
 
     const auto sets = bench::makeRaySets(*brick, o.side, 0.1 * voxel);
-    Json report{{"grid", o.grid}, {"active_voxels", grid->activeVoxelCount()}, {"read_seconds", read_seconds}};
+    Json report{{"grid", o.grid},
+                {"active_voxels", grid->activeVoxelCount()},
+                {"read_seconds", read_seconds},
+                {"read_cpu_seconds", read_cpu},
+                {"brick_cpu_seconds", brick_cpu}};
     for (const bench::RaySet& set : sets) {
         std::vector<std::unique_ptr<bench::Prepared>> prepared;
         for (const auto& peer : peers) prepared.push_back(peer->prepare(set.rays, set.coherent));
