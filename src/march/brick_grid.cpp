@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace stratum::march {
@@ -107,6 +109,15 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         Samples samples;
         for (std::size_t n = first; n != last; ++n) {
             gather(*leaves[n], accessor, samples);
+            bool finite = true;
+            for (const float value : samples) finite &= std::abs(value) <= std::numeric_limits<float>::max();
+            if (!finite) {
+                const openvdb::Coord at = leaves[n]->origin();
+                throw InputError(
+                    fmt::format("the level set {} has a voxel that is not a finite number, in or beside the 8 x 8 x 8 "
+                                "voxels from index ({}, {}, {}); make the grid again",
+                                grid.getName(), at[0], at[1], at[2]));
+            }
             masks[n] = findSurface(samples);
         }
     });

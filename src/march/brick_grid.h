@@ -56,7 +56,7 @@ public:
     using Samples = std::array<float, static_cast<std::size_t>(kStrideX* kSamples)>;  ///< world units; x slowest
 
     /// Builds from a level set; parallel. The grid may be released afterwards. Throws InputError, with the size, for a
-    /// grid whose box holds more than 2^31 macro cells.
+    /// grid whose box holds more than 2^31 macro cells, and, with the place, for samples that are no finite numbers.
     explicit BrickGrid(const openvdb::FloatGrid& grid);
 
     /// Index-space coordinate of cell (0, 0, 0).

@@ -183,6 +183,16 @@ TEST(BrickIntersector, RefusesWhatItCannotTrace) {
     const auto fog = test::sphereGrid(2, openvdb::Vec3f(0), 0.2F);
     fog->setGridClass(openvdb::GRID_FOG_VOLUME);
     EXPECT_THROW(makeBrickIntersector(*fog), InputError);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        const auto grid = test::sphereGrid(2, openvdb::Vec3f(0), 0.2F);
+        grid->tree().setValue(openvdb::Coord(10, 1, 2), bad);
+        try {
+            makeBrickIntersector(*grid);
+            FAIL() << "traced " << bad;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("(8, 0, 0)"), std::string::npos) << error.what();
+        }
+    }
     auto apart = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     apart->tree().touchLeaf(openvdb::Coord(1 << 29, 1 << 29, 1 << 29));
     EXPECT_THROW(makeBrickIntersector(*apart), InputError);
