@@ -10,6 +10,7 @@
 #include "io/mapped_file.h"
 #include "march/brick_intersector.h"
 #include "march/level_set_file.h"
+#include "march/sphere_intersector.h"
 #include "march/vdb_intersector.h"
 #include "parallel/parallel_for.h"
 
@@ -112,6 +113,10 @@ void run(const Options& o) {
     if (wanted("brick scalar")) peers.push_back(bench::marchPeer("brick scalar", brick, false, brick_seconds));
     if (wanted("brick")) peers.push_back(bench::marchPeer("brick", brick, true, brick_seconds));
     if (wanted("vdb")) peers.push_back(bench::marchPeer("vdb", march::makeVdbIntersector(grid), false, 0));
+    if (wanted("sphere")) {
+        peers.push_back(bench::marchPeer("sphere", march::makeSphereIntersector(grid, 1), false, 0));
+        peers.push_back(bench::marchPeer("sphere, relaxed", march::makeSphereIntersector(grid), false, 0));
+    }
     if (wanted("mesh")) peers.push_back(bench::embreeMesh(*grid));
     if (!o.gcode.empty()) {
         const MappedFile file(o.gcode);
@@ -188,7 +193,8 @@ int main(int argc, char** argv) {
     Options o;
     app.add_option("GRID", o.grid, "A level set")->required();
     app.add_option("--gcode", o.gcode, "What it was made from: adds peers that trace beads");
-    app.add_option("--peers", o.peers, "Only these of: brick scalar, brick, vdb, mesh, beads, prisms (default: all)")
+    app.add_option("--peers", o.peers,
+                   "Only these of: brick scalar, brick, vdb, sphere, mesh, beads, prisms (default: all)")
         ->delimiter(',');
     app.add_option("--side", o.side, "Pixels of the picture, a multiple of 32 (default 1024)");
     app.add_option("--rounds", o.rounds, "Timed rounds (default 7)");
