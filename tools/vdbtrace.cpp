@@ -5,6 +5,7 @@
 #include "io/mapped_file.h"
 #include "march/brick_intersector.h"
 #include "march/level_set_file.h"
+#include "march/sphere_intersector.h"
 #include "march/vdb_intersector.h"
 #include "shade/brdf_file.h"
 #include "shade/picture.h"
@@ -132,8 +133,10 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
 
     const char* tracing = "Tracing";
-    app.add_option("--march", o.march, "brick (exact), vdb (OpenVDB's own), or auto, which is brick (default auto)")
-        ->check(CLI::IsMember({"auto", "brick", "vdb"}))
+    app.add_option(
+           "--march", o.march,
+           "brick (exact), sphere (sphere tracing), vdb (OpenVDB's own), or auto, which is brick (default auto)")
+        ->check(CLI::IsMember({"auto", "brick", "sphere", "vdb"}))
         ->type_name("NAME")
         ->group(tracing);
     tools::addCommonOptions(app, o.common);
@@ -245,7 +248,9 @@ void run(Options& o, int argc, char** argv) {
                                      tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                      grid->voxelSize()[0], unitOf(*grid)));
     const double load_seconds = watch.lap();
-    const auto intersector = o.march == "vdb" ? march::makeVdbIntersector(grid) : march::makeBrickIntersector(*grid);
+    const auto intersector = o.march == "vdb"      ? march::makeVdbIntersector(grid)
+                             : o.march == "sphere" ? march::makeSphereIntersector(grid)
+                                                   : march::makeBrickIntersector(*grid);
     grid.reset();  // bricks hold all that rays need
     const shade::SceneDescription scene = shade::makeScene(o.scene, *intersector, o.render.width, o.render.height);
     for (const std::string& note : scene.material->notes()) tools::say(o.common, "  material: " + note);

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 namespace stratum::march {
 namespace {
@@ -27,14 +30,16 @@ void gather(const Leaf& leaf, Accessor& accessor, BrickGrid::Samples& out) {
         for (int x = px * kEdge; x < (px != 0 ? kSamples : kEdge); ++x)
             for (int y = py * kEdge; y < (py != 0 ? kSamples : kEdge); ++y) {
                 const int z0 = pz * kEdge;
-                const int count = pz != 0 ? 1 : kEdge;
                 float* row = out.data() + x * BrickGrid::kStrideX + y * BrickGrid::kStrideY + z0;
-                if (source == nullptr) {
-                    std::fill_n(row, count, tile);
-                } else {
-                    const float* values = source->buffer().data() + ((x & 7) << 6 | (y & 7) << 3);
-                    std::copy_n(values, count, row);
-                }
+                const float* values =
+                    source == nullptr ? nullptr : source->buffer().data() + ((x & 7) << 6 | (y & 7) << 3);
+                // Lengths known to the compiler: a call to copy 32 bytes costs more than the copy.
+                if (pz != 0)
+                    *row = values == nullptr ? tile : *values;
+                else if (values == nullptr)
+                    std::fill_n(row, kEdge, tile);
+                else
+                    std::copy_n(values, kEdge, row);
             }
     }
 }
@@ -93,7 +98,8 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
             fmt::format("the level set spans {} x {} x {} voxels, too far apart to lay out for rays; split "
                         "it or use --march vdb",
                         size_[0], size_[1], size_[2]));
-    macro_cells_.resize(static_cast<std::size_t>(cells));
+    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+    std::fill(macro_cells_.begin(), macro_cells_.end(), MacroCell{});
 
     // First the masks, which tell what is kept; then the samples of that alone.
     std::vector<Surface> masks(leaves.size());
@@ -103,6 +109,15 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         Samples samples;
         for (std::size_t n = first; n != last; ++n) {
             gather(*leaves[n], accessor, samples);
+            bool finite = true;
+            for (const float value : samples) finite &= std::abs(value) <= std::numeric_limits<float>::max();
+            if (!finite) {
+                const openvdb::Coord at = leaves[n]->origin();
+                throw InputError(
+                    fmt::format("the level set {} has a voxel that is not a finite number, in or beside the 8 x 8 x 8 "
+                                "voxels from index ({}, {}, {}); make the grid again",
+                                grid.getName(), at[0], at[1], at[2]));
+            }
             masks[n] = findSurface(samples);
         }
     });
@@ -123,8 +138,8 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         macro.first_brick = count;
         count += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
-    surfaces_.resize(count);
-    samples_.resize(count);
+    surfaces_ = HugeArray<Surface>(count);
+    samples_ = HugeArray<Samples>(count);
     parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
         Accessor accessor = grid.getConstAccessor();
         for (std::size_t n = first; n != last; ++n) {
@@ -174,9 +189,6 @@ void BrickGrid::measureEmptySpace() {
     for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
 }
 
-std::size_t BrickGrid::bytes() const {
-    return macro_cells_.size() * sizeof(MacroCell) + surfaces_.size() * sizeof(Surface) +
-           samples_.size() * sizeof(Samples);
-}
+std::size_t BrickGrid::bytes() const { return macro_cells_.bytes() + surfaces_.bytes() + samples_.bytes(); }
 
 }  // namespace stratum::march

@@ -7,13 +7,14 @@
 // Only bricks with a surface cell are kept. All coordinates are cells, counted from the grid's lowest corner.
 #pragma once
 
+#include "march/huge_array.h"
+
 #include <openvdb/openvdb.h>
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace stratum::march {
 
@@ -55,7 +56,7 @@ public:
     using Samples = std::array<float, static_cast<std::size_t>(kStrideX* kSamples)>;  ///< world units; x slowest
 
     /// Builds from a level set; parallel. The grid may be released afterwards. Throws InputError, with the size, for a
-    /// grid whose box holds more than 2^31 macro cells.
+    /// grid whose box holds more than 2^31 macro cells, and, with the place, for samples that are no finite numbers.
     explicit BrickGrid(const openvdb::FloatGrid& grid);
 
     /// Index-space coordinate of cell (0, 0, 0).
@@ -77,6 +78,10 @@ public:
     const Surface& surface(std::size_t brick) const { return surfaces_[brick]; }
     const float* samples(std::size_t brick) const { return samples_[brick].data(); }
 
+    /// The same as arrays, for vector code.
+    const MacroCell* macroCells() const { return macro_cells_.data(); }
+    const Surface* surfaces() const { return surfaces_.data(); }
+
     std::size_t brickCount() const { return surfaces_.size(); }
     std::size_t bytes() const;
 
@@ -86,9 +91,9 @@ private:
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};
     std::array<int, 3> size_{};
-    std::vector<MacroCell> macro_cells_;
-    std::vector<Surface> surfaces_;
-    std::vector<Samples> samples_;
+    HugeArray<MacroCell> macro_cells_;
+    HugeArray<Surface> surfaces_;
+    HugeArray<Samples> samples_;
 };
 
 }  // namespace stratum::march

@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -99,8 +100,13 @@ inline std::optional<std::pair<double, double>> firstCrossing(const SegmentCubic
     return std::nullopt;
 }
 
-/// The zero in a bracket from firstCrossing(): Newton's steps where they stay inside, halving where they don't. To the
-/// rounding of doubles, in a bounded number of steps.
+/// The last step of refineRoot(), in lengths of the segment. Newton's steps square the error, so what is left after one
+/// this short is rounding; where halving had to take over, no more than this is left.
+inline constexpr double kRootStep = 1e-8;
+inline constexpr int kRootSteps = 60;
+
+/// The zero in a bracket from firstCrossing(): Newton's steps where they stay inside, halving where they don't. In a
+/// bounded number of steps.
 inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracket) {
     auto [low, high] = bracket;
     const bool in_low = low == 0 ? isInside(f.c0) : isInside(f(low));
@@ -109,14 +115,14 @@ inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracke
     const double at_low = low == 0 ? f.c0 : f(low);
     const double at_high = high == 1 ? f.end : f(high);
     if (at_low != at_high) s = std::min(std::max(low + (high - low) * at_low / (at_low - at_high), low), high);
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < kRootSteps; ++step) {
         const double value = f(s);
         if (value == 0) return s;
         (isInside(value) == in_low ? low : high) = s;
         const double slope = f.slope(s);
         double next = s - value / slope;
         if (!(next > low && next < high)) next = 0.5 * (low + high);
-        if (std::abs(next - s) <= 1e-13 || next == low || next == high) return next;
+        if (std::abs(next - s) <= kRootStep || next == low || next == high) return next;
         s = next;
     }
     return s;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,18 @@ public:
     virtual bool intersect(const Ray& ray, Hit& hit) = 0;
     /// Whether anything lies in [ray.t_min, ray.t_max].
     virtual bool occluded(const Ray& ray) = 0;
+
+    /// The same for many rays: hits[i] is the nearest hit of rays[i], or its t is infinite. Each answer depends on its
+    /// own ray alone. Faster than one by one where the intersector has vector code; best with hundreds of rays, and
+    /// with neighbours in the picture next to each other. `hits` is as long as `rays`.
+    virtual void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) {
+        for (std::size_t n = 0; n < rays.size(); ++n)
+            if (!intersect(rays[n], hits[n])) hits[n].t = std::numeric_limits<double>::infinity();
+    }
+    /// blocked[i] is 1 if anything lies on rays[i], else 0. `blocked` is as long as `rays`.
+    virtual void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
+        for (std::size_t n = 0; n < rays.size(); ++n) blocked[n] = occluded(rays[n]) ? 1 : 0;
+    }
 };
 
 /// A level set ready to be traced. Immutable once made; shared by all threads.

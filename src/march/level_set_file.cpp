@@ -3,9 +3,11 @@
 #include "io/error.h"
 
 #include <fmt/format.h>
+#include <openvdb/io/GridDescriptor.h>
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <system_error>
 #include <vector>
 
@@ -29,7 +31,15 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
         // Reading at once shows damage now, not in the middle of a picture.
         file.open(/*delayLoad=*/false);
         std::string wanted = name;
+        std::set<std::string> names;
         for (auto it = file.beginName(); it != file.endName(); ++it) {
+            // Names that a file has twice come with a number: name[0], name[1].
+            const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
+            const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
+            if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
+                throw InputError(
+                    fmt::format("{}: has two grids named {}; name them apart, nobody can say which is meant", where,
+                                plain.substr(0, plain.find('['))));
             const auto meta = file.readGridMetadata(it.gridName());
             seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
             const bool level_set =

@@ -3,22 +3,54 @@
 #include "shade/frame.h"
 #include "shade/sampling.h"
 
+#include <cmath>
+#include <vector>
+
 namespace stratum::shade {
 
 AmbientOcclusion::AmbientOcclusion(const SceneDescription& scene, const march::Intersector& print, double distance)
-    : surfaces_(scene, print), opaque_(scene.backdrop.has_value()), distance_(distance) {}
+    : Integrator(scene, print), opaque_(scene.backdrop.has_value()), distance_(distance) {}
 
-Pixel AmbientOcclusion::radiance(const march::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point)) return opaque_ ? Pixel{Color(1.0f), 1.0f} : Pixel{};
-    const float fade = surfaces_.fade(point);
-    const glm::vec3 wi = toCosineHemisphere(context.sampler.next2D());
-    if (!(wi.z > 0.0f) || fade >= 1.0f) return {Color(1.0f), 1.0f};
-    march::Ray way = surfaces_.leave(point, Frame{glm::vec3(point.normal)}.toWorld(wi));
+std::optional<march::Ray> AmbientOcclusion::feeler(const SurfacePoint* first, Sampler& sampler) const {
+    if (first == nullptr) return std::nullopt;
+    const glm::vec3 wi = toCosineHemisphere(sampler.next2D());
+    if (!(wi.z > 0.0f) || surfaces_.fade(*first) >= 1.0f) return std::nullopt;
+    march::Ray way = surfaces_.leave(*first, Frame{glm::vec3(first->normal)}.toWorld(wi));
     way.t_max = distance_;
+    return way;
+}
+
+Pixel AmbientOcclusion::unoccluded(const SurfacePoint* first) const {
+    return first != nullptr || opaque_ ? Pixel{Color(1.0f), 1.0f} : Pixel{};
+}
+
+Pixel AmbientOcclusion::seen(const march::Ray&, const SurfacePoint* first, TraceContext& context) const {
+    const auto way = feeler(first, context.sampler);
+    if (!way) return unoccluded(first);
     ++context.rays.shadow;
-    return {Color(surfaces_.occluded(way, context.tracer) ? fade : 1.0f), 1.0f};
+    return {Color(surfaces_.occluded(*way, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
+}
+
+void AmbientOcclusion::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers,
+                                      march::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const {
+    std::vector<SurfacePoint> points(rays.size());
+    counts.primary += rays.size();
+    surfaces_.nearest(rays, tracer, points);
+    std::vector<march::Ray> ways;
+    std::vector<std::size_t> owners;
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        const SurfacePoint* first = std::isfinite(points[n].t) ? &points[n] : nullptr;
+        pixels[n] = unoccluded(first);
+        if (const auto way = feeler(first, samplers[n])) {
+            ways.push_back(*way);
+            owners.push_back(n);
+        }
+    }
+    counts.shadow += ways.size();
+    std::vector<std::uint8_t> blocked(ways.size());
+    surfaces_.occluded(ways, tracer, blocked);
+    for (std::size_t k = 0; k < ways.size(); ++k)
+        if (blocked[k] != 0) pixels[owners[k]].rgb = Color(surfaces_.fade(points[owners[k]]));
 }
 
 }  // namespace stratum::shade

@@ -4,6 +4,8 @@
 #include "shade/integrator.h"
 #include "shade/surface.h"
 
+#include <optional>
+
 namespace stratum::shade {
 
 /// 1 in the open, 0 in a corner without light. Things farther than `distance` cover nothing. The bed counts.
@@ -11,11 +13,19 @@ class AmbientOcclusion final : public Integrator {
 public:
     /// @param distance  world units, > 0
     AmbientOcclusion(const SceneDescription& scene, const march::Intersector& print, double distance);
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    /// All occlusion rays of a stream are traced as one.
+    void radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
+                        RayCounts& counts, std::span<Pixel> pixels) const override;
     FilmContent content() const override { return FilmContent::unit; }
 
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
+
 private:
-    Surfaces surfaces_;
+    /// The ray that asks whether something covers `first`; none if the answer is known without.
+    std::optional<march::Ray> feeler(const SurfacePoint* first, Sampler& sampler) const;
+    Pixel unoccluded(const SurfacePoint* first) const;
+
     bool opaque_;  // whether there is a backdrop; it is 1
     double distance_;
 };

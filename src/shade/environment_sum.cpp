@@ -9,7 +9,7 @@
 namespace stratum::shade {
 
 EnvironmentSum::EnvironmentSum(const SceneDescription& scene, const march::Intersector& print, int rows)
-    : scene_(scene), surfaces_(scene, print) {
+    : Integrator(scene, print), scene_(scene) {
     constexpr double kPiD = std::numbers::pi;
     // Probes finer than any map that is likely, so that a sun of one texel is in the mean.
     const int cuts = std::max(4, 2048 / rows);
@@ -38,12 +38,10 @@ EnvironmentSum::EnvironmentSum(const SceneDescription& scene, const march::Inter
     }
 }
 
-Pixel EnvironmentSum::radiance(const march::Ray& ray, TraceContext& context) const {
+Pixel EnvironmentSum::seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const {
     Color behind(0.0f);
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point))
-        return surfaces_.backdrop(ray, behind) ? Pixel{behind, 1.0f} : Pixel{};
+    if (first == nullptr) return surfaces_.backdrop(ray, behind) ? Pixel{behind, 1.0f} : Pixel{};
+    const SurfacePoint& point = *first;
     const float fade = surfaces_.fade(point);
     if (fade > 0.0f) surfaces_.backdrop(ray, behind);
     if (fade >= 1.0f) return {behind, 1.0f};

@@ -16,7 +16,9 @@ namespace stratum::shade {
 class EnvironmentSum final : public Integrator {
 public:
     EnvironmentSum(const SceneDescription& scene, const march::Intersector& print, int rows);
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 
 private:
     struct Cell {
@@ -24,7 +26,6 @@ private:
         Color power;  // radiance times solid angle
     };
     const SceneDescription& scene_;
-    Surfaces surfaces_;
     std::vector<Cell> cells_;
 };
 

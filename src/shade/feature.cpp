@@ -2,35 +2,28 @@
 
 namespace stratum::shade {
 
-Pixel NormalIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point)) return {};
-    const float alpha = 1.0f - surfaces_.fade(point);
-    return {glm::vec3(point.normal) * alpha, alpha};
+Pixel NormalIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const float alpha = 1.0f - surfaces_.fade(*first);
+    return {glm::vec3(first->normal) * alpha, alpha};
 }
 
-Pixel DepthIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point)) return {};
-    const float alpha = 1.0f - surfaces_.fade(point);
+Pixel DepthIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const float alpha = 1.0f - surfaces_.fade(*first);
     // A bed that the camera grazes is almost infinitely far away: 0 times that must be 0.
-    return alpha > 0.0f ? Pixel{Color(static_cast<float>(point.t)) * alpha, alpha} : Pixel{};
+    return alpha > 0.0f ? Pixel{Color(static_cast<float>(first->t)) * alpha, alpha} : Pixel{};
 }
 
-Pixel PositionIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point)) return {};
+Pixel PositionIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const SurfacePoint& point = *first;
     const float alpha = 1.0f - surfaces_.fade(point);
     return {alpha * Color(point.position), alpha};
 }
 
-Pixel MaskIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point) || point.bed) return {};
+Pixel MaskIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr || first->bed) return {};
     return {Color(1.0f), 1.0f};
 }
 

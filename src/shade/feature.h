@@ -9,45 +9,41 @@ namespace stratum::shade {
 /// World-space unit normals, on the side that is seen. Alpha 0 where there is nothing; the far bed fades out.
 class NormalIntegrator final : public Integrator {
 public:
-    NormalIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    NormalIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::normal; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 /// Distance from the eye in world units. Alpha 0 where there is nothing; the far bed fades out.
 class DepthIntegrator final : public Integrator {
 public:
-    DepthIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    DepthIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::depth; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 /// World-space positions. Alpha 0 where there is nothing; the far bed fades out.
 class PositionIntegrator final : public Integrator {
 public:
-    PositionIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    PositionIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::position; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 /// 1 on the print, 0 on the bed and beside both; alpha is the same.
 class MaskIntegrator final : public Integrator {
 public:
-    MaskIntegrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+    MaskIntegrator(const SceneDescription& scene, const march::Intersector& print) : Integrator(scene, print) {}
     FilmContent content() const override { return FilmContent::unit; }
 
-private:
-    Surfaces surfaces_;
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
 }  // namespace stratum::shade

@@ -11,7 +11,9 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -35,6 +37,23 @@ void IntegratorOptions::validate() const {
         throw UsageError(fmt::format("--environment-rows {}: must be from 2 to 512", environment_rows));
     if (!(ao_distance > 0.0))
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
+}
+
+Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
+    SurfacePoint point;
+    ++context.rays.primary;
+    return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
+}
+
+void Integrator::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
+                                RayCounts& counts, std::span<Pixel> pixels) const {
+    std::vector<SurfacePoint> points(rays.size());
+    counts.primary += rays.size();
+    surfaces_.nearest(rays, tracer, points);
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        TraceContext context{tracer, samplers[n], counts};
+        pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);
+    }
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,

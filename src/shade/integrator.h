@@ -5,10 +5,12 @@
 #include "shade/film.h"
 #include "shade/sampler.h"
 #include "shade/scene.h"
+#include "shade/surface.h"
 
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace stratum::shade {
@@ -59,8 +61,18 @@ class Integrator {
 public:
     virtual ~Integrator() = default;
     /// What is seen along a camera ray; finite. Draws from context.sampler in a fixed order.
-    virtual Pixel radiance(const march::Ray& ray, TraceContext& context) const = 0;
+    Pixel radiance(const march::Ray& ray, TraceContext& context) const;
+    /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
+    virtual void radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
+                                RayCounts& counts, std::span<Pixel> pixels) const;
     virtual FilmContent content() const { return FilmContent::radiance; }
+
+protected:
+    Integrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
+    /// What is seen along a camera ray that meets `first`, or nothing if that is null.
+    virtual Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
+
+    Surfaces surfaces_;
 };
 
 /// The integrator of `options`. It keeps references: `scene` and `print` must outlive it. Throws UsageError.

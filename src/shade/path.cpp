@@ -14,22 +14,19 @@ constexpr float kBedShare = 0.25f;
 }  // namespace
 
 PathIntegrator::PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces)
-    : scene_(scene), surfaces_(scene, print), bounces_(bounces) {
+    : Integrator(scene, print), scene_(scene), bounces_(bounces) {
     if (scene.bed) bed_light_ = scene.environment->makeBedLight();
     for (const auto& light : scene.lights)
         if (light->hasExtent()) lamps_.push_back(light.get());
 }
 
-Pixel PathIntegrator::radiance(const march::Ray& ray, TraceContext& context) const {
+Pixel PathIntegrator::seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const {
     Color behind(0.0f);
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point))
-        return surfaces_.backdrop(ray, behind) ? Pixel{behind, 1.0f} : Pixel{};
-    const float fade = surfaces_.fade(point);
+    if (first == nullptr) return surfaces_.backdrop(ray, behind) ? Pixel{behind, 1.0f} : Pixel{};
+    const float fade = surfaces_.fade(*first);
     if (fade > 0.0f) surfaces_.backdrop(ray, behind);
     if (fade >= 1.0f) return {behind, 1.0f};
-    return {(1.0f - fade) * scattered(point, ray.direction, context) + fade * behind, 1.0f};
+    return {(1.0f - fade) * scattered(*first, ray.direction, context) + fade * behind, 1.0f};
 }
 
 /// Sum over the lamps of what they send to the viewer by this point.

@@ -17,7 +17,9 @@ namespace stratum::shade {
 class PathIntegrator final : public Integrator {
 public:
     PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces);
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 
 private:
     Color fromEnvironment(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo,
@@ -28,7 +30,6 @@ private:
     Color scattered(SurfacePoint point, glm::dvec3 direction, TraceContext& context) const;
 
     const SceneDescription& scene_;
-    Surfaces surfaces_;
     std::unique_ptr<const BedLight> bed_light_;
     int bounces_;
     std::vector<const Light*> lamps_;  // those with extent

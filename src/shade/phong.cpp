@@ -10,8 +10,8 @@ namespace stratum::shade {
 
 PhongIntegrator::PhongIntegrator(const SceneDescription& scene, const march::Intersector& print,
                                  const PhongOptions& options)
-    : scene_(scene),
-      surfaces_(scene, print),
+    : Integrator(scene, print),
+      scene_(scene),
       options_(options),
       lights_(scene.lights),
       ambient_(scene.ambient),
@@ -45,7 +45,7 @@ Color PhongIntegrator::local(const SurfacePoint& point, const glm::vec3& view, T
     return sum;
 }
 
-Pixel PhongIntegrator::radiance(const march::Ray& camera_ray, TraceContext& context) const {
+Pixel PhongIntegrator::seen(const march::Ray& camera_ray, const SurfacePoint* first, TraceContext& context) const {
     constexpr int kDepth = 5;
     march::Ray ray = camera_ray;
     Color sum(0.0f);
@@ -53,10 +53,16 @@ Pixel PhongIntegrator::radiance(const march::Ray& camera_ray, TraceContext& cont
     for (int depth = 0;; ++depth) {
         Color behind(0.0f);
         SurfacePoint point;
-        ++(depth == 0 ? context.rays.primary : context.rays.bounce);
-        if (!surfaces_.nearest(ray, context.tracer, point)) {
-            const bool seen = surfaces_.backdrop(ray, behind);
-            if (depth == 0) return seen ? Pixel{behind, 1.0f} : Pixel{};
+        bool met = first != nullptr;
+        if (depth == 0) {
+            if (met) point = *first;
+        } else {
+            ++context.rays.bounce;
+            met = surfaces_.nearest(ray, context.tracer, point);
+        }
+        if (!met) {
+            const bool backdrop = surfaces_.backdrop(ray, behind);
+            if (depth == 0) return backdrop ? Pixel{behind, 1.0f} : Pixel{};
             return {sum + share * behind, 1.0f};
         }
         const float fade = surfaces_.fade(point);

@@ -19,13 +19,14 @@ namespace stratum::shade {
 class PhongIntegrator final : public Integrator {
 public:
     PhongIntegrator(const SceneDescription& scene, const march::Intersector& print, const PhongOptions& options);
-    Pixel radiance(const march::Ray& ray, TraceContext& context) const override;
+
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 
 private:
     Color local(const SurfacePoint& point, const glm::vec3& view, TraceContext& context) const;
 
     const SceneDescription& scene_;
-    Surfaces surfaces_;
     PhongOptions options_;
     std::vector<std::shared_ptr<const Light>> lights_;
     Color ambient_;

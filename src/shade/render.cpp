@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -18,11 +19,21 @@ constexpr int kTile = 32;  // pixels a side: work enough for a task, few enough 
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
 
+constexpr std::size_t kStream = 1024;  // samples on the way at a time: enough to fill vectors, few enough for a cache
+
+/// Camera rays on the way, with their samplers.
+struct Stream {
+    std::vector<march::Ray> rays;
+    std::vector<Sampler> samplers;
+    std::vector<Pixel> pixels;
+};
+
 /// What a thread has to itself.
 struct Worker {
     std::unique_ptr<march::Tracer> tracer;
     Sampler sampler;
     RayCounts rays;
+    Stream stream;
     std::uint64_t samples = 0;
 };
 
@@ -31,6 +42,14 @@ struct Sums {
     glm::dvec3 rgb{0.0};
     double alpha = 0.0;
     double luminance = 0.0, square = 0.0;  // sums of luminance and of its square
+
+    void add(const Pixel& sample) {
+        rgb += glm::dvec3(sample.rgb);
+        alpha += static_cast<double>(sample.alpha);
+        const auto y = static_cast<double>(shade::luminance(sample.rgb));
+        luminance += y;
+        square += y * y;
+    }
 
     /// Variance of the mean luminance of `count` samples as if they were independent.
     double variance(int count) const {
@@ -89,52 +108,60 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
     result.film.layers() = makeLayers(options.aovs, result.film.pixels().size());
 
     const auto renderTile = [&](const PixelBox& tile, Worker& worker) {
-        TraceContext context{*worker.tracer, worker.sampler, worker.rays};
         const auto count = static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height());
+        const auto width = static_cast<std::size_t>(tile.width());
+        Stream& stream = worker.stream;
+        TraceContext context{*worker.tracer, worker.sampler, worker.rays};
         std::vector<Sums> sums(count);
         std::vector<double> layers(count * recorder.size(), 0.0);
-        const auto samplePixel = [&](int x, int y, int first, int last, Sums& sum, double* layer) {
-            for (int s = first; s < last; ++s) {
-                worker.sampler.start(x, y, static_cast<std::uint32_t>(s));
-                const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(worker.sampler.next2D());
-                const march::Ray ray = scene.camera.ray(place);
-                const Pixel sample = integrator->radiance(ray, context);
-                sum.rgb += glm::dvec3(sample.rgb);
-                sum.alpha += static_cast<double>(sample.alpha);
-                const auto y_sample = static_cast<double>(luminance(sample.rgb));
-                sum.luminance += y_sample;
-                sum.square += y_sample * y_sample;
-                recorder.add(ray, context, layer);
-            }
-        };
         int done = 0;
         int target = options.noise > 0.0 ? std::min(16, options.spp) : options.spp;
         for (;;) {
-            std::size_t n = 0;
+            // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
+            const auto each = static_cast<std::size_t>(target - done);
+            std::size_t summed = 0;
+            const auto flush = [&] {
+                stream.pixels.resize(stream.rays.size());
+                integrator->radianceStream(stream.rays, stream.samplers, *worker.tracer, worker.rays, stream.pixels);
+                for (std::size_t n = 0; n < stream.pixels.size(); ++n) {
+                    const std::size_t pixel = summed++ / each;
+                    sums[pixel].add(stream.pixels[n]);
+                    recorder.add(stream.rays[n], context, layers.data() + pixel * recorder.size());
+                }
+                stream.rays.clear();
+                stream.samplers.clear();
+            };
             for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; ++x, ++n)
-                    samplePixel(x, y, done, target, sums[n], layers.data() + n * recorder.size());
+                for (int x = tile.x0; x < tile.x1; ++x)
+                    for (int s = done; s < target; ++s) {
+                        Sampler sampler = worker.sampler;
+                        sampler.start(x, y, static_cast<std::uint32_t>(s));
+                        const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
+                        stream.rays.push_back(scene.camera.ray(place));
+                        stream.samplers.push_back(sampler);
+                        if (stream.rays.size() == kStream) flush();
+                    }
+            flush();
             done = target;
             if (done == options.spp || errorOf(sums, done) <= options.noise) break;
             target = std::min(2 * done, options.spp);
         }
         worker.samples += static_cast<std::uint64_t>(done) * count;
-        std::size_t n = 0;
-        for (int y = tile.y0; y < tile.y1; ++y) {
-            for (int x = tile.x0; x < tile.x1; ++x, ++n) {
-                result.film.at(x, y) = {Color(sums[n].rgb / static_cast<double>(done)),
-                                        static_cast<float>(sums[n].alpha / done)};
-                recorder.store(layers.data() + n * recorder.size(),
-                               {sums[n].variance(done), static_cast<std::uint32_t>(done)}, result.film.layers(),
-                               result.film.index(x, y));
-            }
+        for (std::size_t n = 0; n < count; ++n) {
+            const int x = tile.x0 + static_cast<int>(n % width);
+            const int y = tile.y0 + static_cast<int>(n / width);
+            result.film.at(x, y) = {Color(sums[n].rgb / static_cast<double>(done)),
+                                    static_cast<float>(sums[n].alpha / done)};
+            recorder.store(layers.data() + n * recorder.size(),
+                           {sums[n].variance(done), static_cast<std::uint32_t>(done)}, result.film.layers(),
+                           result.film.index(x, y));
         }
     };
 
     const std::vector<PixelBox> tiles = tilesOf(region);
     tbb::enumerable_thread_specific<Worker> workers([&] {
-        return Worker{print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{},
-                      0};
+        return Worker{
+            print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{}, {}, 0};
     });
     std::mutex progress_mutex;
     std::uint64_t done = 0;

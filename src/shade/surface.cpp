@@ -3,42 +3,77 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace stratum::shade {
 
 Surfaces::Surfaces(const SceneDescription& scene, const march::Intersector& print)
     : scene_(scene), offset_(print.surfaceOffset()), paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {}
 
+SurfacePoint Surfaces::onPrint(const march::Ray& ray, const march::Hit& hit) const {
+    SurfacePoint point;
+    point.position = hit.position;
+    point.t = hit.t;
+    point.brdf = scene_.material.get();
+    const double facing = glm::dot(hit.normal, ray.direction);
+    // A normal that is no number (a gradient of zero) is replaced here, once: the surface then faces the ray.
+    if (!std::isfinite(facing) || !(glm::dot(hit.normal, hit.normal) > 0.5))
+        point.normal = -ray.direction;
+    else
+        point.normal = facing > 0.0 ? -hit.normal : hit.normal;
+    return point;
+}
+
+SurfacePoint Surfaces::onBed(const march::Ray& ray, double t) const {
+    SurfacePoint point;
+    point.position = ray.origin + t * ray.direction;
+    point.position.z = scene_.bed->z;
+    point.t = t;
+    point.brdf = &paper_;
+    point.bed = true;
+    return point;
+}
+
 bool Surfaces::nearest(const march::Ray& ray, march::Tracer& tracer, SurfacePoint& point) const {
     march::Ray limited = ray;
     const std::optional<double> bed = scene_.bed ? scene_.bed->intersect(ray) : std::nullopt;
     if (bed) limited.t_max = *bed;
     march::Hit hit;
-    if (tracer.intersect(limited, hit)) {
-        point.position = hit.position;
-        point.t = hit.t;
-        point.brdf = scene_.material.get();
-        point.bed = false;
-        const double facing = glm::dot(hit.normal, ray.direction);
-        // A normal that is no number (a gradient of zero) is replaced here, once: the surface then faces the ray.
-        if (!std::isfinite(facing) || !(glm::dot(hit.normal, hit.normal) > 0.5))
-            point.normal = -ray.direction;
+    const bool print = tracer.intersect(limited, hit);
+    if (print)
+        point = onPrint(ray, hit);
+    else if (bed)
+        point = onBed(ray, *bed);
+    return print || bed;
+}
+
+void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, std::span<SurfacePoint> points) const {
+    std::vector<march::Ray> limited(rays.begin(), rays.end());
+    std::vector<march::Hit> hits(rays.size());
+    if (scene_.bed)
+        for (march::Ray& ray : limited) ray.t_max = scene_.bed->intersect(ray).value_or(ray.t_max);
+    tracer.intersectStream(limited, hits);
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        if (std::isfinite(hits[n].t))
+            points[n] = onPrint(rays[n], hits[n]);
+        else if (const auto bed = scene_.bed ? scene_.bed->intersect(rays[n]) : std::nullopt)
+            points[n] = onBed(rays[n], *bed);
         else
-            point.normal = facing > 0.0 ? -hit.normal : hit.normal;
-        return true;
+            points[n].t = std::numeric_limits<double>::infinity();
     }
-    if (!bed) return false;
-    point.position = ray.origin + *bed * ray.direction;
-    point.position.z = scene_.bed->z;
-    point.normal = {0.0, 0.0, 1.0};
-    point.t = *bed;
-    point.brdf = &paper_;
-    point.bed = true;
-    return true;
 }
 
 bool Surfaces::occluded(const march::Ray& ray, march::Tracer& tracer) const {
     return (scene_.bed && scene_.bed->intersect(ray)) || tracer.occluded(ray);
+}
+
+void Surfaces::occluded(std::span<const march::Ray> rays, march::Tracer& tracer,
+                        std::span<std::uint8_t> blocked) const {
+    tracer.occludedStream(rays, blocked);
+    if (!scene_.bed) return;
+    for (std::size_t n = 0; n < rays.size(); ++n)
+        if (scene_.bed->intersect(rays[n])) blocked[n] = 1;
 }
 
 march::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {

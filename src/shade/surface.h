@@ -8,6 +8,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
+#include <span>
+
 namespace stratum::shade {
 
 /// A point where light is scattered. World space.
@@ -26,7 +29,11 @@ public:
 
     /// The nearest surface in the ray's interval; false if there is none.
     bool nearest(const march::Ray& ray, march::Tracer& tracer, SurfacePoint& point) const;
+    /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`.
+    void nearest(std::span<const march::Ray> rays, march::Tracer& tracer, std::span<SurfacePoint> points) const;
     bool occluded(const march::Ray& ray, march::Tracer& tracer) const;
+    /// blocked[i] is 1 or 0. `blocked` is as long as `rays`.
+    void occluded(std::span<const march::Ray> rays, march::Tracer& tracer, std::span<std::uint8_t> blocked) const;
     /// A ray that leaves a point without meeting the same surface again.
     /// @param direction  world space, near unit length
     march::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const;
@@ -36,6 +43,9 @@ public:
     bool backdrop(const march::Ray& ray, Color& radiance) const;
 
 private:
+    SurfacePoint onPrint(const march::Ray& ray, const march::Hit& hit) const;
+    SurfacePoint onBed(const march::Ray& ray, double t) const;
+
     const SceneDescription& scene_;
     double offset_;  // world units
     Lambert paper_;

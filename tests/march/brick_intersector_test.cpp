@@ -2,10 +2,10 @@
 
 #include "brute_march.h"
 #include "io/error.h"
-#include "spheres.h"
+#include "random_rays.h"
+#include "rubble.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/tools/Composite.h>
 #include <glm/geometric.hpp>
 
 #include <chrono>
@@ -15,31 +15,8 @@
 namespace stratum::march {
 namespace {
 
-glm::dvec3 randomDirection(std::mt19937& random) {
-    std::normal_distribution<double> normal;
-    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-}
-
-// Creases, thin gaps and near-tangent walls: many small balls that overlap and almost touch, a few voxels across, and
-// values roughened so that cells have several crossings.
-openvdb::FloatGrid::Ptr rubble(float voxel, bool rough) {
-    std::mt19937 random(4);
-    std::uniform_real_distribution<float> where(-3, 3);
-    std::uniform_real_distribution<float> size(0.5F, 1.2F);
-    auto all = test::sphereGrid(1, openvdb::Vec3f(0), voxel);
-    for (int n = 0; n < 25; ++n) {
-        const openvdb::Vec3f centre(where(random), where(random), where(random));
-        auto ball = test::sphereGrid(size(random), centre, voxel);
-        openvdb::tools::csgUnion(*all, *ball);
-    }
-    if (rough) {
-        std::uniform_real_distribution<float> noise(-0.7F * voxel, 0.7F * voxel);
-        for (auto it = all->beginValueOn(); it; ++it)
-            if (std::abs(*it) < 1.5F * voxel) it.setValue(*it + noise(random));
-    }
-    all->setName("surface");
-    return all;
-}
+using test::randomDirection;
+using test::rubble;
 
 struct Tally {
     int hits = 0, misses = 0, wrong = 0;
@@ -206,6 +183,16 @@ TEST(BrickIntersector, RefusesWhatItCannotTrace) {
     const auto fog = test::sphereGrid(2, openvdb::Vec3f(0), 0.2F);
     fog->setGridClass(openvdb::GRID_FOG_VOLUME);
     EXPECT_THROW(makeBrickIntersector(*fog), InputError);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        const auto grid = test::sphereGrid(2, openvdb::Vec3f(0), 0.2F);
+        grid->tree().setValue(openvdb::Coord(10, 1, 2), bad);
+        try {
+            makeBrickIntersector(*grid);
+            FAIL() << "traced " << bad;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("(8, 0, 0)"), std::string::npos) << error.what();
+        }
+    }
     auto apart = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     apart->tree().touchLeaf(openvdb::Coord(1 << 29, 1 << 29, 1 << 29));
     EXPECT_THROW(makeBrickIntersector(*apart), InputError);

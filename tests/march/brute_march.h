@@ -50,6 +50,9 @@ public:
             }
         }
         std::sort(stops.begin(), stops.end());
+        // The sign is carried from cell to cell: on a face where the field is zero but for rounding, two cells' own
+        // evaluations may disagree, and a change must not fall between them.
+        std::optional<bool> inside_so_far;
         for (std::size_t n = 0; n + 1 < stops.size(); ++n) {
             const double a = stops[n];
             const double b = stops[n + 1];
@@ -61,7 +64,6 @@ public:
                 v[c] = static_cast<double>(accessor_.getValue(cell.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
                 mixed = mixed || (v[c] < 0) != (v[0] < 0);
             }
-            if (!mixed) continue;
             const auto inside = [&](double t) {
                 const openvdb::Vec3d p = o + t * d - cell.asVec3d();
                 double sum = 0;
@@ -70,8 +72,11 @@ public:
                            ((c & 1) != 0 ? p[2] : 1 - p[2]);
                 return sum < 0;
             };
+            const bool first = mixed ? inside(a) : v[0] < 0;
+            if (inside_so_far && first != *inside_so_far) return a;
+            inside_so_far = first;
+            if (!mixed) continue;
             constexpr int kSteps = 200;
-            const bool first = inside(a);
             for (int s = 1; s <= kSteps; ++s) {
                 double high = a + (b - a) * s / kSteps;
                 if (inside(high) == first) continue;

@@ -66,6 +66,14 @@ TEST_F(LevelSetFile, RefusesFilesWithoutALevelSet) {
     EXPECT_NE(refusal(write({openvdb::Int32Grid::create()})).find("no level set"), std::string::npos);
 }
 
+TEST_F(LevelSetFile, RefusesTwoGridsOfOneName) {
+    EXPECT_NE(refusal(write({named("surface"), named("surface", 3)})).find("two grids named surface"),
+              std::string::npos);
+    EXPECT_NE(refusal(write({named("a"), named("a", 3), named("b")}), "a").find("two grids named a"),
+              std::string::npos);
+    EXPECT_EQ(readLevelSet(write({named("a"), named("a", 3), named("b")}), "b")->getName(), "b");
+}
+
 TEST_F(LevelSetFile, RefusesDamage) {
     EXPECT_NE(refusal("/nonexistent.vdb").find("not a file"), std::string::npos);
     const auto path = write({named("surface", 5)});

@@ -1,0 +1,99 @@
+// Vectors of doubles and of whole numbers, masks as bits, and tables to pack and spread lanes: for one Highway target
+// at a time, hence the guard that toggles.
+#if defined(STRATUM_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STRATUM_LANES_INL_H
+#undef STRATUM_LANES_INL_H
+#else
+#define STRATUM_LANES_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#undef STRATUM_WIDE_LANES
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#define STRATUM_WIDE_LANES 1
+#else
+#define STRATUM_WIDE_LANES 0  // two lanes don't pay for their gathers
+#endif
+
+#if STRATUM_WIDE_LANES
+HWY_BEFORE_NAMESPACE();
+namespace stratum::march {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, 8>;
+using DI = hn::RebindToSigned<D>;
+using DU = hn::RebindToUnsigned<D>;
+using DU32 = hn::Repartition<std::uint32_t, D>;
+using DF = hn::Rebind<float, D>;
+using DHalfU32 = hn::Rebind<std::uint32_t, D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using M = hn::Mask<D>;
+
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr unsigned kAllLanes = (1U << kLanes) - 1;
+constexpr double kShift = 4503599627370496.0;  // 2^52: adding it leaves a whole number in the low bits of a double
+
+struct Vec3 {
+    V v[3];
+};
+
+HWY_INLINE V constant(double value) { return hn::Set(D(), value); }
+HWY_INLINE VI whole(std::int64_t value) { return hn::Set(DI(), value); }
+HWY_INLINE M maskOf(unsigned bits) {
+    alignas(8) const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
+    return hn::LoadMaskBits(D(), bytes);
+}
+HWY_INLINE unsigned bitsOf(M mask) {
+    alignas(8) std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(D(), mask, bytes);
+    return bytes[0] & kAllLanes;
+}
+HWY_INLINE M toDouble(hn::Mask<DI> mask) { return hn::RebindMask(D(), mask); }
+/// Whole numbers in [0, 2^52).
+HWY_INLINE VI toWhole(V v) {
+    const V shift = constant(kShift);
+    return hn::Xor(hn::BitCast(DI(), v + shift), hn::BitCast(DI(), shift));
+}
+HWY_INLINE V fromWhole(VI v) {
+    const V shift = constant(kShift);
+    return hn::BitCast(D(), hn::Or(v, hn::BitCast(DI(), shift))) - shift;
+}
+/// Of whole numbers in [0, 2^32).
+HWY_INLINE VI product(VI a, VI b) {
+    return hn::BitCast(DI(), hn::MulEven(hn::BitCast(DU32(), a), hn::BitCast(DU32(), b)));
+}
+/// std::clamp, operand for operand.
+HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
+
+/// For every mask of lanes, which lane of a row goes where.
+struct LaneTable {
+    std::uint8_t rank[kAllLanes + 1][8] = {};   // to spread a row over the lanes set: lane -> how many are set below it
+    std::uint8_t place[kAllLanes + 1][8] = {};  // to gather the lanes set in a row: n -> the n-th lane set
+    constexpr LaneTable() {
+        for (unsigned mask = 0; mask <= kAllLanes; ++mask)
+            for (unsigned lane = 0, count = 0; lane < static_cast<unsigned>(kLanes); ++lane) {
+                rank[mask][lane] = static_cast<std::uint8_t>(count);
+                if ((mask >> lane & 1) != 0) place[mask][count++] = static_cast<std::uint8_t>(lane);
+            }
+    }
+};
+inline constexpr LaneTable kTable;
+
+HWY_INLINE auto tableIndices(const std::uint8_t (&row)[8]) {
+    alignas(64) std::int64_t source[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) source[lane] = row[lane];
+    return hn::SetTableIndices(D(), source);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace stratum::march
+HWY_AFTER_NAMESPACE();
+#endif  // STRATUM_WIDE_LANES
+
+#endif
