@@ -10,8 +10,8 @@
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -109,7 +109,8 @@ int main(int argc, char** argv) {
         // Evenly over the sphere, straight up and straight down included.
         const int directions = std::max(views / 2, 2);
         const glm::dvec3 from = onSphere(static_cast<double>(n) / (directions - 1), n * 0.6180339887498949);
-        const glm::dvec3 side = glm::normalize(glm::cross(std::abs(from.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0), from));
+        const glm::dvec3 side =
+            glm::normalize(glm::cross(std::abs(from.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0), from));
         const glm::dvec3 up = glm::cross(from, side);
         // Beside the surface: a millimetre off where the ray to the middle meets it, looking everywhere.
         glm::dvec3 eye{0.0};
@@ -131,7 +132,8 @@ int main(int argc, char** argv) {
                     const double v = (static_cast<double>(row) + unit(random)) / size;
                     march::Ray ray;
                     if (outer) {
-                        ray.origin = centre + from * (2 * radius) + (2 * u - 1) * radius * side + (2 * v - 1) * radius * up;
+                        ray.origin =
+                            centre + from * (2 * radius) + (2 * u - 1) * radius * side + (2 * v - 1) * radius * up;
                         ray.direction = -from;
                     } else {
                         ray.origin = eye;
@@ -141,7 +143,8 @@ int main(int argc, char** argv) {
                     if (!compare(*kept, *culled, ray, direct, hit)) continue;
                     for (int s = 0; s < cosine_rays; ++s) {
                         march::Ray bounce;
-                        bounce.direction = glm::normalize(hit.normal + onSphere(unit(random), unit(random)) * (1 - 1e-9));
+                        bounce.direction =
+                            glm::normalize(hit.normal + onSphere(unit(random), unit(random)) * (1 - 1e-9));
                         bounce.origin = hit.position + hit.normal * offset;
                         march::Hit unused;
                         compare(*kept, *culled, bounce, bounced, unused);

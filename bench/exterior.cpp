@@ -7,11 +7,11 @@
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <ctime>
@@ -69,10 +69,11 @@ int main(int argc, char** argv) {
         leaves[cull] = static_cast<double>(grid->tree().leafCount());
         const auto& report = voxelizer.report();
         fmt::print(
-            "{}: {:.2f} s (CPU {:.2f}; bins {:.2f}), {:.1f} M active, {:.0f} k leaves of {:.0f} k positions, {} evaluated, {:.2f} GB "
+            "{}: {:.2f} s (CPU {:.2f}; bins {:.2f}), {:.1f} M active, {:.0f} k leaves of {:.0f} k positions, {} "
+            "evaluated, {:.2f} GB "
             "grid, peak {:.2f} GB",
-            cull != 0 ? "cull" : "keep", seconds[cull], cpu_seconds, report.bin_seconds, active[cull] * 1e-6, leaves[cull] * 1e-3,
-            static_cast<double>(report.leaf_positions) * 1e-3, report.leaves_evaluated,
+            cull != 0 ? "cull" : "keep", seconds[cull], cpu_seconds, report.bin_seconds, active[cull] * 1e-6,
+            leaves[cull] * 1e-3, static_cast<double>(report.leaf_positions) * 1e-3, report.leaves_evaluated,
             static_cast<double>(grid->memUsage()) * 1e-9, peakGigabytes());
         if (cull != 0)
             fmt::print(", {} rounds, exterior {:.2f} s ({:.0f} %)", report.flood_rounds, report.exterior_seconds,

@@ -11,8 +11,8 @@
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
@@ -65,7 +65,8 @@ int main(int argc, char** argv) {
                 std::uniform_real_distribution<double> unit(0, 1);
                 std::normal_distribution<double> normal;
                 const glm::dvec3 from = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-                const glm::dvec3 target = box.min + (box.max - box.min) * glm::dvec3(unit(random), unit(random), unit(random));
+                const glm::dvec3 target =
+                    box.min + (box.max - box.min) * glm::dvec3(unit(random), unit(random), unit(random));
                 march::Hit hit;
                 if (!tracer->intersect({target + from * (2 * radius), -from}, hit)) continue;
                 errors[n] = std::abs(brute(hit.position.x, hit.position.y, hit.position.z));

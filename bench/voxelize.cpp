@@ -1,8 +1,9 @@
 // Beads to a level set: this project's voxelizer against OpenVDB's own ways, on the same beads, in one process.
 //
-// Peers: ParticlesToLevelSet (spheres along each bead, as users of OpenVDB do it), meshToVolume of the beads tessellated
-// as tubes of 10 vertices a section, and the time that the machine takes to touch the grid's bytes for the first time.
-// Runs are interleaved; medians and the spread are printed, times per active voxel of the grid that this project makes.
+// Peers: ParticlesToLevelSet (spheres along each bead, as users of OpenVDB do it), meshToVolume of the beads
+// tessellated as tubes of 10 vertices a section, and the time that the machine takes to touch the grid's bytes for the
+// first time. Runs are interleaved; medians and the spread are printed, times per active voxel of the grid that this
+// project makes.
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "parallel/parallel_for.h"
@@ -11,11 +12,11 @@
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/ParticlesToLevelSet.h>
 #include <tbb/global_control.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -120,7 +121,8 @@ Mesh tubesOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> bea
             const openvdb::Vec3d side = openvdb::Vec3d(-along[1], along[0], 0);
             for (std::uint32_t s = 0; s < kSides; ++s) {
                 const bool right = s < kSides / 2;
-                const double angle = std::numbers::pi * ((right ? s : s - kSides / 2) / 4.0 - 0.5) + (right ? 0 : std::numbers::pi);
+                const double angle =
+                    std::numbers::pi * ((right ? s : s - kSides / 2) / 4.0 - 0.5) + (right ? 0 : std::numbers::pi);
                 const double across = (right ? 1 : -1) * section.half_flat + section.radius * std::cos(angle);
                 mesh.points.emplace_back(path[n] + side * across +
                                          openvdb::Vec3d(0, 0, section.radius * std::sin(angle)));
@@ -197,8 +199,8 @@ int main(int argc, char** argv) {
     std::vector<Series> series;
     series.push_back({"voxelize", [&] { voxelize::voxelize(toolpath, beads, lattice); }});
     series.push_back({"first touch", [&] { touch(leaves); }});
+    const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     if (peer_runs > 0) {
-        const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
         series.push_back({"ParticlesToLevelSet",
                           [&] {
                               const Spheres spheres = spheresOf(toolpath, beads, voxel);

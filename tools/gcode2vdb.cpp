@@ -114,7 +114,8 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
-    app.add_option("--grids", o.grids, "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
+    app.add_option("--grids", o.grids,
+                   "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
         ->type_name("LIST")
         ->group(what);
     app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
@@ -221,8 +222,7 @@ voxelize::Lattice latticeFor(const Options& o, const gcode::Toolpath& toolpath,
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
                              voxelize::Interior interior) {
     voxelize::LatticeRequest request = o.lattice;
-    if (!o.tolerance && o.memory_budget.empty())
-        return voxelize::chooseLattice(toolpath, selection, bounds, request);
+    if (!o.tolerance && o.memory_budget.empty()) return voxelize::chooseLattice(toolpath, selection, bounds, request);
     request.voxels_per_layer = 1;
     const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
     std::string why;
@@ -231,8 +231,7 @@ voxelize::Lattice latticeFor(const Options& o, const gcode::Toolpath& toolpath,
         why = fmt::format("errors of half a voxel at most stay within {:g} mm", *o.tolerance);
     } else {
         const double budget = voxelize::parseSize(o.memory_budget);
-        request.voxels_per_layer =
-            voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
+        request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
         why = fmt::format("the finest within {}", tools::humanBytes(budget));
     }
     voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
@@ -373,11 +372,11 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                            {"saved", "a nearest-bead search and four bytes a voxel for each"}});
     if (provenance.culled) {
         const auto& report = voxelizer.report();
-        skipped.push_back({{"what", "leaves that the outside can't reach"},
-                           {"why", "--interior cull"},
-                           {"saved", fmt::format("{} of {} leaf positions were never evaluated",
-                                                 report.leaf_positions - report.leaves_evaluated,
-                                                 report.leaf_positions)}});
+        skipped.push_back(
+            {{"what", "leaves that the outside can't reach"},
+             {"why", "--interior cull"},
+             {"saved", fmt::format("{} of {} leaf positions were never evaluated",
+                                   report.leaf_positions - report.leaves_evaluated, report.leaf_positions)}});
     }
     Json toolpath_report = tools::describeToolpath(toolpath);
     toolpath_report["selected_bbox_mm"] = {bounds.min, bounds.max};

@@ -13,7 +13,8 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames{"layer", "time", "feature", "tool", "object", "width", "speed", "color"};
+constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "tool",
+                                                 "object", "width", "speed",   "color"};
 constexpr float kGrey = 0.8f;
 
 enum class Kind : std::uint8_t { integer, number, color };
@@ -22,9 +23,12 @@ Kind kindOf(Attribute attribute) {
     switch (attribute) {
         case Attribute::time:
         case Attribute::width:
-        case Attribute::speed: return Kind::number;
-        case Attribute::color: return Kind::color;
-        default: return Kind::integer;
+        case Attribute::speed:
+            return Kind::number;
+        case Attribute::color:
+            return Kind::color;
+        default:
+            return Kind::integer;
     }
 }
 
@@ -89,10 +93,14 @@ BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const 
 std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) const {
     const gcode::Run& run = toolpath_.runOf(toolpath_.beads[bead]);
     switch (attribute) {
-        case Attribute::layer: return static_cast<std::int32_t>(run.layer);
-        case Attribute::feature: return static_cast<std::int32_t>(run.feature);
-        case Attribute::object: return run.object;
-        default: return run.tool;
+        case Attribute::layer:
+            return static_cast<std::int32_t>(run.layer);
+        case Attribute::feature:
+            return static_cast<std::int32_t>(run.feature);
+        case Attribute::object:
+            return run.object;
+        default:
+            return run.tool;
     }
 }
 
@@ -125,16 +133,23 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& to
     for (const Attribute attribute : attributes) {
         openvdb::GridBase::Ptr grid;
         switch (kindOf(attribute)) {
-            case Kind::integer: grid = emptyGrid<openvdb::Int32Grid>(surface); break;
-            case Kind::number: grid = emptyGrid<openvdb::FloatGrid>(surface); break;
-            case Kind::color: grid = emptyGrid<openvdb::Vec3SGrid>(surface); break;
+            case Kind::integer:
+                grid = emptyGrid<openvdb::Int32Grid>(surface);
+                break;
+            case Kind::number:
+                grid = emptyGrid<openvdb::FloatGrid>(surface);
+                break;
+            case Kind::color:
+                grid = emptyGrid<openvdb::Vec3SGrid>(surface);
+                break;
         }
         grid->setName(std::string(attributeName(attribute)));
         grid->setTransform(surface.transform().copy());
         std::string names;
         if (attribute == Attribute::feature)
             for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
-                names += fmt::format("{}{} {}", f > 0 ? ", " : "", f, gcode::featureName(static_cast<gcode::Feature>(f)));
+                names +=
+                    fmt::format("{}{} {}", f > 0 ? ", " : "", f, gcode::featureName(static_cast<gcode::Feature>(f)));
         if (attribute == Attribute::object)
             for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
                 names += fmt::format("{}{} {}", n > 1 ? ", " : "", n, toolpath.objects[n]);

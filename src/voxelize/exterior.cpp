@@ -77,8 +77,8 @@ private:
     // Runs of leaf positions that beads touch, by column; between, below and above them is air. Air n of a column lies
     // below its run n, and one more lies above the last.
     struct Run {
-        int first, last;          // leaves along z
-        std::uint32_t slot;       // of `first`; the others follow
+        int first, last;     // leaves along z
+        std::uint32_t slot;  // of `first`; the others follow
     };
 
     std::size_t airCount(std::size_t c) const { return run_offsets_[c + 1] - run_offsets_[c] + 1; }
@@ -146,7 +146,8 @@ private:
             if (i > 0 && j > 0 && inside(i + 1, j + 1)) continue;
             for (std::size_t n = 1; n + 1 < airCount(c); ++n) reachAir(c, n);
             for (const Run& run : runsOf(c))
-                for (int k = run.first; k <= run.last; ++k) queue(c, run.slot + static_cast<std::size_t>(k - run.first));
+                for (int k = run.first; k <= run.last; ++k)
+                    queue(c, run.slot + static_cast<std::size_t>(k - run.first));
         }
         addThreadSeconds(secondsSince(start));
     }
@@ -271,8 +272,11 @@ private:
         const auto it = cells_.emplace_back();
         Cell& cell = *it;
         switch (column.evaluate(k)) {
-            case LeafContent::outside: cell.wide = cell.outside = LeafMask::full(); break;
-            case LeafContent::inside: break;
+            case LeafContent::outside:
+                cell.wide = cell.outside = LeafMask::full();
+                break;
+            case LeafContent::inside:
+                break;
             case LeafContent::surface: {
                 cell.leaf = column.makeLeaf();
                 maskFrom(cell.leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
@@ -336,7 +340,8 @@ private:
                 for (int dz = -1; dz <= 1; ++dz) {
                     const int i = columnI(c) + dx;
                     const int j = columnJ(c) + dy;
-                    if (std::abs(dx) + std::abs(dy) + std::abs(dz) != 1 || !inside(i, j) || !touchesNeighbour(gained, dx, dy, dz))
+                    if (std::abs(dx) + std::abs(dy) + std::abs(dz) != 1 || !inside(i, j) ||
+                        !touchesNeighbour(gained, dx, dy, dz))
                         continue;
                     const std::size_t beside = columnAt(i, j);
                     const Place place = placeOf(beside, k + dz);
@@ -361,9 +366,7 @@ private:
                     for (int k = run.first; k <= run.last; ++k) {
                         const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
                         if (near_[slot].load(std::memory_order_relaxed) != 0)
-                            body(c, k, slot, [&]() -> Cell& {
-                                return cellAt(column, opened, c, k, slot, evaluating);
-                            });
+                            body(c, k, slot, [&]() -> Cell& { return cellAt(column, opened, c, k, slot, evaluating); });
                     }
             }
             addThreadSeconds(secondsSince(start));
@@ -413,7 +416,8 @@ private:
         for (openvdb::Index x = 0; x < 8; ++x) {
             std::uint64_t& active = cell.leaf->getValueMask().getWord<openvdb::Index64>(x);
             // Outside but not seen, or inside and far from what is.
-            const std::uint64_t drop = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
+            const std::uint64_t drop =
+                (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
             for (std::uint64_t bits = drop; bits != 0; bits &= bits - 1)
                 values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -rule_.background;
             active &= ~drop;

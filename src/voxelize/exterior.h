@@ -3,10 +3,10 @@
 // A closed print is mostly inner surfaces: infill, channels between beads. The flood starts in the open air around the
 // part and evaluates a leaf when it arrives there, so leaves that no outside point reaches never exist.
 //
-// Printed parts are not tight: between beads laid side by side runs a channel, 0.27 layer heights wide where the planned
-// spacing is kept, and somewhere it meets the outside. So the flood takes only samples that keep a clearance from the
-// surface (a gap of twice the clearance is the narrowest it passes); what lies around them, up to a depth, is shown
-// whatever its width: grooves, steps, the sides of layers.
+// Printed parts are not tight: between beads laid side by side runs a channel, 0.27 layer heights wide where the
+// planned spacing is kept, and somewhere it meets the outside. So the flood takes only samples that keep a clearance
+// from the surface (a gap of twice the clearance is the narrowest it passes); what lies around them, up to a depth, is
+// shown whatever its width: grooves, steps, the sides of layers.
 #pragma once
 
 #include "voxelize/leaf_column.h"

@@ -115,7 +115,8 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
         if (!any) continue;
         const Layer& l = stack_.layers[source.layer];
         // A new bead can weld what lies below it: up to its own centre plane, so no farther than its own band.
-        ranges_.push_back(leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
+        ranges_.push_back(
+            leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
     }
     for (const DirectBead& direct : direct_)
         if (stack_.beads[direct.rank] >= begin)
@@ -173,14 +174,17 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
 void LeafColumn::addWelds(const PlanLayer& upper) {
     for (std::size_t w = weld_offsets_[upper.layer]; w < weld_offsets_[upper.layer + 1]; ++w) {
         const std::uint32_t wanted = stack_.welds[w].lower;
-        const auto lower =
-            std::find_if(window_.begin(), window_.end(), [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
+        const auto lower = std::find_if(window_.begin(), window_.end(),
+                                        [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
         if (lower == window_.end()) continue;
         const PlanLayer& below = slots_[*lower];
         const double top = below.centre_z + below.radius;
         const double bottom = upper.centre_z - upper.radius;
-        PlanWeld weld{std::min(top, bottom), std::max(top, bottom), 0.5 * (below.centre_z + upper.centre_z),
-                      0.5 * (upper.centre_z - below.centre_z), {}};
+        PlanWeld weld{std::min(top, bottom),
+                      std::max(top, bottom),
+                      0.5 * (below.centre_z + upper.centre_z),
+                      0.5 * (upper.centre_z - below.centre_z),
+                      {}};
         if (maximumOf(below.d, upper.d, weld.d) < 0) welds_.push_back(weld);
     }
 }
@@ -192,7 +196,8 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
         const PlanLayer& plan = slots_[slot];
         return plan.centre_z + reach(plan.radius) < z_min;
     };
-    const auto kept = std::stable_partition(window_.begin(), window_.end(), [&](std::uint32_t s) { return !passed(s); });
+    const auto kept =
+        std::stable_partition(window_.begin(), window_.end(), [&](std::uint32_t s) { return !passed(s); });
     if (kept != window_.end()) {
         free_.insert(free_.end(), kept, window_.end());
         window_.erase(kept, window_.end());

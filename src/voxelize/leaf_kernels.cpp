@@ -165,15 +165,14 @@ void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float c
     });
 }
 
-void ExpandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z,
-                  PlanField& phi) {
+void ExpandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
     const F f;
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, centre_z.v + c)), hn::Set(f, term.cosine));
         const VF below = hn::Min(hn::Add(up, hn::Set(f, term.reach)), hn::Zero(f));
         const VF height = hn::IfThenElse(hn::Lt(up, hn::Zero(f)), below, up);
-        const VF value = hn::Sub(hn::Sqrt(hn::Add(hn::Load(f, sides2.v + c), hn::Mul(height, height))),
-                                 hn::Set(f, term.radius));
+        const VF value =
+            hn::Sub(hn::Sqrt(hn::Add(hn::Load(f, sides2.v + c), hn::Mul(height, height))), hn::Set(f, term.radius));
         hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
     });
 }
@@ -313,8 +312,7 @@ void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float c
                 PlanField& centre_z) {
     HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, centre_z);
 }
-void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z,
-                  PlanField& phi) {
+void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandSloped)(sides2, centre_z, term, z, phi);
 }
 void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {

@@ -1,10 +1,10 @@
 // The inner loops of the voxelizer, in SIMD: plan fields of a leaf column, and their expansion into a leaf.
 //
-// Through Highway, for the best instruction set of the machine, chosen at run time. Every operation is one that IEEE 754
-// rounds exactly (no fused multiply-add, no estimate), so all instruction sets give the same bytes.
+// Through Highway, for the best instruction set of the machine, chosen at run time. Every operation is one that IEEE
+// 754 rounds exactly (no fused multiply-add, no estimate), so all instruction sets give the same bytes.
 //
-// A column has 64 samples, x * 8 + y as in a leaf; q is a sample relative to the middle of the column. A leaf is kept as
-// eight planes of 64, plane by plane in z, until it is stored. World units throughout.
+// A column has 64 samples, x * 8 + y as in a leaf; q is a sample relative to the middle of the column. A leaf is kept
+// as eight planes of 64, plane by plane in z, until it is stored. World units throughout.
 #pragma once
 
 #include "voxelize/local_path.h"

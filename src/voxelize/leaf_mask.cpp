@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint64_t lowZ(int n) { return 0x0101010101010101u * (0xffu >> n); }
 constexpr std::uint64_t highZ(int n) { return 0x0101010101010101u * ((0xffu << n) & 0xffu); }
 
-// The middle leaf and a margin around it, as rows of bits along z: row (x + margin, y + margin), bit z + margin. Only the
-// edge x edge rows in use are ever written or read.
+// The middle leaf and a margin around it, as rows of bits along z: row (x + margin, y + margin), bit z + margin. Only
+// the edge x edge rows in use are ever written or read.
 constexpr std::size_t kRowStride = 8 + 2 * kFarthestReach;
 using Rows = std::uint32_t[kRowStride * kRowStride];
 
@@ -30,7 +30,8 @@ void fillRows(const Neighbourhood& around, int margin, Rows& rows) {
                 const std::uint64_t below = along_z[0]->word[static_cast<std::size_t>(x)];
                 const std::uint64_t here = along_z[1]->word[static_cast<std::size_t>(x)];
                 const std::uint64_t above = along_z[2]->word[static_cast<std::size_t>(x)];
-                std::uint32_t* row = rows + static_cast<std::size_t>(x + 8 * dx + margin) * kRowStride + 8 * dy + margin;
+                std::uint32_t* row =
+                    rows + static_cast<std::size_t>(x + 8 * dx + margin) * kRowStride + 8 * dy + margin;
                 const auto byte = [](std::uint64_t word, int y) {
                     return static_cast<std::uint32_t>(word >> (8 * y)) & 0xffU;
                 };
@@ -140,10 +141,10 @@ LeafMask besides(const Neighbourhood& around) {
     LeafMask out;
     for (std::size_t x = 0; x < 8; ++x) {
         const std::uint64_t own = at(0, 0, 0, x);
-        out.word[x] = own | (x > 0 ? at(0, 0, 0, x - 1) : at(-1, 0, 0, 7)) | (x < 7 ? at(0, 0, 0, x + 1) : at(1, 0, 0, 0)) |
-                      (own << 8) | (own >> 8) | (at(0, -1, 0, x) >> 56) | (at(0, 1, 0, x) << 56) |
-                      ((own & lowZ(1)) << 1) | ((own & highZ(1)) >> 1) | ((at(0, 0, -1, x) & highZ(7)) >> 7) |
-                      ((at(0, 0, 1, x) & lowZ(7)) << 7);
+        out.word[x] = own | (x > 0 ? at(0, 0, 0, x - 1) : at(-1, 0, 0, 7)) |
+                      (x < 7 ? at(0, 0, 0, x + 1) : at(1, 0, 0, 0)) | (own << 8) | (own >> 8) |
+                      (at(0, -1, 0, x) >> 56) | (at(0, 1, 0, x) << 56) | ((own & lowZ(1)) << 1) |
+                      ((own & highZ(1)) >> 1) | ((at(0, 0, -1, x) & highZ(7)) >> 7) | ((at(0, 0, 1, x) & lowZ(7)) << 7);
     }
     return out;
 }

@@ -23,7 +23,8 @@ struct LeafMask {
     }
 };
 
-/// The masks of a leaf and of its 26 neighbours; null stands for an empty one. Index (dx + 1) * 9 + (dy + 1) * 3 + dz + 1.
+/// The masks of a leaf and of its 26 neighbours; null stands for an empty one. Index (dx + 1) * 9 + (dy + 1) * 3 + dz
+/// + 1.
 using Neighbourhood = std::array<const LeafMask*, 27>;
 constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
     return static_cast<std::size_t>((dx + 1) * 9 + (dy + 1) * 3 + dz + 1);
@@ -35,7 +36,8 @@ constexpr int kFarthestReach = 8;
 /// Whether a bit of the neighbourhood lies within `reach` voxels, along each axis, of the middle leaf, or in it.
 bool anyWithin(const Neighbourhood& around, int reach);
 
-/// What of the middle leaf lies within `reach` voxels (Euclidean, at most kFarthestReach) of a bit of the neighbourhood.
+/// What of the middle leaf lies within `reach` voxels (Euclidean, at most kFarthestReach) of a bit of the
+/// neighbourhood.
 LeafMask withinReach(const Neighbourhood& around, double reach);
 
 /// What of the middle leaf the bits of `seeds` reach in at most `steps` (1..kFarthestReach) steps over faces, edges and

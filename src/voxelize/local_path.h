@@ -22,9 +22,10 @@ struct LocalLine {
 /// k = 1 / |v0|. Near the centre, where e turns quickly, |v0 + q| - radius is small numbers anyway.
 struct LocalArc {
     float ex, ey, k, rho0;
-    float vx, vy, radius;  ///< used when `near_centre`
+    float vx, vy, radius;                  ///< used when `near_centre`
     float start_x, start_y, end_x, end_y;  ///< ends relative to the middle of the column
-    // Half planes of the sweep: past the start where sx qx + sy qy + s0 >= 0, before the end where tx qx + ty qy + t0 >= 0.
+    // Half planes of the sweep: past the start where sx qx + sy qy + s0 >= 0, before the end where tx qx + ty qy + t0
+    // >= 0.
     float sx, sy, s0, tx, ty, t0;
     float half_flat;
     bool near_centre;

@@ -156,8 +156,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     const double columns = (static_cast<double>(all.i1) - all.i0 + 1) * (static_cast<double>(all.j1) - all.j0 + 1);
     // A wide, empty bed must not cost a table a part.
     while (parts > 1 && columns * static_cast<double>(parts) > 2 * bound + 1e6) parts /= 2;
-    const double bytes =
-        columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) + bound * sizeof(std::uint32_t);
+    const double bytes = columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) +
+                         bound * sizeof(std::uint32_t);
     if (bytes > static_cast<double>(memory_limit))
         throw UsageError(
             fmt::format("voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB are free); "

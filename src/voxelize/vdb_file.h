@@ -34,8 +34,8 @@ struct FileOptions {
 /// "program", creator, and OpenVDB's own file statistics.
 void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance& provenance);
 
-/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old file
-/// then stays.
+/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old
+/// file then stays.
 void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options = {});
 
 }  // namespace stratum::voxelize

@@ -20,8 +20,8 @@ constexpr int kMostVoxelsPerLayer = 64;
 constexpr int kMostWithinBudget = 16;
 // A leaf's values, mask and header, and its share of the nodes above.
 constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
-// The nodes above, of however small a grid.
-constexpr double kBytesOfTree = 5e5;
+// The upper nodes of however small a grid: a part across the origin has eight, of 32^3 pointers each.
+constexpr double kBytesOfTree = 2.2e6;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
 constexpr double kFloodFactor = 1.35;
 // Voxels a layer of the culled build that finer ones are scaled from.
@@ -34,10 +34,11 @@ int voxelsPerLayerForTolerance(double layer_height, double tolerance) {
         throw UsageError(fmt::format("--tolerance {}: expected a number of mm above 0, e.g. 0.02", tolerance));
     const double count = std::ceil(kLargestErrorVoxels * layer_height / tolerance - 1e-9);
     if (count > kMostVoxelsPerLayer)
-        throw UsageError(fmt::format("--tolerance {:g} mm needs {:.0f} voxels a layer of {:g} mm, at most {} are made; "
-                                     "the finest tolerance is {:g} mm",
-                                     tolerance, count, layer_height, kMostVoxelsPerLayer,
-                                     kLargestErrorVoxels * layer_height / kMostVoxelsPerLayer));
+        throw UsageError(
+            fmt::format("--tolerance {:g} mm needs {:.0f} voxels a layer of {:g} mm, at most {} are made; "
+                        "the finest tolerance is {:g} mm",
+                        tolerance, count, layer_height, kMostVoxelsPerLayer,
+                        kLargestErrorVoxels * layer_height / kMostVoxelsPerLayer));
     return std::max(1, static_cast<int>(count));
 }
 
@@ -67,10 +68,10 @@ int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::sp
     lattice.voxel_size = lattice.layer_height;
     const double coarsest = estimateBytes(toolpath, selection, lattice, interior);
     if (coarsest > budget)
-        throw UsageError(fmt::format("--memory-budget: one voxel a layer of {:g} mm takes about {:.3g} MB already; give "
-                                     "that much, fewer layers or features{}",
-                                     lattice.layer_height, coarsest * 1e-6,
-                                     interior == Interior::keep ? ", or --interior cull" : ""));
+        throw UsageError(fmt::format(
+            "--memory-budget: one voxel a layer of {:g} mm takes about {:.3g} MB already; give "
+            "that much, fewer layers or features{}",
+            lattice.layer_height, coarsest * 1e-6, interior == Interior::keep ? ", or --interior cull" : ""));
     int best = 1;
     double scaled = 0;
     for (int count = 2; count <= kMostWithinBudget; ++count) {

@@ -64,8 +64,7 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
                                             (placement.offset[2] + lattice.origin_z) * placement.unit));
     // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
-    if (placement.up_y)
-        transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
+    if (placement.up_y) transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
     return transform;
 }
 
@@ -91,10 +90,10 @@ LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::u
     // The estimate can be off, and culling leaves most of it out; the exact bound follows from the bins.
     const double margin = options.interior == Interior::keep ? 3 : 30;
     if (estimate > margin * limit)
-        throw UsageError(fmt::format(
-            "voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
-            "(half the layer height is {:g} mm), fewer layers or features",
-            lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2));
+        throw UsageError(
+            fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
+                        "(half the layer height is {:g} mm), fewer layers or features",
+                        lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2));
     return stackLayers(toolpath, selection);
 }
 
@@ -147,10 +146,11 @@ void Voxelizer::State::refuseIfTooLarge() {
     const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
     const auto limit = static_cast<double>(memoryLimit(options));
     if (bytes > limit)
-        throw UsageError(fmt::format(
-            "voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger voxel, fewer "
-            "layers or features, or --interior cull",
-            lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
+        throw UsageError(
+            fmt::format("voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger "
+                        "voxel, fewer "
+                        "layers or features, or --interior cull",
+                        lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
 }
 
 void Voxelizer::State::buildTouched(std::uint32_t end) {

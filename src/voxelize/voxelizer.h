@@ -54,9 +54,9 @@ struct VoxelizeReport {
 ///
 /// Values outside the solid are signed distances to the union, exact to float rounding; inside they are negative
 /// everywhere (layers are welded) but a bound, not a distance. Active voxels are those within the half-width; with
-/// Interior::cull those inside only within the half-width less one (at most 8 voxels) of a sample seen from outside. Inactive
-/// voxels and tiles hold plus or minus the background. Every voxel's sign is set: a signed flood fill changes nothing.
-/// Parallel through TBB; the result does not depend on the number of threads, nor on the steps before it.
+/// Interior::cull those inside only within the half-width less one (at most 8 voxels) of a sample seen from outside.
+/// Inactive voxels and tiles hold plus or minus the background. Every voxel's sign is set: a signed flood fill changes
+/// nothing. Parallel through TBB; the result does not depend on the number of threads, nor on the steps before it.
 class Voxelizer {
 public:
     /// `selection`: indices into toolpath.beads, ascending. `toolpath` and `lattice` must outlive the object. Throws

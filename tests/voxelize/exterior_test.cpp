@@ -69,7 +69,8 @@ TEST(Exterior, FillsAClosedVoidAndKeepsTheOutside) {
         const auto cull = build(toolpath, voxel, Interior::cull);
         EXPECT_GT(at(*keep, 4, 4, 3), 0);
         EXPECT_LT(at(*cull, 4, 4, 3), 0);
-        EXPECT_EQ(cull->tree().probeConstLeaf(openvdb::Coord::round(cull->worldToIndex(openvdb::Vec3d(4, 4, 3)))), nullptr);
+        EXPECT_EQ(cull->tree().probeConstLeaf(openvdb::Coord::round(cull->worldToIndex(openvdb::Vec3d(4, 4, 3)))),
+                  nullptr);
         EXPECT_LT(2 * cull->activeVoxelCount(), keep->activeVoxelCount());
         // Everything that is not filled has its old value: an outside sample never turns into another outside value,
         // and near the surface the inside is as before.
@@ -81,8 +82,9 @@ TEST(Exterior, FillsAClosedVoidAndKeepsTheOutside) {
         }
         EXPECT_GT(outside, 10000U);
         // All of the outer band is there: sample beyond each of the six sides.
-        for (const openvdb::Vec3d& p : {openvdb::Vec3d(-0.3, 4, 3), openvdb::Vec3d(8.3, 4, 3), openvdb::Vec3d(4, -0.3, 3),
-                                        openvdb::Vec3d(4, 8.3, 3), openvdb::Vec3d(4, 4, -0.05), openvdb::Vec3d(4, 4, 6.05)})
+        for (const openvdb::Vec3d& p :
+             {openvdb::Vec3d(-0.3, 4, 3), openvdb::Vec3d(8.3, 4, 3), openvdb::Vec3d(4, -0.3, 3),
+              openvdb::Vec3d(4, 8.3, 3), openvdb::Vec3d(4, 4, -0.05), openvdb::Vec3d(4, 4, 6.05)})
             EXPECT_EQ(at(*keep, p[0], p[1], p[2]), at(*cull, p[0], p[1], p[2]));
         EXPECT_EQ(openvdb::tools::checkLevelSet(*cull, 6), "");
     }
@@ -93,7 +95,9 @@ TEST(Exterior, SignsAreComplete) {
     const auto filled = grid->deepCopy();
     openvdb::tools::signedFloodFill(filled->tree());
     for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf)
-        EXPECT_EQ(std::memcmp(leaf->buffer().data(), filled->tree().probeConstLeaf(leaf->origin())->buffer().data(), 2048), 0);
+        EXPECT_EQ(
+            std::memcmp(leaf->buffer().data(), filled->tree().probeConstLeaf(leaf->origin())->buffer().data(), 2048),
+            0);
     EXPECT_LT(at(*grid, 4, 4, 3), 0);
     EXPECT_GT(at(*grid, 40, 4, 3), 0);
 }

@@ -48,13 +48,15 @@ TEST(LeafKernels, LinesAreExactBesideTheColumnHoweverLong) {
         const double x = far(random);
         const double y = far(random);
         if (n % 3 == 0) {
-            test::addBead(toolpath, x + near(random), y + near(random), 0.2, x + near(random), y + near(random), 0.2, 0.45, 0.2);
+            test::addBead(toolpath, x + near(random), y + near(random), 0.2, x + near(random), y + near(random), 0.2,
+                          0.45, 0.2);
         } else {
             // Passes the column a metre from its ends.
             const double angle = near(random);
             const double ax = x + near(random) - 1000 * std::cos(angle);
             const double ay = y + near(random) - 1000 * std::sin(angle);
-            test::addBead(toolpath, ax, ay, 0.2, ax + 2000 * std::cos(angle), ay + 2000 * std::sin(angle), 0.2, 0.45, 0.2);
+            test::addBead(toolpath, ax, ay, 0.2, ax + 2000 * std::cos(angle), ay + 2000 * std::sin(angle), 0.2, 0.45,
+                          0.2);
         }
         expectExact(toolpath, x, y);
     }
@@ -93,7 +95,8 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
         if (n % 2 == 0)
             test::addBead(toolpath, where(random), where(random), 0.2, where(random), where(random), 0.2, 0.45, 0.2);
         else
-            test::addArc(toolpath, where(random), where(random), 1 + where(random) / 2, where(random), 3 * where(random), 0.2, 0.2, 0.45, 0.2);
+            test::addArc(toolpath, where(random), where(random), 1 + where(random) / 2, where(random),
+                         3 * where(random), 0.2, 0.2, 0.45, 0.2);
     }
     std::vector<LocalLine> lines;
     std::vector<LocalArc> arcs;
@@ -102,7 +105,8 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
         if (bead.arc < 0)
             lines.push_back(localLine(bead, 0.125, 0.1, 0.2, kHalfExtent, 1));
         else
-            arcs.push_back(localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], 0.125, 0.1, 0.2, kHalfExtent, 1));
+            arcs.push_back(
+                localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], 0.125, 0.1, 0.2, kHalfExtent, 1));
         ids.push_back(static_cast<std::uint32_t>(ids.size()));
     }
     struct Result {
@@ -131,7 +135,8 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
             expandLayers(terms, 0.1f, r.planes.plane[z]);
             expandWeld(r.weld, -0.01f * static_cast<float>(z + 1), r.planes.plane[z]);
             LocalRod rod{};
-            rod.nx = 0.6f, rod.ny = 0.8f, rod.n0 = 0.1f, rod.bz = 1, rod.ux = 0.8f, rod.uy = -0.6f, rod.lo = -0.1f, rod.hi = 0.2f, rod.radius = 0.05f;
+            rod.nx = 0.6f, rod.ny = 0.8f, rod.n0 = 0.1f, rod.bz = 1, rod.ux = 0.8f, rod.uy = -0.6f, rod.lo = -0.1f,
+            rod.hi = 0.2f, rod.radius = 0.05f;
             expandRod(grid, rod, dz, r.planes.plane[z]);
             PlanField sides;
             PlanField centre;

@@ -13,9 +13,7 @@ namespace {
 class Block {
 public:
     bool& at(int x, int y, int z) { return bits_[index(x, y, z)]; }
-    static bool inside(int x, int y, int z) {
-        return x >= -8 && y >= -8 && z >= -8 && x < 16 && y < 16 && z < 16;
-    }
+    static bool inside(int x, int y, int z) { return x >= -8 && y >= -8 && z >= -8 && x < 16 && y < 16 && z < 16; }
     bool get(int x, int y, int z) const { return inside(x, y, z) && bits_[index(x, y, z)]; }
 
     std::array<LeafMask, 27> masks() const {

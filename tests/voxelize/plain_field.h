@@ -33,8 +33,8 @@ public:
             const voxelize::Layer& lower = stack_.layers[weld.lower];
             const voxelize::Layer& upper = stack_.layers[weld.upper];
             const double half = 0.5 * (upper.centre_z - lower.centre_z);
-            const double bound = std::max({d[weld.lower], d[weld.upper],
-                                           std::abs(z - 0.5 * (lower.centre_z + upper.centre_z)) - half});
+            const double bound =
+                std::max({d[weld.lower], d[weld.upper], std::abs(z - 0.5 * (lower.centre_z + upper.centre_z)) - half});
             if (bound < 0) phi = std::min(phi, bound);
         }
         return phi;
