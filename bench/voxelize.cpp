@@ -142,15 +142,14 @@ Mesh tubesOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> bea
 }
 
 void touch(std::size_t leaves) {
-    std::vector<float*> buffers(leaves);
+    // Not given back: that would be a second touch.
+    static std::vector<float*> buffers;
+    buffers.resize(leaves);
     parallelFor(leaves, 1024, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
             buffers[n] = new float[512];
             std::memset(buffers[n], 1, 2048);
         }
-    });
-    parallelFor(leaves, 1024, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n != last; ++n) delete[] buffers[n];
     });
 }
 
@@ -177,6 +176,10 @@ int main(int argc, char** argv) {
     app.add_option("--runs", runs, "Of this project and of first touch");
     app.add_option("--peer-runs", peer_runs, "Of OpenVDB's tools; 0 leaves them out");
     app.add_option("--threads", threads, "Of all");
+    bool cold = false;
+    std::size_t touch_leaves = 0;
+    app.add_flag("--cold", cold, "Time one build in memory that the process has never touched, and end");
+    app.add_option("--touch-leaves", touch_leaves, "Time the first touch of that many leaves, and end");
     CLI11_PARSE(app, argc, argv);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
@@ -189,7 +192,18 @@ int main(int argc, char** argv) {
     request.voxel_size = voxel;
     const auto lattice = voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
 
-    openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, beads, lattice);
+    if (touch_leaves > 0) {
+        const Times t = timesOf([&] { touch(touch_leaves); });
+        fmt::print("first touch of {} leaves: {:.3f} s, CPU {:.3f} s\n", touch_leaves, t.wall, t.cpu);
+        return 0;
+    }
+    openvdb::FloatGrid::Ptr grid;
+    const Times first = timesOf([&] { grid = voxelize::voxelize(toolpath, beads, lattice); });
+    if (cold) {
+        fmt::print("cold build: {:.3f} s, CPU {:.3f} s, {} active voxels, {} leaves\n", first.wall, first.cpu,
+                   grid->activeVoxelCount(), grid->tree().leafCount());
+        return 0;
+    }
     const auto active = static_cast<double>(grid->activeVoxelCount());
     const std::size_t leaves = grid->tree().leafCount();
     fmt::print("{}: {} beads, voxel {:g} mm, {} active voxels, {} leaves, {} threads, {}\n", input, beads.size(), voxel,
@@ -198,7 +212,6 @@ int main(int argc, char** argv) {
 
     std::vector<Series> series;
     series.push_back({"voxelize", [&] { voxelize::voxelize(toolpath, beads, lattice); }});
-    series.push_back({"first touch", [&] { touch(leaves); }});
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     if (peer_runs > 0) {
         series.push_back({"ParticlesToLevelSet",
