@@ -287,8 +287,10 @@ HWY_EXPORT(KernelTarget);
 
 ColumnGrid::ColumnGrid(float voxel) {
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        qx.v[c] = (static_cast<float>(c / 8) - 3.5f) * voxel;
-        qy.v[c] = (static_cast<float>(c % 8) - 3.5f) * voxel;
+        const std::size_t x = c / 8;
+        const std::size_t y = c % 8;
+        qx.v[c] = (static_cast<float>(x) - 3.5f) * voxel;
+        qy.v[c] = (static_cast<float>(y) - 3.5f) * voxel;
     }
 }
 

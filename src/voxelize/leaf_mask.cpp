@@ -24,21 +24,21 @@ void fillRows(const Neighbourhood& around, int margin, Rows& rows) {
                 const LeafMask* source = around[neighbourIndex(dx, dy, dz)];
                 along_z[dz + 1] = source != nullptr ? source : &kNone;
             }
+            const int shift = 8 * dy + margin;
             const int y0 = std::max(0, -margin - 8 * dy);
             const int y1 = std::min(8, 8 + margin - 8 * dy);
             for (int x = std::max(0, -margin - 8 * dx); x < std::min(8, 8 + margin - 8 * dx); ++x) {
                 const std::uint64_t below = along_z[0]->word[static_cast<std::size_t>(x)];
                 const std::uint64_t here = along_z[1]->word[static_cast<std::size_t>(x)];
                 const std::uint64_t above = along_z[2]->word[static_cast<std::size_t>(x)];
-                std::uint32_t* row =
-                    rows + static_cast<std::size_t>(x + 8 * dx + margin) * kRowStride + 8 * dy + margin;
+                std::uint32_t* row = rows + static_cast<std::size_t>(x + 8 * dx + margin) * kRowStride;
                 const auto byte = [](std::uint64_t word, int y) {
                     return static_cast<std::uint32_t>(word >> (8 * y)) & 0xffU;
                 };
                 const std::uint32_t top = (1U << margin) - 1;
                 for (int y = y0; y < y1; ++y)
-                    row[y] = byte(below, y) >> (8 - margin) | byte(here, y) << margin |
-                             (byte(above, y) & top) << (8 + margin);
+                    row[y + shift] = byte(below, y) >> (8 - margin) | byte(here, y) << margin |
+                                     (byte(above, y) & top) << (8 + margin);
             }
         }
 }

@@ -27,7 +27,8 @@ struct LeafMask {
 /// + 1.
 using Neighbourhood = std::array<const LeafMask*, 27>;
 constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
-    return static_cast<std::size_t>((dx + 1) * 9 + (dy + 1) * 3 + dz + 1);
+    return static_cast<std::size_t>(dx + 1) * 9 + static_cast<std::size_t>(dy + 1) * 3 +
+           static_cast<std::size_t>(dz + 1);
 }
 
 /// Farthest that a bit can be seen from in the functions below, voxels.
