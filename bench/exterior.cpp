@@ -5,9 +5,12 @@
 #include "gcode/reader.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
+#include "voxelize/vdb_file.h"
 #include "voxelize/voxelizer.h"
 
 #include <fmt/format.h>
+#include <openvdb/tools/Composite.h>
+#include <openvdb/tools/LevelSetPlatonic.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -27,6 +30,19 @@ double peakGigabytes() {
     return static_cast<double>(usage.ru_maxrss) * 1024e-9;
 }
 
+// The half of the print behind the middle of y, closed by the cut.
+void writeHalf(const openvdb::FloatGrid& grid, const std::string& path) {
+    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    openvdb::Vec3d low = grid.indexToWorld(box.min().offsetBy(-8));
+    const openvdb::Vec3d high = grid.indexToWorld(box.max().offsetBy(8));
+    low[1] = 0.5 * (low[1] + high[1]);
+    const auto knife = openvdb::tools::createLevelSetBox<openvdb::FloatGrid>(
+        openvdb::BBoxd(low, high), grid.transform(), grid.background() / grid.voxelSize()[0]);
+    const auto half = openvdb::tools::csgIntersectionCopy(grid, *knife);
+    half->setName("surface");
+    voxelize::writeVdb({half}, path);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,8 +53,15 @@ int main(int argc, char** argv) {
     std::size_t threads = 2;
     app.add_option("input", input, "G-code")->required();
     app.add_option("--voxel-size", voxel, "mm");
+    bool peer = true;
+    app.add_flag("!--no-peer", peer, "Leave out OpenVDB's extractEnclosedRegion");
+    bool reached = true;
+    app.add_flag("!--no-cull", reached, "Keep only");
     app.add_flag("!--no-keep", keep, "Cull only: for prints whose whole grid does not fit");
     app.add_option("--threads", threads, "Of all");
+    std::string cut;
+    app.add_option("--cut", cut, "Also write PREFIX_keep.vdb and PREFIX_cull.vdb, cut open along the middle of y")
+        ->type_name("PREFIX");
     CLI11_PARSE(app, argc, argv);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
@@ -56,7 +79,7 @@ int main(int argc, char** argv) {
     double leaves[2] = {};
     double seconds[2] = {};
     for (const int cull : {1, 0}) {
-        if (cull == 0 && !keep) break;
+        if (cull == 0 ? !keep : !reached) continue;
         voxelize::VoxelizeOptions options;
         options.interior = cull != 0 ? voxelize::Interior::cull : voxelize::Interior::keep;
         const auto start = Clock::now();
@@ -79,14 +102,15 @@ int main(int argc, char** argv) {
             fmt::print(", {} rounds, exterior {:.2f} s ({:.0f} %)", report.flood_rounds, report.exterior_seconds,
                        100 * report.exterior_seconds / seconds[cull]);
         fmt::print("\n");
-        if (cull == 0) {
+        if (!cut.empty()) writeHalf(*grid, cut + (cull != 0 ? "_cull.vdb" : "_keep.vdb"));
+        if (cull == 0 && peer) {
             const auto begin = Clock::now();
             const auto enclosed = openvdb::tools::extractEnclosedRegion(*grid);
             fmt::print("extractEnclosedRegion: {:.2f} s\n",
                        std::chrono::duration<double>(Clock::now() - begin).count());
         }
     }
-    if (keep)
+    if (keep && reached)
         fmt::print("keep / cull: {:.2f} x active, {:.2f} x leaves, {:.2f} x time\n", active[0] / active[1],
                    leaves[0] / leaves[1], seconds[0] / seconds[1]);
     return 0;
