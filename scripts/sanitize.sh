@@ -11,4 +11,4 @@ cmake --build --preset asan
 ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 ctest --test-dir build/asan --output-on-failure -j"$(nproc)" -LE "client|slow"
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target test_voxelize test_shade test_march
-ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Render|BrickGrid"
+ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Exterior|Render|BrickGrid"

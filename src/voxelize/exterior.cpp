@@ -246,7 +246,7 @@ private:
                     const Place place = placeOf(columnAt(i, j), k + dz);
                     if (!place.slot) {
                         out.air = air_[place.index].load(std::memory_order_relaxed) != 0;
-                    } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_relaxed);
+                    } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
                                cell != kUnseen) {
                         out.cell = &cells_[cell];
                     }
