@@ -79,7 +79,8 @@ HWY_INLINE V refined(const LaneCubic& f, M active) {
     const M in_low = hn::Lt(f.c0, zero);
     V low = zero;
     V high = constant(1);
-    V s = hn::IfThenElse(hn::Eq(f.c0, f.end), half, clampTo(f.c0 / (f.c0 - f.end), low, high));
+    const V chord = f.c0 / (f.c0 - f.end);
+    V s = hn::IfThenElse(hn::And(hn::Gt(chord, low), hn::Lt(chord, high)), chord, half);
     V result = s;
     for (int n = 0; n < kRootSteps; ++n) {
         const V value = ((f.c3 * s + f.c2) * s + f.c1) * s + f.c0;

@@ -110,11 +110,12 @@ inline constexpr int kRootSteps = 60;
 inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracket) {
     auto [low, high] = bracket;
     const bool in_low = low == 0 ? isInside(f.c0) : isInside(f(low));
-    double s = 0.5 * (low + high);
-    // The chord is a better start than the middle.
     const double at_low = low == 0 ? f.c0 : f(low);
     const double at_high = high == 1 ? f.end : f(high);
-    if (at_low != at_high) s = std::min(std::max(low + (high - low) * at_low / (at_low - at_high), low), high);
+    // The chord is a better start than the middle, but not where it ends in the bracket's own end: that one is 0, which
+    // counts as outside, and the crossing may lie before it.
+    const double chord = low + (high - low) * at_low / (at_low - at_high);
+    double s = chord > low && chord < high ? chord : 0.5 * (low + high);
     for (int step = 0; step < kRootSteps; ++step) {
         const double value = f(s);
         if (value == 0) return s;

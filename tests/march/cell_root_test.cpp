@@ -45,6 +45,21 @@ TEST(CellRoot, EqualEndSignsMayHideTwoCrossings) {
     EXPECT_LT(s, 0.5);
 }
 
+// A flat on a voxel plane: the face that the ray leaves by is exactly 0, which counts as outside.
+TEST(CellRoot, AZeroAtTheEndIsNotTheCrossingBeforeIt) {
+    const Corners out = {-0.2, 0, 0.6, 0, -0.2, 0, 0.6, 0};
+    const SegmentCubic leaving(out, {0.5, 0, 0}, {0.5, 1, 1});
+    ASSERT_LT(leaving.c0, 0);
+    ASSERT_EQ(leaving.end, 0);
+    EXPECT_NEAR(refinedOrNan(leaving), 0.25, 1e-9);
+    // The same from the zero: the start is the surface itself, the hit is where the ray enters.
+    const Corners in = {0, 0.6, 0, -0.2, 0, 0.6, 0, -0.2};
+    const SegmentCubic entering(in, {0.5, 0, 0}, {0.5, 1, 1});
+    ASSERT_EQ(entering.c0, 0);
+    ASSERT_LT(entering.end, 0);
+    EXPECT_NEAR(refinedOrNan(entering), 0.75, 1e-9);
+}
+
 TEST(CellRoot, FindsTheFirstRootOfAnyCubic) {
     // Against a scan in 2000 steps, which may itself miss a pair of roots closer than that.
     std::mt19937 random(2);
