@@ -2,10 +2,9 @@
 //
 // Views all around it, views from beside the surface (which look into whatever is concave), and cosine rays from every
 // hit, as ambient occlusion has them. Counts rays that end elsewhere and says where.
-#include "gcode/input_bytes.h"
-#include "gcode/reader.h"
 #include "march/brick_intersector.h"
 #include "parallel/parallel_for.h"
+#include "print.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
@@ -78,13 +77,10 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     openvdb::initialize();
 
-    const gcode::InputBytes file(input);
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), file.name());
+    const gcode::Toolpath toolpath = bench::readPrint(input);
     std::vector<std::uint32_t> beads = voxelize::selectBeads(toolpath, {});
     beads.resize(static_cast<std::size_t>(static_cast<double>(beads.size()) * percent / 100));
-    voxelize::LatticeRequest request;
-    request.voxel_size = voxel;
-    const auto lattice = voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
+    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
     std::unique_ptr<march::Intersector> intersectors[2];
     for (int cull = 0; cull < 2; ++cull) {
         voxelize::VoxelizeOptions options;

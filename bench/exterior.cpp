@@ -1,8 +1,7 @@
 // What culling saves: a print with all its inner surfaces against the same print as the outside sees it.
 //
 // The peer is OpenVDB's extractEnclosedRegion, which finds the enclosed voids of a grid that has been built whole.
-#include "gcode/input_bytes.h"
-#include "gcode/reader.h"
+#include "print.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
 #include "voxelize/vdb_file.h"
@@ -66,12 +65,9 @@ int main(int argc, char** argv) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
 
-    const gcode::InputBytes file(input);
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), file.name());
+    const gcode::Toolpath toolpath = bench::readPrint(input);
     const auto beads = voxelize::selectBeads(toolpath, {});
-    voxelize::LatticeRequest request;
-    request.voxel_size = voxel;
-    const auto lattice = voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
+    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
     fmt::print("{}: {} beads, {:.1f} cm3, voxel {:g} mm\n", input, beads.size(), gcode::beadVolume(toolpath) * 1e-3,
                voxel);
 

@@ -2,10 +2,9 @@
 //
 // Rays from outside meet the trilinear surface; the distance of each hit from the union is computed by brute force over
 // all beads, in double. The law that --tolerance uses was fitted to this program's output.
-#include "gcode/input_bytes.h"
-#include "gcode/reader.h"
 #include "march/brick_intersector.h"
 #include "parallel/parallel_for.h"
+#include "print.h"
 #include "toolpaths.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
@@ -34,8 +33,7 @@ int main(int argc, char** argv) {
     app.add_option("--rays", rays, "Each");
     CLI11_PARSE(app, argc, argv);
     openvdb::initialize();
-    const gcode::InputBytes file(input);
-    const gcode::Toolpath whole = gcode::readToolpath(file.bytes(), file.name());
+    const gcode::Toolpath whole = bench::readPrint(input);
     voxelize::Selection selection;
     voxelize::parseLayers(layers, selection);
     gcode::Toolpath toolpath;

@@ -1,12 +1,9 @@
 // Beads to a level set: this project's voxelizer against OpenVDB's own ways, on the same beads, in one process.
 //
 // Peers: ParticlesToLevelSet (spheres along each bead, as users of OpenVDB do it), meshToVolume of the beads
-// tessellated as tubes of 10 vertices a section, and the time that the machine takes to touch the grid's bytes for the
-// first time. Runs are interleaved; medians and the spread are printed, times per active voxel of the grid that this
-// project makes.
-#include "gcode/input_bytes.h"
-#include "gcode/reader.h"
-#include "parallel/parallel_for.h"
+// tessellated as tubes of 10 vertices a section. Runs are interleaved; medians and the spread are printed, times per
+// active voxel of the grid that this project makes.
+#include "print.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/leaf_kernels.h"
 #include "voxelize/selection.h"
@@ -30,18 +27,8 @@
 namespace {
 
 using namespace stratum;
-
-struct Times {
-    double wall = 0, cpu = 0;  // seconds
-};
-
-Times timesOf(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t cpu = std::clock();
-    work();
-    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-            static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
-}
+using bench::Times;
+using bench::timesOf;
 
 // Spheres of the bead's half-height along its centre line and its two flats' edges, half a voxel apart: what a user of
 // ParticlesToLevelSet has to do, for it knows no capsules.
@@ -141,18 +128,6 @@ Mesh tubesOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> bea
     return mesh;
 }
 
-void touch(std::size_t leaves) {
-    // Not given back: that would be a second touch.
-    static std::vector<float*> buffers;
-    buffers.resize(leaves);
-    parallelFor(leaves, 1024, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n != last; ++n) {
-            buffers[n] = new float[512];
-            std::memset(buffers[n], 1, 2048);
-        }
-    });
-}
-
 struct Series {
     std::string name;
     std::function<void()> work;
@@ -176,34 +151,16 @@ int main(int argc, char** argv) {
     app.add_option("--runs", runs, "Of this project and of first touch");
     app.add_option("--peer-runs", peer_runs, "Of OpenVDB's tools; 0 leaves them out");
     app.add_option("--threads", threads, "Of all");
-    bool cold = false;
-    std::size_t touch_leaves = 0;
-    app.add_flag("--cold", cold, "Time one build in memory that the process has never touched, and end");
-    app.add_option("--touch-leaves", touch_leaves, "Time the first touch of that many leaves, and end");
     CLI11_PARSE(app, argc, argv);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
 
-    const gcode::InputBytes file(input);
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), file.name());
+    const gcode::Toolpath toolpath = bench::readPrint(input);
     std::vector<std::uint32_t> beads = voxelize::selectBeads(toolpath, {});
     if (most != 0 && beads.size() > most) beads.resize(most);
-    voxelize::LatticeRequest request;
-    request.voxel_size = voxel;
-    const auto lattice = voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
+    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
 
-    if (touch_leaves > 0) {
-        const Times t = timesOf([&] { touch(touch_leaves); });
-        fmt::print("first touch of {} leaves: {:.3f} s, CPU {:.3f} s\n", touch_leaves, t.wall, t.cpu);
-        return 0;
-    }
-    openvdb::FloatGrid::Ptr grid;
-    const Times first = timesOf([&] { grid = voxelize::voxelize(toolpath, beads, lattice); });
-    if (cold) {
-        fmt::print("cold build: {:.3f} s, CPU {:.3f} s, {} active voxels, {} leaves\n", first.wall, first.cpu,
-                   grid->activeVoxelCount(), grid->tree().leafCount());
-        return 0;
-    }
+    openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, beads, lattice);
     const auto active = static_cast<double>(grid->activeVoxelCount());
     const std::size_t leaves = grid->tree().leafCount();
     fmt::print("{}: {} beads, voxel {:g} mm, {} active voxels, {} leaves, {} threads, {}\n", input, beads.size(), voxel,
