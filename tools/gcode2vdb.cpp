@@ -10,6 +10,7 @@
 #include "io/error.h"
 #include "io/mapped_file.h"
 #include "voxelize/attributes.h"
+#include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/selection.h"
 #include "voxelize/vdb_file.h"
@@ -259,6 +260,14 @@ Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& latti
         {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
 }
 
+Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
+    const voxelize::CullForecast left = voxelizer.forecastCull();
+    const std::size_t leaves = grid.tree().leafCount() - left.leaves;
+    return {{"active_voxels", grid.activeVoxelCount() - left.active_voxels},
+            {"leaves", leaves},
+            {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
+}
+
 Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
     tools::Stopwatch total;
     tools::Stopwatch watch;
@@ -352,7 +361,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
                                          tools::humanBytes(static_cast<double>(bytes))));
         // Counting the enclosed volume reads every leaf once more: only for a report.
-        if (!o.common.stats.empty() && job.label.empty()) grid_report = describeGrid(*grid, lattice);
+        if (!o.common.stats.empty() && job.label.empty()) {
+            grid_report = describeGrid(*grid, lattice);
+            if (!provenance.culled) grid_report["cull_would_save"] = describeCull(voxelizer, *grid);
+        }
     }
     Json skipped = Json::array();
     if (kept < toolpath.beads.size()) {

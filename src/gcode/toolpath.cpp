@@ -51,6 +51,11 @@ double beadLength(const Toolpath& toolpath, const Bead& bead) {
     return std::hypot(plan, bead.z1 - bead.z0);
 }
 
+double beadSeconds(const Toolpath& toolpath, const Bead& bead) {
+    const double speed = toolpath.runOf(bead).speed;
+    return speed > 0 ? beadLength(toolpath, bead) / speed : 0;
+}
+
 double sectionArea(double width, double height) {
     constexpr double kQuarterPi = std::numbers::pi / 4;
     if (width < height) return kQuarterPi * width * width;

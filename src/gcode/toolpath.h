@@ -123,6 +123,10 @@ struct Toolpath {
 /// Length of the path of a bead in mm, its climb included.
 double beadLength(const Toolpath& toolpath, const Bead& bead);
 
+/// Seconds that laying a bead takes at the speed it was asked for, accelerations left out; 0 where the file tells no
+/// speed.
+double beadSeconds(const Toolpath& toolpath, const Bead& bead);
+
 /// Area of a bead's cross-section in mm^2: a stadium of `width` x `height`, or a disc of diameter `width` if narrower.
 double sectionArea(double width, double height);
 

@@ -85,8 +85,7 @@ BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const 
     double time = 0;
     for (const gcode::Bead& bead : toolpath.beads) {
         start_.push_back(static_cast<float>(time));
-        const double speed = toolpath.runOf(bead).speed;
-        if (speed > 0) time += gcode::beadLength(toolpath, bead) / speed;
+        time += gcode::beadSeconds(toolpath, bead);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include "parallel/parallel_for.h"
 #include "voxelize/leaf_mask.h"
+#include "voxelize/leaf_places.h"
 
 #include <tbb/concurrent_vector.h>
 
@@ -22,11 +23,12 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 // are read by others meanwhile. They only ever gain bits, and whoever gains a bit queues the neighbours it concerns, so
 // what a reader misses it sees in the next round.
 struct Cell {
-    Leaf* leaf = nullptr;  // null if all outside or all inside
-    LeafMask wide;         // samples that the flood may take
-    LeafMask outside;      // samples with phi >= 0
-    LeafMask settled;      // what was reached, once the flood is over
-    LeafMask shown;        // of those, what is seen from outside: what was reached and a little around it
+    Leaf* leaf = nullptr;  // ours; null if nothing is to be built, or all is outside or inside
+    bool surface = false;
+    LeafMask wide;     // samples that the flood may take
+    LeafMask outside;  // samples with phi >= 0
+    LeafMask settled;  // what was reached, once the flood is over
+    LeafMask shown;    // of those, what is seen from outside: what was reached and a little around it
     std::array<std::atomic<std::uint64_t>, 8> reached{};
 
     LeafMask load() const {
@@ -42,118 +44,72 @@ struct Cell {
 constexpr std::uint32_t kUnseen = 0xffffffff;
 constexpr std::size_t kColumnGrain = 8;
 
-// Marks of bits on the border of a leaf, by neighbour.
-bool touchesNeighbour(const LeafMask& mask, int dx, int dy, int dz) {
+constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+
+// Whether a mask has bits on that face of its leaf.
+bool touchesFace(const LeafMask& mask, const int (&face)[3]) {
+    if (face[0] != 0) return mask.word[face[0] < 0 ? 0 : 7] != 0;
     std::uint64_t any = 0;
-    for (int x = dx > 0 ? 7 : 0; x <= (dx < 0 ? 0 : 7); ++x) any |= mask.word[static_cast<std::size_t>(x)];
-    if (dy < 0) any &= 0xffu;
-    if (dy > 0) any &= std::uint64_t{0xff} << 56;
-    if (dz < 0) any &= 0x0101010101010101u;
-    if (dz > 0) any &= 0x8080808080808080u;
-    return any != 0;
+    for (const std::uint64_t word : mask.word) any |= word;
+    if (face[1] != 0) return (any & (face[1] < 0 ? 0xffU : std::uint64_t{0xff} << 56)) != 0;
+    return (any & (face[2] < 0 ? 0x0101010101010101U : 0x8080808080808080U)) != 0;
 }
 
 class Flood {
 public:
-    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const ExteriorRule& rule)
-        : bins_(bins), columns_(columns), end_(end), rule_(rule) {}
+    // `whole`: a grid of all leaves, to look them up in; null to evaluate them.
+    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const ExteriorRule& rule,
+          const openvdb::FloatTree* whole)
+        : bins_(bins), columns_(columns), end_(end), rule_(rule), whole_(whole), places_(bins, columns, end) {}
 
-    ExteriorCounts run(std::vector<std::vector<Leaf*>>& leaves) {
-        listRuns();
+    ExteriorCounts run(std::vector<std::vector<Leaf*>>& leaves, const std::function<void(double)>& progress) {
+        begin();
         openAir();
         while (anyQueued()) {
             ++counts_.rounds;
             spread();
             openAir();
+            if (progress) progress(static_cast<double>(cells_.size()) / static_cast<double>(places_.slotCount()));
         }
         lookAround();
         collect(leaves);
+        if (progress) progress(1);
         counts_.evaluate_seconds = evaluate_seconds_.load();
         counts_.flood_seconds = thread_seconds_.load() - counts_.evaluate_seconds;
         return counts_;
     }
 
 private:
-    // Runs of leaf positions that beads touch, by column; between, below and above them is air. Air n of a column lies
-    // below its run n, and one more lies above the last.
-    struct Run {
-        int first, last;     // leaves along z
-        std::uint32_t slot;  // of `first`; the others follow
-    };
+    using Run = LeafPlaces::Run;
+    using Place = LeafPlaces::Place;
 
-    std::size_t airCount(std::size_t c) const { return run_offsets_[c + 1] - run_offsets_[c] + 1; }
-    std::size_t firstAir(std::size_t c) const { return run_offsets_[c] + c; }
-    std::span<const Run> runsOf(std::size_t c) const {
-        return {runs_.data() + run_offsets_[c], runs_.data() + run_offsets_[c + 1]};
-    }
-    bool inside(int i, int j) const {
-        return i >= 0 && j >= 0 && i < static_cast<int>(bins_.columnsI()) && j < static_cast<int>(bins_.columnsJ());
-    }
-    std::size_t columnAt(int i, int j) const {
-        return static_cast<std::size_t>(j) * bins_.columnsI() + static_cast<std::size_t>(i);
-    }
-    int columnI(std::size_t c) const { return static_cast<int>(c % bins_.columnsI()); }
-    int columnJ(std::size_t c) const { return static_cast<int>(c / bins_.columnsI()); }
-
-    // Either a slot of column c, or the number of its air that holds leaf k.
-    struct Place {
-        bool slot;
-        std::size_t index;
-    };
-    Place placeOf(std::size_t c, int k) const {
-        const auto runs = runsOf(c);
-        std::size_t n = 0;
-        while (n < runs.size() && runs[n].last < k) ++n;
-        if (n < runs.size() && runs[n].first <= k)
-            return {true, runs[n].slot + static_cast<std::size_t>(k - runs[n].first)};
-        return {false, firstAir(c) + n};
-    }
-
-    void listRuns() {
+    void begin() {
         const auto start = Clock::now();
-        std::vector<std::vector<LeafRange>> ranges(bins_.size());
-        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
-            LeafColumn& column = columns_();
-            for (std::size_t c = first; c != last; ++c) {
-                if (bins_[c].empty()) continue;
-                column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
-                const auto touched = column.touched();
-                ranges[c].assign(touched.begin(), touched.end());
-            }
-        });
-        run_offsets_.assign(bins_.size() + 1, 0);
-        std::uint32_t slot = 0;
-        for (std::size_t c = 0; c < bins_.size(); ++c) {
-            for (const LeafRange& range : ranges[c]) {
-                runs_.push_back({range.first, range.second, slot});
-                slot += static_cast<std::uint32_t>(range.second - range.first) + 1;
-            }
-            run_offsets_[c + 1] = runs_.size();
-        }
-        counts_.positions = slot;
-        cells_of_ = std::vector<std::atomic<std::uint32_t>>(slot);
+        const std::size_t slots = places_.slotCount();
+        counts_.positions = slots;
+        cells_of_ = std::vector<std::atomic<std::uint32_t>>(slots);
         for (auto& cell : cells_of_) cell.store(kUnseen, std::memory_order_relaxed);
-        queued_ = std::vector<std::atomic<std::uint8_t>>(slot);
-        near_ = std::vector<std::atomic<std::uint8_t>>(slot);
+        queued_ = std::vector<std::atomic<std::uint8_t>>(slots);
+        near_ = std::vector<std::atomic<std::uint8_t>>(slots);
         dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
-        air_ = std::vector<std::atomic<std::uint8_t>>(runs_.size() + bins_.size());
+        air_ = std::vector<std::atomic<std::uint8_t>>(places_.airCount());
         // The air outside the rectangle of columns is open, and with it the air below and above every column.
         for (std::size_t c = 0; c < bins_.size(); ++c) {
+            const std::size_t airs = places_.airCount(c);
             reachAir(c, 0);
-            reachAir(c, airCount(c) - 1);
-            const int i = columnI(c);
-            const int j = columnJ(c);
-            if (i > 0 && j > 0 && inside(i + 1, j + 1)) continue;
-            for (std::size_t n = 1; n + 1 < airCount(c); ++n) reachAir(c, n);
-            for (const Run& run : runsOf(c))
-                for (int k = run.first; k <= run.last; ++k)
-                    queue(c, run.slot + static_cast<std::size_t>(k - run.first));
+            reachAir(c, airs - 1);
+            const int i = places_.columnI(c);
+            const int j = places_.columnJ(c);
+            if (i > 0 && j > 0 && places_.inside(i + 1, j + 1)) continue;
+            for (std::size_t n = 1; n + 1 < airs; ++n) reachAir(c, n);
+            for (const Run& run : places_.runsOf(c))
+                for (int k = run.first; k <= run.last; ++k) queue(c, run.slotOf(k));
         }
         addThreadSeconds(secondsSince(start));
     }
 
     void reachAir(std::size_t c, std::size_t n) {
-        if (air_[firstAir(c) + n].exchange(1, std::memory_order_relaxed) == 0) new_air_.push_back({c, n});
+        if (air_[places_.firstAir(c) + n].exchange(1, std::memory_order_relaxed) == 0) new_air_.push_back({c, n});
     }
 
     void queue(std::size_t c, std::size_t slot) {
@@ -175,21 +131,21 @@ private:
         while (!new_air_.empty()) {
             const auto [c, n] = new_air_.back();
             new_air_.pop_back();
-            const auto runs = runsOf(c);
+            const auto runs = places_.runsOf(c);
             const int low = n > 0 ? runs[n - 1].last + 1 : std::numeric_limits<int>::min() + 1;
             const int high = n < runs.size() ? runs[n].first - 1 : std::numeric_limits<int>::max() - 1;
-            if (n > 0) queue(c, runs[n - 1].slot + static_cast<std::size_t>(runs[n - 1].last - runs[n - 1].first));
+            if (n > 0) queue(c, runs[n - 1].slotOf(runs[n - 1].last));
             if (n < runs.size()) queue(c, runs[n].slot);
             for (int dx = -1; dx <= 1; ++dx)
                 for (int dy = -1; dy <= 1; ++dy) {
-                    const int i = columnI(c) + dx;
-                    const int j = columnJ(c) + dy;
-                    if ((dx == 0 && dy == 0) || !inside(i, j)) continue;
-                    const std::size_t beside = columnAt(i, j);
-                    const auto other = runsOf(beside);
+                    const int i = places_.columnI(c) + dx;
+                    const int j = places_.columnJ(c) + dy;
+                    if ((dx == 0 && dy == 0) || !places_.inside(i, j)) continue;
+                    const std::size_t beside = places_.columnAt(i, j);
+                    const auto other = places_.runsOf(beside);
                     for (const Run& run : other)
                         for (int k = std::max(run.first, low - 1); k <= std::min(run.last, high + 1); ++k)
-                            queue(beside, run.slot + static_cast<std::size_t>(k - run.first));
+                            queue(beside, run.slotOf(k));
                     if (dx != 0 && dy != 0) continue;
                     for (std::size_t m = 0; m <= other.size(); ++m) {
                         const int from = m > 0 ? other[m - 1].last + 1 : std::numeric_limits<int>::min() + 1;
@@ -203,8 +159,8 @@ private:
 
     const LeafMask* reachedAt(int i, int j, int k, LeafMask& storage) const {
         static const LeafMask kAll = LeafMask::full();
-        if (!inside(i, j)) return &kAll;
-        const Place place = placeOf(columnAt(i, j), k);
+        if (!places_.inside(i, j)) return &kAll;
+        const Place place = places_.at(places_.columnAt(i, j), k);
         if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
         const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
         if (cell == kUnseen) return nullptr;
@@ -215,10 +171,12 @@ private:
     LeafMask seedsOf(std::size_t c, int k) const {
         LeafMask storage[7];
         Neighbourhood around{};
-        constexpr int kOffsets[7][3] = {{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-        for (std::size_t n = 0; n < 7; ++n) {
-            const auto [dx, dy, dz] = kOffsets[n];
-            around[neighbourIndex(dx, dy, dz)] = reachedAt(columnI(c) + dx, columnJ(c) + dy, k + dz, storage[n]);
+        const int i = places_.columnI(c);
+        const int j = places_.columnJ(c);
+        around[neighbourIndex(0, 0, 0)] = reachedAt(i, j, k, storage[6]);
+        for (std::size_t n = 0; n < 6; ++n) {
+            const auto [dx, dy, dz] = kFaces[n];
+            around[neighbourIndex(dx, dy, dz)] = reachedAt(i + dx, j + dy, k + dz, storage[n]);
         }
         return besides(around);
     }
@@ -234,16 +192,16 @@ private:
         Around known{};
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = columnI(c) + dx;
-                const int j = columnJ(c) + dy;
-                const bool there = inside(i, j);
+                const int i = places_.columnI(c) + dx;
+                const int j = places_.columnJ(c) + dy;
+                const bool there = places_.inside(i, j);
                 for (int dz = -1; dz <= 1; ++dz) {
                     Known& out = known[neighbourIndex(dx, dy, dz)];
                     if (!there) {
                         out.air = true;
                         continue;
                     }
-                    const Place place = placeOf(columnAt(i, j), k + dz);
+                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
                     if (!place.slot) {
                         out.air = air_[place.index].load(std::memory_order_relaxed) != 0;
                     } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
@@ -267,22 +225,25 @@ private:
         const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
         if (known != kUnseen) return cells_[known];
         const auto start = Clock::now();
-        if (!opened) column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
-        opened = true;
         const auto it = cells_.emplace_back();
         Cell& cell = *it;
-        switch (column.evaluate(k)) {
-            case LeafContent::outside:
-                cell.wide = cell.outside = LeafMask::full();
-                break;
-            case LeafContent::inside:
-                break;
-            case LeafContent::surface: {
-                cell.leaf = column.makeLeaf();
-                maskFrom(cell.leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
-                maskFrom(cell.leaf->buffer().data(), 0, cell.outside.word.data());
-                break;
-            }
+        LeafContent content = LeafContent::surface;
+        const Leaf* leaf = nullptr;
+        if (whole_ != nullptr) {
+            const openvdb::Coord origin(bins_.originI(c), bins_.originJ(c), k * kLeafDim);
+            leaf = whole_->probeConstLeaf(origin);
+            if (leaf == nullptr) content = whole_->getValue(origin) < 0 ? LeafContent::inside : LeafContent::outside;
+        } else {
+            if (!opened) column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
+            opened = true;
+            content = column.evaluate(k);
+            if (content == LeafContent::surface) leaf = cell.leaf = column.makeLeaf();
+        }
+        cell.surface = leaf != nullptr;
+        if (content == LeafContent::outside) cell.wide = cell.outside = LeafMask::full();
+        if (leaf != nullptr) {
+            maskFrom(leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
+            maskFrom(leaf->buffer().data(), 0, cell.outside.word.data());
         }
         cells_of_[slot].store(static_cast<std::uint32_t>(it - cells_.begin()), std::memory_order_release);
         evaluating += secondsSince(start);
@@ -293,11 +254,11 @@ private:
     void markNear(std::size_t c, int k) {
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = columnI(c) + dx;
-                const int j = columnJ(c) + dy;
-                if (!inside(i, j)) continue;
+                const int i = places_.columnI(c) + dx;
+                const int j = places_.columnJ(c) + dy;
+                if (!places_.inside(i, j)) continue;
                 for (int dz = -1; dz <= 1; ++dz) {
-                    const Place place = placeOf(columnAt(i, j), k + dz);
+                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
                     if (place.slot) near_[place.index].store(1, std::memory_order_relaxed);
                 }
             }
@@ -312,9 +273,9 @@ private:
             for (std::size_t c = first; c != last; ++c) {
                 if (dirty_[c].exchange(0, std::memory_order_relaxed) == 0) continue;
                 bool opened = false;
-                for (const Run& run : runsOf(c))
+                for (const Run& run : places_.runsOf(c))
                     for (int k = run.first; k <= run.last; ++k) {
-                        const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
+                        const std::size_t slot = run.slotOf(k);
                         if (queued_[slot].exchange(0, std::memory_order_relaxed) == 0) continue;
                         visit(column, opened, c, k, slot, evaluating);
                     }
@@ -335,22 +296,18 @@ private:
         if (before.empty()) markNear(c, k);
         LeafMask gained;
         for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
-        for (int dx = -1; dx <= 1; ++dx)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dz = -1; dz <= 1; ++dz) {
-                    const int i = columnI(c) + dx;
-                    const int j = columnJ(c) + dy;
-                    if (std::abs(dx) + std::abs(dy) + std::abs(dz) != 1 || !inside(i, j) ||
-                        !touchesNeighbour(gained, dx, dy, dz))
-                        continue;
-                    const std::size_t beside = columnAt(i, j);
-                    const Place place = placeOf(beside, k + dz);
-                    if (place.slot) {
-                        queue(beside, place.index);
-                    } else if (air_[place.index].exchange(1, std::memory_order_relaxed) == 0) {
-                        found_air_.push_back({beside, place.index - firstAir(beside)});
-                    }
-                }
+        for (const auto& face : kFaces) {
+            const int i = places_.columnI(c) + face[0];
+            const int j = places_.columnJ(c) + face[1];
+            if (!places_.inside(i, j) || !touchesFace(gained, face)) continue;
+            const std::size_t beside = places_.columnAt(i, j);
+            const Place place = places_.at(beside, k + face[2]);
+            if (place.slot) {
+                queue(beside, place.index);
+            } else if (air_[place.index].exchange(1, std::memory_order_relaxed) == 0) {
+                found_air_.push_back({beside, place.index - places_.firstAir(beside)});
+            }
+        }
     }
 
     // Visits every leaf position beside one that was reached, on all threads.
@@ -362,9 +319,9 @@ private:
             LeafColumn& column = columns_();
             for (std::size_t c = first; c != last; ++c) {
                 bool opened = false;
-                for (const Run& run : runsOf(c))
+                for (const Run& run : places_.runsOf(c))
                     for (int k = run.first; k <= run.last; ++k) {
-                        const std::size_t slot = run.slot + static_cast<std::size_t>(k - run.first);
+                        const std::size_t slot = run.slotOf(k);
                         if (near_[slot].load(std::memory_order_relaxed) != 0)
                             body(c, k, slot, [&]() -> Cell& { return cellAt(column, opened, c, k, slot, evaluating); });
                     }
@@ -392,38 +349,54 @@ private:
 
     // Keeps what lies within the band of what is shown, and turns the rest inside.
     void collect(std::vector<std::vector<Leaf*>>& leaves) {
-        forEachNear([this, &leaves](std::size_t c, int k, std::size_t slot, const auto& of) {
+        std::atomic<std::size_t> kept{0};
+        std::atomic<std::size_t> kept_voxels{0};
+        forEachNear([&](std::size_t c, int k, std::size_t slot, const auto& of) {
             const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
-            if (known != kUnseen && cells_[known].leaf == nullptr) return;
+            if (known != kUnseen && !cells_[known].surface) return;
             const Neighbourhood shown = masksOf(around(c, k), &Cell::shown);
             if (known == kUnseen && !anyWithin(shown, static_cast<int>(rule_.band))) return;
             const LeafMask near = withinReach(shown, rule_.band);
             if (near.empty()) return;
             Cell& cell = of();
-            if (cell.leaf == nullptr || !trim(cell, near)) return;
+            if (!cell.surface) return;
+            // What goes: outside but not seen, or inside and far from what is.
+            LeafMask drop;
+            for (std::size_t x = 0; x < 8; ++x)
+                drop.word[x] = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
+            const Leaf* leaf = cell.leaf;
+            if (leaf == nullptr)
+                leaf = whole_->probeConstLeaf(openvdb::Coord(bins_.originI(c), bins_.originJ(c), k * kLeafDim));
+            const std::size_t active = activeWithout(*leaf, drop);
+            if (active == 0) return;
+            kept.fetch_add(1, std::memory_order_relaxed);
+            kept_voxels.fetch_add(active, std::memory_order_relaxed);
+            if (cell.leaf == nullptr) return;
+            turnInside(*cell.leaf, drop);
             leaves[c].push_back(cell.leaf);
             cell.leaf = nullptr;
         });
         for (Cell& cell : cells_) delete cell.leaf;
         counts_.evaluated = cells_.size();
-        for (const auto& column : leaves) counts_.kept += column.size();
+        counts_.kept = kept;
+        counts_.kept_voxels = kept_voxels;
     }
 
-    // Turns inside what the outside does not reach. False if nothing active is left.
-    bool trim(Cell& cell, const LeafMask& near) const {
-        float* values = cell.leaf->buffer().data();
-        std::uint64_t any = 0;
+    static std::size_t activeWithout(const Leaf& leaf, const LeafMask& drop) {
+        std::size_t count = 0;
+        for (openvdb::Index x = 0; x < 8; ++x)
+            count += static_cast<std::size_t>(
+                std::popcount(leaf.getValueMask().getWord<openvdb::Index64>(x) & ~drop.word[x]));
+        return count;
+    }
+
+    void turnInside(Leaf& leaf, const LeafMask& drop) const {
+        float* values = leaf.buffer().data();
         for (openvdb::Index x = 0; x < 8; ++x) {
-            std::uint64_t& active = cell.leaf->getValueMask().getWord<openvdb::Index64>(x);
-            // Outside but not seen, or inside and far from what is.
-            const std::uint64_t drop =
-                (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
-            for (std::uint64_t bits = drop; bits != 0; bits &= bits - 1)
+            for (std::uint64_t bits = drop.word[x]; bits != 0; bits &= bits - 1)
                 values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -rule_.background;
-            active &= ~drop;
-            any |= active;
+            leaf.getValueMask().getWord<openvdb::Index64>(x) &= ~drop.word[x];
         }
-        return any != 0;
     }
 
     void addThreadSeconds(double seconds) { thread_seconds_.fetch_add(seconds, std::memory_order_relaxed); }
@@ -432,9 +405,9 @@ private:
     const ColumnSource& columns_;
     const std::uint32_t end_;
     const ExteriorRule rule_;
+    const openvdb::FloatTree* const whole_;
+    const LeafPlaces places_;
 
-    std::vector<std::size_t> run_offsets_;
-    std::vector<Run> runs_;
     std::vector<std::atomic<std::uint32_t>> cells_of_;  // by slot: index into cells_
     tbb::concurrent_vector<Cell> cells_;
     std::vector<std::atomic<std::uint8_t>> queued_, near_;  // by slot
@@ -451,9 +424,16 @@ private:
 }  // namespace
 
 ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves) {
+                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves,
+                              const std::function<void(double)>& progress) {
     leaves.assign(bins.size(), {});
-    return Flood(bins, columns, end, rule).run(leaves);
+    return Flood(bins, columns, end, rule, nullptr).run(leaves, progress);
+}
+
+ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, const openvdb::FloatTree& whole) {
+    std::vector<std::vector<Leaf*>> none;
+    return Flood(bins, columns, end, rule, &whole).run(none, {});
 }
 
 }  // namespace stratum::voxelize

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "voxelize/leaf_column.h"
+#include "voxelize/leaf_places.h"
 #include "voxelize/plan_bins.h"
 
 #include <cstddef>
@@ -19,13 +20,11 @@
 
 namespace stratum::voxelize {
 
-/// Gives each calling thread a LeafColumn of its own.
-using ColumnSource = std::function<LeafColumn&()>;
-
 struct ExteriorCounts {
     std::size_t positions = 0;  ///< leaf positions that `keep` would have to evaluate
     std::size_t evaluated = 0;
-    std::size_t kept = 0;
+    std::size_t kept = 0;         ///< leaves
+    std::size_t kept_voxels = 0;  ///< active ones
     int rounds = 0;
     double flood_seconds = 0;     ///< thread time: masks and queues
     double evaluate_seconds = 0;  ///< thread time: distances
@@ -40,8 +39,15 @@ struct ExteriorRule {
 
 /// Leaves with at least one active voxel by column, to be owned by the caller. Values that are shown are those of the
 /// whole level set, and so are those inside near them; every other voxel is inside. Parallel; the result does not
-/// depend on the number of threads.
+/// depend on the number of threads. How many leaves will be reached nobody knows before: `progress` gets the share of
+/// all positions reached so far, and 1 at the end; one thread at a time.
 ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves);
+                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves,
+                              const std::function<void(double)>& progress = {});
+
+/// What buildReachable would keep, found in the whole grid of the same beads, which must not change meanwhile: no
+/// distance is evaluated.
+ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, const openvdb::FloatTree& whole);
 
 }  // namespace stratum::voxelize

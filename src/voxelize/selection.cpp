@@ -51,8 +51,7 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
 std::size_t endOfTime(const gcode::Toolpath& toolpath, double seconds) {
     double time = 0;
     for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
-        const double speed = toolpath.runOf(toolpath.beads[i]).speed;
-        if (speed > 0) time += gcode::beadLength(toolpath, toolpath.beads[i]) / speed;
+        time += gcode::beadSeconds(toolpath, toolpath.beads[i]);
         if (time > seconds) return i;
     }
     return toolpath.beads.size();

@@ -1,6 +1,7 @@
 #include "voxelize/voxel_choice.h"
 
 #include "io/error.h"
+#include "voxelize/estimate.h"
 #include "voxelize/layer_stack.h"
 #include "voxelize/leaf_column.h"
 #include "voxelize/plan_bins.h"
@@ -18,8 +19,6 @@ namespace {
 
 constexpr int kMostVoxelsPerLayer = 64;
 constexpr int kMostWithinBudget = 16;
-// A leaf's values, mask and header, and its share of the nodes above.
-constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
 // The upper nodes of however small a grid: a part across the origin has eight, of 32^3 pointers each.
 constexpr double kBytesOfTree = 2.2e6;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.

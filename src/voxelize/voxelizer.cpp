@@ -27,9 +27,6 @@
 namespace stratum::voxelize {
 namespace {
 
-// A leaf's values, mask and header, and its share of the nodes above.
-constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
-
 std::size_t availableMemory() {
     std::ifstream meminfo("/proc/meminfo");
     std::string key;
@@ -118,6 +115,10 @@ struct Voxelizer::State {
     void refuseIfTooLarge();
     void buildTouched(std::uint32_t end);
     void buildReached(std::uint32_t end);
+    ExteriorRule exteriorRule() const;
+    ColumnSource columnSource() {
+        return [this]() -> LeafColumn& { return scratch.local(); };
+    }
 
     const gcode::Toolpath& toolpath;
     const Lattice& lattice;
@@ -192,8 +193,7 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
     report.leaves_reused = grid->tree().leafCount() - made;
 }
 
-void Voxelizer::State::buildReached(std::uint32_t end) {
-    std::vector<std::vector<Leaf*>> leaves;
+ExteriorRule Voxelizer::State::exteriorRule() const {
     ExteriorRule rule;
     rule.background = background;
     // Half a voxel, so that the narrowest gap passed is a voxel wide; but not the channels of planned spacing, however
@@ -202,17 +202,22 @@ void Voxelizer::State::buildReached(std::uint32_t end) {
                                         options.placement.unit);
     // An outside sample next to the surface is up to a voxel from it.
     rule.band = std::clamp(lattice.half_width - 1, 1.0, kDeepestBand);
+    return rule;
+}
+
+void Voxelizer::State::buildReached(std::uint32_t end) {
+    const auto start = Clock::now();
+    std::vector<std::vector<Leaf*>> leaves;
     grid->tree().clear();
-    const ExteriorCounts counts = buildReachable(
-        bins, [this]() -> LeafColumn& { return scratch.local(); }, end, rule, leaves);
+    const ExteriorCounts counts = buildReachable(bins, columnSource(), end, exteriorRule(), leaves, options.progress);
+    const double share = counts.flood_seconds / (counts.flood_seconds + counts.evaluate_seconds + 1e-9);
+    report.exterior_seconds = share * secondsSince(start);
     auto accessor = grid->getAccessor();
     for (const std::vector<Leaf*>& column : leaves)
         for (Leaf* leaf : column) accessor.addLeaf(leaf);
     report.leaf_positions = counts.positions;
     report.leaves_evaluated = counts.evaluated;
     report.flood_rounds = counts.rounds;
-    const double threads = counts.flood_seconds + counts.evaluate_seconds;
-    report.exterior_seconds = threads > 0 ? counts.flood_seconds / threads : 0;
 }
 
 Voxelizer::Voxelizer(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
@@ -234,10 +239,15 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
     state_->printed = end;
     // Tiles get the sign of the leaves beside them; leaves know theirs.
     openvdb::tools::signedFloodFill(state_->grid->tree(), true, 1, 1);
-    VoxelizeReport& report = state_->report;
-    report.build_seconds = secondsSince(start);
-    report.exterior_seconds *= report.build_seconds;
+    state_->report.build_seconds = secondsSince(start);
     return state_->grid;
+}
+
+CullForecast Voxelizer::forecastCull() const {
+    State& s = *state_;
+    const ExteriorCounts counts =
+        countReachable(s.bins, s.columnSource(), s.printed, s.exteriorRule(), s.grid->constTree());
+    return {counts.kept, counts.kept_voxels};
 }
 
 std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attribute> wanted) const {

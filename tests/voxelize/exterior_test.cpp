@@ -9,7 +9,9 @@
 #include <openvdb/tools/SignedFloodFill.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstring>
+#include <vector>
 
 namespace stratum::voxelize {
 namespace {
@@ -119,6 +121,41 @@ TEST(Exterior, AnOpenBoxShowsItsInside) {
             if (at(*keep, x, 4, z) >= 0) {
                 ASSERT_EQ(at(*keep, x, 4, z), at(*cull, x, 4, z));
             }
+}
+
+TEST(Exterior, ForecastsWhatItWouldKeep) {
+    for (const bool lid : {true, false}) {
+        const gcode::Toolpath toolpath = box(0, lid);
+        Lattice lattice;
+        lattice.voxel_size = 0.1;
+        lattice.layer_height = 0.2;
+        Voxelizer kept(toolpath, allBeads(toolpath), lattice);
+        const auto whole = kept.printAll();
+        const std::size_t leaves = whole->tree().leafCount();
+        const CullForecast forecast = kept.forecastCull();
+        const auto culled = build(toolpath, 0.1, Interior::cull);
+        EXPECT_EQ(forecast.leaves, culled->tree().leafCount());
+        EXPECT_EQ(forecast.active_voxels, culled->activeVoxelCount());
+        if (lid) EXPECT_LT(forecast.leaves, leaves);
+        // Nothing of the grid changes by looking.
+        EXPECT_EQ(whole->tree().leafCount(), leaves);
+    }
+}
+
+TEST(Exterior, ProgressGrowsAndEnds) {
+    const gcode::Toolpath toolpath = box();
+    Lattice lattice;
+    lattice.voxel_size = 0.1;
+    lattice.layer_height = 0.2;
+    VoxelizeOptions options;
+    options.interior = Interior::cull;
+    std::vector<double> told;
+    options.progress = [&told](double share) { told.push_back(share); };
+    voxelize(toolpath, allBeads(toolpath), lattice, options);
+    ASSERT_FALSE(told.empty());
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GT(told.front(), 0);
+    EXPECT_EQ(told.back(), 1);
 }
 
 TEST(Exterior, OneThreadOrTwoTheSameLeaves) {
