@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <new>
 
@@ -50,9 +51,13 @@ namespace {
 void useHugePages(char** argv) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     if (std::getenv("GLIBC_TUNABLES") != nullptr) return;
+    // By its own path: through /proc the process would be listed as "exe".
+    std::error_code failed;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", failed);
+    if (failed) return;
     ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 1);
     // Returns only if it fails; then everything works as before, slower.
-    ::execv("/proc/self/exe", argv);
+    ::execv(self.c_str(), argv);
 #else
     static_cast<void>(argv);
 #endif

@@ -136,7 +136,9 @@ TEST(Exterior, ForecastsWhatItWouldKeep) {
         const auto culled = build(toolpath, 0.1, Interior::cull);
         EXPECT_EQ(forecast.leaves, culled->tree().leafCount());
         EXPECT_EQ(forecast.active_voxels, culled->activeVoxelCount());
-        if (lid) EXPECT_LT(forecast.leaves, leaves);
+        if (lid) {
+            EXPECT_LT(forecast.leaves, leaves);
+        }
         // Nothing of the grid changes by looking.
         EXPECT_EQ(whole->tree().leafCount(), leaves);
     }
