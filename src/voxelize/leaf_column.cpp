@@ -196,11 +196,11 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
         const PlanLayer& plan = slots_[slot];
         return plan.centre_z + reach(plan.radius) < z_min;
     };
-    const auto kept =
-        std::stable_partition(window_.begin(), window_.end(), [&](std::uint32_t s) { return !passed(s); });
-    if (kept != window_.end()) {
-        free_.insert(free_.end(), kept, window_.end());
-        window_.erase(kept, window_.end());
+    // In order, for ties go to the first.
+    std::size_t kept = 0;
+    for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
+    if (kept != window_.size()) {
+        window_.resize(kept);
         radii_.clear();
         for (const std::uint32_t slot : window_)
             if (std::find(radii_.begin(), radii_.end(), slots_[slot].radius) == radii_.end())
@@ -220,6 +220,34 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
     while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
 }
 
+void LeafColumn::gatherTerms(int k0) {
+    terms_.clear();
+    for (int z = 0; z < kLeafDim; ++z) {
+        const double height = sampleZ(k0 + z);
+        for (const double radius : radii_) {
+            const double reach = radius + band_;
+            const auto first = static_cast<std::uint32_t>(terms_.terms.size());
+            for (const std::uint32_t slot : window_) {
+                const PlanLayer& plan = slots_[slot];
+                const double dz = height - plan.centre_z;
+                if (plan.radius != radius || std::abs(dz) >= reach) continue;
+                const auto world = static_cast<float>(dz * scale_);
+                terms_.terms.push_back({&plan.sides2, world * world});
+            }
+            const auto last = static_cast<std::uint32_t>(terms_.terms.size());
+            if (first != last) terms_.groups.push_back({first, last, static_cast<float>(radius * scale_)});
+        }
+        for (const PlanWeld& weld : welds_) {
+            // Farther than the band from the interface the layer itself is deeper than the band.
+            if (height < weld.interface_low - band_ || height > weld.interface_high + band_) continue;
+            const double bound = std::abs(height - weld.middle_z) - weld.half;
+            if (bound < 0) terms_.welds.push_back({&weld.d, static_cast<float>(bound * scale_)});
+        }
+        terms_.group_end[z] = static_cast<std::uint32_t>(terms_.groups.size());
+        terms_.weld_end[z] = static_cast<std::uint32_t>(terms_.welds.size());
+    }
+}
+
 LeafContent LeafColumn::evaluate(int leaf_k) {
     leaf_k_ = leaf_k;
     const int k0 = leaf_k * kLeafDim;
@@ -227,33 +255,8 @@ LeafContent LeafColumn::evaluate(int leaf_k) {
     const double z_max = sampleZ(k0 + kLeafDim - 1);
     moveWindow(z_min, z_max);
     const auto background = static_cast<float>(band_ * scale_);
-    for (PlanField& plane : phi_.plane) std::fill(std::begin(plane.v), std::end(plane.v), background);
-
-    for (const double radius : radii_) {
-        const double reach = radius + band_;
-        for (int z = 0; z < kLeafDim; ++z) {
-            terms_.clear();
-            for (const std::uint32_t slot : window_) {
-                const PlanLayer& plan = slots_[slot];
-                const double dz = sampleZ(k0 + z) - plan.centre_z;
-                if (plan.radius != radius || std::abs(dz) >= reach) continue;
-                const auto world = static_cast<float>(dz * scale_);
-                terms_.push_back({&plan.sides2, world * world});
-            }
-            if (!terms_.empty())
-                expandLayers(terms_, static_cast<float>(radius * scale_), phi_.plane[static_cast<std::size_t>(z)]);
-        }
-    }
-    for (const PlanWeld& weld : welds_)
-        for (int z = 0; z < kLeafDim; ++z) {
-            // Farther than the band from the interface the layer itself is deeper than the band.
-            const double height = sampleZ(k0 + z);
-            if (height < weld.interface_low - band_ || height > weld.interface_high + band_) continue;
-            // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
-            const double bound = std::abs(height - weld.middle_z) - weld.half;
-            if (bound < 0)
-                expandWeld(weld.d, static_cast<float>(bound * scale_), phi_.plane[static_cast<std::size_t>(z)]);
-        }
+    gatherTerms(k0);
+    expandLayers(terms_, background, phi_);
     while (first_direct_ < direct_.size() && direct_[first_direct_].z_max < z_min) ++first_direct_;
     for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n)
         if (direct_[n].z_max >= z_min) expandDirect(direct_[n], k0);

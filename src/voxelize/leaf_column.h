@@ -81,6 +81,7 @@ private:
     void moveWindow(double z_min, double z_max);
     void loadLayer(const ColumnLayer& source);
     void addWelds(const PlanLayer& upper);
+    void gatherTerms(int k0);
     void expandDirect(const DirectBead& direct, int k0);
 
     const gcode::Toolpath& toolpath_;
@@ -111,7 +112,7 @@ private:
     std::vector<LocalLine> lines_;
     std::vector<LocalArc> arcs_;
     std::vector<std::uint32_t> line_ids_, arc_ids_;
-    std::vector<PlaneTerm> terms_;
+    LeafTerms terms_;
     LeafPlanes phi_{};
 };
 

@@ -132,24 +132,33 @@ float MaximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
-void ExpandLayers(std::span<const PlaneTerm> terms, float radius, PlanField& phi) {
+void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     const F f;
-    forEachVector([&](std::size_t c) HWY_ATTR {
-        VF least = hn::Add(hn::Load(f, terms[0].sides2->v + c), hn::Set(f, terms[0].dz2));
-        for (std::size_t t = 1; t < terms.size(); ++t)
-            least = hn::Min(least, hn::Add(hn::Load(f, terms[t].sides2->v + c), hn::Set(f, terms[t].dz2)));
-        const VF value = hn::Sub(hn::Sqrt(least), hn::Set(f, radius));
-        hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
-    });
-}
-
-void ExpandWeld(const PlanField& d, float bound, PlanField& phi) {
-    const F f;
-    forEachVector([&](std::size_t c) HWY_ATTR {
-        const VF body = hn::Max(hn::Load(f, d.v + c), hn::Set(f, bound));
-        const VF old = hn::Load(f, phi.v + c);
-        hn::Store(hn::IfThenElse(hn::Lt(body, hn::Zero(f)), hn::Min(old, body), old), f, phi.v + c);
-    });
+    const PlaneTerm* const terms = leaf.terms.data();
+    std::uint32_t group = 0;
+    std::uint32_t weld = 0;
+    for (std::size_t z = 0; z < kLeafPlanes; ++z) {
+        const std::uint32_t group_end = leaf.group_end[z];
+        const std::uint32_t weld_end = leaf.weld_end[z];
+        forEachVector([&](std::size_t c) HWY_ATTR {
+            VF value = hn::Set(f, background);
+            for (std::uint32_t g = group; g != group_end; ++g) {
+                const PlaneTerms& of = leaf.groups[g];
+                VF least = hn::Add(hn::Load(f, terms[of.first].sides2->v + c), hn::Set(f, terms[of.first].dz2));
+                for (std::uint32_t t = of.first + 1; t != of.last; ++t)
+                    least = hn::Min(least, hn::Add(hn::Load(f, terms[t].sides2->v + c), hn::Set(f, terms[t].dz2)));
+                value = hn::Min(value, hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius)));
+            }
+            for (std::uint32_t w = weld; w != weld_end; ++w) {
+                // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
+                const VF body = hn::Max(hn::Load(f, leaf.welds[w].d->v + c), hn::Set(f, leaf.welds[w].bound));
+                value = hn::IfThenElse(hn::Lt(body, hn::Zero(f)), hn::Min(value, body), value);
+            }
+            hn::Store(value, f, phi.plane[z].v + c);
+        });
+        group = group_end;
+        weld = weld_end;
+    }
 }
 
 void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
@@ -276,7 +285,6 @@ HWY_EXPORT(MinimumOfArcs);
 HWY_EXPORT(SquaredSides);
 HWY_EXPORT(MaximumOf);
 HWY_EXPORT(ExpandLayers);
-HWY_EXPORT(ExpandWeld);
 HWY_EXPORT(SlopedLine);
 HWY_EXPORT(ExpandSloped);
 HWY_EXPORT(ExpandRod);
@@ -306,10 +314,9 @@ float squaredSides(const PlanField& d, PlanField& out) { return HWY_DYNAMIC_DISP
 float maximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
     return HWY_DYNAMIC_DISPATCH(MaximumOf)(a, b, out);
 }
-void expandLayers(std::span<const PlaneTerm> terms, float radius, PlanField& phi) {
-    HWY_DYNAMIC_DISPATCH(ExpandLayers)(terms, radius, phi);
+void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandLayers)(leaf, background, phi);
 }
-void expandWeld(const PlanField& d, float bound, PlanField& phi) { HWY_DYNAMIC_DISPATCH(ExpandWeld)(d, bound, phi); }
 void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
                 PlanField& centre_z) {
     HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, centre_z);

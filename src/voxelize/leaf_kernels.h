@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace stratum::voxelize {
 
@@ -56,11 +57,32 @@ struct PlaneTerm {
     const PlanField* sides2 = nullptr;
     float dz2 = 0;  ///< squared height over the layer's centre plane
 };
-/// phi = min(phi, sqrt(min over terms (sides2 + dz2)) - radius): one root a sample for all layers of that radius.
-void expandLayers(std::span<const PlaneTerm> terms, float radius, PlanField& phi);
+/// Layers of one radius: terms first..last - 1 take one root together.
+struct PlaneTerms {
+    std::uint32_t first, last;
+    float radius;
+};
+/// What fills the gap between two layers that touch: max(d, bound), taken where that is negative. `bound` must be.
+struct PlaneWeldTerm {
+    const PlanField* d = nullptr;
+    float bound = 0;
+};
+/// What layers give to a leaf. Plane z has groups group_end[z - 1]..group_end[z] - 1 and welds likewise, from 0.
+struct LeafTerms {
+    std::vector<PlaneTerm> terms;
+    std::vector<PlaneTerms> groups;
+    std::vector<PlaneWeldTerm> welds;
+    std::uint32_t group_end[kLeafPlanes] = {};
+    std::uint32_t weld_end[kLeafPlanes] = {};
 
-/// phi = min(phi, max(d, bound)) where that is negative. `bound` must be.
-void expandWeld(const PlanField& d, float bound, PlanField& phi);
+    void clear() {
+        terms.clear();
+        groups.clear();
+        welds.clear();
+    }
+};
+/// phi = min over groups (sqrt(min over terms (sides2 + dz2)) - radius) and welds, and `background` where nothing is.
+void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi);
 
 /// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its centre line.
 void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,

@@ -78,15 +78,14 @@ std::size_t memoryLimit(const VoxelizeOptions& options) {
     return options.memory_limit != 0 ? options.memory_limit : availableMemory();
 }
 
-// Refuses what is hopeless by arithmetic alone, before any list is made.
+// The estimate can be off by about that; culling leaves most of it out.
+double estimateMargin(Interior interior) { return interior == Interior::keep ? 3 : 30; }
+
+// Refuses what is hopeless by arithmetic alone, before any list is made. The exact bound follows from the bins.
 LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
-                         const Lattice& lattice, const VoxelizeOptions& options) {
+                         const Lattice& lattice, const VoxelizeOptions& options, double estimate) {
     const auto limit = static_cast<double>(memoryLimit(options));
-    const double estimate =
-        estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) * kBytesPerActiveVoxel;
-    // The estimate can be off, and culling leaves most of it out; the exact bound follows from the bins.
-    const double margin = options.interior == Interior::keep ? 3 : 30;
-    if (estimate > margin * limit)
+    if (estimate > estimateMargin(options.interior) * limit)
         throw UsageError(
             fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
                         "(half the layer height is {:g} mm), fewer layers or features",
@@ -102,7 +101,9 @@ struct Voxelizer::State {
         : toolpath(the_toolpath),
           lattice(the_lattice),
           options(std::move(the_options)),
-          stack(stackIfItFits(toolpath, selection, lattice, options)),
+          estimated_bytes(estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) *
+                          kBytesPerActiveVoxel),
+          stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
           bins(toolpath, stack, lattice, memoryLimit(options) / 4),
           scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
@@ -123,6 +124,7 @@ struct Voxelizer::State {
     const gcode::Toolpath& toolpath;
     const Lattice& lattice;
     const VoxelizeOptions options;
+    const double estimated_bytes;
     const LayerStack stack;
     const PlanBins bins;
     tbb::enumerable_thread_specific<LeafColumn> scratch;
@@ -133,8 +135,9 @@ struct Voxelizer::State {
 };
 
 void Voxelizer::State::refuseIfTooLarge() {
-    // Culling builds a fraction that only the flood can tell.
+    // Culling builds a fraction that only the flood can tell. What clearly fits needs no counting.
     if (options.interior == Interior::cull) return;
+    if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
     std::atomic<std::size_t> leaf_bound{0};
     parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = scratch.local();
@@ -143,7 +146,6 @@ void Voxelizer::State::refuseIfTooLarge() {
             if (!bins[c].empty()) count += column.countLeaves(bins[c]);
         leaf_bound.fetch_add(count, std::memory_order_relaxed);
     });
-    report.leaf_positions = leaf_bound;
     const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
     const auto limit = static_cast<double>(memoryLimit(options));
     if (bytes > limit)
@@ -189,6 +191,7 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
         for (Leaf* leaf : column.leaves) accessor.addLeaf(leaf);
         for (const openvdb::Coord& origin : column.inside) accessor.addTile(1, origin, -background, false);
     }
+    report.leaf_positions = std::max(report.leaf_positions, evaluated.load());
     report.leaves_evaluated = evaluated;
     report.leaves_reused = grid->tree().leafCount() - made;
 }

@@ -128,12 +128,26 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
         minimumOfArcs(grid, arcs, r.d, ids.data(), &r.owners);
         squaredSides(r.d, r.sides2);
         maximumOf(r.d, r.sides2, r.weld);
+        LeafTerms leaf;
         for (std::size_t z = 0; z < kLeafPlanes; ++z) {
-            std::fill(std::begin(r.planes.plane[z].v), std::end(r.planes.plane[z].v), 0.3f);
             const auto dz = static_cast<float>(0.07 * static_cast<double>(z) - 0.2);
-            const PlaneTerm terms[] = {{&r.sides2, dz * dz}};
-            expandLayers(terms, 0.1f, r.planes.plane[z]);
-            expandWeld(r.weld, -0.01f * static_cast<float>(z + 1), r.planes.plane[z]);
+            // Two layers of one radius, one of another, and a weld; nothing at all in one plane.
+            if (z != 5) {
+                const auto first = static_cast<std::uint32_t>(leaf.terms.size());
+                leaf.terms.push_back({&r.sides2, dz * dz});
+                leaf.terms.push_back({&r.sides2, 0.01f});
+                leaf.terms.push_back({&r.sides2, 0.04f});
+                leaf.groups.push_back({first, first + 2, 0.1f});
+                leaf.groups.push_back({first + 2, first + 3, 0.12f});
+                leaf.welds.push_back({&r.weld, -0.01f * static_cast<float>(z + 1)});
+            }
+            leaf.group_end[z] = static_cast<std::uint32_t>(leaf.groups.size());
+            leaf.weld_end[z] = static_cast<std::uint32_t>(leaf.welds.size());
+        }
+        expandLayers(leaf, 0.3f, r.planes);
+        for (const float value : r.planes.plane[5].v) EXPECT_EQ(value, 0.3f);
+        for (std::size_t z = 0; z < kLeafPlanes; ++z) {
+            const auto dz = static_cast<float>(0.07 * static_cast<double>(z) - 0.2);
             LocalRod rod{};
             rod.nx = 0.6f, rod.ny = 0.8f, rod.n0 = 0.1f, rod.bz = 1, rod.ux = 0.8f, rod.uy = -0.6f, rod.lo = -0.1f,
             rod.hi = 0.2f, rod.radius = 0.05f;
