@@ -9,6 +9,7 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "voxelize/enclosed_volume.h"
 #include "voxelize/attributes.h"
 #include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"

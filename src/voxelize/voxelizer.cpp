@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
-#include <openvdb/tree/LeafManager.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -288,25 +287,6 @@ const VoxelizeReport& Voxelizer::report() const { return state_->report; }
 openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                                  const Lattice& lattice, const VoxelizeOptions& options) {
     return Voxelizer(toolpath, selection, lattice, options).printAll();
-}
-
-double enclosedVolume(const openvdb::FloatGrid& grid) {
-    const double voxel = grid.voxelSize()[0];
-    const openvdb::tree::LeafManager<const openvdb::FloatTree> leaves(grid.tree());
-    // One sum a leaf, added in order: the same value for any number of threads.
-    std::vector<double> sums(leaves.leafCount());
-    parallelFor(sums.size(), 64, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n != last; ++n) {
-            const float* values = leaves.leaf(n).buffer().data();
-            for (openvdb::Index v = 0; v < Leaf::SIZE; ++v)
-                sums[n] += std::clamp(0.5 - static_cast<double>(values[v]) / voxel, 0.0, 1.0);
-        }
-    });
-    double voxels = 0;
-    for (const double sum : sums) voxels += sum;
-    for (auto tile = grid.tree().cbeginValueOff(); tile; ++tile)
-        if (tile.getLevel() > 0 && *tile < 0) voxels += static_cast<double>(tile.getVoxelCount());
-    return voxels * voxel * voxel * voxel;
 }
 
 }  // namespace stratum::voxelize

@@ -96,7 +96,4 @@ private:
 openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                                  const Lattice& lattice, const VoxelizeOptions& options = {});
 
-/// Volume inside the zero level in world units cubed, each voxel counted by its share of inside. Parallel.
-double enclosedVolume(const openvdb::FloatGrid& grid);
-
 }  // namespace stratum::voxelize

@@ -3,6 +3,7 @@
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "io/mapped_file.h"
+#include "voxelize/enclosed_volume.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 

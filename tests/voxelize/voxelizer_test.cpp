@@ -249,19 +249,6 @@ TEST(Voxelizer, PlacementMovesAndScalesTheWorldNotTheVoxels) {
     expectNothingWrong(*placed);
 }
 
-TEST(Voxelizer, EnclosedVolumeOfOneBead) {
-    gcode::Toolpath toolpath;
-    addBead(toolpath, 0, 0, 2, 40, 0, 2, 3, 2);
-    const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOf(0.1));
-    // The straight part and the two round ends, which together are half a flattened torus: a disc of radius c, swept by
-    // the half circle, by Pappus.
-    const double c = 0.5;
-    const double r = 1;
-    const double ends = std::numbers::pi * c * c * 2 * r +
-                        std::numbers::pi * r * r / 2 * 2 * std::numbers::pi * (c + 4 * r / (3 * std::numbers::pi));
-    EXPECT_NEAR(enclosedVolume(*grid), 40 * gcode::sectionArea(3, 2) + ends, 0.4);
-}
-
 TEST(Voxelizer, FarFromTheOriginNothingIsLost) {
     gcode::Toolpath near;
     gcode::Toolpath far;
