@@ -106,12 +106,23 @@ void run(const Options& o) {
     const auto wanted = [&](const std::string& name) {
         return o.peers.empty() || std::find(o.peers.begin(), o.peers.end(), name) != o.peers.end();
     };
-    std::shared_ptr<const march::Intersector> brick;
+    std::shared_ptr<const march::Intersector> brick;  // exact: what the others' answers are compared with
+    std::shared_ptr<const march::Intersector> quanta;
     double brick_cpu = 0;
-    const double brick_seconds =
-        secondsOf([&] { brick_cpu = cpuSecondsOf([&] { brick = march::makeBrickIntersector(*grid); }); });
-    if (wanted("brick scalar")) peers.push_back(bench::marchPeer("brick scalar", brick, false, brick_seconds));
-    if (wanted("brick")) peers.push_back(bench::marchPeer("brick", brick, true, brick_seconds));
+    double quanta_cpu = 0;
+    const auto build = [&grid](auto& made, march::BrickValues values, double& cpu) {
+        return secondsOf([&] { cpu = cpuSecondsOf([&] { made = march::makeBrickIntersector(*grid, values); }); });
+    };
+    const double brick_seconds = build(brick, march::BrickValues::Float32, brick_cpu);
+    const double quanta_seconds = build(quanta, march::BrickValues::Int16, quanta_cpu);
+    if (wanted("brick scalar")) {
+        peers.push_back(bench::marchPeer("brick scalar, floats", brick, false, brick_seconds));
+        peers.push_back(bench::marchPeer("brick scalar", quanta, false, quanta_seconds));
+    }
+    if (wanted("brick")) {
+        peers.push_back(bench::marchPeer("brick, floats", brick, true, brick_seconds));
+        peers.push_back(bench::marchPeer("brick", quanta, true, quanta_seconds));
+    }
     if (wanted("vdb")) peers.push_back(bench::marchPeer("vdb", march::makeVdbIntersector(grid), false, 0));
     if (wanted("sphere")) {
         peers.push_back(bench::marchPeer("sphere", march::makeSphereIntersector(grid, 1), false, 0));
@@ -127,7 +138,8 @@ void run(const Options& o) {
             if (wanted("prisms")) peers.push_back(bench::embreePrisms(toolpath, corners, 8));
     }
 
-    fmt::print("  reading took {:.2f} s of CPU time, building bricks {:.2f} s\n", read_cpu, brick_cpu);
+    fmt::print("  reading took {:.2f} s of CPU time, building bricks {:.2f} s, of floats {:.2f} s\n", read_cpu,
+               quanta_cpu, brick_cpu);
     for (const auto& peer : peers)
         fmt::print("  {:<28} built in {:6.2f} s, {:8.1f} MB\n", peer->name, peer->build_seconds, 1e-6 * peer->bytes);
 
@@ -136,7 +148,8 @@ void run(const Options& o) {
                 {"active_voxels", grid->activeVoxelCount()},
                 {"read_seconds", read_seconds},
                 {"read_cpu_seconds", read_cpu},
-                {"brick_cpu_seconds", brick_cpu}};
+                {"brick_cpu_seconds", quanta_cpu},
+                {"brick_floats_cpu_seconds", brick_cpu}};
     for (const bench::RaySet& set : sets) {
         std::vector<std::unique_ptr<bench::Prepared>> prepared;
         for (const auto& peer : peers) prepared.push_back(peer->prepare(set.rays, set.coherent));

@@ -4,87 +4,161 @@
 #include "parallel/parallel_for.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
+#include <mutex>
+#include <type_traits>
+#include <utility>
 
 namespace stratum::march {
 namespace {
 
-using Leaf = openvdb::FloatTree::LeafNodeType;
-using Accessor = openvdb::FloatGrid::ConstAccessor;
-constexpr int kEdge = BrickGrid::kBrickEdge;
-constexpr int kSamples = BrickGrid::kSamples;
+constexpr std::size_t kGrain = 512;  // bricks a task: many enough to find their neighbours in the cache
 
-// The samples of a leaf and of the first planes of its neighbours in +x, +y and +z.
-void gather(const Leaf& leaf, Accessor& accessor, BrickGrid::Samples& out) {
-    for (int part = 0; part < 8; ++part) {
-        const int px = part >> 2;
-        const int py = part >> 1 & 1;
-        const int pz = part & 1;
-        const openvdb::Coord origin = leaf.origin().offsetBy(px * kEdge, py * kEdge, pz * kEdge);
-        const Leaf* source = part == 0 ? &leaf : accessor.probeConstLeaf(origin);
-        const float tile = source == nullptr ? accessor.getValue(origin) : 0.0F;
-        for (int x = px * kEdge; x < (px != 0 ? kSamples : kEdge); ++x)
-            for (int y = py * kEdge; y < (py != 0 ? kSamples : kEdge); ++y) {
-                const int z0 = pz * kEdge;
-                float* row = out.data() + x * BrickGrid::kStrideX + y * BrickGrid::kStrideY + z0;
-                const float* values =
-                    source == nullptr ? nullptr : source->buffer().data() + ((x & 7) << 6 | (y & 7) << 3);
-                // Lengths known to the compiler: a call to copy 32 bytes costs more than the copy.
-                if (pz != 0)
-                    *row = values == nullptr ? tile : *values;
-                else if (values == nullptr)
-                    std::fill_n(row, kEdge, tile);
-                else
-                    std::copy_n(values, kEdge, row);
-            }
+// Samples of a level set reach no further than its band; what does is put at its edge.
+double quantumOf(const LeafSource& source, BrickValues values) {
+    return values == BrickValues::Int16 ? static_cast<double>(source.background()) / kMostQuanta : 1;
+}
+
+// Converted leaves that a thread has used lately: those that neighbouring bricks share are converted once. The eight of
+// one brick have places of their own.
+template <typename T>
+class LeafCache {
+public:
+    struct Entry {
+        std::uint32_t key = 0;  // the leaf's brick, counted from 1
+        LeafSamples<T> samples;
+    };
+    Entry& at(int x, int y, int z) {
+        return entries_[static_cast<std::size_t>((x & kLast) << (2 * kBits) | (y & kLast) << kBits | (z & kLast))];
     }
-}
 
-// A bit for every cell whose corners are not of one sign: inside is below zero, zero is outside.
-BrickGrid::Surface findSurface(const BrickGrid::Samples& samples) {
-    // Bit z of inside[x][y]: sample (x, y, z) is inside.
-    std::array<std::array<std::uint32_t, kSamples>, kSamples> inside{};
-    const float* value = samples.data();
-    for (auto& plane : inside)
-        for (std::uint32_t& row : plane)
-            for (int z = 0; z < kSamples; ++z) row |= static_cast<std::uint32_t>(*value++ < 0) << z;
-    BrickGrid::Surface surface{};
-    for (int x = 0; x < kEdge; ++x)
-        for (int y = 0; y < kEdge; ++y) {
-            const std::size_t sx = static_cast<std::size_t>(x);
-            const std::size_t sy = static_cast<std::size_t>(y);
-            const std::uint32_t rows[4] = {inside[sx][sy], inside[sx][sy + 1], inside[sx + 1][sy],
-                                           inside[sx + 1][sy + 1]};
-            const std::uint32_t any = rows[0] | rows[1] | rows[2] | rows[3];
-            const std::uint32_t all = rows[0] & rows[1] & rows[2] & rows[3];
-            const std::uint32_t mixed = (any | any >> 1) & ~(all & all >> 1) & 0xff;
-            for (int half = 0; half < 2; ++half) {
-                const std::uint64_t bits = mixed >> (4 * half) & 0xf;
-                surface[static_cast<std::size_t>((x >> 2) << 2 | (y >> 2) << 1 | half)] |=
-                    bits << Mask64::bit(x & 3, y & 3, 0);
-            }
-        }
-    return surface;
-}
-
-bool isEmpty(const BrickGrid::Surface& surface) {
-    std::uint64_t any = 0;
-    for (const std::uint64_t word : surface) any |= word;
-    return any == 0;
-}
+private:
+    static constexpr int kBits = 3;
+    static constexpr int kLast = (1 << kBits) - 1;
+    std::vector<Entry> entries_ = std::vector<Entry>(std::size_t{1} << (3 * kBits));
+};
 
 }  // namespace
 
-BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
-    std::vector<const Leaf*> leaves;
-    leaves.reserve(grid.tree().leafCount());
-    grid.tree().getNodes(leaves);
+// Makes bricks of a source's leaves, from any thread.
+class BrickGrid::Layouter {
+public:
+    Layouter(const BrickGrid& grid, const LeafSource& source, std::shared_ptr<const LeafSource> owned,
+             std::vector<std::uint32_t> leaves)
+        : grid_(grid),
+          source_(source),
+          owned_(std::move(owned)),
+          leaves_(std::move(leaves)),
+          scale_(static_cast<float>(1 / quantumOf(source, grid.values_))) {}
+
+    // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
+    std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
+
+    openvdb::Coord originOf(std::size_t brick) const { return source_.origin(leaves_[brick]); }
+
+    // Coordinates in bricks.
+    void layOut(std::size_t brick, int x, int y, int z) const {
+        if (grid_.values_ == BrickValues::Float32)
+            layOut(brick, x, y, z, grid_.floats_.data(), float_caches_.local());
+        else
+            layOut(brick, x, y, z, grid_.quanta_.data(), quanta_caches_.local());
+    }
+
+private:
+    template <typename T>
+    void layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+        BrickParts<T> parts;
+        for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
+            const int px = x + static_cast<int>(part >> 2);
+            const int py = y + static_cast<int>(part >> 1 & 1);
+            const int pz = z + static_cast<int>(part & 1);
+            parts.leaf[part] = leafAt(px, py, pz, cache);
+            if (parts.leaf[part] != nullptr) continue;
+            const openvdb::Coord at = grid_.origin_.offsetBy(px * kBrickEdge, py * kBrickEdge, pz * kBrickEdge);
+            parts.tile[part] = march::convert(source_.tile(at), scale_, T{});
+        }
+        const CellBits surface = surfaceOf(parts);
+        std::uint32_t slot = kNoSamples;
+        if (std::any_of(surface.begin(), surface.end(), [](std::uint64_t word) { return word != 0; })) {
+            slot = grid_.used_.fetch_add(1, std::memory_order_relaxed) + 1;
+            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
+        }
+        for (std::size_t part = 0; part < surface.size(); ++part)
+            std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
+        // Last, so that whoever sees it sees the rest.
+        std::atomic_ref(grid_.slots_[brick]).store(slot, std::memory_order_release);
+    }
+
+    template <typename T>
+    const LeafSamples<T>* leafAt(int x, int y, int z, LeafCache<T>& cache) const {
+        if (x >= 4 * grid_.macros_[0] || y >= 4 * grid_.macros_[1] || z >= 4 * grid_.macros_[2]) return nullptr;
+        const MacroCell& macro = grid_.macroCell(x >> 2, y >> 2, z >> 2);
+        if ((macro.bricks >> Mask64::bit(x & 3, y & 3, z & 3) & 1) == 0) return nullptr;
+        const std::size_t brick = brickIndex(macro, x & 3, y & 3, z & 3);
+        auto& entry = cache.at(x, y, z);
+        const auto key = static_cast<std::uint32_t>(brick) + 1;
+        if (entry.key == key) return &entry.samples;
+        entry.key = 0;  // in case that reading throws
+        alignas(64) float scratch[LeafSource::kLeafSamples];
+        if (!march::convert(source_.samples(leaves_[brick], scratch), scale_, entry.samples)) {
+            const openvdb::Coord at = source_.origin(leaves_[brick]);
+            throw InputError(
+                fmt::format("the level set {} has a voxel that is not a finite number, among the 8 x 8 x 8 voxels from "
+                            "index ({}, {}, {}); make the grid again",
+                            source_.name(), at[0], at[1], at[2]));
+        }
+        entry.key = key;
+        return &entry.samples;
+    }
+
+    const BrickGrid& grid_;
+    const LeafSource& source_;
+    const std::shared_ptr<const LeafSource> owned_;
+    const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
+    const float scale_;
+    mutable std::array<std::mutex, 64> doors_;
+    mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
+    mutable tbb::enumerable_thread_specific<LeafCache<std::int16_t>> quanta_caches_;
+};
+
+BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
+    const Layouter layouter(*this, source, nullptr, listBricks(source));
+    parallelFor(listed_, kGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t brick = first; brick != last; ++brick) {
+            const openvdb::Coord at = layouter.originOf(brick) - origin_;
+            layouter.layOut(brick, at[0] / kBrickEdge, at[1] / kBrickEdge, at[2] / kBrickEdge);
+        }
+    });
+    dropEmptyBricks();
+    measureEmptySpace();
+}
+
+BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values) : values_(values) {
+    const LeafSource& leaves = *source;
+    layouter_ = std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves));
+    measureEmptySpace();
+}
+
+BrickGrid::~BrickGrid() = default;
+
+void BrickGrid::require(std::size_t brick, int x, int y, int z) const {
+    const std::atomic_ref slot(slots_[brick]);
+    if (slot.load(std::memory_order_acquire) != 0) return;
+    const std::scoped_lock lock(layouter_->doorOf(brick));
+    if (slot.load(std::memory_order_relaxed) == 0) layouter_->layOut(brick, x, y, z);
+}
+
+// Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
+std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source) {
+    unit_ = quantumOf(source, values_);
+    const std::size_t count = source.leafCount();
     openvdb::CoordBBox box;
-    for (const Leaf* leaf : leaves) box.expand(leaf->getNodeBoundingBox());
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord low = source.origin(n);
+        box.expand(openvdb::CoordBBox(low, low.offsetBy(kBrickEdge - 1)));
+    }
     double cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -93,64 +167,54 @@ BrickGrid::BrickGrid(const openvdb::FloatGrid& grid) {
         size_[a] = macros_[a] * kMacroEdge;
         cells *= macros_[a];
     }
-    if (cells > 2147483648.0)
-        throw InputError(
-            fmt::format("the level set spans {} x {} x {} voxels, too far apart to lay out for rays; split "
-                        "it or use --march vdb",
-                        size_[0], size_[1], size_[2]));
+    if (cells > 2147483648.0 || count >= kNoSamples)
+        throw InputError(fmt::format(
+            "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
+            "or use --march vdb",
+            size_[0], size_[1], size_[2], count));
     macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
-    std::fill(macro_cells_.begin(), macro_cells_.end(), MacroCell{});
-
-    // First the masks, which tell what is kept; then the samples of that alone.
-    std::vector<Surface> masks(leaves.size());
-    constexpr std::size_t kGrain = 256;
-    parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
-        Accessor accessor = grid.getConstAccessor();
-        Samples samples;
-        for (std::size_t n = first; n != last; ++n) {
-            gather(*leaves[n], accessor, samples);
-            bool finite = true;
-            for (const float value : samples) finite &= std::abs(value) <= std::numeric_limits<float>::max();
-            if (!finite) {
-                const openvdb::Coord at = leaves[n]->origin();
-                throw InputError(
-                    fmt::format("the level set {} has a voxel that is not a finite number, in or beside the 8 x 8 x 8 "
-                                "voxels from index ({}, {}, {}); make the grid again",
-                                grid.getName(), at[0], at[1], at[2]));
-            }
-            masks[n] = findSurface(samples);
-        }
-    });
-    const auto macroOf = [this](const openvdb::Coord& brick) -> MacroCell& {
-        return macro_cells_[(static_cast<std::size_t>(brick[0] / kMacroEdge) * static_cast<std::size_t>(macros_[1]) +
-                             static_cast<std::size_t>(brick[1] / kMacroEdge)) *
-                                static_cast<std::size_t>(macros_[2]) +
-                            static_cast<std::size_t>(brick[2] / kMacroEdge)];
-    };
     const auto within = [](int cell) { return cell / kBrickEdge & 3; };
-    for (std::size_t n = 0; n < leaves.size(); ++n) {
-        if (isEmpty(masks[n])) continue;
-        const openvdb::Coord at = leaves[n]->origin() - origin_;
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord at = source.origin(n) - origin_;
         macroOf(at).bricks |= std::uint64_t{1} << Mask64::bit(within(at[0]), within(at[1]), within(at[2]));
     }
-    std::uint32_t count = 0;
+    std::uint32_t first = 0;
     for (MacroCell& macro : macro_cells_) {
-        macro.first_brick = count;
-        count += static_cast<std::uint32_t>(std::popcount(macro.bricks));
+        macro.first_brick = first;
+        first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
-    surfaces_ = HugeArray<Surface>(count);
-    samples_ = HugeArray<Samples>(count);
-    parallelFor(leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
-        Accessor accessor = grid.getConstAccessor();
-        for (std::size_t n = first; n != last; ++n) {
-            if (isEmpty(masks[n])) continue;
-            const openvdb::Coord at = leaves[n]->origin() - origin_;
-            const std::size_t brick = brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]));
-            surfaces_[brick] = masks[n];
-            gather(*leaves[n], accessor, samples_[brick]);
+    listed_ = count;
+    std::vector<std::uint32_t> leaves(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord at = source.origin(n) - origin_;
+        leaves[brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]))] = static_cast<std::uint32_t>(n);
+    }
+    clear_ = HugeArray<CellBits>(count);
+    slots_ = HugeArray<std::uint32_t>(count);
+    // Room for all, of which only what is used is ever touched.
+    const std::size_t samples = count * static_cast<std::size_t>(kBrickSamples);
+    if (values_ == BrickValues::Float32)
+        floats_ = HugeArray<float>(samples);
+    else
+        quanta_ = HugeArray<std::int16_t>(samples);
+    return leaves;
+}
+
+// Rays need not stop at bricks that turned out to have no surface. The others keep their samples and move up.
+void BrickGrid::dropEmptyBricks() {
+    std::uint32_t kept = 0;
+    for (MacroCell& macro : macro_cells_) {
+        const std::uint64_t bricks = std::exchange(macro.bricks, 0);
+        std::uint32_t brick = std::exchange(macro.first_brick, kept);
+        for (std::uint64_t rest = bricks; rest != 0; rest &= rest - 1, ++brick) {
+            if (slots_[brick] == kNoSamples) continue;
+            macro.bricks |= rest & (~rest + 1);
+            clear_[kept] = clear_[brick];
+            slots_[kept] = slots_[brick];
+            ++kept;
         }
-    });
-    measureEmptySpace();
+    }
+    listed_ = kept;
 }
 
 void BrickGrid::measureEmptySpace() {
@@ -160,14 +224,9 @@ void BrickGrid::measureEmptySpace() {
     const int nx = macros_[0];
     const int ny = macros_[1];
     const int nz = macros_[2];
-    const auto cell = [&](int x, int y, int z) -> MacroCell& {
-        return macro_cells_[(static_cast<std::size_t>(x) * static_cast<std::size_t>(ny) + static_cast<std::size_t>(y)) *
-                                static_cast<std::size_t>(nz) +
-                            static_cast<std::size_t>(z)];
-    };
     for (MacroCell& macro : macro_cells_) macro.empty_radius = macro.bricks != 0 ? 0 : kFar;
     const auto relax = [&](int x, int y, int z, int sign) {
-        MacroCell& macro = cell(x, y, z);
+        MacroCell& macro = macro_cells_[macroIndex(x, y, z)];
         for (int n = 1; n <= 13; ++n) {
             // The 13 neighbours that precede in raster order, or their mirror images.
             const int code = 13 - n;
@@ -175,7 +234,7 @@ void BrickGrid::measureEmptySpace() {
             const int qy = y + sign * (code / 3 % 3 - 1);
             const int qz = z + sign * (code % 3 - 1);
             if (qx < 0 || qy < 0 || qz < 0 || qx >= nx || qy >= ny || qz >= nz) continue;
-            macro.empty_radius = std::min(macro.empty_radius, cell(qx, qy, qz).empty_radius + 1);
+            macro.empty_radius = std::min(macro.empty_radius, macroCell(qx, qy, qz).empty_radius + 1);
         }
     };
     for (int x = 0; x < nx; ++x)
@@ -189,6 +248,10 @@ void BrickGrid::measureEmptySpace() {
     for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
 }
 
-std::size_t BrickGrid::bytes() const { return macro_cells_.bytes() + surfaces_.bytes() + samples_.bytes(); }
+std::size_t BrickGrid::bytes() const {
+    const std::size_t sample = values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t);
+    return macro_cells_.size() * sizeof(MacroCell) + listed_ * (sizeof(CellBits) + sizeof(std::uint32_t)) +
+           brickCount() * static_cast<std::size_t>(kBrickSamples) * sample;
+}
 
 }  // namespace stratum::march

@@ -4,17 +4,26 @@
 //   macro cell   32^3 cells, in a dense array: which of its 4^3 bricks have surface, or how far the next such macro
 //                cell is (Chebyshev distance), so that rays leave empty space in large boxes
 //   brick        8^3 cells: a bit for every surface cell (corners not of one sign), and the 9^3 samples at its corners
-// Only bricks with a surface cell are kept. All coordinates are cells, counted from the grid's lowest corner.
+// All coordinates are cells, counted from the grid's lowest corner.
+//
+// Bricks are laid out at once, or each when the first ray comes to it: then a brick is there for every leaf, all its
+// cells count as surface until it is laid out, and a picture costs what it shows.
 #pragma once
 
+#include "march/brick_layout.h"
 #include "march/huge_array.h"
+#include "march/leaf_source.h"
 
 #include <openvdb/openvdb.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
 
 namespace stratum::march {
 
@@ -51,49 +60,94 @@ public:
     /// Strides of a brick's samples.
     static constexpr std::ptrdiff_t kStrideY = kSamples;
     static constexpr std::ptrdiff_t kStrideX = kStrideY * kSamples;
+    static constexpr std::ptrdiff_t kBrickSamples = kStrideX * kSamples;
 
-    using Surface = std::array<std::uint64_t, 8>;  ///< Mask64 of each 4^3 cells; x slowest
-    using Samples = std::array<float, static_cast<std::size_t>(kStrideX* kSamples)>;  ///< world units; x slowest
-
-    /// Builds from a level set; parallel. The grid may be released afterwards. Throws InputError, with the size, for a
-    /// grid whose box holds more than 2^31 macro cells, and, with the place, for samples that are no finite numbers.
-    explicit BrickGrid(const openvdb::FloatGrid& grid);
+    /// Lays out every brick, in parallel. The source is not needed afterwards.
+    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, and, with the
+    /// place, for samples that are no finite numbers.
+    BrickGrid(const LeafSource& source, BrickValues values);
+    BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
+    /// Lays bricks out when require() asks for them, which then throws as above.
+    BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values);
+    ~BrickGrid();
+    BrickGrid(const BrickGrid&) = delete;
+    BrickGrid& operator=(const BrickGrid&) = delete;
 
     /// Index-space coordinate of cell (0, 0, 0).
     const openvdb::Coord& origin() const { return origin_; }
     /// Cells along each axis: a multiple of kMacroEdge.
     const std::array<int, 3>& size() const { return size_; }
 
-    const MacroCell& macroCell(int x, int y, int z) const {
-        return macro_cells_[(static_cast<std::size_t>(x) * static_cast<std::size_t>(macros_[1]) +
-                             static_cast<std::size_t>(y)) *
-                                static_cast<std::size_t>(macros_[2]) +
-                            static_cast<std::size_t>(z)];
-    }
+    const MacroCell& macroCell(int x, int y, int z) const { return macro_cells_[macroIndex(x, y, z)]; }
     /// Index of a brick that is set in its macro cell's mask; (x, y, z) in bricks within the macro cell.
     static std::size_t brickIndex(const MacroCell& macro, int x, int y, int z) {
         const std::uint64_t before = (std::uint64_t{1} << Mask64::bit(x, y, z)) - 1;
         return macro.first_brick + static_cast<std::size_t>(std::popcount(macro.bricks & before));
     }
-    const Surface& surface(std::size_t brick) const { return surfaces_[brick]; }
-    const float* samples(std::size_t brick) const { return samples_[brick].data(); }
+
+    /// Whether bricks are laid out as they are asked for.
+    bool late() const { return layouter_ != nullptr; }
+    /// Lays out the brick at this place, unless it is. From any thread.
+    void require(std::size_t brick, int x, int y, int z) const;
+
+    /// The surface cells among 4^3 of a brick's, `part` = x << 2 | y << 1 | z; all, before it is laid out.
+    std::uint64_t surface(std::size_t brick, std::size_t part) const {
+        return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
+    }
+    /// Where the samples of a brick with surface begin, in units of samples.
+    std::size_t firstSample(std::size_t brick) const {
+        return static_cast<std::size_t>(std::atomic_ref(slots_.data()[brick]).load(std::memory_order_acquire) - 1) *
+               static_cast<std::size_t>(kBrickSamples);
+    }
+    BrickValues values() const { return values_; }
+    /// All samples; x slowest in a brick. One of both is there.
+    const float* floats() const { return floats_.data(); }
+    const std::int16_t* quanta() const { return quanta_.data(); }
+    /// World units of 1 in the samples.
+    double unit() const { return unit_; }
 
     /// The same as arrays, for vector code.
     const MacroCell* macroCells() const { return macro_cells_.data(); }
-    const Surface* surfaces() const { return surfaces_.data(); }
+    /// Complements of the surface cells.
+    const CellBits* clearCells() const { return clear_.data(); }
+    /// Where each brick's samples are: 0 if it isn't laid out, kNoSamples if it has no surface, or counted from 1.
+    const std::uint32_t* slots() const { return slots_.data(); }
+    static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
 
-    std::size_t brickCount() const { return surfaces_.size(); }
+    /// Bricks with surface that are laid out.
+    std::size_t brickCount() const { return used_.load(std::memory_order_relaxed); }
+    /// Memory taken for all.
     std::size_t bytes() const;
 
 private:
+    class Layouter;
+
+    std::size_t macroIndex(int x, int y, int z) const {
+        return (static_cast<std::size_t>(x) * static_cast<std::size_t>(macros_[1]) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(macros_[2]) +
+               static_cast<std::size_t>(z);
+    }
+    MacroCell& macroOf(const openvdb::Coord& cell) {
+        return macro_cells_[macroIndex(cell[0] / kMacroEdge, cell[1] / kMacroEdge, cell[2] / kMacroEdge)];
+    }
+    std::vector<std::uint32_t> listBricks(const LeafSource& source);
     void measureEmptySpace();
+    void dropEmptyBricks();
 
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};
     std::array<int, 3> size_{};
+    BrickValues values_;
+    double unit_ = 1;
     HugeArray<MacroCell> macro_cells_;
-    HugeArray<Surface> surfaces_;
-    HugeArray<Samples> samples_;
+    std::size_t listed_ = 0;  // bricks that have an index
+    // Written when a brick is laid out, also in a grid that is const to those who trace it.
+    mutable HugeArray<CellBits> clear_;
+    mutable HugeArray<std::uint32_t> slots_;
+    mutable HugeArray<float> floats_;
+    mutable HugeArray<std::int16_t> quanta_;
+    mutable std::atomic<std::uint32_t> used_{0};
+    std::unique_ptr<const Layouter> layouter_;
 };
 
 }  // namespace stratum::march

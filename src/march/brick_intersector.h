@@ -1,7 +1,9 @@
 // The exact intersector: bricks, traversed by integer steps, and the nearest root of each cell's cubic.
 #pragma once
 
+#include "march/brick_layout.h"
 #include "march/intersector.h"
+#include "march/leaf_file.h"
 
 #include <openvdb/openvdb.h>
 
@@ -10,8 +12,13 @@
 namespace stratum::march {
 
 /// Lays the level set out in bricks (see brick_grid.h) and traces them. Hits are the exact zeros of the trilinear field
-/// of the grid's float samples: nothing is missed and nothing leaks between cells. The grid is not needed afterwards.
-/// Throws InputError for grids that requireTraceable() refuses. Tracers keep no state.
-std::unique_ptr<Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid);
+/// of the grid's samples, as they are or rounded to 16 bits: nothing is missed and nothing leaks between cells. The
+/// grid is not needed afterwards. Throws InputError for grids that requireTraceable() refuses. Tracers keep no state.
+std::unique_ptr<Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid,
+                                                  BrickValues values = BrickValues::Int16);
+/// The same of a file: large level sets are laid out, brick by brick, when rays first come there, so that a picture
+/// costs what it shows. The hits are the same.
+std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile> file,
+                                                  BrickValues values = BrickValues::Int16);
 
 }  // namespace stratum::march

@@ -13,8 +13,10 @@
 #define STRATUM_BRICK_LANES_INL_H
 #endif
 
+#include "march/beam.h"
 #include "march/brick_walk.h"
 #include "march/cell_lanes-inl.h"
+#include "march/hit_lanes-inl.h"
 #include "march/intersector.h"
 #include "march/lanes-inl.h"
 
@@ -23,6 +25,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -47,9 +50,9 @@ enum Field {
     kEnd = kCell + 3,
     kStart,
     kIndex,
-    kQueued,  // fields that a ray in the queue has
-    kT = kQueued,
-    kFace,  // t since the box was met; axis of the face that the cell was entered by, or -1
+    kT,               // since the box was met
+    kQueued,          // fields that a ray in the queue has
+    kFace = kQueued,  // axis of the face that the cell was entered by, or -1
     kFields
 };
 
@@ -63,7 +66,13 @@ template <bool kAny>
 class Marcher {
 public:
     Marcher(const BrickGrid& grid, const CellMap& map, std::span<const Ray> rays, Hit* hits, std::uint8_t* blocked)
-        : grid_(grid), map_(map), rays_(rays), hits_(hits), blocked_(blocked) {
+        : grid_(grid),
+          map_(map),
+          rays_(rays),
+          blocked_(blocked),
+          corners_(grid),
+          batch_(corners_, map, rays, hits),
+          beams_(grid, map) {
         for (int axis = 0; axis < 3; ++axis) size_[axis] = grid.size()[static_cast<std::size_t>(axis)];
         macro_y_ = size_[1] / BrickGrid::kMacroEdge;
         macro_z_ = size_[2] / BrickGrid::kMacroEdge;
@@ -86,6 +95,7 @@ public:
                     leap(packet);
             }
         }
+        if constexpr (!kAny) batch_.flush();
     }
 
 private:
@@ -98,7 +108,21 @@ private:
     // Walk's constructor and Walk::enter() for the next rays, as many as there are lanes.
     void enqueue() {
         const D d;
-        const auto left = rays_.size() - next_;
+        if (next_ == looked_at_) {
+            const auto ahead = std::min(rays_.size() - next_, Beams::kMostRays);
+            if constexpr (!kAny) starts_ = beams_.starts(rays_.subspan(next_, ahead));
+            looked_from_ = next_;
+            looked_at_ += ahead;
+        }
+        const double* starts = starts_.empty() ? nullptr : starts_.data() + (next_ - looked_from_);
+        const auto left = looked_at_ - next_;
+        if (starts != nullptr) {
+            const auto some = std::min<std::size_t>(left, kLanes);
+            if (std::none_of(starts, starts + some, [](double t) { return t < std::numeric_limits<double>::max(); })) {
+                next_ += some;
+                return;
+            }
+        }
         const auto count = std::min<std::size_t>(left, kLanes);
         const VI lane = hn::Iota(DI(), 0);
         const VI last = whole(static_cast<std::int64_t>(count) - 1);
@@ -145,13 +169,22 @@ private:
         }
         good = hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
         V out[kQueued];
+        out[kEnd] = end - start;
+        out[kT] = zero;
+        if (starts != nullptr) {
+            // What lies before is empty; a start in empty space changes no cell that matters, nor how it is entered.
+            HWY_ALIGN double from[kLanes] = {};
+            std::copy_n(starts, count, from);
+            out[kT] = hn::Max(hn::Load(d, from) - start, zero);
+            good = hn::And(good, hn::Lt(out[kT], out[kEnd]));
+        }
         for (int axis = 0; axis < 3; ++axis) {
             out[kO + axis] = o[axis] + start * dir[axis];
             out[kD + axis] = dir[axis];
             out[kInverse + axis] = inverse[axis];
-            out[kCell + axis] = clampTo(hn::Floor(out[kO + axis]), zero, constant(size_[axis] - 1));
+            out[kCell + axis] =
+                clampTo(hn::Floor(out[kO + axis] + out[kT] * dir[axis]), zero, constant(size_[axis] - 1));
         }
-        out[kEnd] = end - start;
         out[kStart] = start;
         out[kIndex] = fromWhole(lane + whole(static_cast<std::int64_t>(next_)));
         const unsigned kept = bitsOf(good);
@@ -182,7 +215,6 @@ private:
             const V row = hn::LoadU(d, queue_[n] + head_);
             store(p, n, hn::IfThenElse(taken, hn::TableLookupLanes(row, table), load(p, n)));
         }
-        store(p, kT, hn::IfThenElse(taken, hn::Zero(d), load(p, kT)));
         store(p, kFace, hn::IfThenElse(taken, constant(-1), load(p, kFace)));
         p.alive |= idle;
         head_ += std::popcount(idle);
@@ -271,7 +303,8 @@ private:
         const VI brick = hn::IfThenElseZero(hn::RebindMask(di, in_brick), hn::And(first, whole(0xffffffff)) + rank);
         const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
                                hn::ShiftRight<2>(hn::And(c[2], whole(4))));
-        const VI cells = gather(grid_.surfaces(), hn::ShiftLeft<3>(brick) + half);
+        const VI part = hn::ShiftLeft<3>(brick) + half;
+        const VI cells = hn::Not(gather(grid_.clearCells(), part));
         const VI three = whole(3);
         const VI at = hn::Or(hn::Or(hn::ShiftLeft<4>(hn::And(c[0], three)), hn::ShiftLeft<2>(hn::And(c[1], three))),
                              hn::And(c[2], three));
@@ -301,7 +334,7 @@ private:
             }
         }
         const unsigned found = bitsOf(hn::And(surface, walking));
-        if (found != 0) hold(p, found, brick, c);
+        if (found != 0) hold(p, found, brick, part, at, c);
         if (p.waiting != p.alive) advance(p, plane, aim(p, plane), hn::AndNot(surface, walking));
     }
 
@@ -309,38 +342,44 @@ private:
         return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
     }
 
-    // Remembers where the corners of surface cells lie, and calls for them.
-    HWY_INLINE void hold(Packet& p, unsigned found, VI brick, const VI c[3]) {
+    // Remembers where the corners of surface cells lie, and calls for them. Lanes whose brick had to be laid out first
+    // look again in their next turn.
+    HWY_INLINE void hold(Packet& p, unsigned found, VI brick, VI part, VI at, const VI c[3]) {
+        const VI slot = hn::And(
+            hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(brick)),
+            whole(0xffffffff));
+        if (grid_.late()) {
+            const unsigned not_there = bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found;
+            if (not_there != 0) require(not_there, brick, c);
+            // The bits may be older than the slot: laid out by another thread in between.
+            std::atomic_signal_fence(std::memory_order_acquire);
+            const VI clear = gather(grid_.clearCells(), part);
+            found &= ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
+            if (found == 0) return;
+        }
         const VI seven = whole(7);
-        const VI sample = product(brick, whole(BrickGrid::kStrideX * BrickGrid::kSamples)) +
+        const VI sample = product(slot - whole(1), whole(BrickGrid::kBrickSamples)) +
                           product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
                           product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
         const auto newly = hn::RebindMask(DI(), maskOf(found));
         hn::Store(hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample)), DI(), p.sample);
         p.waiting |= found;
-        for (unsigned rest = found; rest != 0; rest &= rest - 1) {
-            const float* corner = grid_.samples(0) + p.sample[std::countr_zero(rest)];
-            hwy::Prefetch(corner);
-            hwy::Prefetch(corner + BrickGrid::kStrideX);
-            hwy::Prefetch(corner + BrickGrid::kStrideY + 1);
-            hwy::Prefetch(corner + BrickGrid::kStrideX + BrickGrid::kStrideY + 1);
+        for (unsigned rest = found; rest != 0; rest &= rest - 1) corners_.prefetch(p.sample[std::countr_zero(rest)]);
+    }
+
+    HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) const {
+        HWY_ALIGN std::int64_t bricks[kLanes];
+        HWY_ALIGN std::int64_t place[3][kLanes];
+        hn::Store(brick, DI(), bricks);
+        for (int axis = 0; axis < 3; ++axis) hn::Store(hn::ShiftRight<3>(c[axis]), DI(), place[axis]);
+        for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+            const int lane = std::countr_zero(rest);
+            grid_.require(static_cast<std::size_t>(bricks[lane]), static_cast<int>(place[0][lane]),
+                          static_cast<int>(place[1][lane]), static_cast<int>(place[2][lane]));
         }
     }
 
-    // The two samples at `index` and one further along z.
-    HWY_INLINE void samplesAt(VI index, V& here, V& next) const {
-        const DU du;
-        const auto pair = hn::BitCast(
-            du,
-            hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.samples(0)), hn::ShiftLeft<2>(index)));
-        const auto floats = [](hn::Vec<DU> v) HWY_ATTR {
-            return hn::PromoteTo(D(), hn::BitCast(DF(), hn::TruncateTo(DHalfU32(), v)));
-        };
-        here = floats(pair);
-        next = floats(hn::ShiftRight<32>(pair));
-    }
-
-    // SegmentCubic, firstCrossing() and refineRoot() for the waiting lanes. Those that don't hit walk on.
+    // SegmentCubic and firstCrossing() for the waiting lanes. Those that don't hit walk on.
     void solve(Packet& p) {
         const D d;
         const V zero = hn::Zero(d);
@@ -372,12 +411,7 @@ private:
         }
         // Lanes that don't wait read where they last stood, or the first sample, and are ignored.
         const VI sample = hn::Load(DI(), p.sample);
-        V* v = in.v;
-        samplesAt(sample, v[0], v[1]);
-        samplesAt(sample + whole(BrickGrid::kStrideY), v[2], v[3]);
-        samplesAt(sample + whole(BrickGrid::kStrideX), v[4], v[5]);
-        samplesAt(sample + whole(BrickGrid::kStrideX + BrickGrid::kStrideY), v[6], v[7]);
-
+        corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
         const M in0 = hn::Lt(f.c0, zero);
         const M in1 = hn::Lt(f.c0 + f.c1 / constant(3), zero);
@@ -391,9 +425,7 @@ private:
                                     hn::And(hn::Xor(in0, in1), hn::And(hn::Xor(in1, in2), hn::Xor(in2, in3)))));
         unsigned hit = bitsOf(hn::And(hn::AndNot(twice, differ), waiting));
         const unsigned rare = bitsOf(twice);
-        V s = zero;
-        if constexpr (!kAny)
-            if (hit != 0) s = refined(f, maskOf(hit));
+        V s = constant(std::numeric_limits<double>::quiet_NaN());
         if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
         p.waiting = 0;
         if (hit != 0) {
@@ -401,47 +433,24 @@ private:
                 for (unsigned rest = hit; rest != 0; rest &= rest - 1)
                     blocked_[static_cast<std::size_t>(p.field[kIndex][std::countr_zero(rest)])] = 1;
             else
-                report(p, hit, in, s, t_out);
+                batch_.push(hit, {load(p, kIndex), load(p, kStart), t, t_out, s}, in, sample);
             p.alive &= ~hit;
         }
         advance(p, plane, exit, hn::AndNot(maskOf(hit), waiting));
     }
 
-    // BrickTracer::report().
-    HWY_INLINE void report(const Packet& p, unsigned hit, const LaneCell& cell, V s, V t_out) {
-        const D d;
-        const V t = load(p, kT);
-        HWY_ALIGN double times[kLanes];
-        HWY_ALIGN double normals[3][kLanes];
-        hn::Store(load(p, kStart) + (t + s * (t_out - t)), d, times);
-        const Vec3 g = gradientOf(cell, s);
-        V n[3];
-        for (int axis = 0; axis < 3; ++axis)
-            n[axis] = constant(map_.to_cells[axis][0]) * g.v[0] + constant(map_.to_cells[axis][1]) * g.v[1] +
-                      constant(map_.to_cells[axis][2]) * g.v[2];
-        const V length = hn::Sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        const unsigned flat = bitsOf(hn::Not(hn::Gt(length, hn::Zero(d))));
-        for (int axis = 0; axis < 3; ++axis) hn::Store(n[axis] / length, d, normals[axis]);
-        for (unsigned rest = hit; rest != 0; rest &= rest - 1) {
-            const int lane = std::countr_zero(rest);
-            const auto index = static_cast<std::size_t>(p.field[kIndex][lane]);
-            const Ray& ray = rays_[index];
-            Hit& out = hits_[index];
-            out.t = times[lane];
-            out.position = ray.origin + out.t * ray.direction;
-            out.normal = {normals[0][lane], normals[1][lane], normals[2][lane]};
-            if ((flat >> lane & 1) != 0) out.normal = -ray.direction;
-        }
-    }
-
     const BrickGrid& grid_;
     const CellMap& map_;
     const std::span<const Ray> rays_;
-    Hit* const hits_;
     std::uint8_t* const blocked_;
     double size_[3];
     std::int64_t macro_y_, macro_z_;
-    std::size_t next_ = 0;     // the first ray that hasn't been looked at
+    const CornerReader corners_;
+    HitBatch batch_;
+    Beams beams_;
+    std::span<const double> starts_;  // of the rays from looked_from_ to looked_at_, or none
+    std::size_t looked_from_ = 0, looked_at_ = 0;
+    std::size_t next_ = 0;     // the first ray that hasn't been queued
     int head_ = 0, tail_ = 0;  // of the queue
     HWY_ALIGN double queue_[kQueued][kQueue + 2 * kLanes];
     HWY_ALIGN Packet packets_[kPackets];

@@ -169,17 +169,29 @@ inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
     if (const int edge = Mask64::emptyEdge(macro.bricks, b.x, b.y, b.z)) return aligned(edge * BrickGrid::kBrickEdge);
     const std::size_t brick = BrickGrid::brickIndex(macro, b.x, b.y, b.z);
     const glm::ivec3 half = cell >> 2 & 1;
-    const std::uint64_t word = grid.surface(brick)[static_cast<std::size_t>(half.x << 2 | half.y << 1 | half.z)];
+    const auto part = static_cast<std::size_t>(half.x << 2 | half.y << 1 | half.z);
     const glm::ivec3 c = cell & 3;
+    std::uint64_t word = grid.surface(brick, part);
+    if (grid.late() && (word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) {
+        const glm::ivec3 place = cell >> 3;
+        grid.require(brick, place.x, place.y, place.z);
+        word = grid.surface(brick, part);
+    }
     if (const int edge = Mask64::emptyEdge(word, c.x, c.y, c.z)) return aligned(edge);
     return {cell, cell + 1, brick, true};
 }
 
+/// In the units of the grid's samples: where they cross zero, and which way, is the same in all units.
 inline Corners cornersOf(const BrickGrid& grid, std::size_t brick, const glm::ivec3& cell) {
     constexpr auto kX = BrickGrid::kStrideX;
     constexpr auto kY = BrickGrid::kStrideY;
-    const float* v = grid.samples(brick) + (cell.x & 7) * kX + (cell.y & 7) * kY + (cell.z & 7);
-    return {v[0], v[1], v[kY], v[kY + 1], v[kX], v[kX + 1], v[kX + kY], v[kX + kY + 1]};
+    const auto first =
+        static_cast<std::ptrdiff_t>(grid.firstSample(brick)) + (cell.x & 7) * kX + (cell.y & 7) * kY + (cell.z & 7);
+    const auto from = [](const auto* v) -> Corners {
+        const auto at = [v](std::ptrdiff_t n) { return static_cast<double>(v[n]); };
+        return {at(0), at(1), at(kY), at(kY + 1), at(kX), at(kX + 1), at(kX + kY), at(kX + kY + 1)};
+    };
+    return grid.values() == BrickValues::Float32 ? from(grid.floats() + first) : from(grid.quanta() + first);
 }
 
 }  // namespace stratum::march

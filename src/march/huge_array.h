@@ -1,18 +1,19 @@
 // Memory for large tables that are read at random: on huge pages where the system has them, so that a ray's reads don't
-// also miss the page tables, and not touched before it is filled, so that all threads share that work.
+// also miss the page tables. It is zero, and not there before it is touched: what is never written costs nothing, and
+// all threads share the work of the first touch.
 #pragma once
 
 #include <sys/mman.h>
 
 #include <cstddef>
-#include <cstdlib>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <type_traits>
 
 namespace stratum::march {
 
-/// A fixed number of T, uninitialized, aligned to a cache line or better. One more than asked for is there, so that
+/// A fixed number of T, all bits zero, aligned to a cache line or better. One more than asked for is there, so that
 /// vector code may read a little past the end, and index 0 always.
 template <typename T>
 class HugeArray {
@@ -20,37 +21,44 @@ class HugeArray {
 
 public:
     HugeArray() = default;
+    /// Throws std::bad_alloc if there is no room in the address space.
     explicit HugeArray(std::size_t size) : size_(size) {
         constexpr std::size_t kHugePage = std::size_t{1} << 21;
-        constexpr std::size_t kCacheLine = 64;
         const std::size_t wanted = (size + 1) * sizeof(T);
-        const std::size_t alignment = wanted < kHugePage ? kCacheLine : kHugePage;
-        const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
-        void* memory = std::aligned_alloc(alignment, bytes);
-        if (memory == nullptr) throw std::bad_alloc();
-        // Only advice: what it returns changes nothing.
-        if (alignment == kHugePage) (void)madvise(memory, bytes, MADV_HUGEPAGE);
-        data_.reset(static_cast<T*>(memory));
-        data_.get()[size] = T{};
-        bytes_ = bytes;
+        const bool large = wanted >= kHugePage;
+        // Maps are aligned to small pages; the spare part of a longer one is never touched.
+        const std::size_t mapped = large ? wanted + kHugePage : wanted;
+        void* memory =
+            mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        if (memory == MAP_FAILED) throw std::bad_alloc();
+        map_ = {static_cast<std::byte*>(memory), Unmap{mapped}};
+        if (large) {
+            const auto address = reinterpret_cast<std::uintptr_t>(memory);
+            const std::size_t skipped = (kHugePage - address % kHugePage) % kHugePage;
+            data_ = reinterpret_cast<T*>(map_.get() + skipped);
+            // Only advice: what it returns changes nothing.
+            (void)madvise(data_, wanted, MADV_HUGEPAGE);
+        } else {
+            data_ = reinterpret_cast<T*>(map_.get());
+        }
     }
 
-    T* data() { return data_.get(); }
-    const T* data() const { return data_.get(); }
-    T& operator[](std::size_t n) { return data_.get()[n]; }
-    const T& operator[](std::size_t n) const { return data_.get()[n]; }
-    T* begin() { return data(); }
-    T* end() { return data() + size_; }
+    T* data() { return data_; }
+    const T* data() const { return data_; }
+    T& operator[](std::size_t n) { return data_[n]; }
+    const T& operator[](std::size_t n) const { return data_[n]; }
+    T* begin() { return data_; }
+    T* end() { return data_ + size_; }
     std::size_t size() const { return size_; }
-    /// Memory taken.
-    std::size_t bytes() const { return bytes_; }
 
 private:
-    struct Free {
-        void operator()(T* memory) const { std::free(memory); }
+    struct Unmap {
+        std::size_t length = 0;
+        void operator()(std::byte* memory) const { (void)munmap(memory, length); }
     };
-    std::unique_ptr<T, Free> data_;
-    std::size_t size_ = 0, bytes_ = 0;
+    std::unique_ptr<std::byte, Unmap> map_;
+    T* data_ = nullptr;
+    std::size_t size_ = 0;
 };
 
 }  // namespace stratum::march

@@ -16,71 +16,103 @@ namespace {
 
 constexpr double kLeastHalfWidth = 2;
 
-}  // namespace
+// Which grid of a file is meant.
+struct Choice {
+    std::string name;
+    openvdb::GridBase::ConstPtr head;  // no voxels
+};
 
-openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
+Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
+    const std::string& where = file.filename();
+    std::string wanted = name;
+    std::string seen;
+    openvdb::GridBase::ConstPtr head;
+    int candidates = 0;
+    std::set<std::string> names;
+    for (auto it = file.beginName(); it != file.endName(); ++it) {
+        // Names that a file has twice come with a number: name[0], name[1].
+        const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
+        const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
+        if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
+            throw InputError(fmt::format("{}: has two grids named {}; name them apart, nobody can say which is meant",
+                                         where, plain.substr(0, plain.find('['))));
+        const auto meta = file.readGridMetadata(it.gridName());
+        seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
+        if (it.gridName() == name) head = meta;
+        const bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
+        if (!level_set) continue;
+        if (name.empty() && it.gridName() == "surface") {
+            wanted = "surface";
+            head = meta;
+            candidates = 1;
+            break;
+        }
+        ++candidates;
+        if (!name.empty()) continue;
+        wanted = it.gridName();
+        head = meta;
+    }
+    if (name.empty() && candidates > 1)
+        throw InputError(
+            fmt::format("{}: has {} level sets; say which with --grid NAME. It has: {}", where, candidates, seen));
+    if (name.empty() && candidates == 0)
+        throw InputError(fmt::format("{}: has no level set of floats; make one with gcode2vdb. It has: {}", where,
+                                     seen.empty() ? "nothing" : seen));
+    if (!head) throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
+    if (!head->isType<openvdb::FloatGrid>())
+        throw InputError(fmt::format("{}: the grid {} does not hold floats. It has: {}", where, name, seen));
+    return {wanted, head};
+}
+
+// Calls `read` with the opened file and the grid that is meant.
+template <typename Read>
+auto withGrid(const std::filesystem::path& path, const std::string& name, const Read& read) {
     const std::string where = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
         throw InputError(fmt::format("{}: is not a file; check the name", where));
-    openvdb::FloatGrid::Ptr chosen;
-    std::string seen;
-    int candidates = 0;
     try {
         openvdb::io::File file(where);
-        // Reading at once shows damage now, not in the middle of a picture.
+        // Without OpenVDB's delayed loading: it would copy the file, and build the whole tree all the same.
         file.open(/*delayLoad=*/false);
-        std::string wanted = name;
-        std::set<std::string> names;
-        for (auto it = file.beginName(); it != file.endName(); ++it) {
-            // Names that a file has twice come with a number: name[0], name[1].
-            const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
-            const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
-            if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
-                throw InputError(
-                    fmt::format("{}: has two grids named {}; name them apart, nobody can say which is meant", where,
-                                plain.substr(0, plain.find('['))));
-            const auto meta = file.readGridMetadata(it.gridName());
-            seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
-            const bool level_set =
-                meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
-            if (!level_set) continue;
-            if (name.empty() && it.gridName() == "surface") {
-                wanted = "surface";
-                candidates = 1;
-                break;
-            }
-            ++candidates;
-            if (name.empty()) wanted = it.gridName();
-        }
-        if (name.empty() && candidates > 1)
-            throw InputError(
-                fmt::format("{}: has {} level sets; say which with --grid NAME. It has: {}", where, candidates, seen));
-        if (name.empty() && candidates == 0)
-            throw InputError(fmt::format("{}: has no level set of floats; make one with gcode2vdb. It has: {}", where,
-                                         seen.empty() ? "nothing" : seen));
-        if (!file.hasGrid(wanted))
-            throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
-        chosen = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(wanted));
-        file.close();
+        return read(file, chooseGrid(file, name));
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
         // OpenVDB throws its own kinds, and std::bad_alloc for the absurd counts of a damaged file.
         throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
     }
-    if (!chosen) throw InputError(fmt::format("{}: the grid {} does not hold floats. It has: {}", where, name, seen));
-    requireTraceable(*chosen, where);
-    return chosen;
+}
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
+    const auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice) {
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(choice.name));
+    });
+    requireTraceable(*grid, path.string());
+    return grid;
+}
+
+std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
+    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice) {
+        return LeafFile::open(path, choice.name, *choice.head);
+    });
+    if (file) requireTraceable(file->head(), file->leafCount(), path.string());
+    return file;
 }
 
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {
+    requireTraceable(grid, grid.tree().leafCount(), where);
+}
+
+void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const std::string& where) {
     if (grid.getGridClass() != openvdb::GRID_LEVEL_SET)
         throw InputError(
             fmt::format("{}: the grid {} is not a level set but a {}; make a level set with gcode2vdb or "
                         "OpenVDB's fog-to-level-set tools",
                         where, grid.getName(), grid.gridClassToMenuName(grid.getGridClass())));
-    if (grid.tree().leafCount() == 0)
+    if (leaves == 0)
         throw InputError(
             fmt::format("{}: the level set {} is empty; there is no surface to trace", where, grid.getName()));
     if (!grid.hasUniformVoxels())
@@ -94,14 +126,17 @@ void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) 
 }
 
 Box narrowBandBounds(const openvdb::FloatGrid& grid) {
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    return worldBounds(grid.transform(), grid.evalActiveVoxelBoundingBox());
+}
+
+Box worldBounds(const openvdb::math::Transform& transform, const openvdb::CoordBBox& box) {
     Box bounds{glm::dvec3(std::numeric_limits<double>::infinity()),
                glm::dvec3(-std::numeric_limits<double>::infinity())};
     for (int corner = 0; corner < 8; ++corner) {
         openvdb::Coord index;
         for (int axis = 0; axis < 3; ++axis)
             index[axis] = (corner >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
-        const openvdb::Vec3d world = grid.indexToWorld(index);
+        const openvdb::Vec3d world = transform.indexToWorld(index);
         for (int axis = 0; axis < 3; ++axis) {
             bounds.min[axis] = std::min(bounds.min[axis], world[axis]);
             bounds.max[axis] = std::max(bounds.max[axis], world[axis]);

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "march/intersector.h"
+#include "march/leaf_file.h"
 
 #include <openvdb/openvdb.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace stratum::march {
@@ -14,11 +17,19 @@ namespace stratum::march {
 /// Throws InputError for a missing or damaged file, no level set, or several to choose from.
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
+/// The same without reading its leaves, for bricks that are laid out as rays come to them. Null for files that only
+/// OpenVDB can read: see LeafFile::open(). Throws as readLevelSet(), but for damage inside leaves, which their reading
+/// finds.
+std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name = "");
+
 /// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
 /// not empty, uniform voxels, half-width of at least 2 voxels.
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
+/// The same for a grid whose `leaves` are elsewhere.
+void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const std::string& where);
 
 /// World-space box of the active voxels' sample points, whichever way the transform turns them.
+Box worldBounds(const openvdb::math::Transform& transform, const openvdb::CoordBBox& active);
 Box narrowBandBounds(const openvdb::FloatGrid& grid);
 
 }  // namespace stratum::march

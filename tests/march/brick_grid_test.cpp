@@ -1,8 +1,13 @@
 #include "march/brick_grid.h"
 
+#include "march/brick_walk.h"
+#include "parallel/parallel_for.h"
 #include "spheres.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
 
 namespace stratum::march {
 namespace {
@@ -20,43 +25,70 @@ TEST(Mask64, EmptyEdgeIsTheLargestAlignedEmptyBlock) {
             }
 }
 
-TEST(BrickGrid, HoldsEverySurfaceCellAndItsCorners) {
-    // Not aligned with anything, in all octants.
-    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
-    const BrickGrid bricks(*grid);
-    const auto accessor = grid->getConstAccessor();
+// Every cell of the grid: is it marked if and only if its corners are not of one sign, and are they its samples?
+void expectAllCells(const openvdb::FloatGrid& grid, const BrickGrid& bricks) {
+    const auto accessor = grid.getConstAccessor();
     const auto size = bricks.size();
+    const double tolerance = bricks.values() == BrickValues::Float32 ? 0.0 : 0.5 * bricks.unit() * (1 + 1e-4);
     std::size_t surface_cells = 0;
     for (int x = 0; x < size[0]; ++x)
         for (int y = 0; y < size[1]; ++y)
             for (int z = 0; z < size[2]; ++z) {
                 const openvdb::Coord at = bricks.origin().offsetBy(x, y, z);
                 bool mixed = false;
-                float corner[8];
+                std::array<double, 8> corner{};
                 for (int c = 0; c < 8; ++c) {
-                    corner[c] = accessor.getValue(at.offsetBy(c >> 2, c >> 1 & 1, c & 1));
-                    mixed = mixed || (corner[c] < 0) != (corner[0] < 0);
+                    corner[static_cast<std::size_t>(c)] =
+                        static_cast<double>(accessor.getValue(at.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
+                    mixed = mixed || (corner[static_cast<std::size_t>(c)] < 0) != (corner[0] < 0);
                 }
-                const MacroCell& macro = bricks.macroCell(x / 32, y / 32, z / 32);
-                const int bx = x / 8 & 3;
-                const int by = y / 8 & 3;
-                const int bz = z / 8 & 3;
-                bool stored = false;
-                if ((macro.bricks >> Mask64::bit(bx, by, bz) & 1) != 0) {
-                    const std::size_t brick = BrickGrid::brickIndex(macro, bx, by, bz);
-                    const std::uint64_t word = bricks.surface(
-                        brick)[static_cast<std::size_t>((x >> 2 & 1) << 2 | (y >> 2 & 1) << 1 | (z >> 2 & 1))];
-                    stored = (word >> Mask64::bit(x & 3, y & 3, z & 3) & 1) != 0;
-                    const float* v =
-                        bricks.samples(brick) + (x & 7) * BrickGrid::kStrideX + (y & 7) * BrickGrid::kStrideY + (z & 7);
-                    for (int c = 0; c < 8; ++c)
-                        ASSERT_EQ(v[(c >> 2) * BrickGrid::kStrideX + (c >> 1 & 1) * BrickGrid::kStrideY + (c & 1)],
-                                  corner[c]);
-                }
-                ASSERT_EQ(stored, mixed) << at;
+                const Block block = findBlock(bricks, {x, y, z});
+                ASSERT_EQ(block.surface, mixed) << at;
                 surface_cells += mixed ? 1 : 0;
+                if (!mixed) continue;
+                const Corners stored = cornersOf(bricks, block.brick, {x, y, z});
+                for (std::size_t c = 0; c < 8; ++c) {
+                    ASSERT_EQ(stored[c] < 0, corner[c] < 0);
+                    // Below zero and nearer to it than half a quantum is one quantum below.
+                    ASSERT_NEAR(stored[c] * bricks.unit(), corner[c],
+                                stored[c] == -1 ? bricks.unit() * (1 + 1e-4) : tolerance);
+                }
             }
     EXPECT_GT(surface_cells, 10000U);
+}
+
+TEST(BrickGrid, HoldsEverySurfaceCellAndItsCorners) {
+    // Not aligned with anything, in all octants.
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
+    for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
+        expectAllCells(*grid, BrickGrid(*grid, values));
+        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values);
+        EXPECT_EQ(late.brickCount(), 0U);
+        expectAllCells(*grid, late);
+        EXPECT_EQ(late.brickCount(), BrickGrid(*grid, values).brickCount());
+    }
+}
+
+TEST(BrickGrid, KeepsSixteenBitsInSixteenHundredBytesABrick) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.03F);
+    const BrickGrid bricks(*grid, BrickValues::Int16);
+    EXPECT_GT(bricks.brickCount(), 1000U);
+    EXPECT_LE(bricks.bytes(), 1600 * bricks.brickCount());
+}
+
+TEST(BrickGrid, LaysLateBricksOutOnceForAllThreads) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.1F);
+    const BrickGrid all(*grid, BrickValues::Int16);
+    const BrickGrid late(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
+    const auto size = late.size();
+    // All threads at the same bricks.
+    parallelFor(8, 1, [&](std::size_t, std::size_t) {
+        for (int x = 0; x < size[0]; x += 2)
+            for (int y = 0; y < size[1]; y += 2)
+                for (int z = 0; z < size[2]; z += 2) (void)findBlock(late, {x, y, z});
+    });
+    EXPECT_EQ(late.brickCount(), all.brickCount());
+    expectAllCells(*grid, late);
 }
 
 TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {
@@ -64,7 +96,7 @@ TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {
     // A second part far away, to open a wide space between.
     auto far = test::sphereGrid(1, openvdb::Vec3f(21, 13, 8), 0.1F);
     for (auto it = far->cbeginValueOn(); it; ++it) grid->tree().setValueOn(it.getCoord(), *it);
-    const BrickGrid bricks(*grid);
+    const BrickGrid bricks(*grid, BrickValues::Int16);
     const int n[3] = {bricks.size()[0] / 32, bricks.size()[1] / 32, bricks.size()[2] / 32};
     for (int x = 0; x < n[0]; ++x)
         for (int y = 0; y < n[1]; ++y)

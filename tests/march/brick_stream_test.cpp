@@ -62,14 +62,40 @@ Tally compare(Tracer& tracer, const std::vector<Ray>& rays) {
 }
 
 TEST_P(BrickStream, HasTheBitsOfTheScalarWalk) {
-    for (const bool rough : {false, true}) {
-        const auto intersector = makeBrickIntersector(*test::rubble(0.1F, rough));
+    for (const int kind : {0, 1, 2, 3}) {
+        const auto intersector = makeBrickIntersector(*test::rubble(0.1F, kind % 2 != 0),
+                                                      kind < 2 ? BrickValues::Float32 : BrickValues::Int16);
         const Tally tally = compare(*intersector->makeTracer(), test::randomRays(200000, 4, 0.1, 11));
         EXPECT_GT(tally.hits, 60000U);
         EXPECT_EQ(tally.missed, 0U);
         EXPECT_EQ(tally.extra, 0U);
         EXPECT_EQ(tally.moved, 0U);
         EXPECT_EQ(tally.blocked_wrongly, 0U);
+    }
+}
+
+TEST_P(BrickStream, HasThemForPicturesToo) {
+    // Rays of one eye begin where their beams do.
+    for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
+        const auto intersector = makeBrickIntersector(*test::rubble(0.1F, true), values);
+        const auto tracer = intersector->makeTracer();
+        std::mt19937 random(6);
+        std::size_t hits = 0;
+        for (int view = 0; view < 60; ++view) {
+            const glm::dvec3 out = test::randomDirection(random);
+            const double away = view % 3 == 0 ? 2.0 : view % 3 == 1 ? 15.0 : 1e4;
+            std::vector<Ray> rays(3000);
+            for (Ray& ray : rays) {
+                ray.origin = away * out;
+                ray.direction = glm::normalize(-out + (5 / away) * test::randomDirection(random));
+                if (view % 4 == 0) ray.t_min = away - 2;
+                if (view % 4 == 1) ray.t_max = away - 1;
+            }
+            const Tally tally = compare(*tracer, rays);
+            hits += tally.hits;
+            ASSERT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U) << view;
+        }
+        EXPECT_GT(hits, 40000U);
     }
 }
 

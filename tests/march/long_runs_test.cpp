@@ -153,7 +153,7 @@ TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) {
 
 TEST_F(LongRuns, TenMillionGrazingRaysEndWithFiniteAnswers) {
     const std::size_t kRays = full(10000000);
-    const BrickGrid bricks(*grid_);
+    const BrickGrid bricks(*grid_, BrickValues::Float32);
     const CellMap map(*grid_->transform().baseMap(), bricks.origin());
     const std::size_t most_steps = static_cast<std::size_t>(bricks.size()[0] + bricks.size()[1] + bricks.size()[2]);
     std::atomic<std::size_t> hits{0};

@@ -5,6 +5,7 @@
 
 #include <openvdb/tools/Composite.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -29,6 +30,18 @@ inline openvdb::FloatGrid::Ptr rubble(float voxel, bool rough) {
     }
     all->setName("surface");
     return all;
+}
+
+/// The grid with its samples as bricks of 16 bits hold them.
+inline openvdb::FloatGrid::Ptr quantized(const openvdb::FloatGrid& grid) {
+    const auto copy = grid.deepCopy();
+    const double quantum = static_cast<double>(grid.background()) / 32767;
+    const auto round = [quantum](float value) {
+        const double n = std::nearbyint(std::clamp(static_cast<double>(value) / quantum, -32767.0, 32767.0));
+        return static_cast<float>((value < 0 ? std::min(n, -1.0) : n) * quantum);
+    };
+    for (auto it = copy->beginValueAll(); it; ++it) it.setValue(round(*it));
+    return copy;
 }
 
 }  // namespace stratum::test

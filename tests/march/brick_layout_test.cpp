@@ -1,0 +1,68 @@
+#include "march/brick_layout.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+
+namespace stratum::march {
+namespace {
+
+class BrickLayout : public testing::TestWithParam<std::int64_t> {
+protected:
+    void SetUp() override {
+        if ((hwy::SupportedTargets() & GetParam()) == 0)
+            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
+        hwy::SetSupportedTargetsForTest(GetParam());
+    }
+    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Targets, BrickLayout, testing::Values(HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
+                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+
+TEST_P(BrickLayout, RoundsToTheNearestQuantumAndKeepsSigns) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> value(-0.35F, 0.35F);
+    std::vector<float> samples(LeafSource::kLeafSamples);
+    const float scale = 32767 / 0.3F;
+    const float hard[] = {0.0F, -0.0F, 1e-9F, -1e-9F, 1e-30F,       -1e-30F,
+                          0.3F, -0.3F, 5.0F,  -5.0F,  0.5F / scale, -0.5F / scale};
+    for (std::size_t n = 0; n < samples.size(); ++n) samples[n] = n < std::size(hard) ? hard[n] : value(random);
+    const auto out = std::make_unique<LeafSamples<std::int16_t>>();
+    ASSERT_TRUE(convert(samples.data(), scale, *out));
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        const std::int16_t q = out->value[n];
+        ASSERT_EQ(q < 0, samples[n] < 0) << samples[n];
+        ASSERT_EQ(q, convert(samples[n], scale, std::int16_t{})) << samples[n];
+        ASSERT_EQ((out->inside[n / 64] >> (n % 64) & 1) != 0, samples[n] < 0);
+        const double exact =
+            std::clamp(static_cast<double>(samples[n]) * static_cast<double>(scale), -32767.0, 32767.0);
+        ASSERT_LE(std::abs(q - exact), q == -1 ? 1.0 : 0.503);
+    }
+    const auto floats = std::make_unique<LeafSamples<float>>();
+    ASSERT_TRUE(convert(samples.data(), 1, *floats));
+    EXPECT_TRUE(std::equal(samples.begin(), samples.end(), floats->value.begin()));
+    EXPECT_EQ(floats->inside, out->inside);
+}
+
+TEST_P(BrickLayout, TellsSamplesThatAreNoNumbers) {
+    std::vector<float> samples(LeafSource::kLeafSamples, 0.1F);
+    const auto quanta = std::make_unique<LeafSamples<std::int16_t>>();
+    const auto floats = std::make_unique<LeafSamples<float>>();
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                            -std::numeric_limits<float>::infinity()})
+        for (const std::size_t place : {0U, 5U, 100U, 511U}) {
+            samples[place] = bad;
+            EXPECT_FALSE(convert(samples.data(), 1, *quanta));
+            EXPECT_FALSE(convert(samples.data(), 1, *floats));
+            samples[place] = 0.1F;
+        }
+    EXPECT_TRUE(convert(samples.data(), 1, *quanta));
+}
+
+}  // namespace
+}  // namespace stratum::march
