@@ -44,10 +44,8 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.get_help_ptr()->group("General");
 }
 
-namespace {
+namespace {}  // namespace
 
-// Touching fresh memory a small page at a time is what a large grid spends most of its time on. The C library can ask
-// for huge pages, but only if it is told before it starts: so the process starts itself once more.
 void useHugePages(char** argv) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     if (std::getenv("GLIBC_TUNABLES") != nullptr) return;
@@ -63,8 +61,6 @@ void useHugePages(char** argv) {
 #endif
 }
 
-}  // namespace
-
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
     AtomicFile::removeOnSignals();
     try {
@@ -74,7 +70,6 @@ int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& b
     } catch (const CLI::ParseError& error) {
         return complain(app, fmt::format("{} (see {} -h)", error.what(), app.get_name()), kWrongUsage);
     }
-    useHugePages(argv);
     try {
         body();
         return 0;

@@ -26,6 +26,11 @@ struct CommonOptions {
 /// Adds the common options to a command line.
 void addCommonOptions(CLI::App& app, CommonOptions& options);
 
+/// For tools that fill large grids: touching fresh memory a small page at a time is what that spends most of its time
+/// on. The C library can ask for huge pages, but only if it is told before it starts: so the process starts itself once
+/// more. To be called before anything else is done.
+void useHugePages(char** argv);
+
 /// Parses, runs `body` and turns what escapes into a message on stderr and an exit status:
 /// 0 done, 1 failed, 2 wrong usage, 3 bad input.
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body);

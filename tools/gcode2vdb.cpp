@@ -451,5 +451,8 @@ int main(int argc, char** argv) {
                  "gcode2vdb");
     Options options;
     addOptions(app, options);
-    return tools::runTool(app, argc, argv, [&options] { run(options); });
+    return tools::runTool(app, argc, argv, [&] {
+        tools::useHugePages(argv);
+        run(options);
+    });
 }

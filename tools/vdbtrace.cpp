@@ -20,6 +20,7 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,7 @@ struct Options {
     std::vector<double> eye, look_at, up;
     std::vector<float> phong;
     bool spp_given = false;
+    march::BrickValues values = march::BrickValues::Int16;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
@@ -139,6 +141,13 @@ void addOptions(CLI::App& app, Options& o) {
         ->check(CLI::IsMember({"auto", "brick", "sphere", "vdb"}))
         ->type_name("NAME")
         ->group(tracing);
+    app.add_option("--brick-values", o.values,
+                   "brick: keep samples as float, or as int16, half of the memory, rounded to a 32767th of the narrow "
+                   "band's half-width (default int16)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, march::BrickValues>{
+            {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
+        ->type_name("float|int16")
+        ->group(tracing);
     tools::addCommonOptions(app, o.common);
     app.footer(kExamples);
 }
@@ -229,6 +238,8 @@ void run(Options& o, int argc, char** argv) {
     readScene(o, argc, argv);
     if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
     applyText(o);
+    const bool bricks = o.march == "auto" || o.march == "brick";
+    if (!bricks) tools::useHugePages(argv);  // bricks have their own
     const tools::ThreadLimit limit(o.common.threads);
     tools::Stopwatch total;
     tools::Stopwatch watch;
@@ -239,20 +250,24 @@ void run(Options& o, int argc, char** argv) {
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
 
     openvdb::initialize();
-    openvdb::FloatGrid::ConstPtr grid = march::readLevelSet(o.input, o.grid);
-    const Json input{{"path", o.input},
-                     {"grid", grid->getName()},
-                     {"active_voxels", grid->activeVoxelCount()},
-                     {"bytes", grid->memUsage()}};
-    tools::say(o.common, fmt::format("{}: {} active voxels of {:g} {}", o.input,
-                                     tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
-                                     grid->voxelSize()[0], unitOf(*grid)));
+    auto file = bricks ? march::openLevelSet(o.input, o.grid) : nullptr;
+    openvdb::FloatGrid::ConstPtr grid = file ? nullptr : march::readLevelSet(o.input, o.grid);
+    const openvdb::FloatGrid& head = file ? file->head() : *grid;
+    const std::uint64_t active = file ? file->activeVoxelCount() : grid->activeVoxelCount();
+    const Json input{
+        {"path", o.input}, {"grid", head.getName()}, {"active_voxels", active}, {"bytes", file ? 0 : grid->memUsage()}};
+    tools::say(o.common,
+               fmt::format("{}: {} active voxels of {:g} {}", o.input, tools::humanCount(static_cast<double>(active)),
+                           head.voxelSize()[0], unitOf(head)));
     const double load_seconds = watch.lap();
-    const auto intersector = o.march == "vdb"      ? march::makeVdbIntersector(grid)
+    const auto intersector = file                  ? march::makeBrickIntersector(std::move(file), o.values)
+                             : o.march == "vdb"    ? march::makeVdbIntersector(grid)
                              : o.march == "sphere" ? march::makeSphereIntersector(grid)
-                                                   : march::makeBrickIntersector(*grid);
+                                                   : march::makeBrickIntersector(*grid, o.values);
     grid.reset();  // bricks hold all that rays need
-    const shade::SceneDescription scene = shade::makeScene(o.scene, *intersector, o.render.width, o.render.height);
+    shade::SceneOptions seen = o.scene;
+    if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";  // costs nothing
+    const shade::SceneDescription scene = shade::makeScene(seen, *intersector, o.render.width, o.render.height);
     for (const std::string& note : scene.material->notes()) tools::say(o.common, "  material: " + note);
     if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene.material);
     const double build_seconds = watch.lap();

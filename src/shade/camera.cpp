@@ -140,16 +140,6 @@ Camera Camera::make(const CameraOptions& options, const march::Box& box, int wid
     return camera;
 }
 
-march::Ray Camera::ray(const glm::dvec2& pixel) const {
-    const double scale = 2.0 * tan_half_ / height_;
-    const double x = (pixel.x - 0.5 * width_) * scale;
-    const double y = (0.5 * height_ - pixel.y) * scale;
-    march::Ray ray;
-    ray.origin = eye_;
-    ray.direction = glm::normalize(forward_ + x * right_ + y * up_);
-    return ray;
-}
-
 std::optional<glm::dvec2> Camera::project(const glm::dvec3& point) const {
     const glm::dvec3 d = point - eye_;
     const double depth = glm::dot(d, forward_);

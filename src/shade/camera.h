@@ -3,6 +3,7 @@
 
 #include "march/intersector.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -44,7 +45,15 @@ public:
     static Camera make(const CameraOptions& options, const march::Box& box, int width, int height);
 
     /// The ray through a point of the frame, in pixels.
-    march::Ray ray(const glm::dvec2& pixel) const;
+    march::Ray ray(const glm::dvec2& pixel) const {
+        const double scale = 2.0 * tan_half_ / height_;
+        const double x = (pixel.x - 0.5 * width_) * scale;
+        const double y = (0.5 * height_ - pixel.y) * scale;
+        march::Ray ray;
+        ray.origin = eye_;
+        ray.direction = glm::normalize(forward_ + x * right_ + y * up_);
+        return ray;
+    }
     /// Where a world-space point is seen, in pixels; nothing if it is not in front of the camera.
     std::optional<glm::dvec2> project(const glm::dvec3& point) const;
 

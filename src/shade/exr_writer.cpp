@@ -8,12 +8,14 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <array>
 #include <cstddef>
 #include <stdexcept>
-#include <vector>
+#include <type_traits>
 
 namespace stratum::shade {
 
@@ -32,30 +34,31 @@ void writeExr(const std::filesystem::path& path, const Film& film, const std::ma
         header.insert(name.c_str(), Imf::StringAttribute(text));
     }
 
-    std::vector<float> values;
-    values.reserve(kChannels * film.pixels().size());
-    for (const Pixel& p : film.pixels()) values.insert(values.end(), {p.rgb.r, p.rgb.g, p.rgb.b, p.alpha});
-
     // OpenEXR addresses pixels by frame coordinates: its base is where (0, 0) would be.
-    constexpr std::size_t kStepX = kChannels * sizeof(float);
-    const std::size_t step_y = kStepX * static_cast<std::size_t>(film.width());
+    // Its frame buffers are for reading, too, and so want no const; it writes to none of ours.
+    static_assert(sizeof(Pixel) == kChannels * sizeof(float) && std::is_standard_layout_v<Pixel>);
+    const auto step_y = sizeof(Pixel) * static_cast<std::size_t>(film.width());
+    auto* const pixels = reinterpret_cast<float*>(const_cast<Pixel*>(film.pixels().data()));
     Imf::FrameBuffer buffer;
     for (std::size_t c = 0; c < kChannels; ++c) {
         header.channels().insert(kNames[c], Imf::Channel(Imf::FLOAT));
-        buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, values.data() + c, data, kStepX, step_y));
+        buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, pixels + c, data, sizeof(Pixel), step_y));
     }
     for (const FilmLayer& layer : film.layers()) {
         const std::size_t pixel = sizeof(float) * layer.channels.size();
         for (std::size_t c = 0; c < layer.channels.size(); ++c) {
             const std::string name = layer.name + "." + layer.channels[c];
             header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            // OpenEXR's frame buffers are for reading, too, and so want no const; it writes to none of ours.
             buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(layer.values.data()) + c, data, pixel,
                                                  pixel * static_cast<std::size_t>(film.width())));
         }
     }
     try {
-        Imf::OutputFile file(path.c_str(), header, 0);
+        // The same bytes for any number.
+        const auto threads =
+            static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+        Imf::OutputFile file(path.c_str(), header, threads);
         file.setFrameBuffer(buffer);
         file.writePixels(film.height());
     } catch (const std::exception& error) {

@@ -28,12 +28,4 @@ PixelFilter::PixelFilter() {
     }
 }
 
-double PixelFilter::quantile(float u) const {
-    const double s = static_cast<double>(u) * (kNodes - 1);
-    const int i = std::min(static_cast<int>(s), kNodes - 2);
-    const double w = s - i;
-    const auto n = static_cast<std::size_t>(i);
-    return (1.0 - w) * quantiles_[n] + w * quantiles_[n + 1];
-}
-
 }  // namespace stratum::shade

@@ -3,7 +3,9 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace stratum::shade {
 
@@ -22,7 +24,13 @@ public:
     static double weight(double offset);
 
 private:
-    double quantile(float u) const;
+    double quantile(float u) const {
+        const double s = static_cast<double>(u) * (kNodes - 1);
+        const int i = std::min(static_cast<int>(s), kNodes - 2);
+        const double w = s - i;
+        const auto n = static_cast<std::size_t>(i);
+        return (1.0 - w) * quantiles_[n] + w * quantiles_[n + 1];
+    }
 
     static constexpr int kNodes = 1025;
     std::array<double, kNodes> quantiles_{};

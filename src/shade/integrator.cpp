@@ -39,6 +39,11 @@ void IntegratorOptions::validate() const {
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
 }
 
+bool needsLight(const IntegratorOptions& options) {
+    constexpr std::array<std::string_view, 5> kGeometry = {"ao", "normal", "depth", "position", "mask"};
+    return std::find(kGeometry.begin(), kGeometry.end(), options.name) == kGeometry.end();
+}
+
 Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
     SurfacePoint point;
     ++context.rays.primary;
@@ -47,7 +52,8 @@ Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
 
 void Integrator::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
                                 RayCounts& counts, std::span<Pixel> pixels) const {
-    std::vector<SurfacePoint> points(rays.size());
+    static thread_local std::vector<SurfacePoint> points;  // as in Surfaces::nearest()
+    points.resize(rays.size());
     counts.primary += rays.size();
     surfaces_.nearest(rays, tracer, points);
     for (std::size_t n = 0; n < rays.size(); ++n) {

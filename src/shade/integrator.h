@@ -56,6 +56,9 @@ struct IntegratorOptions {
     void validate() const;
 };
 
+/// Whether the integrator of that name looks at light at all.
+bool needsLight(const IntegratorOptions& options);
+
 /// Immutable; shared by all threads.
 class Integrator {
 public:

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <span>
 #include <vector>
 
 namespace stratum::shade {
@@ -23,6 +24,7 @@ constexpr std::size_t kStream = 1024;  // samples on the way at a time: enough t
 
 /// Camera rays on the way, with their samplers.
 struct Stream {
+    explicit Stream(const Sampler& sampler) : rays(kStream), samplers(kStream, sampler), pixels(kStream) {}
     std::vector<march::Ray> rays;
     std::vector<Sampler> samplers;
     std::vector<Pixel> pixels;
@@ -120,16 +122,17 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
             // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
             const auto each = static_cast<std::size_t>(target - done);
             std::size_t summed = 0;
+            std::size_t filled = 0;
             const auto flush = [&] {
-                stream.pixels.resize(stream.rays.size());
-                integrator->radianceStream(stream.rays, stream.samplers, *worker.tracer, worker.rays, stream.pixels);
-                for (std::size_t n = 0; n < stream.pixels.size(); ++n) {
+                integrator->radianceStream(std::span(stream.rays).first(filled),
+                                           std::span(stream.samplers).first(filled), *worker.tracer, worker.rays,
+                                           std::span(stream.pixels).first(filled));
+                for (std::size_t n = 0; n < filled; ++n) {
                     const std::size_t pixel = summed++ / each;
                     sums[pixel].add(stream.pixels[n]);
                     recorder.add(stream.rays[n], context, layers.data() + pixel * recorder.size());
                 }
-                stream.rays.clear();
-                stream.samplers.clear();
+                filled = 0;
             };
             for (int y = tile.y0; y < tile.y1; ++y)
                 for (int x = tile.x0; x < tile.x1; ++x)
@@ -137,9 +140,9 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
                         Sampler sampler = worker.sampler;
                         sampler.start(x, y, static_cast<std::uint32_t>(s));
                         const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
-                        stream.rays.push_back(scene.camera.ray(place));
-                        stream.samplers.push_back(sampler);
-                        if (stream.rays.size() == kStream) flush();
+                        stream.rays[filled] = scene.camera.ray(place);
+                        stream.samplers[filled] = sampler;
+                        if (++filled == kStream) flush();
                     }
             flush();
             done = target;
@@ -160,8 +163,8 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
 
     const std::vector<PixelBox> tiles = tilesOf(region);
     tbb::enumerable_thread_specific<Worker> workers([&] {
-        return Worker{
-            print.makeTracer(), Sampler(options.seed, static_cast<std::uint32_t>(options.spp)), RayCounts{}, {}, 0};
+        const Sampler sampler(options.seed, static_cast<std::uint32_t>(options.spp));
+        return Worker{print.makeTracer(), sampler, RayCounts{}, Stream(sampler), 0};
     });
     std::mutex progress_mutex;
     std::uint64_t done = 0;

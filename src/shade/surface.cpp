@@ -49,11 +49,17 @@ bool Surfaces::nearest(const march::Ray& ray, march::Tracer& tracer, SurfacePoin
 }
 
 void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, std::span<SurfacePoint> points) const {
-    std::vector<march::Ray> limited(rays.begin(), rays.end());
-    std::vector<march::Hit> hits(rays.size());
-    if (scene_.bed)
+    // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
+    static thread_local std::vector<march::Hit> hits;
+    hits.resize(rays.size());
+    if (scene_.bed) {
+        static thread_local std::vector<march::Ray> limited;
+        limited.assign(rays.begin(), rays.end());
         for (march::Ray& ray : limited) ray.t_max = scene_.bed->intersect(ray).value_or(ray.t_max);
-    tracer.intersectStream(limited, hits);
+        tracer.intersectStream(limited, hits);
+    } else {
+        tracer.intersectStream(rays, hits);
+    }
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
             points[n] = onPrint(rays[n], hits[n]);
