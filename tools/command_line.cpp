@@ -44,8 +44,6 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
     app.get_help_ptr()->group("General");
 }
 
-namespace {}  // namespace
-
 void useHugePages(char** argv) {
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     if (std::getenv("GLIBC_TUNABLES") != nullptr) return;
