@@ -259,6 +259,12 @@ void run(Options& o, int argc, char** argv) {
     tools::say(o.common,
                fmt::format("{}: {} active voxels of {:g} {}", o.input, tools::humanCount(static_cast<double>(active)),
                            head.voxelSize()[0], unitOf(head)));
+    // Rounding of the background to a float is no reason to warn.
+    if (const double half_width = static_cast<double>(head.background()) / head.voxelSize()[0]; half_width < 2.999)
+        fmt::print(stderr,
+                   "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
+                   "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
+                   o.input, half_width);
     const double load_seconds = watch.lap();
     const auto intersector = file                  ? march::makeBrickIntersector(std::move(file), o.values)
                              : o.march == "vdb"    ? march::makeVdbIntersector(grid)

@@ -150,6 +150,11 @@ void BrickGrid::require(std::size_t brick, int x, int y, int z) const {
     if (slot.load(std::memory_order_relaxed) == 0) layouter_->layOut(brick, x, y, z);
 }
 
+std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
+    require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge);
+    return surface(brick, part);
+}
+
 // Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
 std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source) {
     unit_ = quantumOf(source, values_);

@@ -15,6 +15,7 @@
 #include "march/leaf_source.h"
 
 #include <openvdb/openvdb.h>
+#include <glm/vec3.hpp>
 
 #include <array>
 #include <atomic>
@@ -94,6 +95,8 @@ public:
     std::uint64_t surface(std::size_t brick, std::size_t part) const {
         return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
     }
+    /// The same after require() of the brick that `cell` is in.
+    std::uint64_t surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
     /// Where the samples of a brick with surface begin, in units of samples.
     std::size_t firstSample(std::size_t brick) const {
         return static_cast<std::size_t>(std::atomic_ref(slots_.data()[brick]).load(std::memory_order_acquire) - 1) *

@@ -70,6 +70,7 @@ public:
           map_(map),
           rays_(rays),
           blocked_(blocked),
+          late_(grid.late()),
           corners_(grid),
           batch_(corners_, map, rays, hits),
           beams_(grid, map) {
@@ -348,13 +349,8 @@ private:
         const VI slot = hn::And(
             hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(brick)),
             whole(0xffffffff));
-        if (grid_.late()) {
-            const unsigned not_there = bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found;
-            if (not_there != 0) require(not_there, brick, c);
-            // The bits may be older than the slot: laid out by another thread in between.
-            std::atomic_signal_fence(std::memory_order_acquire);
-            const VI clear = gather(grid_.clearCells(), part);
-            found &= ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
+        if (late_) {
+            found = thereOf(found, slot, brick, part, at, c);
             if (found == 0) return;
         }
         const VI seven = whole(7);
@@ -365,6 +361,16 @@ private:
         hn::Store(hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample)), DI(), p.sample);
         p.waiting |= found;
         for (unsigned rest = found; rest != 0; rest &= rest - 1) corners_.prefetch(p.sample[std::countr_zero(rest)]);
+    }
+
+    // Which of the lanes stand in surface cells of bricks that are laid out; asks for the others' bricks.
+    HWY_NOINLINE unsigned thereOf(unsigned found, VI slot, VI brick, VI part, VI at, const VI c[3]) const {
+        const unsigned not_there = bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found;
+        if (not_there != 0) require(not_there, brick, c);
+        // The bits may be older than the slot: laid out by another thread in between.
+        std::atomic_signal_fence(std::memory_order_acquire);
+        const VI clear = gather(grid_.clearCells(), part);
+        return found & ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
     }
 
     HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) const {
@@ -445,6 +451,7 @@ private:
     std::uint8_t* const blocked_;
     double size_[3];
     std::int64_t macro_y_, macro_z_;
+    const bool late_;
     const CornerReader corners_;
     HitBatch batch_;
     Beams beams_;

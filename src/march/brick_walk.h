@@ -151,7 +151,7 @@ struct Block {
     bool surface;
 };
 
-inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
+[[gnu::always_inline]] inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
     const glm::ivec3 size(grid.size()[0], grid.size()[1], grid.size()[2]);
     constexpr int kMacroShift = 5;
     const glm::ivec3 m = cell >> kMacroShift;
@@ -172,17 +172,14 @@ inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
     const auto part = static_cast<std::size_t>(half.x << 2 | half.y << 1 | half.z);
     const glm::ivec3 c = cell & 3;
     std::uint64_t word = grid.surface(brick, part);
-    if (grid.late() && (word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) {
-        const glm::ivec3 place = cell >> 3;
-        grid.require(brick, place.x, place.y, place.z);
-        word = grid.surface(brick, part);
-    }
+    if (grid.late()) [[unlikely]]
+        if ((word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) word = grid.surfaceOnceThere(brick, part, cell);
     if (const int edge = Mask64::emptyEdge(word, c.x, c.y, c.z)) return aligned(edge);
     return {cell, cell + 1, brick, true};
 }
 
 /// In the units of the grid's samples: where they cross zero, and which way, is the same in all units.
-inline Corners cornersOf(const BrickGrid& grid, std::size_t brick, const glm::ivec3& cell) {
+[[gnu::always_inline]] inline Corners cornersOf(const BrickGrid& grid, std::size_t brick, const glm::ivec3& cell) {
     constexpr auto kX = BrickGrid::kStrideX;
     constexpr auto kY = BrickGrid::kStrideY;
     const auto first =
