@@ -30,7 +30,7 @@ for axis, argument in zip(axes[0], inputs):
         x = 1e3 / row["mrays_per_second"]
         index = names.setdefault(name, len(names))
         axis.errorbar(x, error, xerr=[[x - 1e3 / row["most"]], [1e3 / row["least"] - x]], marker=MARKERS[index % len(MARKERS)],
-                      color=f"C{index}", ms=8, capsize=2, ls="none", alpha=0.85, label=name)
+                      color=f"C{(index + 3 * (index // len(MARKERS))) % 10}", ms=8, capsize=2, ls="none", alpha=0.85, label=name)
     axis.axhline(EXACT, color="tab:red", lw=0.6, ls=":")
     axis.set_xscale("log")
     axis.set_xticks([25, 50, 100, 200, 400], ["25", "50", "100", "200", "400"])
