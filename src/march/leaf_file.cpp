@@ -286,7 +286,7 @@ void LeafFile::readValues(Cursor& cursor, const std::uint64_t* active, std::size
     const auto length = static_cast<std::int64_t>(stored * sizeof(float));
     const std::int64_t packed = blosc_ ? cursor.read<std::int64_t>() : -length;
     if (packed <= 0) {
-        if (-packed != length) cursor.fail();
+        if (packed != -length) cursor.fail();
         cursor.read(values, stored);
     } else {
         const char* from = cursor.take(static_cast<std::uint64_t>(packed));
@@ -325,7 +325,8 @@ std::uint64_t LeafFile::lengthOfLeaf(Cursor& cursor) const {
     const std::size_t stored = expand ? countOn(active.data(), kLeafSamples) : kLeafSamples;
     const auto length = static_cast<std::int64_t>(stored * sizeof(float));
     const std::int64_t packed = blosc_ ? cursor.read<std::int64_t>() : length;
-    (void)cursor.take(static_cast<std::uint64_t>(packed < 0 ? -packed : packed));
+    // Unsigned: the least of a damaged file has no opposite.
+    (void)cursor.take(packed < 0 ? 0 - static_cast<std::uint64_t>(packed) : static_cast<std::uint64_t>(packed));
     return cursor.place() - first;
 }
 
