@@ -2,6 +2,7 @@
 
 #include "march/brick_stream.h"
 #include "march/brick_walk.h"
+#include "march/grid_axes.h"
 #include "march/level_set_file.h"
 
 #include <glm/common.hpp>
@@ -69,7 +70,7 @@ public:
         : bricks_(grid),
           map_(*grid.transform().baseMap(), bricks_.origin()),
           bounds_(narrowBandBounds(grid)),
-          voxel_size_(grid.voxelSize()[0]) {}
+          voxel_size_(GridAxes(grid.transform()).shortest()) {}
 
     std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<BrickTracer>(bricks_, map_); }
     std::string_view name() const override { return "brick"; }

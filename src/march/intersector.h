@@ -69,7 +69,7 @@ public:
     virtual std::string_view name() const = 0;
     /// World-space box of the surface's narrow band.
     virtual Box bounds() const = 0;
-    /// World-space edge of a voxel.
+    /// World-space edge of a voxel, the shortest one.
     virtual double voxelSize() const = 0;
     /// Memory taken besides the grid it was made from, bytes.
     virtual std::size_t bytes() const = 0;

@@ -15,7 +15,8 @@ namespace stratum::march {
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
 /// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
-/// not empty, uniform voxels, half-width of at least 2 voxels.
+/// not empty, a linear transform without shear (voxels may be turned boxes of any edges), half-width of at least 2 of
+/// the shortest edges.
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
 
 /// World-space box of the active voxels' sample points, whichever way the transform turns them.
