@@ -155,9 +155,11 @@ Camera Camera::fitted(const CameraOptions& options, const march::Box& box, int w
     const glm::dvec3 forward = kViews[static_cast<std::size_t>(options.view)].forward;
     Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
 
-    const glm::dvec3 half = 0.5 * (box.max - box.min);
-    const double around = std::hypot(half.x, half.y);
-    const glm::dvec3 reach = options.all_around ? glm::dvec3(around, around, half.z) : half;
+    // Turned about its middle, a box fills a cylinder; the box around that.
+    const double around = 0.5 * std::hypot(box.max.x - box.min.x, box.max.y - box.min.y);
+    const march::Box fit = options.all_around ? march::Box{{middle.x - around, middle.y - around, box.min.z},
+                                                           {middle.x + around, middle.y + around, box.max.z}}
+                                              : box;
 
     // In view space each pair of opposite frustum planes is a problem in the plane of one image axis and depth.
     const double room = camera.tan_half_ * (1.0 - 2.0 * options.margin);
@@ -166,7 +168,9 @@ Camera Camera::fitted(const CameraOptions& options, const march::Box& box, int w
     x.slope = room * width / height;
     y.slope = room;
     for (std::size_t i = 0; i < 8; ++i) {
-        const glm::dvec3 d((i & 1u) ? reach.x : -reach.x, (i & 2u) ? reach.y : -reach.y, (i & 4u) ? reach.z : -reach.z);
+        const glm::dvec3 corner((i & 1u) ? fit.max.x : fit.min.x, (i & 2u) ? fit.max.y : fit.min.y,
+                                (i & 4u) ? fit.max.z : fit.min.z);
+        const glm::dvec3 d = corner - middle;
         x.a[i] = glm::dot(d, camera.right_);
         y.a[i] = glm::dot(d, camera.up_);
         x.depth[i] = y.depth[i] = glm::dot(d, camera.forward_);
