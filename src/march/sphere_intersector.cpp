@@ -102,6 +102,7 @@ private:
             map_.applyInverseJacobian(openvdb::Vec3d(ray.direction.x, ray.direction.y, ray.direction.z));
         origin_ = {o[0], o[1], o[2]};
         direction_ = voxel_ * glm::dvec3(d[0], d[1], d[2]);
+        if (!std::isfinite(direction_.x + direction_.y + direction_.z)) return false;
         double s = ray.t_min / voxel_;
         double end = ray.t_max / voxel_;
         for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +119,7 @@ private:
         }
         // From the box on, so that s is a small number however far the eye: nudges must not vanish in its rounding.
         const double start = s;
-        if (!(start <= end) || !std::isfinite(end)) return false;  // a direction that is no number meets no box
+        if (!(start <= end) || !std::isfinite(end)) return false;
         origin_ += start * direction_;
         end -= start;
         s = 0;

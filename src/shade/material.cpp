@@ -139,7 +139,8 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
     const double span = summary.most - least;
     if (summary.kind == Kind::integer && span < kMostCategories && options.by != "layer") {
         for (int n = 0; n <= static_cast<int>(span); ++n) {
-            const auto id = static_cast<std::size_t>(static_cast<int>(least) + n);
+            const int value = static_cast<int>(least) + n;
+            const auto id = static_cast<std::size_t>(value);
             Color color = categoryColor(id);
             if (id < summary.labels.size())
                 for (const Named& named : kFeatureColors)
@@ -155,7 +156,7 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
         brdfs.push_back(recolored(*base, rampColor(static_cast<double>(n) / (kRampSteps - 1)), text));
     return {attribute, brdfs, [least, span](const glm::vec3& v) {
                 const double t = span > 0 ? (static_cast<double>(v.x) - least) / span : 0.0;
-                return 1 + static_cast<std::size_t>(std::clamp(t, 0.0, 1.0) * (kRampSteps - 1) + 0.5);
+                return 1 + static_cast<std::size_t>(std::lround(std::clamp(t, 0.0, 1.0) * (kRampSteps - 1)));
             }};
 }
 
