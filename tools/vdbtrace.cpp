@@ -1,12 +1,9 @@
 // vdbtrace: level set -> picture.
 #include "command_line.h"
+#include "trace_objects.h"
 
 #include "io/error.h"
 #include "io/mapped_file.h"
-#include "march/brick_intersector.h"
-#include "march/level_set_file.h"
-#include "march/sphere_intersector.h"
-#include "march/vdb_intersector.h"
 #include "shade/brdf_file.h"
 #include "shade/picture.h"
 #include "shade/render.h"
@@ -19,7 +16,6 @@
 #include <array>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -42,18 +38,25 @@ Examples:
 
 struct Options {
     tools::CommonOptions common;
-    std::string input, output, grid, march = "auto", size, view, crop, write_brdf, aov;
-    std::vector<double> eye, look_at, up;
+    std::vector<std::string> inputs;
+    std::string output, grid, march = "auto", size, view, crop, write_brdf, aov, normals;
+    std::vector<double> eye, look_at, up, focus;
+    int turntable = 1;
     std::vector<float> phong;
     bool spp_given = false;
     march::BrickValues values = march::BrickValues::Int16;
+    std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
+    std::vector<std::string> notes;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
 };
 
 void addOptions(CLI::App& app, Options& o) {
-    app.add_option("IN", o.input, "A level set, or a scene that names one; options override the scene")
+    app.add_option(
+           "IN", o.inputs,
+           "A level set, or a scene that names some; options override the scene. Several level sets make a series "
+           "of pictures with the camera of the last")
         ->required()
         ->type_name("FILE.vdb|SCENE.json");
     app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
@@ -69,7 +72,9 @@ void addOptions(CLI::App& app, Options& o) {
                    "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
         ->type_name("T")
         ->group(picture);
-    app.add_option("--aov", o.aov, "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples")
+    app.add_option("--aov", o.aov,
+                   "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
+                   "feature")
         ->type_name("NAME,...")
         ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
@@ -86,11 +91,27 @@ void addOptions(CLI::App& app, Options& o) {
     auto* eye = vector("--eye", o.eye, "Where the camera stands, in the world units of the .vdb");
     vector("--look-at", o.look_at, "What it looks at (default: the middle of the part)")->needs(eye);
     vector("--up", o.up, "Which way is up (default 0,0,1)");
+    app.add_option("--f-number", o.scene.camera.f_number, "Depth of field of a camera with a picture 24 mm high")
+        ->type_name("N")
+        ->group(camera);
+    app.add_option("--aperture", o.scene.camera.aperture, "The same by the diameter of the lens, in world units")
+        ->type_name("LENGTH")
+        ->group(camera);
+    app.add_option("--focus", o.focus, "Distance that is sharp, or a point (default: the middle of the part)")
+        ->delimiter(',')
+        ->expected(1, 3)
+        ->type_name("LENGTH|X,Y,Z")
+        ->group(camera);
+    app.add_option("--turntable", o.turntable, "N numbered pictures from all around")
+        ->check(CLI::Range(1, 10000))
+        ->type_name("N")
+        ->group(camera);
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
 
     const char* light = "Light and material";
     app.add_option("--integrator", o.render.integrator.name,
-                   "path, direct, environment-sum, phong, ao, normal, depth, position, mask (default path)")
+                   "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, feature "
+                   "(default path)")
         ->type_name("NAME")
         ->group(light);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
@@ -113,6 +134,14 @@ void addOptions(CLI::App& app, Options& o) {
            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
            "EXR), or the name of one in data/brdf, e.g. pla-blue")
         ->type_name("SPEC|FILE|NAME")
+        ->group(light);
+    app.add_option("--color-by", o.scene.color_by,
+                   "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, time, color")
+        ->type_name("NAME")
+        ->group(light);
+    app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
+        ->check(CLI::IsMember({"geometric", "smooth"}))
+        ->type_name("NAME")
         ->group(light);
     app.add_option(
            "--env", o.scene.env,
@@ -189,35 +218,26 @@ void applyText(Options& o) {
     if (!o.eye.empty()) o.scene.camera.eye = toVector(o.eye);
     if (!o.look_at.empty()) o.scene.camera.look_at = toVector(o.look_at);
     if (!o.up.empty()) o.scene.camera.up = toVector(o.up);
+    if (o.focus.size() == 2) throw UsageError("--focus: a distance, or a point X,Y,Z");
+    if (!o.focus.empty()) {
+        o.scene.camera.focus_distance.reset();
+        o.scene.camera.focus_point.reset();
+        if (o.focus.size() == 1) o.scene.camera.focus_distance = o.focus[0];
+        if (o.focus.size() == 3) o.scene.camera.focus_point = toVector(o.focus);
+    }
+    if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
+    o.scene.camera.all_around = o.turntable > 1;
     o.render.validate();
     o.scene.camera.validate();
     o.tone.validate();
 }
 
-// People hand over what they have; say which tool takes it.
-void refuseOtherFormats(const std::string& input) {
-    std::ifstream file(input, std::ios::binary);
-    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", input));
-    std::array<char, 4> magic{};
-    file.read(magic.data(), magic.size());
-    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", input));
-    if (std::string_view(magic.data(), magic.size()) == std::string_view(" BDV", 4)) return;
-    const std::string extension = fs::path(input).extension().string();
-    if (extension == ".gcode" || extension == ".gco" || extension == ".g")
-        throw InputError(fmt::format("{}: is G-code; make a level set of it first: gcode2vdb {}", input, input));
-    throw InputError(fmt::format("{}: is not an OpenVDB file; expected a .vdb with a level set", input));
-}
-
-// What the file says its world unit is; other programs' files don't say.
-std::string unitOf(const openvdb::FloatGrid& grid) {
-    const auto unit = grid.getMetadata<openvdb::StringMetadata>("unit");
-    return unit ? unit->value() : "world units";
-}
-
 // If the input is a scene, its values become the defaults and the command line is read once more over them.
 void readScene(Options& o, int argc, char** argv) {
-    const fs::path path = o.input;
+    const fs::path path = o.inputs.front();
     if (!shade::isSceneFile(MappedFile(path).bytes())) return;
+    if (o.inputs.size() > 1)
+        throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets", o.inputs.front()));
     const shade::SceneFile file = shade::readSceneFile(path);
     const auto over = std::make_unique<Options>();
     over->scene = file.scene;
@@ -227,56 +247,37 @@ void readScene(Options& o, int argc, char** argv) {
     CLI::App app;
     addOptions(app, *over);
     app.parse(argc, argv);
-    over->input = file.print;
+    // With objects only its name is used.
+    over->inputs = {file.objects.empty() ? file.print : path.string()};
+    over->objects = file.objects;
+    over->notes = file.notes;
     if (over->grid.empty()) over->grid = file.grid;
+    if (!over->objects.empty() && !over->grid.empty())
+        throw UsageError("--grid: the scene has objects; each names its own");
     if (over->output.empty())
         over->output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
     o = *over;
 }
 
-void run(Options& o, int argc, char** argv) {
-    readScene(o, argc, argv);
-    if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
-    applyText(o);
-    const bool bricks = o.march == "auto" || o.march == "brick";
-    if (!bricks) tools::useHugePages(argv);  // bricks have their own
-    const tools::ThreadLimit limit(o.common.threads);
-    tools::Stopwatch total;
-    tools::Stopwatch watch;
-    if (o.output.empty()) o.output = fs::path(o.input).filename().replace_extension(".png").string();
-    refuseOtherFormats(o.input);
-    shade::PictureFile picture(o.output);
-    if (!o.render.aovs.empty() && !picture.linear())
-        throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
+// The picture's name with a number, if there are several.
+std::string numbered(const std::string& output, std::size_t number, std::size_t count) {
+    if (count == 1) return output;
+    const fs::path path(output);
+    const int digits = std::max(3, static_cast<int>(std::to_string(count - 1).size()));
+    return (path.parent_path() /
+            fmt::format("{}_{:0{}}{}", path.stem().string(), number, digits, path.extension().string()))
+        .string();
+}
 
-    openvdb::initialize();
-    auto file = bricks ? march::openLevelSet(o.input, o.grid) : nullptr;
-    openvdb::FloatGrid::ConstPtr grid = file ? nullptr : march::readLevelSet(o.input, o.grid);
-    const openvdb::FloatGrid& head = file ? file->head() : *grid;
-    const std::uint64_t active = file ? file->activeVoxelCount() : grid->activeVoxelCount();
-    const Json input{
-        {"path", o.input}, {"grid", head.getName()}, {"active_voxels", active}, {"bytes", file ? 0 : grid->memUsage()}};
-    tools::say(o.common,
-               fmt::format("{}: {} active voxels of {:g} {}", o.input, tools::humanCount(static_cast<double>(active)),
-                           head.voxelSize()[0], unitOf(head)));
-    // Rounding of the background to a float is no reason to warn.
-    if (const double half_width = static_cast<double>(head.background()) / head.voxelSize()[0]; half_width < 2.999)
-        fmt::print(stderr,
-                   "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
-                   "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
-                   o.input, half_width);
-    const double load_seconds = watch.lap();
-    const auto intersector = file                  ? march::makeBrickIntersector(std::move(file), o.values)
-                             : o.march == "vdb"    ? march::makeVdbIntersector(grid)
-                             : o.march == "sphere" ? march::makeSphereIntersector(grid)
-                                                   : march::makeBrickIntersector(*grid, o.values);
-    grid.reset();  // bricks hold all that rays need
-    shade::SceneOptions seen = o.scene;
-    if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";  // costs nothing
-    const shade::SceneDescription scene = shade::makeScene(seen, *intersector, o.render.width, o.render.height);
-    for (const std::string& note : scene.material->notes()) tools::say(o.common, "  material: " + note);
-    if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene.material);
-    const double build_seconds = watch.lap();
+struct Frame {
+    std::string source, output;
+    double load_seconds = 0.0, build_seconds = 0.0;
+};
+
+void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects& objects,
+                 const shade::SceneDescription& scene, int threads) {
+    tools::Stopwatch watch;
+    shade::PictureFile picture(frame.output);
     shade::RenderResult result;
     {
         tools::ProgressBar bar("rendering", o.common.quiet);
@@ -285,13 +286,12 @@ void run(Options& o, int argc, char** argv) {
             progress = [show](std::uint64_t done, std::uint64_t all) {
                 show(static_cast<double>(done) / static_cast<double>(all));
             };
-        result = shade::render(*intersector, scene, o.render, progress);
+        result = shade::render(*objects.intersector, scene, o.render, progress);
     }
     const double render_seconds = watch.lap();
 
-    const std::string source = fs::path(o.input).filename().string();
     shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
-                             {"Source", source},
+                             {"Source", frame.source},
                              {"Integrator", o.render.integrator.name},
                              {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
                              {"Seed", std::to_string(o.render.seed)},
@@ -301,12 +301,12 @@ void run(Options& o, int argc, char** argv) {
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
     picture.write(result.film, metadata, o.tone);
     const double write_seconds = watch.lap();
-    const double total_seconds = total.lap();
+    const double total_seconds = frame.load_seconds + frame.build_seconds + render_seconds + write_seconds;
 
     const shade::RayCounts& rays = result.rays;
     const double mrays = static_cast<double>(rays.total()) / render_seconds * 1e-6;
-    tools::say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", o.output,
-                                     o.render.width, o.render.height, result.mean_spp,
+    tools::say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all",
+                                     frame.output, o.render.width, o.render.height, result.mean_spp,
                                      tools::humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
     Json skipped = Json::array();
     const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
@@ -316,10 +316,12 @@ void run(Options& o, int argc, char** argv) {
     if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
     if (result.film.content() != shade::FilmContent::radiance)
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
+    if (!scene.smooth_normals)
+        skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
     tools::writeStats(
         o.common,
-        {{"input", input},
-         {"output", o.output},
+        {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
+         {"output", frame.output},
          {"image",
           {{"width", o.render.width},
            {"height", o.render.height},
@@ -327,20 +329,81 @@ void run(Options& o, int argc, char** argv) {
            {"mean_spp", result.mean_spp}}},
          {"rays",
           {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
-         {"march", intersector->name()},
-         {"march_bytes", intersector->bytes()},
+         {"march", objects.intersector->name()},
+         {"march_bytes", objects.intersector->bytes()},
          {"integrator", o.render.integrator.name},
          {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
+         {"notes", o.notes},
          {"seconds",
-          {{"load", load_seconds},
-           {"build", build_seconds},
+          {{"load", frame.load_seconds},
+           {"build", frame.build_seconds},
            {"render", render_seconds},
            {"write", write_seconds},
            {"total", total_seconds}}},
          {"mrays_per_second", mrays},
          {"peak_rss_bytes", tools::peakRssBytes()},
-         {"threads", limit.threads()},
+         {"threads", threads},
          {"skipped", skipped}});
+}
+
+void run(Options& o, int argc, char** argv) {
+    readScene(o, argc, argv);
+    if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
+    applyText(o);
+    if (o.march != "auto" && o.march != "brick") tools::useHugePages(argv);  // bricks have their own
+    const tools::ThreadLimit limit(o.common.threads);
+    if (o.output.empty()) o.output = fs::path(o.inputs.front()).filename().replace_extension(".png").string();
+    const bool linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
+    if (!o.render.aovs.empty() && !linear)
+        throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
+    for (const std::string& note : o.notes) tools::say(o.common, note);
+
+    tools::TraceOptions reading{
+        o.march, o.values, o.scene.brdf, o.scene.color_by, o.scene.smooth_normals, shade::labelsOf(o.render.aovs)};
+    if (const std::string& name = o.render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
+        const shade::Label label = shade::parseLabel(name);
+        if (std::find(reading.labels.begin(), reading.labels.end(), label) == reading.labels.end())
+            reading.labels.push_back(label);
+    }
+    const auto turns = static_cast<std::size_t>(o.turntable);
+    const std::size_t count = o.inputs.size() * turns;
+    std::optional<shade::SceneDescription> scene;
+    glm::dvec3 middle(0.0);
+    // From the last, which is the whole print and gives the camera, the bed and the light to all.
+    for (std::size_t n = o.inputs.size(); n-- > 0;) {
+        std::vector<shade::ObjectOptions> wanted = o.objects;
+        if (wanted.empty()) {
+            wanted.emplace_back();
+            wanted.back().vdb = o.inputs[n];
+            wanted.back().grid = o.grid;
+        }
+        const tools::TraceObjects objects = tools::readTraceObjects(wanted, reading);
+        for (const std::string& line : objects.lines) tools::say(o.common, line);
+        tools::Stopwatch watch;
+        if (!scene) {
+            shade::SceneOptions seen = o.scene;
+            // What is not seen costs nothing.
+            if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";
+            scene = shade::makeScene(seen, *objects.intersector, o.render.width, o.render.height);
+            const march::Box box = objects.intersector->bounds();
+            middle = 0.5 * (box.min + box.max);
+            for (const std::string& note : scene->material->notes()) tools::say(o.common, "  material: " + note);
+            if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene->material);
+        }
+        scene->objects = objects.materials;
+        scene->labels = objects.labels;
+        const double scene_seconds = watch.lap();
+        for (std::size_t turn = 0; turn < turns; ++turn) {
+            shade::SceneDescription view = *scene;
+            if (turn > 0)
+                view.camera =
+                    scene->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle);
+            renderFrame(o,
+                        {fs::path(o.inputs[n]).filename().string(), numbered(o.output, n * turns + turn, count),
+                         objects.load_seconds, objects.build_seconds + scene_seconds},
+                        objects, view, limit.threads());
+        }
+    }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "march/brick_stream.h"
 #include "march/brick_walk.h"
+#include "march/grid_axes.h"
 #include "march/level_set_file.h"
 
 #include <glm/common.hpp>
@@ -70,13 +71,13 @@ public:
         : bricks_(grid, values),
           map_(*grid.transform().baseMap(), bricks_.origin()),
           bounds_(narrowBandBounds(grid)),
-          voxel_size_(grid.voxelSize()[0]) {}
+          voxel_size_(GridAxes(grid.transform()).shortest()) {}
     template <typename Source>
     BrickIntersector(const LeafFile& file, Source&& source, BrickValues values)
         : bricks_(std::forward<Source>(source), values),
           map_(*file.head().transform().baseMap(), bricks_.origin()),
           bounds_(worldBounds(file.head().transform(), file.activeBox())),
-          voxel_size_(file.head().voxelSize()[0]) {}
+          voxel_size_(GridAxes(file.head().transform()).shortest()) {}
 
     std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<BrickTracer>(bricks_, map_); }
     std::string_view name() const override { return "brick"; }

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@ struct Hit {
     double t = 0.0;            ///< world units along the ray
     glm::dvec3 position{0.0};  ///< world space
     glm::dvec3 normal{0.0};    ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
+    std::uint32_t object = 0;  ///< which of a scene's objects; see scene_intersector.h
 };
 
 /// Axis-aligned box in world space.
@@ -58,6 +60,13 @@ public:
     virtual void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
         for (std::size_t n = 0; n < rays.size(); ++n) blocked[n] = occluded(rays[n]) ? 1 : 0;
     }
+
+    /// The normal to shade with at a hit that this tracer found: unit, towards outside. The geometric one, unless the
+    /// intersector was annotated with smooth normals (annotation.h).
+    virtual glm::dvec3 shadingNormal(const Hit& hit) { return hit.normal; }
+    /// What the surface was annotated with at a hit that this tracer found: the attribute of that number. A number is
+    /// in x, a colour is linear RGB. Nothing where there is no such value.
+    virtual std::optional<glm::vec3> attribute(const Hit&, std::size_t) { return std::nullopt; }
 };
 
 /// A level set ready to be traced. Immutable once made; shared by all threads.
@@ -67,9 +76,9 @@ public:
     virtual std::unique_ptr<Tracer> makeTracer() const = 0;
     /// The method's name as in --march.
     virtual std::string_view name() const = 0;
-    /// World-space box of the surface's narrow band.
+    /// World-space box of the surface's narrow band. Endless shapes have infinite sides.
     virtual Box bounds() const = 0;
-    /// World-space edge of a voxel.
+    /// World-space edge of a voxel, the shortest one.
     virtual double voxelSize() const = 0;
     /// Memory taken besides the grid it was made from, bytes.
     virtual std::size_t bytes() const = 0;

@@ -1,12 +1,15 @@
 #include "march/level_set_file.h"
 
 #include "io/error.h"
+#include "march/grid_axes.h"
 
 #include <fmt/format.h>
 #include <openvdb/io/GridDescriptor.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -15,6 +18,7 @@ namespace stratum::march {
 namespace {
 
 constexpr double kLeastHalfWidth = 2;
+constexpr double kMostShear = 1e-5;  // what a transform from 32-bit floats may have by rounding
 
 // Which grid of a file is meant.
 struct Choice {
@@ -115,9 +119,20 @@ void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const 
     if (leaves == 0)
         throw InputError(
             fmt::format("{}: the level set {} is empty; there is no surface to trace", where, grid.getName()));
-    if (!grid.hasUniformVoxels())
-        throw InputError(fmt::format("{}: the voxels of {} are not cubes; resample it first", where, grid.getName()));
-    const double half_width = static_cast<double>(grid.background()) / grid.voxelSize()[0];
+    if (!grid.transform().isLinear())
+        throw InputError(
+            fmt::format("{}: the voxels of {} lie in perspective (a frustum transform); resample it with a linear one",
+                        where, grid.getName()));
+    const GridAxes axes(grid.transform());
+    // Written so that no number is refused, too.
+    if (!(axes.shortest() > 0 && std::isfinite(axes.longest())))
+        throw InputError(fmt::format("{}: the voxels of {} have no size; mend its transform", where, grid.getName()));
+    if (!(axes.shear() <= kMostShear))
+        throw InputError(
+            fmt::format("{}: the voxels of {} are sheared: their edges are {:.4g} degrees from perpendicular; resample "
+                        "it on a lattice of boxes",
+                        where, grid.getName(), std::asin(axes.shear()) * 180 / std::numbers::pi));
+    const double half_width = static_cast<double>(grid.background()) / axes.shortest();
     if (!(half_width >= kLeastHalfWidth))
         throw InputError(
             fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "

@@ -23,7 +23,8 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
 /// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
-/// not empty, uniform voxels, half-width of at least 2 voxels.
+/// not empty, a linear transform without shear (voxels may be turned boxes of any edges), half-width of at least 2 of
+/// the shortest edges.
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
 /// The same for a grid whose `leaves` are elsewhere.
 void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const std::string& where);

@@ -1,6 +1,7 @@
 #include "march/sphere_intersector.h"
 
 #include "march/cell_root.h"
+#include "march/grid_axes.h"
 #include "march/level_set_file.h"
 
 #include <glm/common.hpp>
@@ -21,12 +22,13 @@ constexpr double kNudge = 1e-6;    // voxels, out of an empty node: no hit lies 
 
 class SphereTracer final : public Tracer {
 public:
-    SphereTracer(const openvdb::FloatGrid& grid, const openvdb::math::MapBase& map, const openvdb::CoordBBox& box,
-                 double relaxation)
+    SphereTracer(const openvdb::FloatGrid& grid, const GridAxes& axes, const openvdb::math::MapBase& map,
+                 const openvdb::CoordBBox& box, double relaxation)
         : map_(map),
           box_(box),
           accessor_(grid.getConstAccessor()),
-          voxel_(grid.voxelSize()[0]),
+          voxel_(axes.shortest()),
+          tame_(axes.shortest() / axes.longest()),
           relaxation_(relaxation) {}
 
     bool intersect(const Ray& ray, Hit& hit) override {
@@ -75,15 +77,22 @@ private:
                                                                                                            : kNode;
     }
     // Where the ray leaves the aligned block of `edge` cells around p.
-    double leave(const glm::dvec3& p, const openvdb::Coord& cell, int edge, double s) const {
+    double leave(const glm::dvec3& p, const openvdb::Coord& cell, int edge, double s) {
         double step = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
             const double d = direction_[axis];
             if (d == 0) continue;
             const int low = cell[axis] & ~(edge - 1);
-            step = std::min(step, ((d > 0 ? low + edge : low) - p[axis]) / d);
+            const double way = ((d > 0 ? low + edge : low) - p[axis]) / d;
+            if (!(way > 0)) {
+                // On the face that it leaves by, so slowly perhaps that no step along the ray gets it across: the ray
+                // is moved over instead.
+                origin_[axis] += std::copysign(kNudge, d);
+                return s;
+            }
+            step = std::min(step, way);
         }
-        return s + std::max(step, 0.0) + kNudge;
+        return s + step + kNudge;
     }
 
     // s in voxels from the ray's origin.
@@ -92,7 +101,8 @@ private:
         const openvdb::Vec3d d =
             map_.applyInverseJacobian(openvdb::Vec3d(ray.direction.x, ray.direction.y, ray.direction.z));
         origin_ = {o[0], o[1], o[2]};
-        direction_ = glm::normalize(glm::dvec3(d[0], d[1], d[2]));
+        direction_ = voxel_ * glm::dvec3(d[0], d[1], d[2]);
+        if (!std::isfinite(direction_.x + direction_.y + direction_.z)) return false;
         double s = ray.t_min / voxel_;
         double end = ray.t_max / voxel_;
         for (int axis = 0; axis < 3; ++axis) {
@@ -109,7 +119,7 @@ private:
         }
         // From the box on, so that s is a small number however far the eye: nudges must not vanish in its rounding.
         const double start = s;
-        if (!(start <= end) || !std::isfinite(end)) return false;  // a direction that is no number meets no box
+        if (!(start <= end) || !std::isfinite(end)) return false;
         origin_ += start * direction_;
         end -= start;
         s = 0;
@@ -138,7 +148,7 @@ private:
             }
             ++step;
             const double phi = field(s);
-            const double radius = std::abs(phi);
+            const double radius = tame_ * std::abs(phi);
             if (begun && isInside(phi) != inside) {
                 // Between two places: the field is not as tame as distance. Halve.
                 double low = before;
@@ -176,7 +186,8 @@ private:
     const openvdb::math::MapBase& map_;
     const openvdb::CoordBBox box_;
     openvdb::FloatGrid::ConstAccessor accessor_;
-    const double voxel_;
+    const double voxel_;  // shortest edge, world units; s counts these along the ray
+    const double tame_;   // values times this change no faster than distance
     const double relaxation_;
     glm::dvec3 origin_{0.0}, direction_{0.0};  // of the ray under way, in index space, from where it meets the box
     double place_ = 0;                         // of its hit, from there
@@ -186,23 +197,25 @@ class SphereIntersector final : public Intersector {
 public:
     SphereIntersector(openvdb::FloatGrid::ConstPtr grid, double relaxation)
         : grid_(std::move(grid)),
+          axes_(grid_->transform()),
           map_(grid_->transform().baseMap()),
           box_(grid_->evalActiveVoxelBoundingBox()),
           bounds_(narrowBandBounds(*grid_)),
           relaxation_(relaxation) {}
 
     std::unique_ptr<Tracer> makeTracer() const override {
-        return std::make_unique<SphereTracer>(*grid_, *map_, box_, relaxation_);
+        return std::make_unique<SphereTracer>(*grid_, axes_, *map_, box_, relaxation_);
     }
     std::string_view name() const override { return "sphere"; }
     Box bounds() const override { return bounds_; }
-    double voxelSize() const override { return grid_->voxelSize()[0]; }
+    double voxelSize() const override { return axes_.shortest(); }
     std::size_t bytes() const override { return 0; }
     // Far enough to be past the place where rays arrive.
     double surfaceOffset() const override { return 0.02 * voxelSize(); }
 
 private:
     openvdb::FloatGrid::ConstPtr grid_;
+    GridAxes axes_;
     openvdb::math::MapBase::ConstPtr map_;
     openvdb::CoordBBox box_;
     Box bounds_;

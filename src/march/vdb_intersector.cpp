@@ -1,5 +1,6 @@
 #include "march/vdb_intersector.h"
 
+#include "march/grid_axes.h"
 #include "march/level_set_file.h"
 
 #include <openvdb/tools/RayIntersector.h>
@@ -89,12 +90,23 @@ private:
     const double diagonal_;
 };
 
+// OpenVDB's intersector wants cubes, and takes small voxels that are turned for something else (its test compares a
+// determinant with 1e-8). It marches in index space, so it gets the same tree on upright cubes; rays are mapped by the
+// grid's own map. From the edge it only takes the width of the band in which it looks closely.
+openvdb::FloatGrid::ConstPtr onCubes(const openvdb::FloatGrid& grid) {
+    auto cubes = openvdb::FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(grid.constTreePtr()));
+    cubes->setGridClass(openvdb::GRID_LEVEL_SET);
+    cubes->setTransform(openvdb::math::Transform::createLinearTransform(GridAxes(grid.transform()).longest()));
+    return cubes;
+}
+
 class VdbIntersector final : public Intersector {
 public:
     explicit VdbIntersector(openvdb::FloatGrid::ConstPtr grid)
         : grid_(std::move(grid)),
           map_(grid_->transform().baseMap()),
-          reference_(*grid_),
+          cubes_(onCubes(*grid_)),
+          reference_(*cubes_),
           bounds_(narrowBandBounds(*grid_)) {}
 
     std::unique_ptr<Tracer> makeTracer() const override {
@@ -103,7 +115,7 @@ public:
     std::string_view name() const override { return "vdb"; }
     Box bounds() const override { return bounds_; }
     std::size_t bytes() const override { return 0; }
-    double voxelSize() const override { return grid_->voxelSize()[0]; }
+    double voxelSize() const override { return GridAxes(grid_->transform()).shortest(); }
     // The reference interpolates its root linearly between a voxel's faces, so a hit may lie some hundredths of a voxel
     // inside the solid; a secondary ray that started there would meet the surface on its way out.
     double surfaceOffset() const override { return 0.1 * voxelSize(); }
@@ -111,6 +123,7 @@ public:
 private:
     openvdb::FloatGrid::ConstPtr grid_;
     openvdb::math::MapBase::ConstPtr map_;
+    openvdb::FloatGrid::ConstPtr cubes_;
     Reference reference_;
     Box bounds_;
 };

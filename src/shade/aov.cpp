@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace stratum::shade {
 namespace {
@@ -16,18 +17,28 @@ struct Kind {
     std::vector<std::string> channels;
 };
 
-const std::array<Kind, 7>& kinds() {
-    static const std::array<Kind, 7> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
-                                             {Aov::depth, "depth", {"Z"}},
-                                             {Aov::position, "position", {"X", "Y", "Z"}},
-                                             {Aov::albedo, "albedo", {"R", "G", "B"}},
-                                             {Aov::mask, "mask", {"V"}},
-                                             {Aov::variance, "variance", {"V"}},
-                                             {Aov::samples, "samples", {"V"}}}};
+const std::array<Kind, 10>& kinds() {
+    static const std::array<Kind, 10> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
+                                              {Aov::depth, "depth", {"Z"}},
+                                              {Aov::position, "position", {"X", "Y", "Z"}},
+                                              {Aov::albedo, "albedo", {"R", "G", "B"}},
+                                              {Aov::mask, "mask", {"V"}},
+                                              {Aov::variance, "variance", {"V"}},
+                                              {Aov::samples, "samples", {"V"}},
+                                              {Aov::layer, "layer", {"V"}},
+                                              {Aov::tool, "tool", {"V"}},
+                                              {Aov::feature, "feature", {"V"}}}};
     return all;
 }
 
 const Kind& kindOf(Aov aov) { return kinds()[static_cast<std::size_t>(aov)]; }
+
+std::optional<Label> labelOf(Aov aov) {
+    if (aov == Aov::layer) return Label::layer;
+    if (aov == Aov::tool) return Label::tool;
+    if (aov == Aov::feature) return Label::feature;
+    return std::nullopt;
+}
 
 bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
 
@@ -42,10 +53,19 @@ std::vector<Aov> parseAovs(std::string_view text) {
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
         if (found == kinds().end())
             throw UsageError(fmt::format(
-                "--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, samples", word));
+                "--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, samples, layer, "
+                "tool, feature",
+                word));
         if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
     }
     return aovs;
+}
+
+std::vector<Label> labelsOf(const std::vector<Aov>& aovs) {
+    std::vector<Label> labels;
+    for (const Aov aov : aovs)
+        if (const auto label = labelOf(aov)) labels.push_back(*label);
+    return labels;
 }
 
 std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels) {
@@ -58,10 +78,7 @@ std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixe
 }
 
 AovRecorder::AovRecorder(const SceneDescription& scene, const march::Intersector& print, std::vector<Aov> aovs)
-    : surfaces_(scene, print),
-      aovs_(std::move(aovs)),
-      print_(reflectanceFactor(*scene.material)),
-      paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {
+    : surfaces_(scene, print), aovs_(std::move(aovs)) {
     for (const Aov aov : aovs_)
         if (geometric(aov)) size_ += kindOf(aov).channels.size();
 }
@@ -87,11 +104,20 @@ void AovRecorder::add(const march::Ray& ray, TraceContext& context, double* sums
                 add3(share * point.position);
                 break;
             case Aov::albedo:
-                add3(share * glm::dvec3(point.bed ? paper_ : print_));
+                add3(share * glm::dvec3(point.albedo));
                 break;
             case Aov::mask:
                 *sums++ += point.bed ? 0.0 : 1.0;
                 break;
+            case Aov::layer:
+            case Aov::tool:
+            case Aov::feature: {
+                // Kept one higher, so that 0 is "not yet".
+                const float value = point.labels[static_cast<std::size_t>(*labelOf(aov))];
+                if (*sums == 0.0 && value >= 0.0f) *sums = static_cast<double>(value) + 1.0;
+                ++sums;
+                break;
+            }
             case Aov::variance:
             case Aov::samples:
                 break;
@@ -108,6 +134,8 @@ void AovRecorder::store(const double* sums, const PixelStatistics& statistics, s
             *out = static_cast<float>(statistics.variance);
         else if (aovs_[n] == Aov::samples)
             *out = static_cast<float>(statistics.samples);
+        else if (labelOf(aovs_[n]))
+            *out = static_cast<float>(*sums++ - 1.0);
         else
             for (std::size_t c = 0; c < channels; ++c) out[c] = static_cast<float>(*sums++ / statistics.samples);
     }

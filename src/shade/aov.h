@@ -22,10 +22,17 @@ enum class Aov {
     variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
                ///< stratified samples do better, so it is an upper estimate
     samples,   ///< V: samples taken
+    // No means, for there is nothing between two tools: of the first sample that meets the print; -1 where none does.
+    layer,    ///< V: number of the layer
+    tool,     ///< V: T number
+    feature,  ///< V: see gcode2vdb --grids
 };
 
 /// The layers of --aov: "normal,depth,...". Throws UsageError.
 std::vector<Aov> parseAovs(std::string_view text);
+
+/// The labels that these layers need scene.labels for.
+std::vector<Label> labelsOf(const std::vector<Aov>& aovs);
 
 /// Empty layers of a film of this many pixels.
 std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
@@ -51,7 +58,6 @@ private:
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
     std::size_t size_ = 0;
-    Color print_, paper_;
 };
 
 }  // namespace stratum::shade

@@ -37,6 +37,9 @@ public:
     virtual std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const = 0;
     /// Density of sample() per steradian.
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
+    /// The same with another body colour (reflectance in [0, 1]); null for materials whose colour can't be taken off
+    /// them.
+    virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
     /// What a report must say of it: where a table came from, and whether it was measured.
     virtual const std::vector<std::string>& notes() const;
 };

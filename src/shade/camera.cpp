@@ -90,6 +90,17 @@ void CameraOptions::validate() const {
     if (look_at && !eye) throw UsageError("--look-at needs --eye; give both, or choose a --view");
     if ((eye && !allFinite(*eye)) || (look_at && !allFinite(*look_at)) || (up && !allFinite(*up)))
         throw UsageError("--eye, --look-at and --up must be finite numbers");
+    if (!(aperture >= 0.0 && std::isfinite(aperture)))
+        throw UsageError(fmt::format("--aperture {}: must be a finite number, not negative", aperture));
+    if (!(f_number >= 0.0 && std::isfinite(f_number)))
+        throw UsageError(fmt::format("--f-number {}: must be a finite number above 0, e.g. 2.8", f_number));
+    if (aperture > 0.0 && f_number > 0.0) throw UsageError("--aperture and --f-number say the same; give one");
+    if (focus_distance && focus_point) throw UsageError("--focus: a distance or a point, not both");
+    if (focus_distance && !(*focus_distance > 0.0 && std::isfinite(*focus_distance)))
+        throw UsageError(fmt::format("--focus {}: a distance must be a finite number above 0", *focus_distance));
+    if (focus_point && !allFinite(*focus_point)) throw UsageError("--focus: the point must be finite numbers");
+    if ((focus_distance || focus_point) && !(aperture > 0.0 || f_number > 0.0))
+        throw UsageError("--focus needs a lens; give --f-number or --aperture, too");
 }
 
 Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec3& up, double fov, int width,
@@ -105,8 +116,33 @@ Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec
     up_ = glm::cross(right_, forward_);
 }
 
+namespace {
+
+/// With the lens that the options ask for.
+Camera focused(const Camera& camera, const CameraOptions& options, const march::Box& box) {
+    double radius = 0.5 * options.aperture;
+    if (options.f_number > 0.0) {
+        constexpr double kPictureHeight = 24.0;  // mm, as on film
+        const double focal = 0.5 * kPictureHeight / std::tan(0.5 * camera.fov() * std::numbers::pi / 180.0);
+        radius = 0.5 * focal / options.f_number;
+    }
+    if (!(radius > 0.0)) return camera;
+    const glm::dvec3 target = options.focus_point.value_or(0.5 * (box.min + box.max));
+    const double focus = options.focus_distance.value_or(glm::dot(target - camera.eye(), camera.forward()));
+    if (!(focus > 0.0))
+        throw UsageError(
+            "--focus: what should be sharp is not in front of the camera; give a distance, or another point");
+    return camera.withLens(radius, focus);
+}
+
+}  // namespace
+
 Camera Camera::make(const CameraOptions& options, const march::Box& box, int width, int height) {
     options.validate();
+    return focused(fitted(options, box, width, height), options, box);
+}
+
+Camera Camera::fitted(const CameraOptions& options, const march::Box& box, int width, int height) {
     const glm::dvec3 middle = 0.5 * (box.min + box.max);
     if (options.eye) {
         const glm::dvec3 target = options.look_at.value_or(middle);
@@ -119,6 +155,12 @@ Camera Camera::make(const CameraOptions& options, const march::Box& box, int wid
     const glm::dvec3 forward = kViews[static_cast<std::size_t>(options.view)].forward;
     Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
 
+    // Turned about its middle, a box fills a cylinder; the box around that.
+    const double around = 0.5 * std::hypot(box.max.x - box.min.x, box.max.y - box.min.y);
+    const march::Box fit = options.all_around ? march::Box{{middle.x - around, middle.y - around, box.min.z},
+                                                           {middle.x + around, middle.y + around, box.max.z}}
+                                              : box;
+
     // In view space each pair of opposite frustum planes is a problem in the plane of one image axis and depth.
     const double room = camera.tan_half_ * (1.0 - 2.0 * options.margin);
     Axis x;
@@ -126,8 +168,8 @@ Camera Camera::make(const CameraOptions& options, const march::Box& box, int wid
     x.slope = room * width / height;
     y.slope = room;
     for (std::size_t i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1u) ? box.max.x : box.min.x, (i & 2u) ? box.max.y : box.min.y,
-                                (i & 4u) ? box.max.z : box.min.z);
+        const glm::dvec3 corner((i & 1u) ? fit.max.x : fit.min.x, (i & 2u) ? fit.max.y : fit.min.y,
+                                (i & 4u) ? fit.max.z : fit.min.z);
         const glm::dvec3 d = corner - middle;
         x.a[i] = glm::dot(d, camera.right_);
         y.a[i] = glm::dot(d, camera.up_);
@@ -138,6 +180,39 @@ Camera Camera::make(const CameraOptions& options, const march::Box& box, int wid
     if (glm::length(box.max - box.min) <= 0.0) back = -1.0;
     camera.eye_ = middle + back * camera.forward_ + x.centred(back) * camera.right_ + y.centred(back) * camera.up_;
     return camera;
+}
+
+Camera Camera::withLens(double radius, double focus) const {
+    Camera camera = *this;
+    camera.lens_radius_ = radius;
+    camera.focus_ = focus;
+    return camera;
+}
+
+Camera Camera::turned(double degrees, const glm::dvec3& about) const {
+    const double s = std::sin(degrees * std::numbers::pi / 180.0);
+    const double c = std::cos(degrees * std::numbers::pi / 180.0);
+    const auto turn = [s, c](const glm::dvec3& v) { return glm::dvec3(c * v.x - s * v.y, s * v.x + c * v.y, v.z); };
+    Camera camera = *this;
+    camera.eye_ = about + turn(eye_ - about);
+    camera.right_ = turn(right_);
+    camera.up_ = turn(up_);
+    camera.forward_ = turn(forward_);
+    return camera;
+}
+
+march::Ray Camera::ray(const glm::dvec2& pixel, const glm::vec2& u) const {
+    const double scale = 2.0 * tan_half_ / height_;
+    const double x = (pixel.x - 0.5 * width_) * scale;
+    const double y = (0.5 * height_ - pixel.y) * scale;
+    // All rays of a pixel meet in the plane of focus.
+    const double radius = lens_radius_ * std::sqrt(static_cast<double>(u.x));
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(u.y);
+    const glm::dvec3 offset = radius * (std::cos(angle) * right_ + std::sin(angle) * up_);
+    march::Ray ray;
+    ray.origin = eye_ + offset;
+    ray.direction = glm::normalize(focus_ * (forward_ + x * right_ + y * up_) - offset);
+    return ray;
 }
 
 std::optional<glm::dvec2> Camera::project(const glm::dvec3& point) const {

@@ -24,14 +24,19 @@ struct CameraOptions {
     std::optional<glm::dvec3> look_at;  ///< world space; needs `eye`; default: the middle of the box
     std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
     double fov = 28.0;             ///< degrees, vertical, whole angle, in (0, 170]
-    double margin = 0.05;          ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
+    double aperture = 0.0;         ///< diameter of the lens, world units, >= 0; 0 is a pinhole: all is sharp
+    double f_number = 0.0;  ///< or the same as on a camera with a picture 24 mm high, world units being mm; 0: none
+    std::optional<double> focus_distance;   ///< world units before the eye, along the line of sight; > 0
+    std::optional<glm::dvec3> focus_point;  ///< or this world-space point is sharp; default: the middle of the box
+    bool all_around = false;                ///< fit a named view so that the box fits from all sides, for turntables
+    double margin = 0.05;  ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
 
     /// Throws UsageError.
     void validate() const;
 };
 
-/// A pinhole. Pixels are square; (0, 0) is the upper left corner of the frame, (width, height) the lower right one.
-/// Immutable.
+/// A pinhole, or a thin lens in its place. Pixels are square; (0, 0) is the upper left corner of the frame, (width,
+/// height) the lower right one. Immutable.
 class Camera {
 public:
     /// World space; `up` of any length.
@@ -54,6 +59,15 @@ public:
         ray.direction = glm::normalize(forward_ + x * right_ + y * up_);
         return ray;
     }
+    /// Whether the picture has a depth of field; then rays leave from all over the lens.
+    bool hasLens() const { return lens_radius_ > 0.0; }
+    /// The ray through a point of the frame and a point of the lens.
+    /// @param u  uniform in [0, 1)^2
+    march::Ray ray(const glm::dvec2& pixel, const glm::vec2& u) const;
+    /// The same camera with a lens. World units; focus is along forward(), > 0.
+    Camera withLens(double radius, double focus) const;
+    /// The same camera turned counter-clockwise, as seen from above, about a vertical axis.
+    Camera turned(double degrees, const glm::dvec3& about) const;
     /// Where a world-space point is seen, in pixels; nothing if it is not in front of the camera.
     std::optional<glm::dvec2> project(const glm::dvec3& point) const;
 
@@ -67,10 +81,13 @@ public:
     double fov() const { return fov_; }
 
 private:
+    static Camera fitted(const CameraOptions& options, const march::Box& box, int width, int height);
+
     glm::dvec3 eye_, right_, up_, forward_;
     double fov_;       // degrees
     double tan_half_;  // of the vertical angle
     int width_, height_;
+    double lens_radius_ = 0.0, focus_ = 1.0;  // world units
 };
 
 }  // namespace stratum::shade

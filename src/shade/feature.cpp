@@ -27,4 +27,10 @@ Pixel MaskIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceCo
     return {Color(1.0f), 1.0f};
 }
 
+Pixel LabelIntegrator::seen(const march::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr || first->bed) return {};
+    const float value = first->labels[static_cast<std::size_t>(label_)];
+    return {value >= 0.0f ? categoryColor(static_cast<std::size_t>(value)) : Color(0.0f), 1.0f};
+}
+
 }  // namespace stratum::shade

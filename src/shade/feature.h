@@ -46,4 +46,19 @@ protected:
     Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
+/// What was printed, each number in a flat colour (categoryColor), the bed and what doesn't know are black; alpha is 1
+/// on the print. Numbers themselves are layers beside a picture, see Aov. scene.labels must have the label.
+class LabelIntegrator final : public Integrator {
+public:
+    LabelIntegrator(const SceneDescription& scene, const march::Intersector& print, Label label)
+        : Integrator(scene, print), label_(label) {}
+    FilmContent content() const override { return FilmContent::unit; }
+
+protected:
+    Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
+
+private:
+    Label label_;
+};
+
 }  // namespace stratum::shade

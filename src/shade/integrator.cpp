@@ -18,8 +18,9 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 9> kNames = {"path",   "direct", "environment-sum", "phong", "ao",
-                                                    "normal", "depth",  "position",        "mask"};
+constexpr std::array<std::string_view, 12> kNames = {"path",   "direct", "environment-sum", "phong", "ao",
+                                                     "normal", "depth",  "position",        "mask",  "layer",
+                                                     "tool",   "feature"};
 
 }  // namespace
 
@@ -71,6 +72,8 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
     if (options.name == "position") return std::make_unique<PositionIntegrator>(scene, print);
     if (options.name == "mask") return std::make_unique<MaskIntegrator>(scene, print);
+    if (options.name == "layer" || options.name == "tool" || options.name == "feature")
+        return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
     if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
     if (options.name == "environment-sum")
         return std::make_unique<EnvironmentSum>(scene, print, options.environment_rows);

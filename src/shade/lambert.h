@@ -13,6 +13,9 @@ public:
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+    std::shared_ptr<const Brdf> recolored(const Color& albedo) const override {
+        return std::make_shared<Lambert>(albedo);
+    }
 
 private:
     Color f_;

@@ -10,12 +10,7 @@ namespace stratum::shade {
 
 PhongIntegrator::PhongIntegrator(const SceneDescription& scene, const march::Intersector& print,
                                  const PhongOptions& options)
-    : Integrator(scene, print),
-      scene_(scene),
-      options_(options),
-      lights_(scene.lights),
-      ambient_(scene.ambient),
-      base_(reflectanceFactor(*scene.material)) {
+    : Integrator(scene, print), options_(options), lights_(scene.lights), ambient_(scene.ambient) {
     if (!lights_.empty() || maxComponent(ambient_) > 0.0f) return;
     ambient_ = Color(0.2f);
     const glm::dvec3 to_light = scene.camera.up() - 0.7 * scene.camera.right() - scene.camera.forward();
@@ -68,9 +63,8 @@ Pixel PhongIntegrator::seen(const march::Ray& camera_ray, const SurfacePoint* fi
         const float fade = surfaces_.fade(point);
         if (fade > 0.0f) surfaces_.backdrop(ray, behind);
         const glm::vec3 view(-ray.direction);
-        const Color base = point.bed ? scene_.bed->albedo : base_;
         const float mirror = point.bed ? 0.0f : options_.reflective;
-        const Color here = base * local(point, view, context);
+        const Color here = point.albedo * local(point, view, context);
         sum += share * ((1.0f - fade) * (1.0f - mirror) * here + fade * behind);
         share *= (1.0f - fade) * mirror;
         if (!(share > 0.0f) || depth == kDepth) return {sum, 1.0f};

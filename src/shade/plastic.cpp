@@ -52,6 +52,13 @@ Plastic::Plastic(const Color& body, float alpha) : body_(body), body_max_(maxCom
     one_minus_mean_ = static_cast<float>(1.0 - mean);
 }
 
+std::shared_ptr<const Brdf> Plastic::recolored(const Color& body) const {
+    auto other = std::make_shared<Plastic>(*this);  // the coat's table doesn't know the body
+    other->body_ = body;
+    other->body_max_ = maxComponent(body);
+    return other;
+}
+
 float Plastic::coatAlbedo(float cosine) const {
     const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kNodes - 1);
     const int i = std::min(static_cast<int>(s), kNodes - 2);

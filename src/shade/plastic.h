@@ -25,6 +25,7 @@ public:
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+    std::shared_ptr<const Brdf> recolored(const Color& body) const override;
 
     /// Share of light from this angle that the coat reflects.
     /// @param cosine  to the normal, in [0, 1]

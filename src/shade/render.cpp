@@ -140,7 +140,8 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
                         Sampler sampler = worker.sampler;
                         sampler.start(x, y, static_cast<std::uint32_t>(s));
                         const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
-                        stream.rays[filled] = scene.camera.ray(place);
+                        stream.rays[filled] = scene.camera.hasLens() ? scene.camera.ray(place, sampler.next2D())
+                                                                     : scene.camera.ray(place);
                         stream.samplers[filled] = sampler;
                         if (++filled == kStream) flush();
                     }

@@ -1,7 +1,9 @@
 #include "shade/scene.h"
 
+#include "io/error.h"
 #include "shade/sampling.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -18,6 +20,17 @@ Color paperRadiance(const SceneDescription& scene, const Color& albedo, const gl
 }
 
 }  // namespace
+
+Label parseLabel(std::string_view text) {
+    for (std::size_t n = 0; n < kLabels; ++n)
+        if (labelName(static_cast<Label>(n)) == text) return static_cast<Label>(n);
+    throw UsageError(fmt::format("{}: no label; choose layer, tool or feature", text));
+}
+
+std::string_view labelName(Label label) {
+    constexpr std::array<std::string_view, kLabels> kNames = {"layer", "tool", "feature"};
+    return kNames[static_cast<std::size_t>(label)];
+}
 
 double restingHeight(const march::Intersector& print) {
     constexpr int kSide = 128;
@@ -42,6 +55,9 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
     const march::Box box = print.bounds();
     SceneDescription scene{.camera = Camera::make(options.camera, box, width, height),
                            .material = makeBrdf(options.brdf),
+                           .objects = {},
+                           .smooth_normals = options.smooth_normals,
+                           .labels = {},
                            .environment = nullptr,
                            .lights = {},
                            .ambient = Color(0.0f),

@@ -7,10 +7,14 @@
 #include "shade/camera.h"
 #include "shade/environment.h"
 #include "shade/light.h"
+#include "shade/material.h"
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::shade {
@@ -18,6 +22,8 @@ namespace stratum::shade {
 /// A scene in the words of the command line. The defaults make a product photo.
 struct SceneOptions {
     std::string brdf = kDefaultBrdf;  ///< --brdf, see makeBrdf
+    std::string color_by;             ///< --color-by: an attribute of all level sets without a material of their own
+    bool smooth_normals = false;      ///< --normals smooth: shade with Tracer::shadingNormal()
     std::string env = "studio";       ///< --env, see makeEnvironment
     double env_rotation = 0.0;        ///< --env-rotation, degrees counter-clockwise as seen from above
     double env_exposure = 0.0;        ///< --env-exposure, stops
@@ -27,10 +33,21 @@ struct SceneOptions {
     CameraOptions camera;
 };
 
+/// The whole numbers that tell apart what was printed.
+enum class Label { layer, tool, feature };
+inline constexpr std::size_t kLabels = 3;
+/// Throws UsageError if the text is none of "layer", "tool", "feature".
+Label parseLabel(std::string_view text);
+std::string_view labelName(Label label);
+
 /// A scene ready to be rendered. Everything is immutable and shared by all threads.
 struct SceneDescription {
     Camera camera;
-    std::shared_ptr<const Brdf> material;            ///< of the print; never null
+    std::shared_ptr<const Brdf> material;  ///< of all objects but `objects`; never null
+    std::vector<ObjectMaterial> objects;   ///< by march::Hit::object; may be shorter than there are objects
+    bool smooth_normals = false;           ///< shade with Tracer::shadingNormal()
+    /// By Label: the number of that attribute (Tracer::attribute()), if surfaces are to know it.
+    std::array<std::optional<std::size_t>, kLabels> labels;
     std::shared_ptr<const Environment> environment;  ///< never null
     std::vector<std::shared_ptr<const Light>> lights;
     Color ambient{0.0f};  ///< radiance that reaches every point from everywhere

@@ -2,113 +2,55 @@
 
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "shade/camera_pose.h"
+#include "shade/json_section.h"
+#include "shade/object_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 namespace stratum::shade {
 namespace {
 
 using Json = nlohmann::json;
 
-/// Levenshtein's distance: single letters inserted, removed or replaced.
-std::size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            diagonal = above;
-        }
-    }
-    return row.back();
+/// Focus: a distance, or a point.
+void readFocus(JsonSection& section, CameraOptions& camera) {
+    const Json* focus = section.find("focus");
+    if (!focus) return;
+    if (focus->is_number())
+        camera.focus_distance = focus->get<double>();
+    else
+        section.read("focus", camera.focus_point);
 }
 
-/// One object of the file. Every key that is asked for is known; finish() refuses all others.
-class Section {
-public:
-    Section(const Json& json, std::string path, const std::string& file)
-        : json_(json), path_(std::move(path)), file_(file) {
-        if (!json.is_object()) fail("", "an object, { ... }");
+/// A pose from matched points.
+void readPhotograph(JsonSection section, CameraOptions& camera, std::vector<std::string>& notes) {
+    const auto size = section.numbers("size", 2);
+    if (size.empty()) section.fail("size", "the photograph's width and height in pixels, [ ... ]");
+    const Json* pairs = section.find("pairs");
+    if (!pairs || !pairs->is_array()) section.fail("pairs", "a list of [pixel x, pixel y, X, Y, Z]");
+    std::vector<PointPair> points;
+    for (const Json& pair : *pairs) {
+        if (!pair.is_array() || pair.size() != 5 ||
+            !std::all_of(pair.begin(), pair.end(), [](const Json& v) { return v.is_number(); }))
+            section.fail(fmt::format("pairs[{}]", points.size()), "[pixel x, pixel y, X, Y, Z]");
+        const auto v = pair.get<std::vector<double>>();
+        points.push_back({{v[0], v[1]}, {v[2], v[3], v[4]}});
     }
+    section.finish();
+    const CameraPose pose = solveCameraPose(points, size[0], size[1]);
+    camera.eye = pose.eye;
+    camera.look_at = pose.eye + pose.forward;
+    camera.up = pose.up;
+    camera.fov = pose.fov;
+    notes.push_back(fmt::format("camera from {} matched points: residual {:.3g} pixels RMS, worst {:.3g} at pair {}",
+                                points.size(), pose.rms_pixels, pose.worst_pixels, pose.worst));
+}
 
-    const Json* find(const char* key) {
-        known_.emplace_back(key);
-        const auto found = json_.find(key);
-        return found == json_.end() ? nullptr : &*found;
-    }
-    void read(const char* key, std::string& value) {
-        if (const Json* j = find(key)) {
-            if (!j->is_string()) fail(key, "a text");
-            value = j->get<std::string>();
-        }
-    }
-    void read(const char* key, bool& value) {
-        if (const Json* j = find(key)) {
-            if (!j->is_boolean()) fail(key, "true or false");
-            value = j->get<bool>();
-        }
-    }
-    void read(const char* key, double& value) {
-        if (const Json* j = find(key)) {
-            if (!j->is_number()) fail(key, "a number");
-            value = j->get<double>();
-        }
-    }
-    template <typename Integer>
-    void readInteger(const char* key, Integer& value) {
-        if (const Json* j = find(key)) {
-            constexpr auto kMost = static_cast<double>(std::numeric_limits<Integer>::max());
-            if (!j->is_number_integer() || !(j->get<double>() >= 0.0 && j->get<double>() <= kMost))
-                fail(key, "a whole number, not negative");
-            value = j->get<Integer>();
-        }
-    }
-    /// Exactly `count` numbers; empty if the key is not there.
-    std::vector<double> numbers(const char* key, std::size_t count) {
-        const Json* j = find(key);
-        if (!j) return {};
-        const bool good = j->is_array() && j->size() == count &&
-                          std::all_of(j->begin(), j->end(), [](const Json& v) { return v.is_number(); });
-        if (!good) fail(key, fmt::format("{} numbers, [ ... ]", count));
-        return j->get<std::vector<double>>();
-    }
-    void read(const char* key, std::optional<glm::dvec3>& value) {
-        if (const auto v = numbers(key, 3); !v.empty()) value = glm::dvec3(v[0], v[1], v[2]);
-    }
-    /// Throws for keys that nobody asked for.
-    void finish() const {
-        for (const auto& item : json_.items()) {
-            if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
-            const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-                return editDistance(a, item.key()) < editDistance(b, item.key());
-            });
-            throw InputError(
-                fmt::format("{}: {}: unknown key; did you mean '{}'?", file_, place(item.key()), *nearest));
-        }
-    }
-    std::string place(std::string_view key) const {
-        return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
-    }
-    [[noreturn]] void fail(std::string_view key, std::string_view expected) const {
-        const std::string where = place(key);
-        throw InputError(fmt::format("{}: {}: expected {}", file_, where.empty() ? "the file" : where, expected));
-    }
-
-private:
-    const Json& json_;
-    std::string path_;
-    const std::string& file_;
-    std::vector<std::string> known_;
-};
-
-void readCamera(Section section, CameraOptions& camera) {
+void readCamera(JsonSection section, CameraOptions& camera, std::vector<std::string>& notes) {
     std::string view;
     section.read("view", view);
     if (!view.empty()) camera.view = parseView(view);
@@ -116,14 +58,11 @@ void readCamera(Section section, CameraOptions& camera) {
     section.read("look_at", camera.look_at);
     section.read("up", camera.up);
     section.read("fov", camera.fov);
+    section.read("aperture", camera.aperture);
+    section.read("f_number", camera.f_number);
+    readFocus(section, camera);
+    if (auto photograph = section.section("photograph")) readPhotograph(std::move(*photograph), camera, notes);
     section.finish();
-}
-
-/// A file beside the scene, if there is one of that name; else the text is a preset.
-std::string beside(const std::filesystem::path& folder, const std::string& text) {
-    std::error_code error;
-    const std::filesystem::path path = folder / text;
-    return !text.empty() && std::filesystem::is_regular_file(path, error) ? path.string() : text;
 }
 
 }  // namespace
@@ -148,11 +87,26 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     }
     const std::filesystem::path folder = path.parent_path();
     SceneFile file;
-    Section top(json, "", name);
+    JsonSection top(json, "", name);
     top.read("print", file.print);
-    if (file.print.empty()) top.fail("print", "the name of a level set, e.g. \"part.vdb\"");
-    file.print = (folder / file.print).string();
     top.read("grid", file.grid);
+    if (const Json* objects = top.find("objects")) {
+        if (!file.print.empty() || !file.grid.empty())
+            top.fail("objects", "to stand alone: print and grid are for scenes of one level set");
+        if (!objects->is_array() || objects->empty()) top.fail("objects", "a list of objects, [ {...}, ... ]");
+        for (const Json& object : *objects)
+            file.objects.push_back(
+                readObject(JsonSection(object, fmt::format("objects[{}]", file.objects.size()), name), folder));
+    } else if (file.print.empty()) {
+        top.fail("print", "the name of a level set, e.g. \"part.vdb\", or \"objects\": [ ... ]");
+    } else {
+        file.print = (folder / file.print).string();
+    }
+    top.read("color_by", file.scene.color_by);
+    std::string normals = "geometric";
+    top.read("normals", normals);
+    if (normals != "geometric" && normals != "smooth") top.fail("normals", "geometric or smooth");
+    file.scene.smooth_normals = normals == "smooth";
     top.read("output", file.output);
     if (const auto size = top.numbers("size", 2); !size.empty()) {
         file.render.width = static_cast<int>(std::clamp(size[0], -1.0, 1e9));
@@ -173,9 +127,9 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     top.read("material", file.scene.brdf);
     file.scene.brdf = beside(folder, file.scene.brdf);
     top.read("bed", file.scene.bed);
-    if (const Json* camera = top.find("camera")) readCamera(Section(*camera, "camera", name), file.scene.camera);
+    if (auto camera = top.section("camera")) readCamera(std::move(*camera), file.scene.camera, file.notes);
     if (const Json* environment = top.find("environment")) {
-        Section section(*environment, "environment", name);
+        JsonSection section(*environment, "environment", name);
         section.read("map", file.scene.env);
         section.read("rotation", file.scene.env_rotation);
         section.read("exposure", file.scene.env_exposure);
@@ -190,7 +144,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
         }
     }
     if (const Json* integrator = top.find("integrator")) {
-        Section section(*integrator, "integrator", name);
+        JsonSection section(*integrator, "integrator", name);
         section.read("name", file.render.integrator.name);
         section.readInteger("bounces", file.render.integrator.bounces);
         section.read("ao_distance", file.render.integrator.ao_distance);

@@ -1,6 +1,7 @@
 // A picture described in a file: JSON.
 #pragma once
 
+#include "shade/object_file.h"
 #include "shade/render.h"
 #include "shade/scene.h"
 #include "shade/tonemap.h"
@@ -8,14 +9,17 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace stratum::shade {
 
 /// All that makes a picture. docs/shading.md has the schema with an example.
 struct SceneFile {
-    std::string print;   ///< the level set; relative to the scene file
-    std::string grid;    ///< empty: chosen as by --grid
-    std::string output;  ///< empty: named after the scene file; relative to the working directory
+    std::string print;                   ///< the level set; empty if there are `objects`
+    std::string grid;                    ///< empty: chosen as by --grid
+    std::string output;                  ///< empty: named after the scene file; relative to the working directory
+    std::vector<ObjectOptions> objects;  ///< empty: `print` alone
+    std::vector<std::string> notes;      ///< what a report must say, e.g. the residual of a solved pose
     SceneOptions scene;
     RenderOptions render;
     bool spp_given = false;  ///< whether the file says how many samples, or leaves them to the default

@@ -9,19 +9,35 @@
 namespace stratum::shade {
 
 Surfaces::Surfaces(const SceneDescription& scene, const march::Intersector& print)
-    : scene_(scene), offset_(print.surfaceOffset()), paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {}
+    : scene_(scene),
+      offset_(print.surfaceOffset()),
+      only_(scene.material),
+      paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {}
 
-SurfacePoint Surfaces::onPrint(const march::Ray& ray, const march::Hit& hit) const {
+SurfacePoint Surfaces::onPrint(const march::Ray& ray, const march::Hit& hit, march::Tracer& tracer) const {
     SurfacePoint point;
     point.position = hit.position;
     point.t = hit.t;
-    point.brdf = scene_.material.get();
+    const ObjectMaterial& object = hit.object < scene_.objects.size() ? scene_.objects[hit.object] : only_;
+    const Material& material = object.single() ? object.only() : object.of(tracer.attribute(hit, object.attribute()));
+    point.brdf = material.brdf.get();
+    point.albedo = material.albedo;
+    for (std::size_t n = 0; n < kLabels; ++n)
+        if (scene_.labels[n])
+            if (const auto value = tracer.attribute(hit, *scene_.labels[n])) point.labels[n] = value->x;
     const double facing = glm::dot(hit.normal, ray.direction);
     // A normal that is no number (a gradient of zero) is replaced here, once: the surface then faces the ray.
     if (!std::isfinite(facing) || !(glm::dot(hit.normal, hit.normal) > 0.5))
         point.normal = -ray.direction;
     else
         point.normal = facing > 0.0 ? -hit.normal : hit.normal;
+    point.geometric = point.normal;
+    if (scene_.smooth_normals) {
+        const glm::dvec3 smooth = tracer.shadingNormal(hit);
+        const glm::dvec3 facing_us = facing > 0.0 ? -smooth : smooth;
+        // One that looks away from the viewer would show nothing: near the silhouette it gives way.
+        if (glm::dot(facing_us, ray.direction) < 0.0) point.normal = facing_us;
+    }
     return point;
 }
 
@@ -31,6 +47,7 @@ SurfacePoint Surfaces::onBed(const march::Ray& ray, double t) const {
     point.position.z = scene_.bed->z;
     point.t = t;
     point.brdf = &paper_;
+    point.albedo = scene_.bed->albedo;
     point.bed = true;
     return point;
 }
@@ -42,7 +59,7 @@ bool Surfaces::nearest(const march::Ray& ray, march::Tracer& tracer, SurfacePoin
     march::Hit hit;
     const bool print = tracer.intersect(limited, hit);
     if (print)
-        point = onPrint(ray, hit);
+        point = onPrint(ray, hit, tracer);
     else if (bed)
         point = onBed(ray, *bed);
     return print || bed;
@@ -62,7 +79,7 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     }
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
-            points[n] = onPrint(rays[n], hits[n]);
+            points[n] = onPrint(rays[n], hits[n], tracer);
         else if (const auto bed = scene_.bed ? scene_.bed->intersect(rays[n]) : std::nullopt)
             points[n] = onBed(rays[n], *bed);
         else
@@ -84,7 +101,7 @@ void Surfaces::occluded(std::span<const march::Ray> rays, march::Tracer& tracer,
 
 march::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {
     march::Ray ray;
-    ray.origin = point.position + offset_ * point.normal;
+    ray.origin = point.position + offset_ * point.geometric;
     ray.direction = glm::normalize(glm::dvec3(direction));
     return ray;
 }

@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -16,10 +17,14 @@ namespace stratum::shade {
 /// A point where light is scattered. World space.
 struct SurfacePoint {
     glm::dvec3 position{0.0};
-    glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit, geometric, on the side that the ray came from
-    double t = 0.0;                    ///< along the ray, world units
+    glm::dvec3 normal{0.0, 0.0, 1.0};     ///< unit, to shade with, on the side that the ray came from
+    glm::dvec3 geometric{0.0, 0.0, 1.0};  ///< unit, to leave along; the same but for smooth normals
+    double t = 0.0;                       ///< along the ray, world units
     const Brdf* brdf = nullptr;
+    Color albedo{0.0f};  ///< reflectanceFactor of brdf
     bool bed = false;
+    /// By Label: what was printed here, if the scene asks for it and the object knows; -1 if not.
+    std::array<float, kLabels> labels{-1.0f, -1.0f, -1.0f};
 };
 
 /// Immutable; shared by all threads. Keeps references to the scene and its material.
@@ -43,11 +48,12 @@ public:
     bool backdrop(const march::Ray& ray, Color& radiance) const;
 
 private:
-    SurfacePoint onPrint(const march::Ray& ray, const march::Hit& hit) const;
+    SurfacePoint onPrint(const march::Ray& ray, const march::Hit& hit, march::Tracer& tracer) const;
     SurfacePoint onBed(const march::Ray& ray, double t) const;
 
     const SceneDescription& scene_;
-    double offset_;  // world units
+    double offset_;        // world units
+    ObjectMaterial only_;  // of objects that scene_.objects doesn't have
     Lambert paper_;
 };
 

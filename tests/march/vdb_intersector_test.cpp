@@ -161,9 +161,9 @@ TEST(VdbIntersector, RefusesWhatItCannotTrace) {
     fog->setGridClass(openvdb::GRID_FOG_VOLUME);
     EXPECT_THROW(makeVdbIntersector(fog), InputError);
     EXPECT_THROW(makeVdbIntersector(test::sphereGrid(10, openvdb::Vec3f(0), 0.2f, 1.5f)), InputError);
-    const auto oblong = ball();
-    oblong->transform().postScale(openvdb::Vec3d(1, 1, 2));
-    EXPECT_THROW(makeVdbIntersector(oblong), InputError);
+    const auto sheared = ball();
+    sheared->transform().postShear(0.5, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+    EXPECT_THROW(makeVdbIntersector(sheared), InputError);
 }
 
 }  // namespace

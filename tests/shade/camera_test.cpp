@@ -113,5 +113,94 @@ TEST(Camera, RefusesNonsense) {
     EXPECT_TRUE(std::isfinite(Camera::make({}, {glm::dvec3(3.0), glm::dvec3(3.0)}, 10, 10).eye().x));
 }
 
+TEST(Camera, ALensIsSharpWhereItIsFocused) {
+    const march::Box box{{-10, -10, 0}, {10, 10, 20}};
+    CameraOptions options;
+    options.eye = glm::dvec3(0, -100, 10);
+    EXPECT_FALSE(Camera::make(options, box, 400, 300).hasLens());
+    options.aperture = 4;
+    const Camera camera = Camera::make(options, box, 400, 300);
+    ASSERT_TRUE(camera.hasLens());
+    const glm::dvec2 pixel(137.5, 210.25);
+    const march::Ray pinhole = camera.ray(pixel);
+    // All rays of a pixel meet where the pinhole's is at the depth of the box' middle.
+    const glm::dvec3 meeting =
+        pinhole.origin + pinhole.direction * (100 / glm::dot(pinhole.direction, camera.forward()));
+    double widest = 0;
+    for (int a = 0; a < 8; ++a)
+        for (int b = 0; b < 8; ++b) {
+            const march::Ray ray = camera.ray(pixel, {(a + 0.5f) / 8, (b + 0.5f) / 8});
+            EXPECT_NEAR(glm::length(ray.direction), 1, 1e-12);
+            EXPECT_NEAR(glm::dot(ray.origin - camera.eye(), camera.forward()), 0, 1e-12);
+            widest = std::max(widest, glm::length(ray.origin - camera.eye()));
+            const double along = glm::dot(meeting - ray.origin, ray.direction);
+            EXPECT_NEAR(glm::length(ray.origin + along * ray.direction - meeting), 0, 1e-9);
+        }
+    EXPECT_GT(widest, 1.9);
+    EXPECT_LE(widest, 2);
+    options.focus_point = glm::dvec3(3, -50, 2);
+    const Camera near = Camera::make(options, box, 400, 300);
+    const march::Ray ray = near.ray(*near.project(*options.focus_point), {0.7f, 0.3f});
+    const double along = glm::dot(*options.focus_point - ray.origin, ray.direction);
+    EXPECT_NEAR(glm::length(ray.origin + along * ray.direction - *options.focus_point), 0, 1e-9);
+    // f/2.8 at 28 degrees is a lens of 12 mm / tan 14 degrees / 2.8.
+    options = {};
+    options.f_number = 2.8;
+    const Camera photo = Camera::make(options, box, 400, 300);
+    const march::Ray edge = photo.ray({0, 0}, {0.9999999f, 0.0f});
+    EXPECT_NEAR(glm::length(edge.origin - photo.eye()), 0.5 * 12 / std::tan(14 * std::acos(-1.0) / 180) / 2.8, 1e-4);
+}
+
+TEST(Camera, RefusesLensesThatAreNone) {
+    const march::Box box{{-10, -10, 0}, {10, 10, 20}};
+    const auto refused = [&](const CameraOptions& options) {
+        EXPECT_THROW(Camera::make(options, box, 10, 10), UsageError);
+    };
+    CameraOptions options;
+    options.aperture = -1;
+    refused(options);
+    options = {};
+    options.focus_distance = 10;
+    refused(options);  // without a lens
+    options.f_number = 4;
+    EXPECT_NO_THROW(Camera::make(options, box, 10, 10));
+    options.aperture = 4;
+    refused(options);
+    options.aperture = 0;
+    options.focus_distance = -3;
+    refused(options);
+    options.focus_distance.reset();
+    options.eye = glm::dvec3(0, -100, 10);
+    options.focus_point = glm::dvec3(0, -200, 10);  // behind
+    refused(options);
+    options.focus_point = glm::dvec3(std::nan(""), 0, 0);
+    refused(options);
+}
+
+TEST(Camera, TurnsAroundAThing) {
+    const march::Box box{{-10, -20, 0}, {30, 10, 20}};
+    CameraOptions options;
+    options.all_around = true;
+    const Camera first = Camera::make(options, box, 400, 300);
+    const glm::dvec3 middle(10, -5, 10);
+    for (int turn = 0; turn < 24; ++turn) {
+        const Camera camera = first.turned(15.0 * turn, middle);
+        EXPECT_NEAR(glm::length(camera.eye() - middle), glm::length(first.eye() - middle), 1e-9);
+        EXPECT_NEAR(camera.eye().z, first.eye().z, 1e-12);
+        EXPECT_NEAR(glm::dot(camera.right(), camera.forward()), 0, 1e-12);
+        // Everything stays in the picture.
+        for (int corner = 0; corner < 8; ++corner) {
+            const auto seen = camera.project(
+                {(corner & 1) != 0 ? 30 : -10, (corner & 2) != 0 ? 10 : -20, (corner & 4) != 0 ? 20 : 0});
+            ASSERT_TRUE(seen);
+            EXPECT_GT(seen->x, 0);
+            EXPECT_LT(seen->x, 400);
+            EXPECT_GT(seen->y, 0);
+            EXPECT_LT(seen->y, 300);
+        }
+    }
+    EXPECT_NEAR(first.turned(90, middle).eye().x, middle.x - (first.eye().y - middle.y), 1e-9);
+}
+
 }  // namespace
 }  // namespace stratum

@@ -1,0 +1,78 @@
+#include "march/annotation.h"
+
+#include "march/attribute_grid.h"
+#include "march/smooth_normal.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace stratum::march {
+namespace {
+
+class AnnotatedTracer final : public Tracer {
+public:
+    AnnotatedTracer(std::unique_ptr<Tracer> rays, const Annotation& annotation) : rays_(std::move(rays)) {
+        if (annotation.smooth) smooth_.emplace(*annotation.smooth);
+        for (const auto& grid : annotation.attributes)
+            attributes_.push_back(grid ? makeAttributeLookup(*grid) : nullptr);
+    }
+
+    bool intersect(const Ray& ray, Hit& hit) override { return rays_->intersect(ray, hit); }
+    bool occluded(const Ray& ray) override { return rays_->occluded(ray); }
+    void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
+        rays_->intersectStream(rays, hits);
+    }
+    void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+        rays_->occludedStream(rays, blocked);
+    }
+    glm::dvec3 shadingNormal(const Hit& hit) override {
+        return smooth_ ? smooth_->at(hit.position, hit.normal) : hit.normal;
+    }
+    std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override {
+        if (which >= attributes_.size() || !attributes_[which]) return std::nullopt;
+        return attributes_[which]->at(hit.position);
+    }
+
+private:
+    std::unique_ptr<Tracer> rays_;
+    std::optional<SmoothNormal> smooth_;
+    std::vector<std::unique_ptr<AttributeLookup>> attributes_;
+};
+
+class AnnotatedIntersector final : public Intersector {
+public:
+    AnnotatedIntersector(std::shared_ptr<const Intersector> shape, Annotation annotation)
+        : shape_(std::move(shape)), annotation_(std::move(annotation)) {}
+
+    std::unique_ptr<Tracer> makeTracer() const override {
+        return std::make_unique<AnnotatedTracer>(shape_->makeTracer(), annotation_);
+    }
+    std::string_view name() const override { return shape_->name(); }
+    Box bounds() const override { return shape_->bounds(); }
+    double voxelSize() const override { return shape_->voxelSize(); }
+    double surfaceOffset() const override { return shape_->surfaceOffset(); }
+    std::size_t bytes() const override {
+        std::size_t sum = shape_->bytes();
+        if (annotation_.smooth) sum += annotation_.smooth->memUsage();
+        for (const auto& grid : annotation_.attributes)
+            if (grid) sum += grid->memUsage();
+        return sum;
+    }
+
+private:
+    std::shared_ptr<const Intersector> shape_;
+    Annotation annotation_;
+};
+
+}  // namespace
+
+bool Annotation::empty() const {
+    return !smooth && std::all_of(attributes.begin(), attributes.end(), [](const auto& grid) { return !grid; });
+}
+
+std::shared_ptr<const Intersector> annotate(std::shared_ptr<const Intersector> shape, Annotation annotation) {
+    if (annotation.empty()) return shape;
+    return std::make_shared<AnnotatedIntersector>(std::move(shape), std::move(annotation));
+}
+
+}  // namespace stratum::march

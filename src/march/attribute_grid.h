@@ -1,0 +1,36 @@
+// Attribute grids beside a level set: reading them, and the value at a point of its surface.
+#pragma once
+
+#include "march/attribute.h"
+
+#include <openvdb/openvdb.h>
+#include <glm/vec3.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace stratum::march {
+
+/// Reads the grid `name` (of Int32, float or Vec3f) of a .vdb and checks that it lies on the lattice of `surface`.
+/// Throws InputError: no such grid, with those that there are; of another type; on another lattice.
+openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path, const std::string& name,
+                                              const openvdb::FloatGrid& surface);
+
+/// Looks at all active voxels once. Throws InputError if there are more than AttributeSummary::kMostColors colours.
+AttributeSummary summarize(const openvdb::GridBase& grid);
+
+/// One a thread. Keeps a reference to the grid.
+class AttributeLookup {
+public:
+    virtual ~AttributeLookup() = default;
+    /// The value of that active voxel, of the eight around the point, which is nearest to it: a voxel has the value of
+    /// the bead whose surface is nearest, and values of different beads don't mix. Nothing if none of them is active.
+    /// @param position  world space
+    virtual std::optional<glm::vec3> at(const glm::dvec3& position) = 0;
+};
+
+std::unique_ptr<AttributeLookup> makeAttributeLookup(const openvdb::GridBase& grid);
+
+}  // namespace stratum::march

@@ -1,0 +1,16 @@
+// Shape by formula -> level set.
+#pragma once
+
+#include "march/sdf.h"
+
+#include <openvdb/openvdb.h>
+
+namespace stratum::march {
+
+/// Samples the shape on cubes of this edge (world units), in a narrow band of three voxels to each side. Leaves that
+/// the distance at their middle shows to be away from the surface are never sampled. Parallel. Throws UsageError for
+/// shapes without an end, and for a voxel size that is not positive, leaves nothing of the shape, or needs more than
+/// 2^31 leaves to look at.
+openvdb::FloatGrid::Ptr makeSdfGrid(const Sdf& shape, double voxel_size);
+
+}  // namespace stratum::march

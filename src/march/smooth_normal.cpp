@@ -1,0 +1,55 @@
+#include "march/smooth_normal.h"
+
+#include "march/cell_root.h"
+#include "march/grid_axes.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::march {
+
+SmoothNormal::SmoothNormal(const openvdb::FloatGrid& grid)
+    : map_(grid.transform().baseMap()),
+      accessor_(grid.getConstAccessor()),
+      to_index_(glm::inverse(GridAxes(grid.transform()).edges)) {}
+
+double SmoothNormal::field(const glm::dvec3& p) {
+    const openvdb::Coord cell = openvdb::Coord::floor(openvdb::Vec3d(p.x, p.y, p.z));
+    Corners corners;
+    for (int c = 0; c < 8; ++c)
+        corners[static_cast<std::size_t>(c)] =
+            static_cast<double>(accessor_.getValue(cell.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
+    return interpolate(corners, p - glm::dvec3(cell[0], cell[1], cell[2]));
+}
+
+glm::dvec3 SmoothNormal::at(const glm::dvec3& position, const glm::dvec3& geometric) {
+    const openvdb::Vec3d i = map_->applyInverseMap(openvdb::Vec3d(position.x, position.y, position.z));
+    const glm::dvec3 p(i[0], i[1], i[2]);
+    const double here = field(p);
+    glm::dvec3 central;
+    double bend = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 step(0.0);
+        step[axis] = 1.0;
+        const double after = field(p + step);
+        const double before = field(p - step);
+        central[axis] = 0.5 * (after - before);
+        bend = std::max(bend, std::abs(after + before - 2.0 * here));
+    }
+    const double slope = glm::length(central);
+    const glm::dvec3 world = central * to_index_;
+    const double length = glm::length(world);
+    if (!(slope > 0.0) || !(length > 0.0)) return geometric;
+    // Across a crease the two sides' slopes cancel in part: measured against what is left, it bends all the more.
+    const double t = std::clamp((bend / slope - kSmooth) / (kCrease - kSmooth), 0.0, 1.0);
+    const double sharp = t * t * (3.0 - 2.0 * t);
+    const glm::dvec3 mixed = (1.0 - sharp) * (world / length) + sharp * geometric;
+    const double size = glm::length(mixed);
+    return size > 0.0 && glm::dot(mixed, geometric) > 0.0 ? mixed / size : geometric;
+}
+
+}  // namespace stratum::march

@@ -1,0 +1,106 @@
+#include "shade/json_section.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace stratum::shade {
+namespace {
+
+/// Levenshtein's distance: single letters inserted, removed or replaced.
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+JsonSection::JsonSection(const Json& json, std::string path, const std::string& file)
+    : json_(json), path_(std::move(path)), file_(file) {
+    if (!json.is_object()) fail("", "an object, { ... }");
+}
+
+const nlohmann::json* JsonSection::find(const char* key) {
+    known_.emplace_back(key);
+    const auto found = json_.find(key);
+    return found == json_.end() ? nullptr : &*found;
+}
+
+void JsonSection::read(const char* key, std::string& value) {
+    if (const Json* j = find(key)) {
+        if (!j->is_string()) fail(key, "a text");
+        value = j->get<std::string>();
+    }
+}
+
+void JsonSection::read(const char* key, bool& value) {
+    if (const Json* j = find(key)) {
+        if (!j->is_boolean()) fail(key, "true or false");
+        value = j->get<bool>();
+    }
+}
+
+void JsonSection::read(const char* key, double& value) {
+    if (const Json* j = find(key)) {
+        if (!j->is_number()) fail(key, "a number");
+        value = j->get<double>();
+    }
+}
+
+void JsonSection::read(const char* key, std::optional<glm::dvec3>& value) {
+    if (const auto v = numbers(key, 3); !v.empty()) value = glm::dvec3(v[0], v[1], v[2]);
+}
+
+void JsonSection::read(const char* key, glm::dvec3& value) {
+    if (const auto v = numbers(key, 3); !v.empty()) value = glm::dvec3(v[0], v[1], v[2]);
+}
+
+std::vector<double> JsonSection::numbers(const char* key, std::size_t count) {
+    const Json* j = find(key);
+    if (!j) return {};
+    const bool good = j->is_array() && j->size() == count &&
+                      std::all_of(j->begin(), j->end(), [](const Json& v) { return v.is_number(); });
+    if (!good) fail(key, fmt::format("{} numbers, [ ... ]", count));
+    return j->get<std::vector<double>>();
+}
+
+std::optional<JsonSection> JsonSection::section(const char* key) {
+    const Json* j = find(key);
+    if (!j) return std::nullopt;
+    return JsonSection(*j, place(key), file_);
+}
+
+void JsonSection::finish() const {
+    for (const auto& item : json_.items()) {
+        if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+        const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
+            return editDistance(a, item.key()) < editDistance(b, item.key());
+        });
+        throw InputError(fmt::format("{}: {}: unknown key; did you mean '{}'?", file_, place(item.key()), *nearest));
+    }
+}
+
+std::string JsonSection::place(std::string_view key) const {
+    return path_.empty() ? std::string(key) : key.empty() ? path_ : fmt::format("{}.{}", path_, key);
+}
+
+void JsonSection::fail(std::string_view key, std::string_view expected) const {
+    const std::string where = place(key);
+    throw InputError(fmt::format("{}: {}: expected {}", file_, where.empty() ? "the file" : where, expected));
+}
+
+}  // namespace stratum::shade

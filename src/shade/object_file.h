@@ -1,0 +1,31 @@
+// The objects of a scene file: what stands where, and of what it is made.
+#pragma once
+
+#include "march/scene_intersector.h"
+#include "march/sdf.h"
+#include "shade/json_section.h"
+#include "shade/material.h"
+
+#include <filesystem>
+#include <string>
+
+namespace stratum::shade {
+
+/// One object as the file describes it. Either `vdb` or `sdf` is set.
+struct ObjectOptions {
+    std::string vdb;          ///< path of a level set's file
+    std::string grid;         ///< empty: chosen as by --grid
+    march::SdfPtr sdf;        ///< a shape by formula, in its own space
+    double voxel_size = 0.0;  ///< of an sdf that is voxelized; 0: traced as it is
+    double tolerance = 1e-4;  ///< of an sdf that is traced as it is, see makeSdfIntersector()
+    march::Placement placement;
+    MaterialOptions material;  ///< empty: the scene's
+};
+
+/// Reads one entry of "objects". Throws InputError with the path of what is wrong.
+ObjectOptions readObject(JsonSection section, const std::filesystem::path& folder);
+
+/// A file beside the scene, if there is one of that name; else the text as it is: a preset.
+std::string beside(const std::filesystem::path& folder, const std::string& text);
+
+}  // namespace stratum::shade

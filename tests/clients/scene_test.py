@@ -1,0 +1,111 @@
+"""Scenes of several objects, colours by attributes, lenses, turntables and series, through the tool."""
+
+import json
+import os
+import subprocess
+import tempfile
+
+from run_tools import BIN, check, gcode
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_scene_")
+VDBTRACE = os.path.join(BIN, "vdbtrace")
+SMALL = ("--size", "64x48", "--spp", "1", "--quiet")
+
+
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
+def call(*command):
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=FOLDER)
+
+
+def bytes_of(name):
+    with open(path(name), "rb") as file:
+        return file.read()
+
+
+def trace(name, *options):
+    done = call(VDBTRACE, *options, *SMALL, "-o", path(name))
+    check(done.returncode == 0, f"{name}: {done.stderr.strip() or 'drawn'}")
+    return bytes_of(name)
+
+
+def scene(name, **keys):
+    with open(path(name), "w", encoding="utf-8") as file:
+        json.dump(keys, file)
+    return path(name)
+
+
+check(call(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.1", "--grids", "layer,tool,feature,speed,color",
+           "--quiet", "-o", path("tile.vdb")).returncode == 0, "a tile with attributes")
+check(call(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.1", "--up", "y", "--quiet", "-o",
+           path("tile_y.vdb")).returncode == 0, "a tile whose up is y")
+
+def pixels(png):
+    """What a .png has besides its texts, which name the input."""
+    at, data = 8, b""
+    while at < len(png):
+        length = int.from_bytes(png[at:at + 4], "big")
+        if png[at + 4:at + 8] == b"IDAT":
+            data += png[at + 8:at + 8 + length]
+        at += 12 + length
+    return data
+
+
+# One object in its place is the print alone, to the bit.
+alone = scene("same.json", objects=[{"vdb": "tile.vdb", "transform": {"rotate": [0, 0, 0]}}])
+plain = pixels(trace("plain.png", "tile.vdb"))
+check(len(plain) > 1000 and pixels(trace("same.png", alone)) == plain, "a scene of one object in its place")
+
+# A y-up file that a transform sets upright again shows the same picture.
+upright = scene("upright.json", objects=[{"vdb": "tile_y.vdb", "transform": {"rotate": [90, 0, 0]}}])
+trace("upright.exr", upright, "--integrator", "depth")
+stats = path("stats.json")
+done = call(VDBTRACE, upright, *SMALL, "-o", path("u.png"), "--stats", stats)
+with open(stats, encoding="utf-8") as file:
+    report = json.load(file)
+check(report["input"]["path"].endswith("tile_y.vdb") and report["march"] == "brick", "the report names file and march")
+
+# Two objects, a shape, materials by feature.
+both = scene("both.json", objects=[
+    {"vdb": "tile.vdb", "color_by": "layer"},
+    {"vdb": "tile.vdb", "transform": {"translate": [20, 0, 0]}, "material": {"by": "feature", "infill": "lambert:1,0,0", "other": "lambert:0,0,1"}},
+    {"sdf": {"sphere": {"center": [130, 105, 3], "radius": 3}}, "material": "pla-blue"},
+    {"sdf": {"torus": {"center": [130, 105, 8], "radius": 3, "tube": 1}}, "voxel_size": 0.1}])
+trace("both.png", both)
+trace("both_smooth.png", both, "--normals", "smooth")
+check(bytes_of("both.png") != bytes_of("both_smooth.png"), "smooth normals change the picture")
+check(trace("t1.exr", both, "--threads", "1") == trace("t2.exr", both, "--threads", "2"), "the same bytes for 1 and 2 threads")
+
+pictures = {trace(f"by_{name}.exr", "tile.vdb", "--color-by", name) for name in ("layer", "feature", "speed", "color")}
+check(len(pictures) == 4, "colours by four attributes are four pictures")
+trace("labels.exr", "tile.vdb", "--aov", "layer,tool,feature")
+trace("feature.png", "tile.vdb", "--integrator", "feature")
+check(trace("sharp.exr", "tile.vdb") != trace("lens.exr", "tile.vdb", "--f-number", "1", "--focus", "100,90,4"), "a lens blurs")
+trace_all = call(VDBTRACE, "tile.vdb", *SMALL, "--turntable", "3", "-o", path("turn.png"))
+check(trace_all.returncode == 0 and all(os.path.exists(path(f"turn_00{n}.png")) for n in range(3)), "a turntable of 3")
+
+check(call(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.2", "--snapshots", "50%,100%", "--quiet",
+           "-o", path("part.vdb")).returncode == 0, "two snapshots")
+parts = sorted(name for name in os.listdir(FOLDER) if name.startswith("part") and name.endswith(".vdb"))
+series = call(VDBTRACE, *parts, *SMALL, "--turntable", "2", "-o", path("film.png"))
+check(series.returncode == 0 and sum(name.startswith("film_") for name in os.listdir(FOLDER)) == 2 * len(parts),
+      f"a series of {len(parts)} snapshots from 2 sides: {series.stderr.strip()}")
+
+
+def refused(status, words, *options):
+    before = set(os.listdir(FOLDER))
+    done = call(VDBTRACE, *options, *SMALL, "-o", path("refused.png"))
+    check(done.returncode == status and words in done.stderr, f"refused ({words}): {done.returncode} {done.stderr.strip()}")
+    check(set(os.listdir(FOLDER)) == before, "  leaves no file behind")
+
+
+refused(3, "gcode2vdb --grids width", "tile.vdb", "--color-by", "width")
+refused(2, "has a colour of its own", "tile.vdb", "--color-by", "tool", "--brdf", "pla-blue")
+refused(2, "--focus needs a lens", "tile.vdb", "--focus", "10")
+refused(2, "a scene stands alone", both, "tile.vdb")
+refused(3, "did you mean 'objects'", scene("typo.json", print="tile.vdb", objets=[]))
+refused(3, "in a plane", scene("flat.json", print="tile.vdb", camera={"photograph": {
+    "size": [640, 480], "pairs": [[x * 10.0, y * 10.0, x, y, 0] for x in range(3) for y in range(3)]}}))
+refused(2, "endless", scene("endless.json", objects=[{"sdf": {"plane": {"normal": [0, 0, 1]}}}]))

@@ -1,0 +1,225 @@
+#include "trace_objects.h"
+
+#include "command_line.h"
+
+#include "io/error.h"
+#include "march/annotation.h"
+#include "march/attribute_grid.h"
+#include "march/brick_intersector.h"
+#include "march/grid_axes.h"
+#include "march/level_set_file.h"
+#include "march/sdf_grid.h"
+#include "march/sdf_intersector.h"
+#include "march/sphere_intersector.h"
+#include "march/vdb_intersector.h"
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace stratum::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Want = std::tuple<std::string, std::string, std::string>;  // file, grid, attribute
+using IntersectorPtr = std::shared_ptr<const march::Intersector>;
+
+// People hand over what they have; say which tool takes it.
+void refuseOtherFormats(const std::string& input) {
+    std::ifstream file(input, std::ios::binary);
+    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", input));
+    std::array<char, 4> magic{};
+    file.read(magic.data(), magic.size());
+    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", input));
+    if (std::string_view(magic.data(), magic.size()) == std::string_view(" BDV", 4)) return;
+    const std::string extension = std::filesystem::path(input).extension().string();
+    if (extension == ".gcode" || extension == ".gco" || extension == ".g")
+        throw InputError(fmt::format("{}: is G-code; make a level set of it first: gcode2vdb {}", input, input));
+    throw InputError(fmt::format("{}: is not an OpenVDB file; expected a .vdb with a level set", input));
+}
+
+// What the file says its world unit is; other programs' files don't say.
+std::string unitOf(const openvdb::FloatGrid& grid) {
+    const auto unit = grid.getMetadata<openvdb::StringMetadata>("unit");
+    return unit ? unit->value() : "world units";
+}
+
+bool marchesBricks(const TraceOptions& options) { return options.march == "auto" || options.march == "brick"; }
+
+IntersectorPtr intersectorOf(const openvdb::FloatGrid::ConstPtr& grid, const TraceOptions& options) {
+    if (options.march == "vdb") return march::makeVdbIntersector(grid);
+    if (options.march == "sphere") return march::makeSphereIntersector(grid);
+    return march::makeBrickIntersector(*grid, options.values);
+}
+
+void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
+    const double half_width = static_cast<double>(grid.background()) / march::GridAxes(grid.transform()).shortest();
+    // Rounding of the background to a float is no reason to warn.
+    if (half_width >= 2.999) return;
+    fmt::print(stderr,
+               "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
+               "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
+               path, half_width);
+}
+
+/// What is made of one grid of one file, or of one shape.
+struct Shape {
+    IntersectorPtr intersector;
+    std::map<std::string, march::AttributeSummary> summaries;
+    Json report;
+    std::string line;
+};
+
+class Reader {
+public:
+    Reader(const TraceOptions& options, std::vector<std::string> attributes, std::vector<Want> wants,
+           TraceObjects& result)
+        : options_(options), attributes_(std::move(attributes)), wants_(std::move(wants)), result_(result) {}
+
+    const Shape& shapeOf(const shade::ObjectOptions& object) {
+        if (object.sdf) {
+            watch_.lap();
+            shapes_.push_back(std::make_unique<Shape>(fromSdf(object)));
+            result_.build_seconds += watch_.lap();
+            return *shapes_.back();
+        }
+        auto& known = files_[{object.vdb, object.grid}];
+        if (known == nullptr) {
+            shapes_.push_back(std::make_unique<Shape>(fromFile(object)));
+            known = shapes_.back().get();
+        }
+        return *known;
+    }
+
+private:
+    Shape fromSdf(const shade::ObjectOptions& object) const {
+        Shape shape;
+        shape.report = {{"sdf", true}};
+        if (object.voxel_size > 0.0) {
+            const openvdb::FloatGrid::ConstPtr grid = march::makeSdfGrid(*object.sdf, object.voxel_size);
+            shape.report["active_voxels"] = grid->activeVoxelCount();
+            shape.line = fmt::format("shape: {} active voxels of {:g}",
+                                     humanCount(static_cast<double>(grid->activeVoxelCount())), object.voxel_size);
+            march::Annotation annotation;
+            if (options_.smooth_normals) annotation.smooth = grid;
+            shape.intersector = march::annotate(intersectorOf(grid, options_), std::move(annotation));
+        } else {
+            shape.intersector = march::makeSdfIntersector(object.sdf, object.tolerance);
+            shape.report["tolerance"] = object.tolerance;
+            shape.line = fmt::format("shape: traced by its formula, tolerance {:g}", object.tolerance);
+        }
+        return shape;
+    }
+
+    Shape fromFile(const shade::ObjectOptions& object) {
+        watch_.lap();
+        refuseOtherFormats(object.vdb);
+        Shape shape;
+        // Bricks are laid out from the file as rays come to them, unless something else wants the grid.
+        std::shared_ptr<const march::LeafFile> file;
+        if (marchesBricks(options_) && !options_.smooth_normals) file = march::openLevelSet(object.vdb, object.grid);
+        openvdb::FloatGrid::ConstPtr grid = file ? nullptr : march::readLevelSet(object.vdb, object.grid);
+        const openvdb::FloatGrid& head = file ? file->head() : *grid;
+        const std::uint64_t active = file ? file->activeVoxelCount() : grid->activeVoxelCount();
+        shape.report = {{"path", object.vdb},
+                        {"grid", head.getName()},
+                        {"active_voxels", active},
+                        {"bytes", file ? 0 : grid->memUsage()}};
+        shape.line = fmt::format("{}: {} active voxels of {:g} {}", object.vdb, humanCount(static_cast<double>(active)),
+                                 head.voxelSize()[0], unitOf(head));
+        warnOfThinBand(object.vdb, head);
+        march::Annotation annotation;
+        for (const std::string& name : attributes_) {
+            openvdb::GridBase::ConstPtr attribute;
+            if (wanted(object, name)) {
+                attribute = march::readAttributeGrid(object.vdb, name, head);
+                shape.summaries[name] = march::summarize(*attribute);
+            }
+            annotation.attributes.push_back(attribute);
+        }
+        if (options_.smooth_normals) annotation.smooth = grid;
+        result_.load_seconds += watch_.lap();
+        const IntersectorPtr plain =
+            file ? march::makeBrickIntersector(std::move(file), options_.values) : intersectorOf(grid, options_);
+        grid.reset();  // bricks hold all that rays need
+        shape.intersector = march::annotate(plain, std::move(annotation));
+        result_.build_seconds += watch_.lap();
+        return shape;
+    }
+
+    // Another object of the same file may want it, too: then it is read for both.
+    bool wanted(const shade::ObjectOptions& object, const std::string& name) const {
+        return std::find(wants_.begin(), wants_.end(), Want(object.vdb, object.grid, name)) != wants_.end();
+    }
+
+    const TraceOptions& options_;
+    std::vector<std::string> attributes_;
+    std::vector<Want> wants_;
+    TraceObjects& result_;
+    Stopwatch watch_;
+    std::vector<std::unique_ptr<Shape>> shapes_;
+    std::map<std::pair<std::string, std::string>, const Shape*> files_;
+};
+
+}  // namespace
+
+TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, const TraceOptions& options) {
+    openvdb::initialize();
+    TraceObjects result;
+    std::vector<shade::MaterialOptions> materials;
+    std::vector<std::string> attributes;
+    std::vector<Want> wants;
+    for (const shade::Label label : options.labels) {
+        result.labels[static_cast<std::size_t>(label)] = attributes.size();
+        attributes.emplace_back(shade::labelName(label));
+        for (const shade::ObjectOptions& object : objects)
+            if (!object.sdf) wants.emplace_back(object.vdb, object.grid, attributes.back());
+    }
+    bool own_materials = false;
+    for (const shade::ObjectOptions& object : objects) {
+        shade::MaterialOptions material = object.material;
+        if (material.by.empty() && material.brdf.empty() && !object.sdf) material.by = options.color_by;
+        if (!material.by.empty()) {
+            if (std::find(attributes.begin(), attributes.end(), material.by) == attributes.end())
+                attributes.push_back(material.by);
+            wants.emplace_back(object.vdb, object.grid, material.by);
+        }
+        own_materials = own_materials || !material.by.empty() || !material.brdf.empty();
+        materials.push_back(std::move(material));
+    }
+    Reader reader(options, attributes, std::move(wants), result);
+    std::map<std::string, std::shared_ptr<const shade::Brdf>> brdfs;
+    std::vector<march::SceneObject> scene;
+    result.reports = Json::array();
+    for (std::size_t n = 0; n < objects.size(); ++n) {
+        const Shape& shape = reader.shapeOf(objects[n]);
+        scene.push_back({shape.intersector, objects[n].placement});
+        result.reports.push_back(shape.report);
+        if (std::find(result.lines.begin(), result.lines.end(), shape.line) == result.lines.end())
+            result.lines.push_back(shape.line);
+        if (!own_materials) continue;
+        const shade::MaterialOptions& material = materials[n];
+        if (material.by.empty()) {
+            const std::string& text = material.brdf.empty() ? options.brdf : material.brdf;
+            auto& brdf = brdfs[text];  // baking a table takes a second
+            if (!brdf) brdf = shade::makeBrdf(text);
+            result.materials.emplace_back(brdf);
+            continue;
+        }
+        const auto number = std::find(attributes.begin(), attributes.end(), material.by) - attributes.begin();
+        result.materials.push_back(shade::makeObjectMaterial(material, options.brdf, static_cast<std::size_t>(number),
+                                                             shape.summaries.at(material.by)));
+    }
+    result.intersector = march::makeSceneIntersector(std::move(scene));
+    return result;
+}
+
+}  // namespace stratum::tools

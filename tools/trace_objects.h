@@ -1,0 +1,40 @@
+// vdbtrace's input: level sets and shapes, read, laid out for rays and put together.
+#pragma once
+
+#include "march/brick_layout.h"
+#include "march/scene_intersector.h"
+#include "shade/object_file.h"
+#include "shade/scene.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stratum::tools {
+
+/// How to read them.
+struct TraceOptions {
+    std::string march = "auto";  ///< --march, of level sets
+    march::BrickValues values = march::BrickValues::Int16;
+    std::string brdf;      ///< --brdf, of objects that have none of their own
+    std::string color_by;  ///< --color-by, of level sets that have no material of their own
+    bool smooth_normals = false;
+    std::vector<shade::Label> labels;  ///< that the picture shows; every level set must have them
+};
+
+struct TraceObjects {
+    std::shared_ptr<const march::Intersector> intersector;
+    std::vector<shade::ObjectMaterial> materials;  ///< by march::Hit::object; empty if all are of the scene's
+    decltype(shade::SceneDescription::labels) labels;
+    nlohmann::ordered_json reports;  ///< of each object, for --stats
+    std::vector<std::string> lines;  ///< of each, for people
+    double load_seconds = 0.0, build_seconds = 0.0;
+};
+
+/// Reads every file once, whatever the number of objects that stand for it. Throws InputError, UsageError.
+TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, const TraceOptions& options);
+
+}  // namespace stratum::tools
