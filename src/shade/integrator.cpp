@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <string_view>
-#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -46,10 +45,15 @@ Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
 }
 
 void Integrator::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
-                                RayCounts& counts, std::span<Pixel> pixels) const {
-    std::vector<SurfacePoint> points(rays.size());
+                                RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
     counts.primary += rays.size();
     surfaces_.nearest(rays, tracer, points);
+    seenStream(rays, points, samplers, tracer, counts, pixels);
+}
+
+void Integrator::seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
+                            std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
+                            std::span<Pixel> pixels) const {
     for (std::size_t n = 0; n < rays.size(); ++n) {
         TraceContext context{tracer, samplers[n], counts};
         pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);

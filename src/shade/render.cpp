@@ -25,6 +25,7 @@ constexpr std::size_t kStream = 1024;  // samples on the way at a time: enough t
 struct Stream {
     std::vector<march::Ray> rays;
     std::vector<Sampler> samplers;
+    std::vector<SurfacePoint> points;  // what they meet first
     std::vector<Pixel> pixels;
 };
 
@@ -111,7 +112,6 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
         const auto count = static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height());
         const auto width = static_cast<std::size_t>(tile.width());
         Stream& stream = worker.stream;
-        TraceContext context{*worker.tracer, worker.sampler, worker.rays};
         std::vector<Sums> sums(count);
         std::vector<double> layers(count * recorder.size(), 0.0);
         int done = 0;
@@ -121,12 +121,14 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
             const auto each = static_cast<std::size_t>(target - done);
             std::size_t summed = 0;
             const auto flush = [&] {
+                stream.points.resize(stream.rays.size());
                 stream.pixels.resize(stream.rays.size());
-                integrator->radianceStream(stream.rays, stream.samplers, *worker.tracer, worker.rays, stream.pixels);
+                integrator->radianceStream(stream.rays, stream.samplers, *worker.tracer, worker.rays, stream.points,
+                                           stream.pixels);
                 for (std::size_t n = 0; n < stream.pixels.size(); ++n) {
                     const std::size_t pixel = summed++ / each;
                     sums[pixel].add(stream.pixels[n]);
-                    recorder.add(stream.rays[n], context, layers.data() + pixel * recorder.size());
+                    recorder.add(stream.points[n], layers.data() + pixel * recorder.size());
                 }
                 stream.rays.clear();
                 stream.samplers.clear();
