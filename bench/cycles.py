@@ -3,8 +3,8 @@
     /usr/bin/python3 bench/cycles.py --bin build/release/bin --vdb part.vdb --env hills.hdr -o out same
     /usr/bin/python3 bench/cycles.py ... -o out time
 
-`same` renders it in both with many samples, two seeds each, and compares them. `time` measures the seconds to equal
-error: both are held against their own converged picture, so that the mesh's facets count as nobody's error.
+`same` renders it in both with many samples, two seeds each, and compares them. `time` measures seconds and noise, which
+is taken from two pictures of the same program, so that the mesh's facets count as nobody's error.
 """
 
 import argparse
@@ -86,6 +86,24 @@ def same(scene, spp):
         print(f"{name:26} {rel_mse:10.3e} {bias:+9.5f} {mean:9.5f} {worst:8.4f}")
 
 
+def noise(scene, pair):
+    """relMSE of one of two independent pictures: half of their own, so that no converged picture is needed."""
+    return scene.errors(*pair)[0][0] / 2
+
+
+def time(scene, spp, ours):
+    """Seconds to equal error. Noise falls as samples (or faster, for vdbtrace), so one count for each is enough."""
+    shots = scene.cycles([(f"time_cycles_{seed}.exr", spp, seed) for seed in (1, 2)])
+    error = noise(scene, [shot["output"] for shot in shots])
+    # Cycles' first picture also builds its tree; persistent data keep it for the second.
+    print(f"Cycles {spp:5} spp: {shots[1]['seconds']:8.2f} s (first picture {shots[0]['seconds']:.2f} s), relMSE {error:.3e}")
+    for spp in ours:
+        shots = [scene.trace(f"time_ours_{seed}.exr", spp, seed) for seed in (1, 2)]
+        error = noise(scene, [shot["output"] for shot in shots])
+        seconds = min(shot["seconds"] for shot in shots)
+        print(f"vdbtrace {spp:3} spp: {seconds:8.2f} s (all {shots[0]['total']:.2f} s), relMSE {error:.3e}")
+
+
 def parser():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--bin", required=True)
@@ -94,6 +112,7 @@ def parser():
     p.add_argument("-o", "--output", required=True)
     p.add_argument("--size", default="640x480")
     p.add_argument("--spp", type=int, default=1024)
+    p.add_argument("--our-spp", type=lambda text: [int(x) for x in text.split(",")], default=[8, 16, 32])
     p.add_argument("--bounces", type=int, default=3)
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("what", choices=["same", "time"])
@@ -106,3 +125,5 @@ if __name__ == "__main__":
     os.makedirs(options.output, exist_ok=True)
     if options.what == "same":
         same(Scene(options), options.spp)
+    else:
+        time(Scene(options), options.spp, options.our_spp)

@@ -67,6 +67,14 @@ void addOptions(CLI::App& app, Options& o) {
                    "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
         ->type_name("T")
         ->group(picture);
+    app.add_option("--time", o.render.seconds,
+                   "Samples until this time is over, the noisiest tiles first; another machine, another picture")
+        ->type_name("SECONDS")
+        ->group(picture);
+    app.add_option("--checkpoint", o.render.checkpoint,
+                   "Keeps what is finished in this file and goes on from there; the picture is the same")
+        ->type_name("FILE")
+        ->group(picture);
     app.add_option("--aov", o.aov, "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples")
         ->type_name("NAME,...")
         ->group(picture);
@@ -227,7 +235,7 @@ void readScene(Options& o, int argc, char** argv) {
 
 void run(Options& o, int argc, char** argv) {
     readScene(o, argc, argv);
-    if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
+    if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
     applyText(o);
     const tools::ThreadLimit limit(o.common.threads);
     tools::Stopwatch total;
@@ -278,7 +286,10 @@ void run(Options& o, int argc, char** argv) {
                              {"Environment", o.scene.env}};
     if (!scene.material->notes().empty())
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
+    if (o.render.seconds > 0.0)
+        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
     picture.write(result.film, metadata, o.tone);
+    if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
     const double write_seconds = watch.lap();
     const double total_seconds = total.lap();
 
