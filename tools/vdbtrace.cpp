@@ -8,6 +8,7 @@
 #include "march/sphere_intersector.h"
 #include "march/vdb_intersector.h"
 #include "shade/brdf_file.h"
+#include "shade/denoise.h"
 #include "shade/picture.h"
 #include "shade/render.h"
 #include "shade/scene_file.h"
@@ -44,7 +45,7 @@ struct Options {
     std::string input, output, grid, march = "auto", size, view, crop, write_brdf, aov;
     std::vector<double> eye, look_at, up;
     std::vector<float> phong;
-    bool spp_given = false;
+    bool spp_given = false, denoise = false;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
@@ -77,6 +78,8 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(picture);
     app.add_option("--aov", o.aov, "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples")
         ->type_name("NAME,...")
+        ->group(picture);
+    app.add_flag("--denoise", o.denoise, "Takes noise out of the finished picture, guided by normals, depth and albedo")
         ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
     app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
@@ -246,6 +249,8 @@ void run(Options& o, int argc, char** argv) {
     if (!o.render.aovs.empty() && !picture.linear())
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
 
+    if (o.denoise) shade::addDenoisingGuides(o.render);
+
     openvdb::initialize();
     openvdb::FloatGrid::ConstPtr grid = march::readLevelSet(o.input, o.grid);
     const Json input{{"path", o.input},
@@ -275,6 +280,8 @@ void run(Options& o, int argc, char** argv) {
         result = shade::render(*intersector, scene, o.render, progress);
     }
     const double render_seconds = watch.lap();
+    if (o.denoise) shade::denoise(result.film);
+    const double denoise_seconds = watch.lap();
 
     const std::string source = fs::path(o.input).filename().string();
     shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
@@ -286,6 +293,7 @@ void run(Options& o, int argc, char** argv) {
                              {"Environment", o.scene.env}};
     if (!scene.material->notes().empty())
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
+    if (o.denoise) metadata.insert({"Denoised", shade::kDenoiserLabel});
     if (o.render.seconds > 0.0)
         metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
     picture.write(result.film, metadata, o.tone);
@@ -325,6 +333,7 @@ void run(Options& o, int argc, char** argv) {
           {{"load", load_seconds},
            {"build", build_seconds},
            {"render", render_seconds},
+           {"denoise", denoise_seconds},
            {"write", write_seconds},
            {"total", total_seconds}}},
          {"mrays_per_second", mrays},
