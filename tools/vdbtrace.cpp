@@ -5,6 +5,7 @@
 #include "io/error.h"
 #include "io/mapped_file.h"
 #include "shade/brdf_file.h"
+#include "shade/denoise.h"
 #include "shade/picture.h"
 #include "shade/render.h"
 #include "shade/scene_file.h"
@@ -43,7 +44,7 @@ struct Options {
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
-    bool spp_given = false;
+    bool spp_given = false, denoise = false;
     march::BrickValues values = march::BrickValues::Int16;
     std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
     std::vector<std::string> notes;
@@ -72,10 +73,20 @@ void addOptions(CLI::App& app, Options& o) {
                    "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
         ->type_name("T")
         ->group(picture);
+    app.add_option("--time", o.render.seconds,
+                   "Samples until this time is over, the noisiest tiles first; another machine, another picture")
+        ->type_name("SECONDS")
+        ->group(picture);
+    app.add_option("--checkpoint", o.render.checkpoint,
+                   "Keeps what is finished in this file and goes on from there; the picture is the same")
+        ->type_name("FILE")
+        ->group(picture);
     app.add_option("--aov", o.aov,
                    "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
                    "feature")
         ->type_name("NAME,...")
+        ->group(picture);
+    app.add_flag("--denoise", o.denoise, "Takes noise out of the finished picture, guided by normals, depth and albedo")
         ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
     app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
@@ -289,6 +300,8 @@ void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
         result = shade::render(*objects.intersector, scene, o.render, progress);
     }
     const double render_seconds = watch.lap();
+    if (o.denoise) shade::denoise(result.film);
+    const double denoise_seconds = watch.lap();
 
     shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
                              {"Source", frame.source},
@@ -299,7 +312,11 @@ void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
                              {"Environment", o.scene.env}};
     if (!scene.material->notes().empty())
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
+    if (o.denoise) metadata.insert({"Denoised", shade::kDenoiserLabel});
+    if (o.render.seconds > 0.0)
+        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
     picture.write(result.film, metadata, o.tone);
+    if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
     const double write_seconds = watch.lap();
     const double total_seconds = frame.load_seconds + frame.build_seconds + render_seconds + write_seconds;
 
@@ -338,6 +355,7 @@ void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
           {{"load", frame.load_seconds},
            {"build", frame.build_seconds},
            {"render", render_seconds},
+           {"denoise", denoise_seconds},
            {"write", write_seconds},
            {"total", total_seconds}}},
          {"mrays_per_second", mrays},
@@ -348,7 +366,7 @@ void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
 
 void run(Options& o, int argc, char** argv) {
     readScene(o, argc, argv);
-    if (o.render.noise > 0.0 && !o.spp_given) o.render.spp = 4096;
+    if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
     applyText(o);
     if (o.march != "auto" && o.march != "brick") tools::useHugePages(argv);  // bricks have their own
     const tools::ThreadLimit limit(o.common.threads);
@@ -356,6 +374,9 @@ void run(Options& o, int argc, char** argv) {
     const bool linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     if (!o.render.aovs.empty() && !linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
+    if (!o.render.checkpoint.empty() && o.inputs.size() * static_cast<std::size_t>(o.turntable) > 1)
+        throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
+    if (o.denoise) shade::addDenoisingGuides(o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
     tools::TraceOptions reading{

@@ -31,11 +31,9 @@ Pixel AmbientOcclusion::seen(const march::Ray&, const SurfacePoint* first, Trace
     return {Color(surfaces_.occluded(*way, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
 }
 
-void AmbientOcclusion::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers,
-                                      march::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const {
-    std::vector<SurfacePoint> points(rays.size());
-    counts.primary += rays.size();
-    surfaces_.nearest(rays, tracer, points);
+void AmbientOcclusion::seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
+                                  std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
+                                  std::span<Pixel> pixels) const {
     std::vector<march::Ray> ways;
     std::vector<std::size_t> owners;
     for (std::size_t n = 0; n < rays.size(); ++n) {

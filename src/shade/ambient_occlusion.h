@@ -13,13 +13,13 @@ class AmbientOcclusion final : public Integrator {
 public:
     /// @param distance  world units, > 0
     AmbientOcclusion(const SceneDescription& scene, const march::Intersector& print, double distance);
-    /// All occlusion rays of a stream are traced as one.
-    void radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
-                        RayCounts& counts, std::span<Pixel> pixels) const override;
     FilmContent content() const override { return FilmContent::unit; }
 
 protected:
     Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
+    /// All occlusion rays of a stream are traced as one.
+    void seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
+                    march::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
     /// The ray that asks whether something covers `first`; none if the answer is known without.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 namespace stratum::shade {
@@ -83,11 +84,8 @@ AovRecorder::AovRecorder(const SceneDescription& scene, const march::Intersector
         if (geometric(aov)) size_ += kindOf(aov).channels.size();
 }
 
-void AovRecorder::add(const march::Ray& ray, TraceContext& context, double* sums) const {
-    if (size_ == 0) return;
-    SurfacePoint point;
-    ++context.rays.primary;
-    if (!surfaces_.nearest(ray, context.tracer, point)) return;
+void AovRecorder::add(const SurfacePoint& point, double* sums) const {
+    if (size_ == 0 || !std::isfinite(point.t)) return;
     const auto add3 = [&sums](const glm::dvec3& v) {
         for (int k = 0; k < 3; ++k) *sums++ += v[k];
     };

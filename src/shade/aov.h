@@ -43,8 +43,8 @@ public:
     AovRecorder(const SceneDescription& scene, const march::Intersector& print, std::vector<Aov> aovs);
     /// Numbers that one pixel needs: those of all geometric layers.
     std::size_t size() const { return size_; }
-    /// Adds one sample to size() sums. One ray, counted as primary, if there is any geometric layer.
-    void add(const march::Ray& ray, TraceContext& context, double* sums) const;
+    /// Adds one sample, what a camera ray met first (t infinite: nothing), to size() sums.
+    void add(const SurfacePoint& point, double* sums) const;
     /// What only the renderer knows.
     struct PixelStatistics {
         double variance = 0.0;

@@ -23,7 +23,7 @@ SphereDistribution tableOf(const Environment& environment) {
 TabulatedBedLight::TabulatedBedLight(const Environment& environment)
     : environment_(environment), table_(tableOf(environment)) {}
 
-EnvironmentSample TabulatedBedLight::sample(const glm::vec2& u) const {
+EnvironmentSample TabulatedBedLight::sample(int, const glm::vec2& u) const {
     EnvironmentSample result;
     result.direction = table_.sample(u, result.pdf);
     if (result.pdf > 0.0f) result.radiance = environment_.radiance(result.direction);

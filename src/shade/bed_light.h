@@ -12,9 +12,12 @@ namespace stratum::shade {
 class BedLight {
 public:
     virtual ~BedLight() = default;
-    /// @param u  uniform in [0, 1)^2
-    virtual EnvironmentSample sample(const glm::vec2& u) const = 0;
-    /// Density of sample() per steradian.
+    /// Strategies are as those of an Environment.
+    virtual int strategies() const { return 1; }
+    /// @param strategy  in [0, strategies())
+    /// @param u         uniform in [0, 1)^2
+    virtual EnvironmentSample sample(int strategy, const glm::vec2& u) const = 0;
+    /// Sum of the strategies' densities per steradian.
     virtual float pdf(const glm::vec3& direction) const = 0;
 };
 
@@ -22,7 +25,7 @@ public:
 class TabulatedBedLight final : public BedLight {
 public:
     explicit TabulatedBedLight(const Environment& environment);
-    EnvironmentSample sample(const glm::vec2& u) const override;
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
     float pdf(const glm::vec3& direction) const override { return table_.pdf(direction); }
 
 private:

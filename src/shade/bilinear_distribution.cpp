@@ -53,6 +53,10 @@ BilinearDistribution::BilinearDistribution(std::vector<float> weights, int colum
             sums[i + 1] = sums[i] + 0.25 * (c.w00 + c.w10 + c.w01 + c.w11);
         }
         row_sums_[r + 1] = row_sums_[r] + sums[columns_] * sines_[r];
+        if (sums[columns_] > 0.0) {
+            if (first_row_ > last_row_) first_row_ = row;
+            last_row_ = row;
+        }
     }
 }
 
@@ -87,6 +91,7 @@ double BilinearDistribution::pdf(const glm::dvec2& point) const {
     const double sy = point.y * rows_ + 0.5;
     const int column = std::clamp(static_cast<int>(sx), 0, columns_ - 1);
     const int row = std::clamp(static_cast<int>(sy), 0, rows_);
+    if (row < first_row_ || row > last_row_) return 0.0;
     const double x = std::clamp(sx - column, 0.0, 1.0);
     const double y = std::clamp(sy - row, 0.0, 1.0);
     const Corners c = corners(column, row);

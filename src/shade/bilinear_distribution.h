@@ -31,9 +31,10 @@ private:
 
     int columns_, rows_;
     std::vector<float> weights_;
-    std::vector<double> sums_;      // per row of cells: columns + 1 running sums of the cells' weights
-    std::vector<double> row_sums_;  // rows + 2 running sums of the rows' weights
-    std::vector<double> sines_;     // of the rows of cells, mean inside the square
+    std::vector<double> sums_;          // per row of cells: columns + 1 running sums of the cells' weights
+    std::vector<double> row_sums_;      // rows + 2 running sums of the rows' weights
+    std::vector<double> sines_;         // of the rows of cells, mean inside the square
+    int first_row_ = 1, last_row_ = 0;  // of cells that hold anything: a sun is in few of them
 };
 
 }  // namespace stratum::shade

@@ -4,7 +4,7 @@
 
 namespace stratum::shade {
 
-EnvironmentSample ConstantEnvironment::sample(const glm::vec2& u) const {
+EnvironmentSample ConstantEnvironment::sample(int, const glm::vec2& u) const {
     return {toSphere(u), radiance_, 0.25f * kInvPi};
 }
 

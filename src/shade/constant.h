@@ -10,7 +10,7 @@ public:
     /// @param radiance  >= 0
     explicit ConstantEnvironment(const Color& radiance) : radiance_(radiance) {}
     Color radiance(const glm::vec3&) const override { return radiance_; }
-    EnvironmentSample sample(const glm::vec2& u) const override;
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
     float pdf(const glm::vec3& direction) const override;
 
 private:

@@ -18,21 +18,25 @@ class Light;
 struct EnvironmentSample {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
     Color radiance{0.0f};                   ///< radiance(direction)
-    float pdf = 0.0f;                       ///< per steradian; 0 means "no sample"
+    float pdf = 0.0f;                       ///< pdf(direction): of all strategies; 0 means "no sample"
 };
 
 /// Radiance by direction (see color.h for the unit). World space, z up.
 ///
 /// sample() is made to be joined with samples of a BRDF by multiple importance sampling: pdf may be 0 where radiance is
-/// small and finds its way by the BRDF. Alone it is not enough. Immutable; shared by all threads.
+/// small and finds its way by the BRDF. Alone it is not enough. There may be several strategies, e.g. one for a sun and
+/// one for the rest of the sky, so that none is left to chance: each is drawn from once at every point, and they are
+/// joined by the balance heuristic, so that a sample counts radiance / pdf. Immutable; shared by all threads.
 class Environment {
 public:
     virtual ~Environment() = default;
     /// @param direction  away from the scene, unit
     virtual Color radiance(const glm::vec3& direction) const = 0;
-    /// @param u  uniform in [0, 1)^2
-    virtual EnvironmentSample sample(const glm::vec2& u) const = 0;
-    /// Density of sample() per steradian.
+    virtual int strategies() const { return 1; }
+    /// @param strategy  in [0, strategies())
+    /// @param u         uniform in [0, 1)^2
+    virtual EnvironmentSample sample(int strategy, const glm::vec2& u) const = 0;
+    /// Sum of the strategies' densities per steradian.
     virtual float pdf(const glm::vec3& direction) const = 0;
     /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
     virtual bool visible() const { return true; }

@@ -47,7 +47,9 @@ Pixel EnvironmentSum::seen(const march::Ray& ray, const SurfacePoint* first, Tra
     if (fade >= 1.0f) return {behind, 1.0f};
     const Frame frame{glm::vec3(point.normal)};
     const glm::vec3 wo = frame.toLocal(glm::vec3(-ray.direction));
-    Color sum(0.0f);
+    // All shadow rays of a point are one stream.
+    std::vector<march::Ray> ways;
+    std::vector<Color> values;
     const auto add = [&](const glm::vec3& direction, double distance, const Color& power) {
         const glm::vec3 wi = frame.toLocal(direction);
         if (!(wi.z > 0.0f)) return;
@@ -55,13 +57,19 @@ Pixel EnvironmentSum::seen(const march::Ray& ray, const SurfacePoint* first, Tra
         if (!(maxComponent(value) > 0.0f)) return;
         march::Ray way = surfaces_.leave(point, direction);
         way.t_max = distance;
-        ++context.rays.shadow;
-        if (!surfaces_.occluded(way, context.tracer)) sum += value;
+        ways.push_back(way);
+        values.push_back(value);
     };
     for (const Cell& cell : cells_) add(cell.direction, std::numeric_limits<double>::infinity(), cell.power);
     for (const auto& light : scene_.lights)
         if (const auto s = light->sample(point.position, {0.5f, 0.5f}))
             add(s->direction, s->distance, s->light / (s->pdf > 0.0f ? s->pdf : 1.0f));
+    context.rays.shadow += ways.size();
+    std::vector<std::uint8_t> blocked(ways.size());
+    surfaces_.occluded(ways, context.tracer, blocked);
+    Color sum(0.0f);
+    for (std::size_t k = 0; k < ways.size(); ++k)
+        if (blocked[k] == 0) sum += values[k];
     return {(1.0f - fade) * sum + fade * behind, 1.0f};
 }
 

@@ -59,6 +59,7 @@ public:
     Pixel& at(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& at(int x, int y) const { return pixels_[index(x, y)]; }
     /// Row by row from the top.
+    std::vector<Pixel>& pixels() { return pixels_; }
     const std::vector<Pixel>& pixels() const { return pixels_; }
     /// Where a pixel lies in pixels() and in each layer.
     std::size_t index(int x, int y) const {

@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <string_view>
-#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -41,7 +40,8 @@ void IntegratorOptions::validate() const {
 }
 
 bool needsLight(const IntegratorOptions& options) {
-    constexpr std::array<std::string_view, 5> kGeometry = {"ao", "normal", "depth", "position", "mask"};
+    constexpr std::array<std::string_view, 8> kGeometry = {"ao",   "normal", "depth", "position",
+                                                           "mask", "layer",  "tool",  "feature"};
     return std::find(kGeometry.begin(), kGeometry.end(), options.name) == kGeometry.end();
 }
 
@@ -52,11 +52,15 @@ Pixel Integrator::radiance(const march::Ray& ray, TraceContext& context) const {
 }
 
 void Integrator::radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
-                                RayCounts& counts, std::span<Pixel> pixels) const {
-    static thread_local std::vector<SurfacePoint> points;  // as in Surfaces::nearest()
-    points.resize(rays.size());
+                                RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
     counts.primary += rays.size();
     surfaces_.nearest(rays, tracer, points);
+    seenStream(rays, points, samplers, tracer, counts, pixels);
+}
+
+void Integrator::seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
+                            std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
+                            std::span<Pixel> pixels) const {
     for (std::size_t n = 0; n < rays.size(); ++n) {
         TraceContext context{tracer, samplers[n], counts};
         pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);

@@ -67,14 +67,20 @@ public:
     /// What is seen along a camera ray; finite. Draws from context.sampler in a fixed order.
     Pixel radiance(const march::Ray& ray, TraceContext& context) const;
     /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
-    virtual void radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
-                                RayCounts& counts, std::span<Pixel> pixels) const;
+    /// @param points  what each ray meets first, for layers beside the picture; t is infinite where there is nothing
+    void radianceStream(std::span<const march::Ray> rays, std::span<Sampler> samplers, march::Tracer& tracer,
+                        RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const;
     virtual FilmContent content() const { return FilmContent::radiance; }
 
 protected:
     Integrator(const SceneDescription& scene, const march::Intersector& print) : surfaces_(scene, print) {}
     /// What is seen along a camera ray that meets `first`, or nothing if that is null.
     virtual Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
+    /// The same for many rays. Integrators that follow rays further trace those in streams, too. The answers must be
+    /// those of seen(), to the bit.
+    virtual void seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
+                            std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
+                            std::span<Pixel> pixels) const;
 
     Surfaces surfaces_;
 };

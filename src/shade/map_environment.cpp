@@ -17,38 +17,83 @@ LightMap scaled(LightMap map, float scale) {
     return map;
 }
 
-/// Luminance above the mean over the sphere: what is left for the map to draw when the BRDF draws as well.
-std::vector<float> compensatedWeights(const LightMap& map) {
-    double mean = 0.0;
-    double total = 0.0;
+double sineOf(int row, int height) { return std::sin(kPiD * (row + 0.5) / height); }
+
+/// Luminance of the texels.
+std::vector<float> luminances(const LightMap& map) {
     std::vector<float> weights;
     weights.reserve(map.texels.size());
-    for (int y = 0; y < map.height; ++y) {
-        const double sine = std::sin(kPiD * (y + 0.5) / map.height);
-        for (int x = 0; x < map.width; ++x) {
-            weights.push_back(luminance(map.at(x, y)));
-            mean += sine * static_cast<double>(weights.back());
-            total += sine;
-        }
-    }
-    const auto floor = static_cast<float>(mean / total);
-    std::vector<float> above = weights;
-    for (float& w : above) w = std::max(w - floor, 0.0f);
-    // Of a map as even as numbers can be, nothing would be left.
-    const bool even = std::all_of(above.begin(), above.end(), [floor](float w) { return w <= 1e-3f * floor; });
-    return even ? weights : above;
+    for (const Color& c : map.texels) weights.push_back(luminance(c));
+    return weights;
 }
 
-/// Luminance times the cosine to +z.
-std::vector<float> cosineWeights(const LightMap& map) {
-    std::vector<float> weights;
-    weights.reserve(map.texels.size());
+/// Mean over the sphere.
+double meanOf(const std::vector<float>& weights, int width, int height) {
+    double sum = 0.0;
+    double total = 0.0;
+    for (int y = 0; y < height; ++y) {
+        const double sine = sineOf(y, height);
+        const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+        for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x)
+            sum += sine * static_cast<double>(weights[row + x]);
+        total += sine * width;
+    }
+    return sum / total;
+}
+
+/// Splits weights into those of texels that outshine the mean by far and those of the others, if the first ones hold
+/// enough to be worth a ray of their own; else all are "others". A sun holds about half of a clear sky's light.
+struct Split {
+    std::vector<float> lamps, others;  // lamps is empty if there are none
+};
+Split splitOf(std::vector<float> weights, int width, int height) {
+    constexpr double kBright = 32.0;
+    constexpr double kWorthwhile = 0.125;
+    const double mean = meanOf(weights, width, height);
+    Split split{std::vector<float>(weights.size(), 0.0f), std::move(weights)};
+    for (std::size_t n = 0; n < split.others.size(); ++n)
+        if (static_cast<double>(split.others[n]) > kBright * mean) std::swap(split.lamps[n], split.others[n]);
+    const double share = meanOf(split.lamps, width, height) / mean;
+    if (!(share > kWorthwhile && share < 1.0)) {
+        for (std::size_t n = 0; n < split.others.size(); ++n) split.others[n] += split.lamps[n];
+        split.lamps.clear();
+    }
+    return split;
+}
+
+/// What is above the mean: what is left for the map to draw when the BRDF draws as well.
+std::vector<float> compensated(std::vector<float> weights, int width, int height) {
+    const auto floor = static_cast<float>(meanOf(weights, width, height));
+    // Of a map as even as numbers can be, nothing would be left.
+    if (std::all_of(weights.begin(), weights.end(), [floor](float w) { return w <= 1.001f * floor; })) return weights;
+    for (float& w : weights) w = std::max(w - floor, 0.0f);
+    return weights;
+}
+
+std::vector<BilinearDistribution> tablesOf(Split split, int width, int height) {
+    std::vector<BilinearDistribution> tables;
+    tables.emplace_back(std::move(split.others), width, height);
+    if (!split.lamps.empty()) tables.emplace_back(std::move(split.lamps), width, height);
+    return tables;
+}
+
+/// To draw beside a BRDF.
+std::vector<BilinearDistribution> compensatedTables(const LightMap& map) {
+    Split split = splitOf(luminances(map), map.width, map.height);
+    split.others = compensated(std::move(split.others), map.width, map.height);
+    return tablesOf(std::move(split), map.width, map.height);
+}
+
+/// To draw alone, on a surface that looks up: luminance times the cosine to +z.
+std::vector<BilinearDistribution> cosineTables(const LightMap& map) {
+    std::vector<float> weights = luminances(map);
     for (int y = 0; y < map.height; ++y) {
         // The largest cosine of the row, so that nothing that shines on the bed has no weight.
         const auto cosine = static_cast<float>(std::max(0.0, std::cos(kPiD * y / map.height)));
-        for (int x = 0; x < map.width; ++x) weights.push_back(cosine * luminance(map.at(x, y)));
+        const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width);
+        for (std::size_t x = 0; x < static_cast<std::size_t>(map.width); ++x) weights[row + x] *= cosine;
     }
-    return weights;
+    return tablesOf(splitOf(std::move(weights), map.width, map.height), map.width, map.height);
 }
 
 }  // namespace
@@ -57,20 +102,20 @@ std::vector<float> cosineWeights(const LightMap& map) {
 class MapBedLight final : public BedLight {
 public:
     explicit MapBedLight(const MapEnvironment& environment)
-        : environment_(environment),
-          table_(cosineWeights(environment.map_), environment.map_.width, environment.map_.height) {}
-    EnvironmentSample sample(const glm::vec2& u) const override { return environment_.draw(table_, u); }
-    float pdf(const glm::vec3& direction) const override { return environment_.density(table_, direction); }
+        : environment_(environment), tables_(cosineTables(environment.map_)) {}
+    int strategies() const override { return static_cast<int>(tables_.size()); }
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override {
+        return environment_.draw(tables_, strategy, u);
+    }
+    float pdf(const glm::vec3& direction) const override { return environment_.density(tables_, direction); }
 
 private:
     const MapEnvironment& environment_;
-    BilinearDistribution table_;
+    MapEnvironment::Tables tables_;
 };
 
 MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale)
-    : map_(scaled(std::move(map), scale)),
-      rotation_(rotation),
-      table_(compensatedWeights(map_), map_.width, map_.height) {}
+    : map_(scaled(std::move(map), scale)), rotation_(rotation), tables_(compensatedTables(map_)) {}
 
 glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const {
     const double x = direction.x;
@@ -101,32 +146,37 @@ Color MapEnvironment::radiance(const glm::vec3& direction) const {
     return lookUp(place(direction, sine));
 }
 
-EnvironmentSample MapEnvironment::draw(const BilinearDistribution& table, const glm::vec2& u) const {
+EnvironmentSample MapEnvironment::draw(const Tables& tables, int strategy, const glm::vec2& u) const {
+    const auto chosen = static_cast<std::size_t>(strategy);
     double density = 0.0;
-    const glm::dvec2 p = table.sample(u, density);
+    const glm::dvec2 p = tables[chosen].sample(u, density);
     const double theta = kPiD * p.y;
     const double phi = 2.0 * kPiD * (0.5 - p.x) + rotation_;
     const double s = std::sin(theta);
     EnvironmentSample result;
     result.direction = {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
     if (!(density > 0.0 && s > 0.0)) return result;
+    for (std::size_t k = 0; k < tables.size(); ++k)
+        if (k != chosen) density += tables[k].pdf(p);
     result.pdf = static_cast<float>(density / (2.0 * kPiD * kPiD * s));
     if (!std::isfinite(result.pdf)) result.pdf = 0.0f;
     result.radiance = lookUp(p);
     return result;
 }
 
-EnvironmentSample MapEnvironment::sample(const glm::vec2& u) const { return draw(table_, u); }
+EnvironmentSample MapEnvironment::sample(int strategy, const glm::vec2& u) const { return draw(tables_, strategy, u); }
 
-float MapEnvironment::density(const BilinearDistribution& table, const glm::vec3& direction) const {
+float MapEnvironment::density(const Tables& tables, const glm::vec3& direction) const {
     double sine = 0.0;
     const glm::dvec2 p = place(direction, sine);
     if (!(sine > 0.0)) return 0.0f;
-    const auto result = static_cast<float>(table.pdf(p) / (2.0 * kPiD * kPiD * sine));
+    double density = 0.0;
+    for (const BilinearDistribution& table : tables) density += table.pdf(p);
+    const auto result = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
     return std::isfinite(result) ? result : 0.0f;
 }
 
-float MapEnvironment::pdf(const glm::vec3& direction) const { return density(table_, direction); }
+float MapEnvironment::pdf(const glm::vec3& direction) const { return density(tables_, direction); }
 
 std::unique_ptr<const BedLight> MapEnvironment::makeBedLight() const { return std::make_unique<MapBedLight>(*this); }
 

@@ -13,13 +13,15 @@ namespace stratum::shade {
 /// sample() is one half of multiple importance sampling and knows it: it draws where the map is brighter than its mean
 /// and leaves the rest to the BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling
 /// Techniques in Multiple Importance Sampling", SIGGRAPH Asia 2019. makeBedLight() draws alone and is complete.
+/// What little shines much, a sun or lamps, has a strategy of its own.
 class MapEnvironment final : public Environment {
 public:
     /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
     /// @param scale     of radiance, > 0
     MapEnvironment(LightMap map, double rotation, float scale);
     Color radiance(const glm::vec3& direction) const override;
-    EnvironmentSample sample(const glm::vec2& u) const override;
+    int strategies() const override { return static_cast<int>(tables_.size()); }
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
     float pdf(const glm::vec3& direction) const override;
     std::unique_ptr<const BedLight> makeBedLight() const override;
 
@@ -28,12 +30,13 @@ private:
     /// Place in the map, [0, 1)^2, and the sine of the polar angle.
     glm::dvec2 place(const glm::vec3& direction, double& sine) const;
     Color lookUp(const glm::dvec2& place) const;
-    EnvironmentSample draw(const BilinearDistribution& table, const glm::vec2& u) const;
-    float density(const BilinearDistribution& table, const glm::vec3& direction) const;
+    using Tables = std::vector<BilinearDistribution>;  // one a strategy
+    EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u) const;
+    float density(const Tables& tables, const glm::vec3& direction) const;
 
     LightMap map_;
     double rotation_;
-    BilinearDistribution table_;
+    Tables tables_;
 };
 
 }  // namespace stratum::shade

@@ -14,20 +14,50 @@ namespace stratum::shade {
 /// Path tracing. At each of `bounces` scattering events on the print the environment is sampled both by its own density
 /// and by the BRDF's, joined by multiple importance sampling; on the bed by BedLight first of all. Lamps are summed;
 /// those with extent are sampled in both ways, too. Unbiased for paths of that length; nothing is clamped.
+///
+/// All paths of a stream take each step together, so that rays of one kind are traced as a stream: first the shadow
+/// rays of a bounce, then the rays that go on. A path's result depends on its own ray and sampler alone.
 class PathIntegrator final : public Integrator {
 public:
     PathIntegrator(const SceneDescription& scene, const march::Intersector& print, int bounces);
 
 protected:
+    /// A stream of one.
     Pixel seen(const march::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
+    void seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
+                    march::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
-    Color fromEnvironment(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo,
-                          TraceContext& context) const;
-    Color fromLights(const SurfacePoint& point, const Frame& frame, const glm::vec3& wo, TraceContext& context) const;
+    /// A path on its way. It stands on a surface.
+    struct Path {
+        SurfacePoint point;
+        glm::dvec3 direction;  // of the ray that met the point
+        Color throughput{1.0f};
+        std::size_t pixel = 0;
+    };
+    /// Rays that bring light home unless something stands in their way.
+    struct Feelers {
+        std::vector<march::Ray> rays;
+        std::vector<Color> light;  // premultiplied by the throughput
+        std::vector<std::size_t> pixel;
+        void add(const march::Ray& ray, const Color& value, std::size_t to);
+    };
+    /// A ray drawn from the BRDF, and what it brings home if it meets nothing.
+    struct Bounce {
+        march::Ray ray;
+        float pdf;
+        Color escaped;
+    };
+
+    void feelEnvironment(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
+                         Feelers& feelers) const;
+    void feelLights(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
+                    Feelers& feelers) const;
+    /// Scatters a path: nothing if it ends. Changes its throughput.
+    std::optional<Bounce> scatter(Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler) const;
     /// What the lamps with extent add to a ray drawn from the BRDF that goes on freely up to t.
     Color fromLamps(const march::Ray& ray, double t, float pdf) const;
-    Color scattered(SurfacePoint point, glm::dvec3 direction, TraceContext& context) const;
+    void gather(const Feelers& feelers, march::Tracer& tracer, std::span<Color> sums) const;
 
     const SceneDescription& scene_;
     std::unique_ptr<const BedLight> bed_light_;

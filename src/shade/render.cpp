@@ -2,81 +2,205 @@
 
 #include "io/error.h"
 #include "parallel/parallel_for.h"
+#include "shade/checkpoint.h"
 #include "shade/filter.h"
+#include "shade/tile.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <bit>
+#include <chrono>
 #include <cmath>
 #include <mutex>
-#include <span>
+#include <string>
 #include <vector>
 
 namespace stratum::shade {
 namespace {
 
-constexpr int kTile = 32;  // pixels a side: work enough for a task, few enough for balance
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
 
-constexpr std::size_t kStream = 1024;  // samples on the way at a time: enough to fill vectors, few enough for a cache
-
-/// Camera rays on the way, with their samplers.
-struct Stream {
-    explicit Stream(const Sampler& sampler) : rays(kStream), samplers(kStream, sampler), pixels(kStream) {}
-    std::vector<march::Ray> rays;
-    std::vector<Sampler> samplers;
-    std::vector<Pixel> pixels;
-};
-
-/// What a thread has to itself.
-struct Worker {
-    std::unique_ptr<march::Tracer> tracer;
-    Sampler sampler;
-    RayCounts rays;
-    Stream stream;
-    std::uint64_t samples = 0;
-};
-
-/// A pixel in the making.
-struct Sums {
-    glm::dvec3 rgb{0.0};
-    double alpha = 0.0;
-    double luminance = 0.0, square = 0.0;  // sums of luminance and of its square
-
-    void add(const Pixel& sample) {
-        rgb += glm::dvec3(sample.rgb);
-        alpha += static_cast<double>(sample.alpha);
-        const auto y = static_cast<double>(shade::luminance(sample.rgb));
-        luminance += y;
-        square += y * y;
+/// What all tiles of a render share.
+class Renderer {
+public:
+    Renderer(const march::Intersector& print, const SceneDescription& scene, const RenderOptions& options,
+             const Progress& progress)
+        : print_(print),
+          scene_(scene),
+          options_(options),
+          progress_(progress),
+          integrator_(makeIntegrator(options.integrator, scene, print)),
+          recorder_(scene, print, options.aovs),
+          region_(options.crop.value_or(PixelBox{0, 0, options.width, options.height})),
+          boxes_(tilesOf(region_)),
+          pixels_(static_cast<std::uint64_t>(region_.width()) * static_cast<std::uint64_t>(region_.height())),
+          workers_([this] { return makeWorker(); }) {
+        state_.film = Film(options.width, options.height, region_, integrator_->content());
+        state_.film.layers() = makeLayers(options.aovs, state_.film.pixels().size());
+        state_.done.resize(boxes_.size(), 0);
     }
 
-    /// Variance of the mean luminance of `count` samples as if they were independent.
-    double variance(int count) const {
-        const double n = count;
-        const double mean = luminance / n;
-        return std::max(0.0, square / n - mean * mean) / std::max(n - 1.0, 1.0);
+    RenderResult run() {
+        if (options_.seconds > 0.0)
+            byTheClock();
+        else
+            tileByTile();
+        return {std::move(state_.film), static_cast<double>(state_.samples) / static_cast<double>(pixels_),
+                state_.rays};
     }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    TileWorker makeWorker() const {
+        return {print_.makeTracer(), Sampler(options_.seed, static_cast<std::uint32_t>(options_.spp)), {}, {}, {}, {}};
+    }
+    void sample(Tile& tile, int target, TileWorker& worker) const {
+        tile.sample(target, scene_.camera, *integrator_, recorder_, filter_, worker);
+    }
+    /// Adds a finished tile to the state. Not for two threads at once.
+    void finish(std::size_t index, const Tile& tile) {
+        tile.store(state_.film, recorder_);
+        state_.done[index] = 1;
+        state_.rays += tile.rays();
+        state_.samples += static_cast<std::uint64_t>(tile.samples()) * tile.pixels();
+    }
+    void tileByTile();
+    void byTheClock();
+    std::string identity() const;
+
+    const march::Intersector& print_;
+    const SceneDescription& scene_;
+    const RenderOptions& options_;
+    const Progress& progress_;
+    const std::unique_ptr<Integrator> integrator_;
+    const AovRecorder recorder_;
+    const PixelFilter filter_;
+    const PixelBox region_;
+    const std::vector<PixelBox> boxes_;
+    const std::uint64_t pixels_;
+    tbb::enumerable_thread_specific<TileWorker> workers_;
+    RenderState state_;
 };
 
-/// Root mean square of the relative standard errors of a tile's pixels.
-double errorOf(const std::vector<Sums>& tile, int count) {
-    double sum = 0.0;
-    for (const Sums& s : tile) {
-        const double mean = s.luminance / count;
-        sum += s.variance(count) / (mean * mean + 0.01);
+/// What the picture depends on: the options as text, and what the print and the scene look like to a few thousand
+/// samples. Where files lie and what they are called doesn't matter.
+std::string Renderer::identity() const {
+    constexpr int kProbes = 4096;
+    TileWorker worker = makeWorker();
+    for (int n = 0; n < kProbes; ++n) {
+        Sampler sampler(0x9e3779b9u, kProbes);
+        sampler.start(0, 0, static_cast<std::uint32_t>(n));
+        const glm::dvec2 place(sampler.next2D());
+        const glm::dvec2 pixel = place * glm::dvec2(options_.width, options_.height);
+        worker.rays.push_back(scene_.camera.hasLens() ? scene_.camera.ray(pixel, sampler.next2D())
+                                                      : scene_.camera.ray(pixel));
+        worker.samplers.push_back(sampler);
     }
-    return std::sqrt(sum / static_cast<double>(tile.size()));
+    worker.points.resize(kProbes);
+    worker.pixels.resize(kProbes);
+    RayCounts ignored;
+    integrator_->radianceStream(worker.rays, worker.samplers, *worker.tracer, ignored, worker.points, worker.pixels);
+    std::uint32_t look = 0;
+    for (const Pixel& p : worker.pixels)
+        for (const float v : {p.rgb.r, p.rgb.g, p.rgb.b, p.alpha})
+            look = sobol::hash(look, std::bit_cast<std::uint32_t>(v));
+    const IntegratorOptions& i = options_.integrator;
+    const auto& box = print_.bounds();
+    std::string text = fmt::format(
+        "{}x{} region {},{},{},{} spp {} noise {} seed {} march {} voxel {} box {},{},{},{},{},{} integrator {} {} {} "
+        "{} "
+        "{} {} {} {} {} layers",
+        options_.width, options_.height, region_.x0, region_.y0, region_.x1, region_.y1, options_.spp, options_.noise,
+        options_.seed, print_.name(), print_.voxelSize(), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
+        box.max.z, i.name, i.bounces, i.phong.ambient, i.phong.diffuse, i.phong.specular, i.phong.shininess,
+        i.phong.reflective, i.environment_rows, i.ao_distance);
+    for (const FilmLayer& layer : state_.film.layers()) text += " " + layer.name;
+    return text + fmt::format(" look {:08x}", look);
 }
 
-std::vector<PixelBox> tilesOf(const PixelBox& region) {
-    std::vector<PixelBox> tiles;
-    for (int y = region.y0; y < region.y1; y += kTile)
-        for (int x = region.x0; x < region.x1; x += kTile)
-            tiles.push_back({x, y, std::min(x + kTile, region.x1), std::min(y + kTile, region.y1)});
-    return tiles;
+/// Every tile from its first sample to its last, and then the next one.
+void Renderer::tileByTile() {
+    std::optional<Checkpoint> checkpoint;
+    if (!options_.checkpoint.empty()) {
+        checkpoint.emplace(options_.checkpoint, identity());
+        if (!checkpoint->read(state_)) checkpoint->write(state_);  // a file that can't be written fails now
+    }
+    std::vector<std::size_t> todo;
+    for (std::size_t n = 0; n < boxes_.size(); ++n)
+        if (state_.done[n] == 0) todo.push_back(n);
+
+    std::mutex mutex;
+    std::uint64_t done = pixels_;
+    for (const std::size_t n : todo) done -= Tile(boxes_[n], recorder_).pixels();
+    auto written = Clock::now();
+    parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
+        TileWorker& worker = workers_.local();
+        for (std::size_t n = first; n != last; ++n) {
+            Tile tile(boxes_[todo[n]], recorder_);
+            int target = options_.noise > 0.0 ? std::min(16, options_.spp) : options_.spp;
+            sample(tile, target, worker);
+            while (target < options_.spp && tile.error() > options_.noise) {
+                target = std::min(2 * target, options_.spp);
+                sample(tile, target, worker);
+            }
+            const std::lock_guard lock(mutex);
+            finish(todo[n], tile);
+            done += tile.pixels();
+            if (progress_) progress_(done, pixels_);
+            if (!checkpoint) continue;
+            const std::chrono::duration<double> since = Clock::now() - written;
+            if (since.count() < options_.checkpoint_interval) continue;
+            checkpoint->write(state_);
+            written = Clock::now();
+        }
+    });
+    if (checkpoint && !todo.empty()) checkpoint->write(state_);
+}
+
+/// All tiles a little, and then the worst ones more, until the time is over.
+void Renderer::byTheClock() {
+    constexpr int kFirst = 4;
+    const auto begin = Clock::now();
+    const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    std::vector<Tile> tiles;
+    tiles.reserve(boxes_.size());
+    for (const PixelBox& box : boxes_) tiles.emplace_back(box, recorder_);
+    std::mutex mutex;
+    std::uint64_t shown = 0;
+    std::vector<std::size_t> todo(tiles.size());
+    for (std::size_t n = 0; n < todo.size(); ++n) todo[n] = n;
+    while (!todo.empty()) {
+        parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
+            TileWorker& worker = workers_.local();
+            for (std::size_t n = first; n != last; ++n) {
+                Tile& tile = tiles[todo[n]];
+                // The first samples are taken whatever the clock says: every pixel needs some.
+                if (tile.samples() > 0 && elapsed() >= options_.seconds) return;
+                sample(tile, std::min(std::max(kFirst, 2 * tile.samples()), options_.spp), worker);
+                if (!progress_) continue;
+                const std::lock_guard lock(mutex);
+                const double part = std::min(1.0, elapsed() / options_.seconds);
+                const auto now = static_cast<std::uint64_t>(part * static_cast<double>(pixels_ - 1));
+                if (now > shown) progress_(shown = now, pixels_);
+            }
+        });
+        if (elapsed() >= options_.seconds) break;
+        // The worse half of what is not good enough yet.
+        std::vector<std::pair<double, std::size_t>> errors;
+        for (std::size_t n = 0; n < tiles.size(); ++n) {
+            const double error = tiles[n].error();
+            if (tiles[n].samples() < options_.spp && error > options_.noise) errors.emplace_back(-error, n);
+        }
+        std::sort(errors.begin(), errors.end());
+        todo.clear();
+        for (std::size_t k = 0; k < (errors.size() + 1) / 2; ++k) todo.push_back(errors[k].second);
+    }
+    for (std::size_t n = 0; n < tiles.size(); ++n) finish(n, tiles[n]);
+    if (progress_) progress_(pixels_, pixels_);
 }
 
 }  // namespace
@@ -93,6 +217,10 @@ void RenderOptions::validate() const {
         throw UsageError(fmt::format("--noise {}: must be above 0 and at most 1", noise));
     if (spp < 2 && std::find(aovs.begin(), aovs.end(), Aov::variance) != aovs.end())
         throw UsageError("--aov variance needs --spp 2 or more: one sample has no spread");
+    if (!(seconds >= 0.0 && seconds <= 1e7))
+        throw UsageError(fmt::format("--time {}: must be from 0 to 1e7 s", seconds));
+    if (seconds > 0.0 && !checkpoint.empty())
+        throw UsageError("--checkpoint is for pictures of so many samples; one by the clock (--time) can't be resumed");
     integrator.validate();
 }
 
@@ -102,93 +230,7 @@ RenderResult render(const march::Intersector& print, const SceneDescription& sce
     if (scene.camera.width() != options.width || scene.camera.height() != options.height)
         throw UsageError(fmt::format("the camera was made for {}x{} pixels, the picture has {}x{}",
                                      scene.camera.width(), scene.camera.height(), options.width, options.height));
-    const auto integrator = makeIntegrator(options.integrator, scene, print);
-    const PixelFilter filter;
-    const PixelBox region = options.crop.value_or(PixelBox{0, 0, options.width, options.height});
-    RenderResult result{Film(options.width, options.height, region, integrator->content()), 0.0, {}};
-    const AovRecorder recorder(scene, print, options.aovs);
-    result.film.layers() = makeLayers(options.aovs, result.film.pixels().size());
-
-    const auto renderTile = [&](const PixelBox& tile, Worker& worker) {
-        const auto count = static_cast<std::size_t>(tile.width()) * static_cast<std::size_t>(tile.height());
-        const auto width = static_cast<std::size_t>(tile.width());
-        Stream& stream = worker.stream;
-        TraceContext context{*worker.tracer, worker.sampler, worker.rays};
-        std::vector<Sums> sums(count);
-        std::vector<double> layers(count * recorder.size(), 0.0);
-        int done = 0;
-        int target = options.noise > 0.0 ? std::min(16, options.spp) : options.spp;
-        for (;;) {
-            // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
-            const auto each = static_cast<std::size_t>(target - done);
-            std::size_t summed = 0;
-            std::size_t filled = 0;
-            const auto flush = [&] {
-                integrator->radianceStream(std::span(stream.rays).first(filled),
-                                           std::span(stream.samplers).first(filled), *worker.tracer, worker.rays,
-                                           std::span(stream.pixels).first(filled));
-                for (std::size_t n = 0; n < filled; ++n) {
-                    const std::size_t pixel = summed++ / each;
-                    sums[pixel].add(stream.pixels[n]);
-                    recorder.add(stream.rays[n], context, layers.data() + pixel * recorder.size());
-                }
-                filled = 0;
-            };
-            for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; ++x)
-                    for (int s = done; s < target; ++s) {
-                        Sampler sampler = worker.sampler;
-                        sampler.start(x, y, static_cast<std::uint32_t>(s));
-                        const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
-                        stream.rays[filled] = scene.camera.hasLens() ? scene.camera.ray(place, sampler.next2D())
-                                                                     : scene.camera.ray(place);
-                        stream.samplers[filled] = sampler;
-                        if (++filled == kStream) flush();
-                    }
-            flush();
-            done = target;
-            if (done == options.spp || errorOf(sums, done) <= options.noise) break;
-            target = std::min(2 * done, options.spp);
-        }
-        worker.samples += static_cast<std::uint64_t>(done) * count;
-        for (std::size_t n = 0; n < count; ++n) {
-            const int x = tile.x0 + static_cast<int>(n % width);
-            const int y = tile.y0 + static_cast<int>(n / width);
-            result.film.at(x, y) = {Color(sums[n].rgb / static_cast<double>(done)),
-                                    static_cast<float>(sums[n].alpha / done)};
-            recorder.store(layers.data() + n * recorder.size(),
-                           {sums[n].variance(done), static_cast<std::uint32_t>(done)}, result.film.layers(),
-                           result.film.index(x, y));
-        }
-    };
-
-    const std::vector<PixelBox> tiles = tilesOf(region);
-    tbb::enumerable_thread_specific<Worker> workers([&] {
-        const Sampler sampler(options.seed, static_cast<std::uint32_t>(options.spp));
-        return Worker{print.makeTracer(), sampler, RayCounts{}, Stream(sampler), 0};
-    });
-    std::mutex progress_mutex;
-    std::uint64_t done = 0;
-    const std::uint64_t total =
-        static_cast<std::uint64_t>(region.width()) * static_cast<std::uint64_t>(region.height());
-    parallelFor(tiles.size(), 1, [&](std::size_t first, std::size_t last) {
-        Worker& worker = workers.local();
-        for (std::size_t i = first; i != last; ++i) {
-            const PixelBox& tile = tiles[i];
-            renderTile(tile, worker);
-            if (!progress) continue;
-            const std::lock_guard lock(progress_mutex);
-            done += static_cast<std::uint64_t>(tile.width()) * static_cast<std::uint64_t>(tile.height());
-            progress(done, total);
-        }
-    });
-    std::uint64_t samples = 0;
-    for (const Worker& worker : workers) {
-        result.rays += worker.rays;
-        samples += worker.samples;
-    }
-    result.mean_spp = static_cast<double>(samples) / static_cast<double>(total);
-    return result;
+    return Renderer(print, scene, options, progress).run();
 }
 
 }  // namespace stratum::shade

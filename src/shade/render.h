@@ -8,6 +8,7 @@
 #include "shade/scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -20,9 +21,17 @@ struct RenderOptions {
     /// --noise: 0, or the relative standard error at which a tile of 32 x 32 pixels is good enough, in (0, 1]: its root
     /// mean square over the tile, of luminance, against luminance^2 + 0.01. Begins with 16 samples and doubles.
     double noise = 0.0;
-    std::vector<Aov> aovs;         ///< --aov: layers of the film
-    std::uint32_t seed = 0;        ///< another seed, another noise
-    std::optional<PixelBox> crop;  ///< --crop: only this part of the same picture; must lie in the frame
+    /// --time: 0, or seconds. Every tile gets 4 samples; then those with the largest errors get twice as many, again
+    /// and again, until the time is over, or all reach `noise` or `spp`. What comes out depends on the machine and its
+    /// day.
+    double seconds = 0.0;
+    /// --checkpoint: empty, or a file that keeps the finished tiles. If it is there already, they are not rendered
+    /// again, and the film has the bytes of a render without interruption. Not with `seconds`.
+    std::filesystem::path checkpoint;
+    double checkpoint_interval = 20.0;  ///< seconds between writings of that file
+    std::vector<Aov> aovs;              ///< --aov: layers of the film
+    std::uint32_t seed = 0;             ///< another seed, another noise
+    std::optional<PixelBox> crop;       ///< --crop: only this part of the same picture; must lie in the frame
     IntegratorOptions integrator;
 
     /// Throws UsageError.
@@ -40,7 +49,8 @@ using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// Renders. Runs on the threads that TBB may use: limit them with tbb::global_control. The film depends on print, scene
 /// and options alone. scene.camera must have been made for options.width and options.height (UsageError if not).
-/// Throws UsageError; what `progress` throws ends the render and is passed on.
+/// Throws UsageError; InputError for a checkpoint that is damaged or another picture's; OutputError if it can't be
+/// written. What `progress` throws ends the render and is passed on.
 RenderResult render(const march::Intersector& print, const SceneDescription& scene, const RenderOptions& options,
                     const Progress& progress = {});
 

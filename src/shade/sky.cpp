@@ -89,7 +89,8 @@ public:
     SkyEnvironment(LightMap map, float scale, std::shared_ptr<const Light> sun)
         : map_(std::move(map), 0.0, scale), sun_(std::move(sun)) {}
     Color radiance(const glm::vec3& direction) const override { return map_.radiance(direction); }
-    EnvironmentSample sample(const glm::vec2& u) const override { return map_.sample(u); }
+    int strategies() const override { return map_.strategies(); }
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override { return map_.sample(strategy, u); }
     float pdf(const glm::vec3& direction) const override { return map_.pdf(direction); }
     std::unique_ptr<const BedLight> makeBedLight() const override { return map_.makeBedLight(); }
     std::shared_ptr<const Light> sun() const override { return sun_; }

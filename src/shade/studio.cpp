@@ -87,7 +87,7 @@ Color StudioEnvironment::radiance(const glm::vec3& direction) const {
     return unscaled(toStudio(direction), bed_) * scale_;
 }
 
-EnvironmentSample StudioEnvironment::sample(const glm::vec2& u) const {
+EnvironmentSample StudioEnvironment::sample(int, const glm::vec2& u) const {
     EnvironmentSample result;
     const glm::vec3 d = table_.sample(u, result.pdf);
     result.radiance = unscaled(d, bed_) * scale_;

@@ -16,7 +16,7 @@ public:
 
     explicit StudioEnvironment(const EnvironmentPlacement& placement);
     Color radiance(const glm::vec3& direction) const override;
-    EnvironmentSample sample(const glm::vec2& u) const override;
+    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
     float pdf(const glm::vec3& direction) const override;
     bool visible() const override { return false; }
 

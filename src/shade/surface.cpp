@@ -93,10 +93,19 @@ bool Surfaces::occluded(const march::Ray& ray, march::Tracer& tracer) const {
 
 void Surfaces::occluded(std::span<const march::Ray> rays, march::Tracer& tracer,
                         std::span<std::uint8_t> blocked) const {
-    tracer.occludedStream(rays, blocked);
-    if (!scene_.bed) return;
-    for (std::size_t n = 0; n < rays.size(); ++n)
-        if (scene_.bed->intersect(rays[n])) blocked[n] = 1;
+    if (!scene_.bed) return tracer.occludedStream(rays, blocked);
+    // What the bed stops needs no walk through the print.
+    std::vector<march::Ray> others;
+    std::vector<std::size_t> places;
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        blocked[n] = scene_.bed->intersect(rays[n]) ? 1 : 0;
+        if (blocked[n] != 0) continue;
+        others.push_back(rays[n]);
+        places.push_back(n);
+    }
+    std::vector<std::uint8_t> answers(others.size());
+    tracer.occludedStream(others, answers);
+    for (std::size_t k = 0; k < places.size(); ++k) blocked[places[k]] = answers[k];
 }
 
 march::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {

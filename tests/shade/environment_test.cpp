@@ -46,7 +46,7 @@ TEST_P(Environments, SampleAgreesWithRadianceAndDensity) {
     constexpr int kSide = 256;
     for (int i = 0; i < kSide; ++i) {
         for (int j = 0; j < kSide; ++j) {
-            const auto s = env->sample({(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+            const auto s = env->sample(0, {(i + 0.5f) / kSide, (j + 0.5f) / kSide});
             ASSERT_GT(s.pdf, 0.0f);
             ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-5f);
             differ += std::abs(s.pdf - env->pdf(s.direction)) > 1e-3f * s.pdf;
@@ -113,7 +113,7 @@ TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
         shade::Sampler sampler(1, kSamples);
         for (std::uint32_t i = 0; i < kSamples; ++i) {
             sampler.start(0, 0, i);
-            const auto s = light.sample(sampler.next2D());
+            const auto s = light.sample(0, sampler.next2D());
             const double v =
                 double(shade::luminance(s.radiance)) * double(std::max(s.direction.z, 0.0f)) / double(s.pdf);
             sum += v;

@@ -116,6 +116,45 @@ TEST(Path, LampsWithExtentAreSampledInBothWaysToTheSameEnd) {
     EXPECT_EQ(mean(ball, scene, towards({0.9, 0, 1.5}, {0.9, 0, 3}), 1, 4).r, 0.0f);
 }
 
+TEST(Path, AStreamAnswersAsItsRaysDoOneByOne) {
+    test::Vase vase;
+    vase.layers = 40;
+    const auto print = vase.intersector();
+    for (const bool bed : {true, false}) {
+        for (const bool lamps : {true, false}) {
+            auto scene = sceneOf(print, "plastic:0.6,0.3,0.1,0.15", "sky", bed);
+            if (lamps)
+                scene.lights.push_back(std::make_shared<shade::RectangleLight>(
+                    glm::dvec3(0, 0, 40), glm::dvec3(9, 0, 0), glm::dvec3(0, -9, 0), Color(3.0f)));
+            const shade::PathIntegrator path(scene, print, 3);
+            const auto tracer = print.makeTracer();
+            std::vector<march::Ray> rays;
+            std::vector<shade::Sampler> samplers;
+            shade::Sampler sampler(7, 4);
+            for (int y = 0; y < 24; ++y)
+                for (int x = 0; x < 32; ++x) {
+                    sampler.start(x, y, 1);
+                    rays.push_back(scene.camera.ray(glm::dvec2(x, y) + glm::dvec2(sampler.next2D())));
+                    samplers.push_back(sampler);
+                }
+            std::vector<shade::Sampler> again = samplers;
+            std::vector<shade::SurfacePoint> points(rays.size());
+            std::vector<shade::Pixel> pixels(rays.size());
+            shade::RayCounts counts;
+            path.radianceStream(rays, samplers, *tracer, counts, points, pixels);
+            shade::RayCounts singles;
+            for (std::size_t n = 0; n < rays.size(); ++n) {
+                shade::TraceContext context{*tracer, again[n], singles};
+                const shade::Pixel one = path.radiance(rays[n], context);
+                ASSERT_EQ(one.rgb, pixels[n].rgb) << n;
+                ASSERT_EQ(one.alpha, pixels[n].alpha) << n;
+            }
+            EXPECT_EQ(counts, singles);
+            EXPECT_GT(counts.bounce, 0u);
+        }
+    }
+}
+
 TEST(Path, AmbientLightReachesEverywhere) {
     const auto none = test::nothing();
     auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);

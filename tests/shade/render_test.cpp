@@ -107,6 +107,29 @@ TEST(Render, ReportsProgressOncePerTileUpToTheEnd) {
                  std::runtime_error);
 }
 
+TEST(Render, ByTheClockEveryPixelGetsSamplesAndTheWorstGetMost) {
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    RenderOptions options;
+    options.width = options.height = 128;
+    options.spp = 64;
+    options.aovs = shade::parseAovs("samples");
+    options.seconds = 1e-9;  // over before it began
+    const auto scene = shade::makeScene({}, ball, 128, 128);
+    const RenderResult least = shade::render(ball, scene, options);
+    for (const float n : least.film.layers()[0].values) ASSERT_EQ(n, 4.0f);
+    options.seconds = 1e3;  // over when all have --spp
+    options.noise = 0.05;
+    const RenderResult most = shade::render(ball, scene, options);
+    float fewest = 1e9f;
+    float largest = 0.0f;
+    for (const float n : most.film.layers()[0].values) {
+        fewest = std::min(fewest, n);
+        largest = std::max(largest, n);
+    }
+    EXPECT_LT(fewest, largest);
+    EXPECT_EQ(most.rays.primary, std::uint64_t(std::llround(most.mean_spp * 128 * 128)));
+}
+
 TEST(RenderOptions, RefusesNonsense) {
     const auto broken = [](auto change) {
         RenderOptions options = small();
