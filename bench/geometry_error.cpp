@@ -4,7 +4,8 @@
 // all beads, in double. The law that --tolerance uses was fitted to this program's output.
 #include "march/brick_intersector.h"
 #include "parallel/parallel_for.h"
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "toolpaths.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
     app.add_option("--rays", rays, "Each");
     CLI11_PARSE(app, argc, argv);
     openvdb::initialize();
-    const gcode::Toolpath whole = bench::readPrint(input);
+    const gcode::Toolpath whole = study::readPrint(input);
     voxelize::Selection selection;
     voxelize::parseLayers(layers, selection);
     gcode::Toolpath toolpath;
