@@ -3,6 +3,7 @@
 
 #include "io/error.h"
 #include "study/memory.h"
+#include "study/stability.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,8 @@ on with the rows that it has.
 
 Examples:
   vdbstudy memory part.gcode -o studies             bytes against voxel size, kept and culled
-  vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6)";
+  vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
+  vdbstudy stability -o studies                     a hundred cases that could go wrong)";
 
 struct Options {
     tools::CommonOptions common;
@@ -58,6 +60,8 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 64))
         ->type_name("N,...");
     verbs.push_back({memory, [&o] { return study::studyMemory(o.memory, o.study); }});
+    CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
+    verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
     return verbs;
 }
 
