@@ -2,6 +2,7 @@
 #include "command_line.h"
 
 #include "io/error.h"
+#include "study/geometry.h"
 #include "study/memory.h"
 #include "study/stability.h"
 
@@ -24,12 +25,14 @@ on with the rows that it has.
 Examples:
   vdbstudy memory part.gcode -o studies             bytes against voxel size, kept and culled
   vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
+  vdbstudy geometry part.gcode -o studies --layers 1:20
   vdbstudy stability -o studies                     a hundred cases that could go wrong)";
 
 struct Options {
     tools::CommonOptions common;
     study::StudyOptions study;
     study::MemoryOptions memory;
+    study::GeometryOptions geometry;
 };
 
 // A verb, and the study that it asks for.
@@ -60,6 +63,20 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 64))
         ->type_name("N,...");
     verbs.push_back({memory, [&o] { return study::studyMemory(o.memory, o.study); }});
+    CLI::App* geometry = addVerb(app, o, "geometry", "Distance from the beads' exact surface to the level set");
+    geometry->add_option("PRINT", o.geometry.print, "A print; its level beads count")
+        ->required()
+        ->type_name("FILE.gcode");
+    geometry->add_option("--layers", o.geometry.layers, "Only these layers")->type_name("A:B");
+    geometry->add_option("--voxels-per-layer", o.geometry.counts, "Sizes (default 1,2,3,4,6,8)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(0.5, 64.0))
+        ->type_name("N,...");
+    geometry->add_option("--points", o.geometry.points, "On the surface (default 40000)")
+        ->check(CLI::Range(1, 100000000))
+        ->type_name("N");
+    verbs.push_back({geometry, [&o] { return study::studyGeometry(o.geometry, o.study); }});
     CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
     verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
     return verbs;
