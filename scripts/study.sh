@@ -20,3 +20,4 @@ fi
 "$study" memory "$print" "$@" -o "$folder" "${quick[@]}"
 "$study" geometry "$print" --layers 1:20 --points "$points" -o "$folder" "${quick[@]}"
 "$study" stability -o "$folder" "${quick[@]}"
+"$study" need "$print" -o "$folder" "${quick[@]}"

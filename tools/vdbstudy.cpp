@@ -4,6 +4,7 @@
 #include "io/error.h"
 #include "study/geometry.h"
 #include "study/memory.h"
+#include "study/need.h"
 #include "study/stability.h"
 
 #include <fmt/format.h>
@@ -26,13 +27,15 @@ Examples:
   vdbstudy memory part.gcode -o studies             bytes against voxel size, kept and culled
   vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
   vdbstudy geometry part.gcode -o studies --layers 1:20
-  vdbstudy stability -o studies                     a hundred cases that could go wrong)";
+  vdbstudy stability -o studies                     a hundred cases that could go wrong
+  vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost)";
 
 struct Options {
     tools::CommonOptions common;
     study::StudyOptions study;
     study::MemoryOptions memory;
     study::GeometryOptions geometry;
+    study::NeedOptions need;
 };
 
 // A verb, and the study that it asks for.
@@ -79,6 +82,12 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
     verbs.push_back({geometry, [&o] { return study::studyGeometry(o.geometry, o.study); }});
     CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
     verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
+    CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and what it would have cost");
+    need->add_option("PRINT", o.need.prints, "Prints to convert and render")->required()->type_name("FILE.gcode");
+    need->add_option("--repeats", o.need.repeats, "Runs of each (default 7)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
     return verbs;
 }
 

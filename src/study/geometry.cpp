@@ -6,6 +6,7 @@
 #include "study/print.h"
 #include "study/result_table.h"
 #include "study/times.h"
+#include "voxelize/enclosed_volume.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
