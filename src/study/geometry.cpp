@@ -141,6 +141,7 @@ Row measure(const Subject& subject, const Configuration& c, int runs) {
     if (c.lattice == kShifted) lattice.origin_z += 0.5 * lattice.voxel_size;
     openvdb::FloatGrid::Ptr grid;
     std::vector<double> seconds;
+    seconds.reserve(static_cast<std::size_t>(runs));
     for (int run = 0; run < runs; ++run)
         seconds.push_back(timesOf([&] { grid = voxelize::voxelize(subject.toolpath, subject.beads, lattice); }).wall);
     std::sort(seconds.begin(), seconds.end());

@@ -179,6 +179,7 @@ double streamDiffers() {
     std::mt19937 random(8);
     std::uniform_real_distribution<double> where(-2.5, 2.5);
     std::vector<march::Ray> all;
+    all.reserve(5000);
     for (int n = 0; n < 5000; ++n)
         all.push_back({{where(random), where(random), where(random)}, randomDirection(random)});
     std::vector<march::Hit> hits(all.size());

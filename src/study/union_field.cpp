@@ -59,7 +59,7 @@ UnionField::UnionField(const gcode::Toolpath& toolpath, std::span<const std::uin
             sum += sideArea(solid.length * stretch, flat, radius) + endArea(flat, radius);
         }
         area_.push_back(sum);
-        solids_.push_back(std::move(solid));
+        solids_.push_back(solid);
     }
     listBeads();
 }
