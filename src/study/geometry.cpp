@@ -235,11 +235,13 @@ void writePage(const fs::path& path, const std::vector<Row>& rows, const std::ve
     page.paragraph(fmt::format(
         "{}, {} points spread evenly by area over the exact surface of the union of its level beads, inner surfaces "
         "included, in double; and from each the nearest zero of the trilinear level set that rays through bricks find. "
-        "\"Lost\" are points without one within two voxels: gaps that the lattice is too coarse for. \"Back\" are hits "
+        "\"Lost\" are points without one within two voxels: the means leave them out, and where there are any, "
+        "\"largest\" and \"99.9 %\" run into that limit: they then tell the "
+        "limit, not the error. Angles near 180 degrees are zeros of a wall that faces the other way. \"Back\" are hits "
         "of rays from outside and their distance to the exact union. Volumes are counted at quasi-random points, in "
         "the "
         "trilinear field and in the exact union, with the standard error of the difference; beside it what --stats "
-        "reports, from voxels' shares. Seconds are the median of three builds.",
+        "reports. Seconds are the median of three builds.",
         rows.front()[kPrint], rows.front()[kPoints]));
     addPlots(page, rows);
     addOrders(page, rows);

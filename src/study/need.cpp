@@ -123,7 +123,7 @@ StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
     const int repeats = options.repeats > 0 ? options.repeats : common.quick ? 3 : 7;
     ResultTable table(common.folder / "need.csv", kColumns, kKeys, common.fresh);
     const std::vector<Capability> all = capabilities();
-    Page page("What is not needed is not paid for", common.command);
+    Page page("What each capability costs", common.command);
     page.paragraph(fmt::format(
         "Each print is converted at two voxels a layer and rendered with 16 samples a pixel: with the least there is, "
         "and "
