@@ -216,11 +216,13 @@ void addPlots(Page& page, const std::vector<Row>& rows) {
 void addOrders(Page& page, const std::vector<Row>& rows) {
     std::vector<Row> cells;
     for (const char* lattice : {kAligned, kShifted})
-        for (const auto& [name, column] : std::vector<std::pair<const char*, std::size_t>>{{"mean distance", kMean},
-                                                                                           {"RMS distance", kRms},
-                                                                                           {"largest distance", kMax},
-                                                                                           {"mean angle", kAngleMean},
-                                                                                           {"RMS angle", kAngleRms}}) {
+        for (const auto& [name, column] :
+             std::vector<std::pair<const char*, std::size_t>>{{"mean distance", kMean},
+                                                              {"RMS distance", kRms},
+                                                              {"mean distance, back", kBackMean},
+                                                              {"largest distance, back", kBackMax},
+                                                              {"mean angle", kAngleMean},
+                                                              {"RMS angle", kAngleRms}}) {
             const PowerLaw law = fitPowerLaw(pointsOf(rows, lattice, "float", kVoxel, column));
             const PowerLaw time = fitPowerLaw(pointsOf(rows, lattice, "float", kSeconds, column));
             cells.push_back({lattice, name, fmt::format("{:.2f}", law.exponent), fmt::format("{:.2f}", time.exponent)});
