@@ -4,7 +4,8 @@
 // host has taken back costs ten times one that it has not, and both should find the machine in the same state. They
 // take turns. Set GLIBC_TUNABLES=glibc.malloc.hugetlb=1, as the tools do for themselves, to build in huge pages.
 #include "parallel/parallel_for.h"
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
@@ -27,7 +28,7 @@ namespace {
 constexpr std::size_t kLeafBytes = sizeof(openvdb::FloatTree::LeafNodeType) + 2048;
 
 struct Outcome {
-    bench::Times times;
+    study::Times times;
     std::size_t leaves = 0;
     std::size_t active = 0;
     double bin_seconds = 0;
@@ -36,11 +37,11 @@ struct Outcome {
 enum class Pages { small = MADV_NOHUGEPAGE, huge = MADV_HUGEPAGE };
 
 // Writes `bytes` of fresh memory, leaf after leaf, and gives them back. Seconds of the writing.
-bench::Times touch(std::size_t bytes, Pages pages) {
+study::Times touch(std::size_t bytes, Pages pages) {
     void* const memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::runtime_error("no memory");
     ::madvise(memory, bytes, static_cast<int>(pages));
-    const bench::Times times = bench::timesOf([&] {
+    const study::Times times = study::timesOf([&] {
         parallelFor(bytes / kLeafBytes, 1024, [&](std::size_t first, std::size_t last) {
             for (std::size_t n = first; n != last; ++n)
                 std::memset(static_cast<char*>(memory) + n * kLeafBytes, 1, kLeafBytes);
@@ -72,15 +73,15 @@ Outcome inOwnProcess(const Work& work) {
 
 Outcome build(const std::string& input, double voxel, voxelize::Interior interior, std::size_t bytes, Pages pages) {
     openvdb::initialize();
-    const gcode::Toolpath toolpath = bench::readPrint(input);
+    const gcode::Toolpath toolpath = study::readPrint(input);
     const auto beads = voxelize::selectBeads(toolpath, {});
-    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
+    const auto lattice = study::latticeOf(toolpath, beads, voxel);
     voxelize::VoxelizeOptions options;
     options.interior = interior;
     Outcome outcome;
     openvdb::FloatGrid::Ptr grid;
     if (bytes != 0) touch(bytes, pages);
-    outcome.times = bench::timesOf([&] {
+    outcome.times = study::timesOf([&] {
         voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
         grid = voxelizer.printAll();
         outcome.bin_seconds = voxelizer.report().bin_seconds;

@@ -4,7 +4,8 @@
 // hit, as ambient occlusion has them. Counts rays that end elsewhere and says where.
 #include "march/brick_intersector.h"
 #include "parallel/parallel_for.h"
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
@@ -77,10 +78,10 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     openvdb::initialize();
 
-    const gcode::Toolpath toolpath = bench::readPrint(input);
+    const gcode::Toolpath toolpath = study::readPrint(input);
     std::vector<std::uint32_t> beads = voxelize::selectBeads(toolpath, {});
     beads.resize(static_cast<std::size_t>(static_cast<double>(beads.size()) * percent / 100));
-    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
+    const auto lattice = study::latticeOf(toolpath, beads, voxel);
     std::unique_ptr<march::Intersector> intersectors[2];
     for (int cull = 0; cull < 2; ++cull) {
         voxelize::VoxelizeOptions options;

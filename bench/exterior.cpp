@@ -1,7 +1,8 @@
 // What culling saves: a print with all its inner surfaces against the same print as the outside sees it.
 //
 // The peer is OpenVDB's extractEnclosedRegion, which finds the enclosed voids of a grid that has been built whole.
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/selection.h"
 #include "voxelize/vdb_file.h"
@@ -65,9 +66,9 @@ int main(int argc, char** argv) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
 
-    const gcode::Toolpath toolpath = bench::readPrint(input);
+    const gcode::Toolpath toolpath = study::readPrint(input);
     const auto beads = voxelize::selectBeads(toolpath, {});
-    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
+    const auto lattice = study::latticeOf(toolpath, beads, voxel);
     fmt::print("{}: {} beads, {:.1f} cm3, voxel {:g} mm\n", input, beads.size(), gcode::beadVolume(toolpath) * 1e-3,
                voxel);
 

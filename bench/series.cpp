@@ -1,7 +1,8 @@
 // What a series of partial prints costs: the final grid alone against N steps that end with it, in one process.
 //
 // Both in memory that the process has used before; nothing is written.
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
@@ -30,13 +31,13 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
-    const gcode::Toolpath toolpath = bench::readPrint(input);
+    const gcode::Toolpath toolpath = study::readPrint(input);
     const auto beads = voxelize::selectBeads(toolpath, {});
-    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
+    const auto lattice = study::latticeOf(toolpath, beads, voxel);
     voxelize::VoxelizeOptions options;
     options.interior = cull ? voxelize::Interior::cull : voxelize::Interior::keep;
     const auto build = [&](std::size_t count) {
-        return bench::timesOf([&] {
+        return study::timesOf([&] {
             voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
             for (std::size_t step = 1; step <= count; ++step)
                 voxelizer.printUntil(beads[step * beads.size() / count - 1] + 1);
@@ -48,8 +49,8 @@ int main(int argc, char** argv) {
     std::vector<double> wall;
     std::vector<double> cpu;
     for (int run = 0; run < runs; ++run) {
-        const bench::Times one = build(1);
-        const bench::Times series = build(steps);
+        const study::Times one = build(1);
+        const study::Times series = build(steps);
         wall.push_back(series.wall / one.wall);
         cpu.push_back(series.cpu / one.cpu);
         fmt::print("{:9.3f} {:9.3f} {:6.2f}   {:9.3f} {:9.3f} {:6.2f}\n", one.wall, series.wall, wall.back(), one.cpu,

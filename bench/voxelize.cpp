@@ -3,7 +3,8 @@
 // Peers: ParticlesToLevelSet (spheres along each bead, as users of OpenVDB do it), meshToVolume of the beads
 // tessellated as tubes of 10 vertices a section. Runs are interleaved; medians and the spread are printed, times per
 // active voxel of the grid that this project makes.
-#include "print.h"
+#include "study/print.h"
+#include "study/times.h"
 #include "voxelize/bead_field.h"
 #include "voxelize/leaf_kernels.h"
 #include "voxelize/selection.h"
@@ -27,8 +28,8 @@
 namespace {
 
 using namespace stratum;
-using bench::Times;
-using bench::timesOf;
+using study::Times;
+using study::timesOf;
 
 // Spheres of the bead's half-height along its centre line and its two flats' edges, half a voxel apart: what a user of
 // ParticlesToLevelSet has to do, for it knows no capsules.
@@ -155,10 +156,10 @@ int main(int argc, char** argv) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     openvdb::initialize();
 
-    const gcode::Toolpath toolpath = bench::readPrint(input);
+    const gcode::Toolpath toolpath = study::readPrint(input);
     std::vector<std::uint32_t> beads = voxelize::selectBeads(toolpath, {});
     if (most != 0 && beads.size() > most) beads.resize(most);
-    const auto lattice = bench::latticeOf(toolpath, beads, voxel);
+    const auto lattice = study::latticeOf(toolpath, beads, voxel);
 
     openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, beads, lattice);
     const auto active = static_cast<double>(grid->activeVoxelCount());

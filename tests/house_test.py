@@ -13,6 +13,7 @@ MAY_INCLUDE = {
     "voxelize": {"io", "parallel", "gcode"},
     "march": {"io", "parallel"},
     "shade": {"io", "parallel", "march"},
+    "study": {"io", "parallel", "gcode", "voxelize", "march", "shade"},
 }
 WITHOUT_OPENVDB = {"io", "parallel", "gcode", "shade"}
 MOST_LINES = 500

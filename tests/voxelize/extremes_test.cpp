@@ -51,46 +51,34 @@ Lattice latticeOf(double voxel, double height, double half_width = 3) {
     return lattice;
 }
 
-// Three layers of two crossing lines.
-gcode::Toolpath cross(double width, double height, double x = 0, double y = 0, double z = 0) {
-    gcode::Toolpath toolpath;
-    for (int layer = 0; layer < 3; ++layer) {
-        const double top = z + height * (layer + 1);
-        const auto number = static_cast<std::uint32_t>(layer + 1);
-        addBead(toolpath, x - 2 * width, y, top, x + 2 * width, y + width / 3, top, width, height, number);
-        addBead(toolpath, x, y - 2 * width, top, x + width / 5, y + 2 * width, top, width, height, number);
-    }
-    return toolpath;
-}
-
 TEST(Extremes, WidthsOfUpToAHundredHeights) {
     for (const double ratio : {1.0, 1.001, 2.0, 20.0, 100.0}) {
         SCOPED_TRACE(ratio);
-        expectRight(cross(0.2 * ratio, 0.2), latticeOf(0.05, 0.2), 40);
+        expectRight(study::crossedLines(0.2 * ratio, 0.2), latticeOf(0.05, 0.2), 40);
     }
 }
 
 TEST(Extremes, LayersFromAHundredthOfAMillimetreToFive) {
     for (const double height : {0.01, 0.05, 1.0, 5.0}) {
         SCOPED_TRACE(height);
-        expectRight(cross(2 * height, height), latticeOf(height / 3, height));
+        expectRight(study::crossedLines(2 * height, height), latticeOf(height / 3, height));
     }
 }
 
 TEST(Extremes, FromLessThanOneVoxelALayerToSixtyFour) {
     for (const double count : {0.6, 0.9, 1.0, 1.7, 16.0, 64.0}) {
         SCOPED_TRACE(count);
-        expectRight(cross(0.4, 0.2), latticeOf(0.2 / count, 0.2), 40);
+        expectRight(study::crossedLines(0.4, 0.2), latticeOf(0.2 / count, 0.2), 40);
     }
 }
 
 TEST(Extremes, HalfWidthsFromOneToTen) {
     for (const double half_width : {1.0, 1.5, 3.0, 7.3, 10.0}) {
         SCOPED_TRACE(half_width);
-        expectRight(cross(0.45, 0.2), latticeOf(0.04, 0.2, half_width), 40);
+        expectRight(study::crossedLines(0.45, 0.2), latticeOf(0.04, 0.2, half_width), 40);
         VoxelizeOptions options;
         options.interior = Interior::cull;
-        const gcode::Toolpath toolpath = cross(0.45, 0.2);
+        const gcode::Toolpath toolpath = study::crossedLines(0.45, 0.2);
         const auto culled = voxelize(toolpath, allBeads(toolpath), latticeOf(0.04, 0.2, half_width), options);
         if (half_width >= 3) {
             EXPECT_EQ(openvdb::tools::checkLevelSet(*culled, 6), "");
@@ -98,10 +86,12 @@ TEST(Extremes, HalfWidthsFromOneToTen) {
     }
 }
 
-TEST(Extremes, AMetreFromTheOrigin) { expectRight(cross(0.45, 0.2, 1000, -1000, 1000), latticeOf(0.05, 0.2)); }
+TEST(Extremes, AMetreFromTheOrigin) {
+    expectRight(study::crossedLines(0.45, 0.2, 1000, -1000, 1000), latticeOf(0.05, 0.2));
+}
 
 TEST(Extremes, AThinAndAThickLayerSideBySide) {
-    gcode::Toolpath toolpath = cross(0.5, 0.2);
+    gcode::Toolpath toolpath = study::crossedLines(0.5, 0.2);
     addBead(toolpath, 0.2, 0, 1.5, 1, 0.1, 1.5, 2.0, 1.5, 9);
     addBead(toolpath, -1, 0, 0.05, 1, 0, 0.05, 0.3, 0.05, 9);
     expectRight(toolpath, latticeOf(0.03, 0.2));

@@ -1,0 +1,36 @@
+// A line plot as SVG text: linear or logarithmic axes, marks, a legend. Nothing but what the studies' pages need.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stratum::study {
+
+struct Series {
+    std::string name;
+    std::vector<std::pair<double, double>> points;  ///< in the order in which they are joined
+    bool dashed = false;
+    bool joined = true;
+    int color = -1;  ///< index into the palette; -1: the next one
+};
+
+struct Plot {
+    std::string title;
+    std::string x_label, y_label;  ///< with units
+    bool log_x = true, log_y = true;
+    std::vector<Series> series;
+};
+
+/// One <svg> element. Points that an axis can't show (not finite, not positive on a logarithmic axis) are left out; a
+/// plot without any other says so.
+std::string drawSvg(const Plot& plot);
+
+/// Where an axis over [low, high] gets its labelled ticks, ascending, all within it. A logarithmic axis has them at
+/// decades, at 1, 2, 5 or at every digit, whatever gives three or more; over less than that, linear steps.
+std::vector<double> axisTicks(double low, double high, bool logarithmic);
+
+/// "<" and its like as HTML and SVG want them.
+std::string escapeMarkup(std::string_view text);
+
+}  // namespace stratum::study

@@ -1,0 +1,133 @@
+// vdbstudy: what the other two tools cost and how exact they are, measured on this machine.
+#include "command_line.h"
+
+#include "io/error.h"
+#include "study/geometry.h"
+#include "study/memory.h"
+#include "study/need.h"
+#include "study/stability.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace stratum;
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples = R"(
+Each study writes NAME.csv, row by row, and NAME.html, one page that holds all it shows. A study that was stopped goes
+on with the rows that it has.
+
+Examples:
+  vdbstudy memory part.gcode -o studies             bytes against voxel size, kept and culled
+  vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
+  vdbstudy geometry part.gcode -o studies --layers 1:20
+  vdbstudy stability -o studies                     a hundred cases that could go wrong
+  vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost)";
+
+struct Options {
+    tools::CommonOptions common;
+    study::StudyOptions study;
+    study::MemoryOptions memory;
+    study::GeometryOptions geometry;
+    study::NeedOptions need;
+};
+
+// A verb, and the study that it asks for.
+struct Verb {
+    CLI::App* app;
+    std::function<study::StudyReport()> work;
+};
+
+// What every study takes.
+CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help) {
+    CLI::App* verb = app.add_subcommand(name, help);
+    verb->add_option("-o,--output", o.study.folder, "Folder for the table and the page; made if missing")
+        ->required()
+        ->type_name("DIR");
+    verb->add_flag("--quick", o.study.quick, "Less of everything: a look, not a measurement");
+    verb->add_flag("--fresh", o.study.fresh, "Measure again what an earlier run has measured");
+    tools::addCommonOptions(*verb, o.common);
+    return verb;
+}
+
+std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
+    std::vector<Verb> verbs;
+    CLI::App* memory = addVerb(app, o, "memory", "Bytes against voxel size, kept and culled, in memory and on disk");
+    memory->add_option("PRINT", o.memory.prints, "Prints to convert")->required()->type_name("FILE.gcode");
+    memory->add_option("--voxels-per-layer", o.memory.voxels_per_layer, "Sizes (default 1,2,3,4)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, 64))
+        ->type_name("N,...");
+    verbs.push_back({memory, [&o] { return study::studyMemory(o.memory, o.study); }});
+    CLI::App* geometry = addVerb(app, o, "geometry", "Distance from the beads' exact surface to the level set");
+    geometry->add_option("PRINT", o.geometry.print, "A print; its level beads count")
+        ->required()
+        ->type_name("FILE.gcode");
+    geometry->add_option("--layers", o.geometry.layers, "Only these layers")->type_name("A:B");
+    geometry->add_option("--voxels-per-layer", o.geometry.counts, "Sizes (default 1,2,3,4,6,8)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(0.5, 64.0))
+        ->type_name("N,...");
+    geometry->add_option("--points", o.geometry.points, "On the surface (default 40000)")
+        ->check(CLI::Range(1, 100000000))
+        ->type_name("N");
+    verbs.push_back({geometry, [&o] { return study::studyGeometry(o.geometry, o.study); }});
+    CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
+    verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
+    CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and what it would have cost");
+    need->add_option("PRINT", o.need.prints, "Prints to convert and render")->required()->type_name("FILE.gcode");
+    need->add_option("--repeats", o.need.repeats, "Runs of each (default 7)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
+    return verbs;
+}
+
+void run(const Verb& verb, Options& o, int argc, char** argv) {
+    tools::Stopwatch watch;
+    o.study.command.assign(argv, argv + argc);
+    o.study.threads = o.common.threads;
+    std::error_code failed;
+    fs::create_directories(o.study.folder, failed);
+    if (failed) throw OutputError(fmt::format("{}: can't be made: {}", o.study.folder.string(), failed.message()));
+    tools::ProgressBar bar(verb.app->get_name(), o.common.quiet);
+    o.study.progress = bar.callback();
+    const study::StudyReport report = verb.work();
+    for (const std::string& finding : report.findings)
+        if (!o.common.quiet) fmt::print(stderr, "vdbstudy: {}\n", finding);
+    const double seconds = watch.lap();
+    tools::say(o.common,
+               fmt::format("{}: {} rows ({} from an earlier run), {} findings, {:.1f} s", verb.app->get_name(),
+                           report.rows, report.resumed, report.findings.size(), seconds));
+    tools::say(o.common, fmt::format("  {}\n  {}", report.csv.string(), report.html.string()));
+    tools::writeStats(o.common, {{"study", verb.app->get_name()},
+                                 {"rows", report.rows},
+                                 {"resumed", report.resumed},
+                                 {"findings", report.findings},
+                                 {"csv", report.csv.string()},
+                                 {"html", report.html.string()},
+                                 {"seconds", seconds}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Measures what a print costs as a level set and as a picture, and how exact both are.", "vdbstudy");
+    Options options;
+    const std::vector<Verb> verbs = addVerbs(app, options);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "vdbstudy " STRATUM_VERSION, "Print the version");
+    app.footer(kExamples);
+    return tools::runTool(app, argc, argv, [&] {
+        for (const Verb& verb : verbs)
+            if (verb.app->parsed()) run(verb, options, argc, argv);
+    });
+}
