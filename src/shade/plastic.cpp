@@ -31,17 +31,16 @@ double quadrature(const Ggx& ggx, float cosine) {
 }  // namespace
 
 Plastic::Plastic(const Color& body, float alpha) : body_(body), body_max_(maxComponent(body)), ggx_{alpha} {
-    constexpr float kSmallestCosine = 1e-4f;
     for (int i = 0; i < kNodes; ++i) {
         const float s = static_cast<float>(i) / (kNodes - 1);
-        table_[static_cast<std::size_t>(i)] = static_cast<float>(quadrature(ggx_, std::max(s * s, kSmallestCosine)));
+        table_[static_cast<std::size_t>(i)] = static_cast<float>(quadrature(ggx_, std::max(s * s * s * s, kGrazing)));
     }
-    // Eavg = integral of E 2 cos dcos = integral of E(s) 4 s^3 ds; exact for the table's straight pieces (Simpson is
-    // exact to degree 3, so each piece of degree 4 is cut finely enough for double).
+    // Eavg = integral of E 2 cos dcos = integral of E(s) 8 s^7 ds, for the table's straight pieces; each is cut finely
+    // enough for Simpson's rule to be exact to float rounding.
     double mean = 0.0;
     constexpr int kCuts = 16;
     const auto integrand = [this](double s) {
-        return static_cast<double>(coatAlbedo(static_cast<float>(s * s))) * 4.0 * s * s * s;
+        return static_cast<double>(coatAlbedo(static_cast<float>(s * s * s * s))) * 8.0 * std::pow(s, 7.0);
     };
     const int pieces = (kNodes - 1) * kCuts;
     for (int i = 0; i < pieces; ++i) {
@@ -60,7 +59,7 @@ std::shared_ptr<const Brdf> Plastic::recolored(const Color& body) const {
 }
 
 float Plastic::coatAlbedo(float cosine) const {
-    const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kNodes - 1);
+    const float s = std::sqrt(std::sqrt(std::clamp(cosine, 0.0f, 1.0f))) * (kNodes - 1);
     const int i = std::min(static_cast<int>(s), kNodes - 2);
     const float w = s - static_cast<float>(i);
     const auto n = static_cast<std::size_t>(i);

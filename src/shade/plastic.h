@@ -36,7 +36,7 @@ private:
     float coatShare(float cosine) const;
     float coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const;
 
-    static constexpr int kNodes = 65;  // in sqrt(cosine): E changes fastest at grazing angles
+    static constexpr int kNodes = 65;  // in cosine^(1/4): a smooth coat's E changes where the cosine is about alpha
     Color body_;
     float body_max_;
     Ggx ggx_;

@@ -153,16 +153,20 @@ void addTransforms(std::vector<StabilityCase>& cases) {
     voxelize::VoxelizeOptions options;
     options.placement.unit = 0.001;
     cases.push_back(field("in metres", plainLattice(0.05, kHeight), options));
-    cases.push_back(field("in metres, voxels of 0.01 mm", plainLattice(0.01, kHeight), options));
+    cases.push_back(refusal<UsageError>("in metres, voxels of 0.01 mm", [options] {
+        gcode::Toolpath toolpath;
+        addBead(toolpath, 0, 0, kHeight, 1, 0, kHeight, kWidth, kHeight);
+        voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.01, kHeight), options);
+    }));
     options.placement.unit = 1e6;
     cases.push_back(field("in nanometres", plainLattice(0.05, kHeight), options));
     options.placement = {1, {1e6, -1e6, 1e6}, false};
     cases.push_back(field("moved by a kilometre", plainLattice(0.05, kHeight), options));
     options.placement = {0.1, {3, -2, 1}, true};
     cases.push_back(field("y up, in centimetres, moved", plainLattice(0.05, kHeight), options));
-    cases.push_back(refusal<InputError>("voxels that are no cubes", [] {
+    cases.push_back(refusal<InputError>("voxels that are sheared", [] {
         const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, openvdb::Vec3f(0), 0.1F);
-        grid->transform().preScale(openvdb::Vec3d(1, 1, 2));
+        grid->transform().preShear(0.2, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
         march::makeBrickIntersector(*grid);
     }));
     cases.push_back(refusal<InputError>("a sample that is no number", [] {

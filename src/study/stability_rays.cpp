@@ -67,7 +67,7 @@ glm::dvec3 randomDirection(std::mt19937& random) {
 
 // Rays that come in to a level plane at this angle; the largest error of the height at which they are said to hit.
 double grazing(double angle, double offset) {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, offset));
+    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, offset), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     double largest = 0;
     for (int n = 0; n < 200; ++n) {
@@ -83,7 +83,7 @@ double grazing(double angle, double offset) {
 
 // A ray straight down along x = y = `at` voxels on a plane; some at lattice planes and edges.
 double downAt(double at) {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034));
+    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     double largest = 0;
     for (const double other : {0.0, 0.5, 1.0, at})
@@ -98,7 +98,7 @@ double downAt(double at) {
 
 // The largest error of t, less the way, of rays to the middle of a ball from this far.
 double fromAfar(double away) {
-    const auto intersector = march::makeBrickIntersector(*ball());
+    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(3);
     double largest = 0;
@@ -115,7 +115,7 @@ double fromAfar(double away) {
 
 // Rays that must meet a ball: their share that does not. Aim: where, as a part of the radius, they pass the middle.
 double missesOfABall(double aim) {
-    const auto intersector = march::makeBrickIntersector(*ball());
+    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(5);
     int missed = 0;
@@ -130,7 +130,7 @@ double missesOfABall(double aim) {
 
 // Rays from inside a closed ball, along lattice planes, edges and at random: the share that gets out.
 double leaks(bool on_lattice) {
-    const auto intersector = march::makeBrickIntersector(*ball());
+    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(6);
     std::uniform_real_distribution<double> where(-1, 1);
@@ -155,7 +155,7 @@ double leaks(bool on_lattice) {
 double meetingsAgain(double away) {
     const auto grid = ball();
     grid->transform().postTranslate(openvdb::Vec3d(away, -away, away));
-    const auto intersector = march::makeBrickIntersector(*grid);
+    const auto intersector = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     const glm::dvec3 centre(away, -away, away);
     std::mt19937 random(7);
@@ -174,7 +174,7 @@ double meetingsAgain(double away) {
 
 // Whether one ray and a stream of rays give the same bits: the share that does not.
 double streamDiffers() {
-    const auto intersector = march::makeBrickIntersector(*ball());
+    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(8);
     std::uniform_real_distribution<double> where(-2.5, 2.5);
@@ -196,7 +196,7 @@ double streamDiffers() {
 // Intervals that end or begin just before and just behind the surface: answers that are wrong. "Just" is the rounding
 // of t: eight times 2^-53 of the way.
 double wrongIntervals() {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034));
+    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     const march::Ray down{{0.11, 0.23, 1}, {0, 0, -1}};
     march::Hit hit;
@@ -221,7 +221,7 @@ double wrongIntervals() {
 // The largest difference, mm, between a ball's hits and the paper's, for a ball of this voxel (of world units).
 double scaledBall(double scale) {
     const auto grid = ball(static_cast<float>(2 * scale), openvdb::Vec3f(0), static_cast<float>(kVoxel * scale));
-    const auto intersector = march::makeBrickIntersector(*grid);
+    const auto intersector = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(9);
     double largest = 0;
@@ -236,7 +236,7 @@ double scaledBall(double scale) {
 
 double tiltedPlane() {
     const openvdb::Vec3d normal = openvdb::Vec3d(1, 2, 3).unit();
-    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.05));
+    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.05), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     std::mt19937 random(10);
     double largest = 0;
@@ -253,7 +253,7 @@ double tiltedPlane() {
 
 double normalOfATiltedPlane() {
     const openvdb::Vec3d normal = openvdb::Vec3d(-2, 1, 4).unit();
-    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.02));
+    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.02), march::BrickValues::Float32);
     const auto tracer = intersector->makeTracer();
     double largest = 0;
     for (int n = 0; n < 500; ++n) {
@@ -269,7 +269,7 @@ double normalOfATiltedPlane() {
 // Of two ways to trace, the largest difference of t where both hit head on, mm.
 double againstSphereTracing() {
     const auto grid = ball();
-    const auto brick = march::makeBrickIntersector(*grid);
+    const auto brick = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
     const auto other = march::makeSphereIntersector(grid);
     const auto a = brick->makeTracer();
     const auto b = other->makeTracer();

@@ -56,7 +56,15 @@ private:
 };
 
 openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
-    auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size * placement.unit);
+    const double edge = lattice.voxel_size * placement.unit;
+    // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+    constexpr double kSmallestEdge = 1.45e-5;
+    if (edge < kSmallestEdge)
+        throw UsageError(
+            fmt::format("voxels of {:g} world units are smaller than the {:g} that OpenVDB can place; choose --unit mm "
+                        "or cm, or a voxel of {:g} mm or more",
+                        edge, kSmallestEdge, kSmallestEdge / placement.unit));
+    auto transform = openvdb::math::Transform::createLinearTransform(edge);
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
                                             (placement.offset[2] + lattice.origin_z) * placement.unit));
     // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
