@@ -59,10 +59,10 @@ std::span<const double> Beams::starts(std::span<const Ray> rays) {
     for (std::size_t n = 0; n < count; ++n) {
         const double u = slope_[0][n];
         const double v = slope_[1][n];
-        const auto beam = static_cast<std::size_t>(static_cast<int>((u - all.low[0]) * scale[0]) * kSide +
-                                                   static_cast<int>((v - all.low[1]) * scale[1]));
+        const int beam =
+            static_cast<int>((u - all.low[0]) * scale[0]) * kSide + static_cast<int>((v - all.low[1]) * scale[1]);
         beam_[n] = static_cast<std::uint8_t>(beam);
-        Bounds& b = beams[beam];
+        Bounds& b = beams[static_cast<std::size_t>(beam)];
         b.low[0] = std::min(b.low[0], u);
         b.high[0] = std::max(b.high[0], u);
         b.low[1] = std::min(b.low[1], v);

@@ -91,7 +91,7 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
 }  // namespace
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
-    const auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice) {
+    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice) {
         return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(choice.name));
     });
     requireTraceable(*grid, path.string());

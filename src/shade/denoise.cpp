@@ -160,10 +160,13 @@ struct Regression {
 void denoiseTile(const PixelBox& box, const Guides& in, std::vector<Color>& out, int film_width) {
     const int width = box.width();
     const int height = box.height();
-    const auto columns = static_cast<std::size_t>(width + 2 * kPatch);
-    std::vector<Regression> sums(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    std::vector<float> distances(columns * static_cast<std::size_t>(height + 2 * kPatch));
-    std::vector<float> rows(static_cast<std::size_t>(width) * static_cast<std::size_t>(height + 2 * kPatch));
+    constexpr std::size_t kPatchWidth = 2 * std::size_t{kPatch} + 1;
+    const auto row_width = static_cast<std::size_t>(width);
+    const std::size_t columns = row_width + kPatchWidth - 1;
+    const std::size_t lines = static_cast<std::size_t>(height) + kPatchWidth - 1;
+    std::vector<Regression> sums(row_width * static_cast<std::size_t>(height));
+    std::vector<float> distances(columns * lines);
+    std::vector<float> rows(row_width * lines);
     for (int dy = -kWindow; dy <= kWindow; ++dy) {
         for (int dx = -kWindow; dx <= kWindow; ++dx) {
             // Distances of pixels, then of patches as sums along rows and columns.
@@ -171,19 +174,18 @@ void denoiseTile(const PixelBox& box, const Guides& in, std::vector<Color>& out,
                 for (int x = -kPatch; x < width + kPatch; ++x)
                     distances[static_cast<std::size_t>(y + kPatch) * columns + static_cast<std::size_t>(x + kPatch)] =
                         lightDistance(in.at(box.x0 + x, box.y0 + y), in.at(box.x0 + x + dx, box.y0 + y + dy));
-            const auto row_width = static_cast<std::size_t>(width);
-            for (std::size_t y = 0; y < static_cast<std::size_t>(height + 2 * kPatch); ++y)
+            for (std::size_t y = 0; y < lines; ++y)
                 for (std::size_t x = 0; x < row_width; ++x) {
                     float sum = 0.0f;
-                    for (std::size_t k = 0; k <= 2 * kPatch; ++k) sum += distances[y * columns + x + k];
+                    for (std::size_t k = 0; k < kPatchWidth; ++k) sum += distances[y * columns + x + k];
                     rows[y * row_width + x] = sum;
                 }
             for (int y = 0; y < height; ++y)
                 for (int x = 0; x < width; ++x) {
                     const std::size_t n = static_cast<std::size_t>(y) * row_width + static_cast<std::size_t>(x);
                     float light = 0.0f;
-                    for (std::size_t k = 0; k <= 2 * kPatch; ++k) light += rows[n + k * row_width];
-                    light /= static_cast<float>((2 * kPatch + 1) * (2 * kPatch + 1));
+                    for (std::size_t k = 0; k < kPatchWidth; ++k) light += rows[n + k * row_width];
+                    light /= static_cast<float>(kPatchWidth * kPatchWidth);
                     const Guided& p = in.at(box.x0 + x, box.y0 + y);
                     const Guided& q = in.at(box.x0 + x + dx, box.y0 + y + dy);
                     const float distance = std::max(light, 0.0f) + guideDistance(p, q);
@@ -198,7 +200,7 @@ void denoiseTile(const PixelBox& box, const Guides& in, std::vector<Color>& out,
     }
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const std::size_t n = static_cast<std::size_t>(y * width + x);
+            const std::size_t n = static_cast<std::size_t>(y) * row_width + static_cast<std::size_t>(x);
             out[static_cast<std::size_t>(box.y0 + y) * static_cast<std::size_t>(film_width) +
                 static_cast<std::size_t>(box.x0 + x)] = Color(glm::max(sums[n].value(), glm::dvec3(0.0)));
         }
