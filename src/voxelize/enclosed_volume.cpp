@@ -18,7 +18,7 @@ using Samples = float[kEdge][kEdge][kEdge];
 void gather(const Leaf& leaf, openvdb::tree::ValueAccessor<const openvdb::FloatTree>& tree, Samples& samples) {
     const float* values = leaf.buffer().data();
     for (int x = 0; x < 8; ++x)
-        for (int y = 0; y < 8; ++y) std::copy_n(values + (x * 8 + y) * 8, 8, samples[x][y]);
+        for (int y = 0; y < 8; ++y, values += 8) std::copy_n(values, 8, samples[x][y]);
     for (int corner = 1; corner < 8; ++corner) {
         const openvdb::Coord step(corner & 1, corner >> 1 & 1, corner >> 2);
         const openvdb::Coord origin = leaf.origin() + openvdb::Coord(8 * step[0], 8 * step[1], 8 * step[2]);
