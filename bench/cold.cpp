@@ -4,6 +4,7 @@
 // host has taken back costs ten times one that it has not, and both should find the machine in the same state. They
 // take turns. Set GLIBC_TUNABLES=glibc.malloc.hugetlb=1, as the tools do for themselves, to build in huge pages.
 #include "parallel/parallel_for.h"
+#include "study/own_process.h"
 #include "study/print.h"
 #include "study/times.h"
 #include "voxelize/selection.h"
@@ -11,14 +12,13 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <stdexcept>
 
 using namespace stratum;
@@ -53,22 +53,15 @@ study::Times touch(std::size_t bytes, Pages pages) {
 
 // In a child: what is freed there is not found by the next one.
 template <typename Work>
-Outcome inOwnProcess(const Work& work) {
-    int ends[2];
-    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const Outcome outcome = work();
-        const bool told = ::write(ends[1], &outcome, sizeof outcome) == static_cast<ssize_t>(sizeof outcome);
-        ::_exit(told ? 0 : 1);
-    }
-    ::close(ends[1]);
-    Outcome outcome;
-    const bool told = ::read(ends[0], &outcome, sizeof outcome) == static_cast<ssize_t>(sizeof outcome);
-    ::close(ends[0]);
-    int status = 0;
-    if (::waitpid(child, &status, 0) != child || !told) throw std::runtime_error("a child process failed");
-    return outcome;
+Outcome inChild(const Work& work) {
+    const study::Outcome child = study::inOwnProcess([&] {
+        const Outcome o = work();
+        return fmt::format("{} {} {} {} {}", o.times.wall, o.times.cpu, o.leaves, o.active, o.bin_seconds);
+    });
+    if (!child.failure.empty()) throw std::runtime_error(child.failure);
+    Outcome o;
+    std::istringstream(child.text) >> o.times.wall >> o.times.cpu >> o.leaves >> o.active >> o.bin_seconds;
+    return o;
 }
 
 Outcome build(const std::string& input, double voxel, voxelize::Interior interior, std::size_t bytes, Pages pages) {
@@ -108,7 +101,7 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     const auto interior = cull ? voxelize::Interior::cull : voxelize::Interior::keep;
     const auto limited = [&](const auto& work) {
-        return inOwnProcess([&] {
+        return inChild([&] {
             // In the child: threads don't survive a fork.
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
             return work();
