@@ -1,5 +1,6 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "command_line.h"
+#include "print_options.h"
 #include "toolpath_report.h"
 
 #include "gcode/input_bytes.h"
@@ -15,7 +16,6 @@
 #include "voxelize/interior_distance.h"
 #include "voxelize/selection.h"
 #include "voxelize/vdb_file.h"
-#include "voxelize/voxel_choice.h"
 #include "voxelize/voxelizer.h"
 
 #include <fmt/format.h>
@@ -53,17 +53,13 @@ struct Options {
     std::string output;
     std::string dump_toolpath;
     bool summary = false;
-    voxelize::LatticeRequest lattice;
-    std::optional<double> tolerance;
-    std::string memory_budget;
+    tools::PrintOptions print;
     std::string interior = "keep";
     bool interior_distance = false;
     std::string grids;
     std::string up = "z";
-    std::string layers, features, snapshots;
-    std::vector<std::string> objects;
+    std::string snapshots;
     std::string unit = "mm", origin = "bed";
-    gcode::ReadOptions read;
     voxelize::FileOptions file;
 };
 
@@ -76,27 +72,8 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("FILE");
     app.add_option("-o,--output", o.output, "The .vdb to write; a folder if there are several inputs")
         ->type_name("OUT.vdb");
+    tools::addPrintOptions(app, o.print);
     const char* lattice = "Lattice";
-    auto* size =
-        app.add_option("--voxel-size", o.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
-    app.add_option("--voxels-per-layer", o.lattice.voxels_per_layer, "Voxels in a layer height (1 to 64)")
-        ->type_name("N")
-        ->excludes(size)
-        ->group(lattice);
-    app.add_option("--tolerance", o.tolerance, "Coarsest voxel whose surface stays this near to the beads")
-        ->type_name("MM")
-        ->excludes("--voxel-size")
-        ->excludes("--voxels-per-layer")
-        ->group(lattice);
-    app.add_option("--memory-budget", o.memory_budget, "Finest voxel that fits, e.g. 4GB")
-        ->type_name("SIZE")
-        ->excludes("--voxel-size")
-        ->excludes("--voxels-per-layer")
-        ->excludes("--tolerance")
-        ->group(lattice);
-    app.add_option("--half-width", o.lattice.half_width, "Narrow band to each side (default 3)")
-        ->type_name("VOXELS")
-        ->group(lattice);
     app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
         ->check(CLI::IsMember({"mm", "cm", "m"}))
         ->type_name("UNIT")
@@ -120,49 +97,9 @@ void addOptions(CLI::App& app, Options& o) {
                    "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
         ->type_name("LIST")
         ->group(what);
-    app.add_option("--layers", o.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
-        ->type_name("A:B")
-        ->group(what);
-    app.add_option("--features", o.features, "Only (+NAME,...) or all but (-NAME,...) these features")
-        ->type_name("LIST")
-        ->group(what);
-    app.add_option("--object", o.objects, "Only this object of the print; may be given again for more")
-        ->allow_extra_args(false)
-        ->type_name("NAME|NUMBER")
-        ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
         ->type_name("LIST")
         ->group(what);
-    const char* reading = "Reading";
-    app.add_option("--plate", o.read.plate, "Which plate of a .gcode.3mf that has several")
-        ->check(CLI::PositiveNumber)
-        ->type_name("N")
-        ->group(reading);
-    app.add_option("--filament-diameter", o.read.filament_diameters, "By tool; overrides the file's settings")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(0.1, 20.0))
-        ->type_name("MM,...")
-        ->group(reading);
-    app.add_option("--layer-height", o.read.layer_height, "Where neither tags nor Z moves tell")
-        ->check(CLI::Range(0.001, 50.0))
-        ->type_name("MM")
-        ->group(reading);
-    const std::map<std::string, gcode::ExtruderMode> modes{{"auto", gcode::ExtruderMode::automatic},
-                                                           {"absolute", gcode::ExtruderMode::absolute},
-                                                           {"relative", gcode::ExtruderMode::relative}};
-    app.add_option("--e-mode", o.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
-        ->transform(CLI::CheckedTransformer(modes).description(""))
-        ->type_name("MODE")
-        ->group(reading);
-    const std::map<std::string, gcode::Firmware> firmwares{{"auto", gcode::Firmware::automatic},
-                                                           {"marlin", gcode::Firmware::marlin},
-                                                           {"klipper", gcode::Firmware::klipper},
-                                                           {"reprap", gcode::Firmware::reprap}};
-    app.add_option("--firmware", o.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
-        ->transform(CLI::CheckedTransformer(firmwares).description(""))
-        ->type_name("NAME")
-        ->group(reading);
     const char* writing = "Writing";
     app.add_option_function<std::string>(
            "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
@@ -219,28 +156,6 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
     return jobs;
 }
 
-// --tolerance and --memory-budget become voxels a layer; everything else is the lattice's own choice.
-voxelize::Lattice latticeFor(const Options& o, const gcode::Toolpath& toolpath,
-                             const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
-                             voxelize::Interior interior) {
-    voxelize::LatticeRequest request = o.lattice;
-    if (!o.tolerance && o.memory_budget.empty()) return voxelize::chooseLattice(toolpath, selection, bounds, request);
-    request.voxels_per_layer = 1;
-    const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
-    std::string why;
-    if (o.tolerance) {
-        request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *o.tolerance);
-        why = fmt::format("errors of half a voxel at most stay within {:g} mm", *o.tolerance);
-    } else {
-        const double budget = voxelize::parseSize(o.memory_budget);
-        request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
-        why = fmt::format("the finest within {}", tools::humanBytes(budget));
-    }
-    voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
-    lattice.reason += "; " + why;
-    return lattice;
-}
-
 Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     const openvdb::Vec3d a = grid.indexToWorld(box.min());
@@ -277,7 +192,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
 
     const gcode::InputBytes file(input);
     const std::string& name = file.name();
-    gcode::ReadOptions read = o.read;
+    gcode::ReadOptions read = o.print.read;
     tools::ProgressBar parse_bar("reading", o.common.quiet);
     read.progress = parse_bar.callback();
     const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), name, read);
@@ -293,16 +208,12 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     if (o.summary) tools::say(o.common, gcode::summarize(toolpath));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
-    voxelize::Selection filter;
-    if (!o.layers.empty()) voxelize::parseLayers(o.layers, filter);
-    if (!o.features.empty()) voxelize::parseFeatures(o.features, filter);
-    for (const std::string& object : o.objects) voxelize::chooseObject(object, toolpath, filter);
-    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, filter);
+    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, tools::selectionOf(o.print, toolpath));
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
     const auto interior = o.interior == "cull" ? voxelize::Interior::cull : voxelize::Interior::keep;
     const std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
-    const voxelize::Lattice lattice = latticeFor(o, toolpath, selection, bounds, interior);
+    const voxelize::Lattice lattice = tools::latticeFor(o.print, toolpath, selection, bounds, interior);
     tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
                                      lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
 
@@ -311,13 +222,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.source_sha256 = sha256Hex(file.bytes());
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
-    const auto note = [&provenance](const std::string& what, const std::string& value) {
-        if (!value.empty()) provenance.selection += (provenance.selection.empty() ? "" : "; ") + what + " " + value;
-    };
-    note("layers", o.layers);
-    note("features", o.features);
-    for (const std::string& object : o.objects) note("object", object);
-
+    provenance.selection = tools::describeSelection(o.print);
     provenance.culled = interior == voxelize::Interior::cull;
     provenance.swept = o.interior_distance;
 

@@ -1,0 +1,119 @@
+#include "print_options.h"
+
+#include "command_line.h"
+
+#include "voxelize/voxel_choice.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace stratum::tools {
+
+void addPrintOptions(CLI::App& app, PrintOptions& options) {
+    const char* lattice = "Lattice";
+    auto* size =
+        app.add_option("--voxel-size", options.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
+    app.add_option("--voxels-per-layer", options.lattice.voxels_per_layer, "Voxels in a layer height (1 to 64)")
+        ->type_name("N")
+        ->excludes(size)
+        ->group(lattice);
+    app.add_option("--tolerance", options.tolerance, "Coarsest voxel whose surface stays this near to the beads")
+        ->type_name("MM")
+        ->excludes("--voxel-size")
+        ->excludes("--voxels-per-layer")
+        ->group(lattice);
+    app.add_option("--memory-budget", options.memory_budget, "Finest voxel that fits, e.g. 4GB")
+        ->type_name("SIZE")
+        ->excludes("--voxel-size")
+        ->excludes("--voxels-per-layer")
+        ->excludes("--tolerance")
+        ->group(lattice);
+    app.add_option("--half-width", options.lattice.half_width, "Narrow band to each side (default 3)")
+        ->type_name("VOXELS")
+        ->group(lattice);
+    const char* what = "What to convert";
+    app.add_option("--layers", options.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
+        ->type_name("A:B")
+        ->group(what);
+    app.add_option("--features", options.features, "Only (+NAME,...) or all but (-NAME,...) these features")
+        ->type_name("LIST")
+        ->group(what);
+    app.add_option("--object", options.objects, "Only this object of the print; may be given again for more")
+        ->allow_extra_args(false)
+        ->type_name("NAME|NUMBER")
+        ->group(what);
+    const char* reading = "Reading";
+    app.add_option("--plate", options.read.plate, "Which plate of a .gcode.3mf that has several")
+        ->check(CLI::PositiveNumber)
+        ->type_name("N")
+        ->group(reading);
+    app.add_option("--filament-diameter", options.read.filament_diameters, "By tool; overrides the file's settings")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(0.1, 20.0))
+        ->type_name("MM,...")
+        ->group(reading);
+    app.add_option("--layer-height", options.read.layer_height, "Where neither tags nor Z moves tell")
+        ->check(CLI::Range(0.001, 50.0))
+        ->type_name("MM")
+        ->group(reading);
+    const std::map<std::string, gcode::ExtruderMode> modes{{"auto", gcode::ExtruderMode::automatic},
+                                                           {"absolute", gcode::ExtruderMode::absolute},
+                                                           {"relative", gcode::ExtruderMode::relative}};
+    app.add_option("--e-mode", options.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
+        ->transform(CLI::CheckedTransformer(modes).description(""))
+        ->type_name("MODE")
+        ->group(reading);
+    const std::map<std::string, gcode::Firmware> firmwares{{"auto", gcode::Firmware::automatic},
+                                                           {"marlin", gcode::Firmware::marlin},
+                                                           {"klipper", gcode::Firmware::klipper},
+                                                           {"reprap", gcode::Firmware::reprap}};
+    app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
+        ->transform(CLI::CheckedTransformer(firmwares).description(""))
+        ->type_name("NAME")
+        ->group(reading);
+}
+
+voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath) {
+    voxelize::Selection selection;
+    if (!options.layers.empty()) voxelize::parseLayers(options.layers, selection);
+    if (!options.features.empty()) voxelize::parseFeatures(options.features, selection);
+    for (const std::string& object : options.objects) voxelize::chooseObject(object, toolpath, selection);
+    return selection;
+}
+
+std::string describeSelection(const PrintOptions& options) {
+    std::string text;
+    const auto note = [&text](const char* what, const std::string& value) {
+        if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", what, value);
+    };
+    note("layers", options.layers);
+    note("features", options.features);
+    for (const std::string& object : options.objects) note("object", object);
+    return text;
+}
+
+voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
+                             const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
+                             voxelize::Interior interior) {
+    voxelize::LatticeRequest request = options.lattice;
+    if (!options.tolerance && options.memory_budget.empty())
+        return voxelize::chooseLattice(toolpath, selection, bounds, request);
+    request.voxels_per_layer = 1;
+    const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
+    std::string why;
+    if (options.tolerance) {
+        request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *options.tolerance);
+        why = fmt::format("errors of half a voxel at most stay within {:g} mm", *options.tolerance);
+    } else {
+        const double budget = voxelize::parseSize(options.memory_budget);
+        request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
+        why = fmt::format("the finest within {}", humanBytes(budget));
+    }
+    voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
+    lattice.reason += "; " + why;
+    return lattice;
+}
+
+}  // namespace stratum::tools

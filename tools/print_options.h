@@ -1,0 +1,44 @@
+// Options that say which G-code, which of its beads, and what voxels: shared by the tools that take prints.
+#pragma once
+
+#include "gcode/reader.h"
+#include "gcode/toolpath.h"
+#include "voxelize/lattice.h"
+#include "voxelize/selection.h"
+#include "voxelize/voxelizer.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stratum::tools {
+
+/// As the command line gives them; lists are parsed against a toolpath by the functions below.
+struct PrintOptions {
+    gcode::ReadOptions read;
+    voxelize::LatticeRequest lattice;
+    std::optional<double> tolerance;  ///< mm
+    std::string memory_budget;
+    std::string layers, features;
+    std::vector<std::string> objects;  ///< names or numbers
+};
+
+/// Adds them in the groups "Lattice", "What to convert" and "Reading".
+void addPrintOptions(CLI::App& app, PrintOptions& options);
+
+/// What --layers, --features and --object keep of a print. Throws UsageError or InputError.
+voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath);
+
+/// The selection in words, "layers 1:20; features -skirt"; empty if all is kept.
+std::string describeSelection(const PrintOptions& options);
+
+/// The lattice: --tolerance and --memory-budget become voxels a layer; everything else is the lattice's own choice.
+/// Throws UsageError.
+voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
+                             const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
+                             voxelize::Interior interior);
+
+}  // namespace stratum::tools
