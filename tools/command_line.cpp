@@ -1,5 +1,8 @@
 #include "command_line.h"
 
+#include "build_facts.h"
+#include "manual.h"
+
 #include "io/atomic_file.h"
 #include "io/error.h"
 
@@ -30,7 +33,7 @@ int complain(const CLI::App& app, std::string_view message, int status) {
 
 }  // namespace
 
-void addCommonOptions(CLI::App& app, CommonOptions& options) {
+void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<std::string>& brief) {
     app.add_option("--threads", options.threads, "Threads to use (default: all the machine has)")
         ->check(CLI::Range(1, 1024))
         ->type_name("N")
@@ -39,9 +42,15 @@ void addCommonOptions(CLI::App& app, CommonOptions& options) {
         ->type_name("FILE")
         ->group("General");
     app.add_flag("--quiet", options.quiet, "Print nothing but errors")->group("General");
-    app.set_version_flag("--version", app.get_name() + " " STRATUM_VERSION, "Print the version")->group("General");
-    app.get_formatter()->column_width(34);
-    app.get_help_ptr()->group("General");
+    addVersion(app);
+    addManual(app, brief);
+}
+
+void addVersion(CLI::App& app) {
+    app.add_flag_callback(
+           "--version", [&app] { throw CLI::CallForVersion(buildFacts(app.get_name()), 0); },
+           "The version, how it was built and with what")
+        ->group("General");
 }
 
 void useHugePages(char** argv) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tbb::detail::d1 {
 class global_control;
@@ -23,8 +24,11 @@ struct CommonOptions {
     bool quiet = false;
 };
 
-/// Adds the common options to a command line.
-void addCommonOptions(CLI::App& app, CommonOptions& options);
+/// Adds the common options and the manual (manual.h) to a command line. -h shows the options of `brief`; all, if empty.
+void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<std::string>& brief = {});
+
+/// Adds --version alone.
+void addVersion(CLI::App& app);
 
 /// For tools that fill large grids: touching fresh memory a small page at a time is what that spends most of its time
 /// on. The C library can ask for huge pages, but only if it is told before it starts: so the process starts itself once

@@ -117,7 +117,28 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
         ->group(writing);
-    tools::addCommonOptions(app, o.common);
+    tools::addCommonOptions(app, o.common,
+                            {"--output",
+                             "--voxel-size",
+                             "--voxels-per-layer",
+                             "--memory-budget",
+                             "--unit",
+                             "--origin",
+                             "--up",
+                             "--interior",
+                             "--grids",
+                             "--layers",
+                             "--features",
+                             "--object",
+                             "--snapshots",
+                             "--filament-diameter",
+                             "--summary",
+                             "--threads",
+                             "--stats",
+                             "--quiet",
+                             "--version",
+                             "--help",
+                             "--help-all"});
     app.footer(kExamples);
 }
 

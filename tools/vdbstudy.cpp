@@ -1,5 +1,6 @@
 // vdbstudy: what the other two tools cost and how exact they are, measured on this machine.
 #include "command_line.h"
+#include "manual.h"
 
 #include "io/error.h"
 #include "study/geometry.h"
@@ -124,7 +125,8 @@ int main(int argc, char** argv) {
     Options options;
     const std::vector<Verb> verbs = addVerbs(app, options);
     app.require_subcommand(1);
-    app.set_version_flag("--version", "vdbstudy " STRATUM_VERSION, "Print the version");
+    tools::addVersion(app);
+    tools::addManual(app);
     app.footer(kExamples);
     return tools::runTool(app, argc, argv, [&] {
         for (const Verb& verb : verbs)

@@ -188,7 +188,11 @@ void addOptions(CLI::App& app, Options& o) {
             {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
         ->type_name("float|int16")
         ->group(tracing);
-    tools::addCommonOptions(app, o.common);
+    tools::addCommonOptions(
+        app, o.common,
+        {"--output",  "--size",    "--spp",       "--noise",      "--denoise", "--view",     "--eye",
+         "--look-at", "--fov",     "--turntable", "--integrator", "--brdf",    "--color-by", "--env",
+         "--bed",     "--threads", "--stats",     "--quiet",      "--version", "--help",     "--help-all"});
     app.footer(kExamples);
 }
 

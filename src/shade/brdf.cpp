@@ -21,6 +21,11 @@ namespace {
 /// The tables that come with the project.
 std::filesystem::path tableFolder() {
     if (const char* data = std::getenv("STRATUM_DATA")) return std::filesystem::path(data) / "brdf";
+    // Installed, they stand where the program does, wherever the tree was moved to.
+    std::error_code missing;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", missing);
+    const std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
+    if (std::filesystem::is_directory(installed, missing)) return installed;
     return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
 }
 

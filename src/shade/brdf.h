@@ -54,7 +54,8 @@ extern const char* const kDefaultBrdf;
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
 ///   FILE                 a measured table, see readBrdfFile
-///   NAME                 a table of data/brdf, e.g. pla-blue; looked for in $STRATUM_DATA/brdf, or where it was built
+///   NAME                 a table of data/brdf, e.g. pla-blue; looked for in $STRATUM_DATA/brdf, or where
+///                        it was installed or built
 /// Throws UsageError, InputError.
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text);
 

@@ -1,0 +1,29 @@
+# `cpack` makes two Debian packages: stratum (the tools) and libstratum-dev (the static libraries and their headers).
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME stratum)
+set(CPACK_PACKAGE_CONTACT "The Stratum developers <stratum@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "printer G-code to OpenVDB level sets to ray-traced pictures")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL tools dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME stratum)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS blender)
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION
+  "gcode2vdb turns the G-code of a slicer into a level set of the part as printed,
+vdbtrace ray-traces it, vdbstudy measures both. With an add-on for Blender.")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstratum-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libtbb-dev, libblosc-dev, \
+libopenexr-dev, libglm-dev, libpng-dev, libssl-dev, libfmt-dev, nlohmann-json3-dev, libfast-float-dev, libhwy-dev, \
+zlib1g-dev, libzip-dev, pkg-config")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+  "The libraries behind the tools: find_package(stratum) gives stratum::gcode, stratum::voxelize, stratum::march
+and stratum::shade.")
+include(CPack)

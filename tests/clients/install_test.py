@@ -1,0 +1,112 @@
+"""Installed: the tools anywhere, their manuals, and two strangers' projects that use the libraries."""
+
+import gzip
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+
+from run_tools import BIN, SOURCE, check, gcode, run
+
+BUILD = os.path.dirname(BIN)
+FOLDER = tempfile.mkdtemp(prefix="stratum_install_")
+CONSUMER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "consumer")
+TOOLS = ("gcode2vdb", "vdbtrace", "vdbstudy")
+# The consumers' own flags; what they compile is looked up first if there is a cache.
+CONFIGURE = ["-GNinja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0"]
+if shutil.which("ccache"):
+    CONFIGURE.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+
+# --- installed in one place, moved to another -----------------------------------------------------------------------
+run("cmake", "--install", BUILD, "--prefix", os.path.join(FOLDER, "first"))
+prefix = os.path.join(FOLDER, "moved")
+os.rename(os.path.join(FOLDER, "first"), prefix)
+os.environ.pop("STRATUM_DATA", None)
+bin_ = os.path.join(prefix, "bin")
+
+for tool in TOOLS:
+    program = os.path.join(bin_, tool)
+    facts = run(program, "--version")
+    check(facts.startswith(tool + " "), f"{tool} --version")
+    for fact in ("GCC" if "GCC" in facts else "Clang", "SIMD", "OpenVDB", "Highway"):
+        check(fact in facts, f"  tells {fact}")
+    seconds = []
+    for _ in range(10):
+        process = subprocess.Popen([program, "--version"], stdout=subprocess.DEVNULL)
+        _, _, usage = os.wait4(process.pid, 0)
+        seconds.append(usage.ru_utime + usage.ru_stime)
+    # Processor time: the same as wall time on a machine with nothing else to do, and other tests run beside this one.
+    check(min(seconds) < 0.05, f"  in {min(seconds) * 1e3:.0f} ms")
+
+    brief = run(program, "-h")
+    everything = run(program, "--help-all")
+    check(len(brief.splitlines()) <= 50, f"{tool} -h fits a screen: {len(brief.splitlines())} lines")
+    examples = everything.split("Examples:")[1].count(f"  {tool} ")
+    check(examples >= 3 and brief.split("Examples:")[1].count(f"  {tool} ") >= 3, "  with three examples")
+
+    with gzip.open(os.path.join(prefix, "share/man/man1", tool + ".1.gz"), "rt") as file:
+        page = file.read()
+    options = {word.rstrip(",") for word in everything.split() if word.startswith("--")}
+    for option in options - {"--help-all"}:
+        for name in option.split(","):
+            check(name.replace("-", "\\-") in page, f"  {name} is in the man page")
+    if shutil.which("groff"):
+        done = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-"], input=page, capture_output=True, text=True)
+        check(done.returncode == 0 and done.stderr == "", f"  the man page is clean: {done.stderr.strip()}")
+
+    def complete(*words):
+        script = os.path.join(prefix, "share/bash-completion/completions", tool)
+        quoted = " ".join(f"'{word}'" for word in (tool, *words))
+        return run("bash", "-c", f"source '{script}'; COMP_WORDS=({quoted}); COMP_CWORD={len(words)}; _{tool}; "
+                                 'echo "${COMPREPLY[@]}"').split()
+
+    if tool == "gcode2vdb":
+        check(complete("--inte") == ["--interior", "--interior-distance"], "  completes options")
+        check(complete("--interior", "c") == ["cull"], "  and their choices")
+    if tool == "vdbstudy":
+        check(complete("stab") == ["stability"], "  completes commands")
+        check("--points" in complete("geometry", "--p"), "  and their options")
+
+# A table of materials that only the moved tree has.
+tables = os.path.join(prefix, "share/stratum/data/brdf")
+shutil.copy(os.path.join(tables, "pla-blue.bsdf.gz"), os.path.join(tables, "mine.bsdf.gz"))
+vdb = os.path.join(FOLDER, "tile.vdb")
+report = json.loads(run(os.path.join(bin_, "gcode2vdb"), gcode("tile.gcode"), "-o", vdb, "--stats", "-"))
+run(os.path.join(bin_, "vdbtrace"), vdb, "-o", os.path.join(FOLDER, "tile.png"), "--brdf", "mine", "--size", "64x48", "--spp", "1")
+check(os.path.getsize(os.path.join(FOLDER, "tile.png")) > 1000, "renders with a table of its own tree")
+
+# --- strangers ---------------------------------------------------------------------------------------------------------
+for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
+                      ("add_subdirectory", [f"-DSTRATUM_SOURCE={SOURCE}"])):
+    build = os.path.join(FOLDER, name)
+    start = time.perf_counter()
+    run("cmake", "-S", CONSUMER, "-B", build, *CONFIGURE, *options)
+    run("cmake", "--build", build)
+    words = run(os.path.join(build, "consumer"), gcode("tile.gcode")).split()
+    print(f"{name}: configured, built and run in {time.perf_counter() - start:.0f} s")
+    if name == "find_package":
+        check(int(words[0]) == report["toolpath"]["beads"], "  reads the print")
+        check(int(words[1]) > 100000 and words[2:] == ["1", "1"], f"  voxelizes and traces: {words[1:]}")
+    else:
+        check(words == ["1", "3.000", report["input"]["sha256"]], f"  traces and hashes: {words}")
+
+# --- Debian packages -----------------------------------------------------------------------------------------------------
+if shutil.which("dpkg-shlibdeps") and shutil.which("cpack"):
+    packages = os.path.join(FOLDER, "packages")
+    run("cpack", "--config", os.path.join(BUILD, "CPackConfig.cmake"), "-B", packages,
+        "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
+    names = sorted(name for name in os.listdir(packages) if name.endswith(".deb"))
+    check([name.split("_")[0] for name in names] == ["libstratum-dev", "stratum"], f"packages: {names}")
+    deb = os.path.join(packages, names[1])
+    depends = run("dpkg-deb", "-f", deb, "Depends")
+    for library in ("libopenvdb10.0", "libtbb12", "libopenexr-3-1-30", "libc6"):
+        check(library in depends, f"  depends on {library}")
+    check("-dev" not in depends, "  and on nothing for developers")
+    contents = run("dpkg-deb", "-c", deb)
+    for path in ("./usr/bin/gcode2vdb", "./usr/share/man/man1/vdbtrace.1.gz", "./usr/share/doc/stratum/copyright",
+                 "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"):
+        check(path in contents, f"  has {path}")
+    check("/include/" not in contents, "  and no headers")
+shutil.rmtree(FOLDER)
