@@ -6,6 +6,7 @@
 #include "study/geometry.h"
 #include "study/memory.h"
 #include "study/need.h"
+#include "study/render.h"
 #include "study/stability.h"
 
 #include <fmt/format.h>
@@ -29,6 +30,7 @@ Examples:
   vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
   vdbstudy geometry part.gcode -o studies --layers 1:20
   vdbstudy stability -o studies                     a hundred cases that could go wrong
+  vdbstudy render part.gcode -o studies             error of pictures against run time
   vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost)";
 
 struct Options {
@@ -37,6 +39,7 @@ struct Options {
     study::MemoryOptions memory;
     study::GeometryOptions geometry;
     study::NeedOptions need;
+    study::RenderStudyOptions render;
 };
 
 // A verb, and the study that it asks for.
@@ -81,6 +84,17 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 100000000))
         ->type_name("N");
     verbs.push_back({geometry, [&o] { return study::studyGeometry(o.geometry, o.study); }});
+    CLI::App* render = addVerb(app, o, "render", "Error of pictures against run time");
+    render->add_option("PRINT", o.render.print, "A print")->required()->type_name("FILE.gcode");
+    render->add_option("--voxels-per-layer", o.render.per_layer, "Sizes (default 1,2,4,8)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1, 64))
+        ->type_name("N,...");
+    render->add_option("--seeds", o.render.seeds, "Pictures of each kind (default 5)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    verbs.push_back({render, [&o] { return study::studyRender(o.render, o.study); }});
     CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
     verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
     CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and what it would have cost");
