@@ -2,8 +2,10 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace stratum::shade {
@@ -12,29 +14,57 @@ namespace stratum::shade {
 /// (round in u, constant beyond the first and last row) times, per row of cells, the mean sine of the polar angle.
 /// The quotient of the interpolated weight and the density, per steradian, is thus nearly the same everywhere: what is
 /// drawn has hardly any noise of its own, also on the edges of a texel that is 10^5 times brighter than its neighbours.
+///
+/// If it is told where places of the square lie on the sphere, there is a density for each of NormalBins: blocks of
+/// cells, some 32 x 17 of them, weigh by the cosine to the bin's normals as well. A surface that is lit by half of the
+/// sky then draws from that half, and from where light falls straight.
 class BilinearDistribution {
 public:
-    /// @param weights  columns * rows values at texel centres, row by row, >= 0 and finite. All zero means uniform.
-    BilinearDistribution(std::vector<float> weights, int columns, int rows);
+    /// A place of the square as a unit direction, in the space of the normals.
+    using Direction = std::function<glm::vec3(const glm::dvec2& place)>;
 
+    /// @param weights    columns * rows values at texel centres, row by row, >= 0 and finite. All zero means uniform.
+    /// @param direction  none: one bin, without cosines
+    BilinearDistribution(std::vector<float> weights, int columns, int rows, const Direction& direction = {});
+
+    /// The bin to draw from on a surface.
+    /// @param normal  finite, not 0
+    int bin(const glm::vec3& normal) const;
     /// @param u    uniform in [0, 1)^2
     /// @param pdf  density there per unit of area; 0 means "no sample"
-    glm::dvec2 sample(const glm::dvec2& u, double& pdf) const;
-    double pdf(const glm::dvec2& point) const;
+    glm::dvec2 sample(int bin, const glm::dvec2& u, double& pdf) const;
+    double pdf(int bin, const glm::dvec2& point) const;
 
 private:
     /// Weights at the corners of a cell between texel centres. Row 0 lies above the first row of centres.
     struct Corners {
         double w00, w10, w01, w11;
+        double at(double x, double y) const {
+            return (1.0 - y) * ((1.0 - x) * w00 + x * w10) + y * ((1.0 - x) * w01 + x * w11);
+        }
     };
     Corners corners(int column, int row) const;
+    void sumCells();
+    void weighBlocks(const Direction& direction);
+    /// Density over interpolated weight, in a cell.
+    double scale(int bin, int column, int row) const;
+    std::size_t blockOf(int column, int row) const {
+        return static_cast<std::size_t>(row >> shift_) * block_columns_ + static_cast<std::size_t>(column >> shift_);
+    }
+    std::size_t side() const { return std::size_t{1} << shift_; }
 
     int columns_, rows_;
+    unsigned shift_ = 0;  // a block has 2^shift cells a side
+    std::size_t block_columns_ = 1, block_rows_ = 1, bins_ = 1;
     std::vector<float> weights_;
-    std::vector<double> sums_;          // per row of cells: columns + 1 running sums of the cells' weights
-    std::vector<double> row_sums_;      // rows + 2 running sums of the rows' weights
-    std::vector<double> sines_;         // of the rows of cells, mean inside the square
-    int first_row_ = 1, last_row_ = 0;  // of cells that hold anything: a sun is in few of them
+    std::vector<double> sines_;  // of the rows of cells, mean inside the square
+    // Running sums, each without its leading 0 and with 1 at its end: of a block's rows; of the cells of those.
+    std::vector<float> rows_in_block_, cells_in_block_;
+    std::vector<double> block_weights_;  // sums of the cells' weights times sines
+    // By bin: running sums of the rows of blocks, and in each row of the blocks.
+    std::vector<double> row_sums_;
+    std::vector<float> block_sums_;
+    std::vector<float> row_scales_;  // by bin and row: share of the row over the last of its block_sums_
 };
 
 }  // namespace stratum::shade

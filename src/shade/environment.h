@@ -18,7 +18,7 @@ class Light;
 struct EnvironmentSample {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
     Color radiance{0.0f};                   ///< radiance(direction)
-    float pdf = 0.0f;                       ///< pdf(direction): of all strategies; 0 means "no sample"
+    float pdf = 0.0f;                       ///< pdf(direction, normal): of all strategies; 0 means "no sample"
 };
 
 /// Radiance by direction (see color.h for the unit). World space, z up.
@@ -35,9 +35,14 @@ public:
     virtual int strategies() const { return 1; }
     /// @param strategy  in [0, strategies())
     /// @param u         uniform in [0, 1)^2
-    virtual EnvironmentSample sample(int strategy, const glm::vec2& u) const = 0;
-    /// Sum of the strategies' densities per steradian.
-    virtual float pdf(const glm::vec3& direction) const = 0;
+    /// @param normal    of the surface to light, world space, unit: what is below its horizon may be left out
+    virtual EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const = 0;
+    /// Sum of the strategies' densities per steradian, for a surface of that normal.
+    virtual float pdf(const glm::vec3& direction, const glm::vec3& normal) const = 0;
+    /// radiance and pdf of a direction at once.
+    virtual EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const {
+        return {direction, radiance(direction), pdf(direction, normal)};
+    }
     /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
     virtual bool visible() const { return true; }
     /// What a horizontal matt surface draws by. The environment must outlive it.

@@ -70,18 +70,32 @@ std::vector<float> compensated(std::vector<float> weights, int width, int height
     return weights;
 }
 
-std::vector<BilinearDistribution> tablesOf(Split split, int width, int height) {
+/// @param direction  of places on the map, to draw the others by the cosine. A sun is drawn whole: one that just rises
+///                   above some normal's horizon must not be left to chance.
+std::vector<BilinearDistribution> tablesOf(Split split, int width, int height,
+                                           const BilinearDistribution::Direction& direction = {}) {
     std::vector<BilinearDistribution> tables;
-    tables.emplace_back(std::move(split.others), width, height);
+    tables.emplace_back(std::move(split.others), width, height, direction);
     if (!split.lamps.empty()) tables.emplace_back(std::move(split.lamps), width, height);
     return tables;
 }
 
+/// A place on the map as a direction. `sine` is that of the polar angle.
+glm::vec3 directionOf(const glm::dvec2& place, double rotation, double& sine) {
+    const double theta = kPiD * place.y;
+    const double phi = 2.0 * kPiD * (0.5 - place.x) + rotation;
+    sine = std::sin(theta);
+    return {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
+}
+
 /// To draw beside a BRDF.
-std::vector<BilinearDistribution> compensatedTables(const LightMap& map) {
+std::vector<BilinearDistribution> compensatedTables(const LightMap& map, double rotation) {
     Split split = splitOf(luminances(map), map.width, map.height);
     split.others = compensated(std::move(split.others), map.width, map.height);
-    return tablesOf(std::move(split), map.width, map.height);
+    return tablesOf(std::move(split), map.width, map.height, [rotation](const glm::dvec2& place) {
+        double sine = 0.0;
+        return directionOf(place, rotation, sine);
+    });
 }
 
 /// To draw alone, on a surface that looks up: luminance times the cosine to +z.
@@ -105,17 +119,22 @@ public:
         : environment_(environment), tables_(cosineTables(environment.map_)) {}
     int strategies() const override { return static_cast<int>(tables_.size()); }
     EnvironmentSample sample(int strategy, const glm::vec2& u) const override {
-        return environment_.draw(tables_, strategy, u);
+        return environment_.draw(tables_, strategy, u, kUp);
     }
-    float pdf(const glm::vec3& direction) const override { return environment_.density(tables_, direction); }
+    float pdf(const glm::vec3& direction) const override {
+        double sine = 0.0;
+        const glm::dvec2 place = environment_.place(direction, sine);
+        return environment_.density(tables_, place, sine, kUp);
+    }
 
 private:
+    static constexpr glm::vec3 kUp{0.0f, 0.0f, 1.0f};
     const MapEnvironment& environment_;
     MapEnvironment::Tables tables_;
 };
 
 MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale)
-    : map_(scaled(std::move(map), scale)), rotation_(rotation), tables_(compensatedTables(map_)) {}
+    : map_(scaled(std::move(map), scale)), rotation_(rotation), tables_(compensatedTables(map_, rotation_)) {}
 
 glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const {
     const double x = direction.x;
@@ -146,37 +165,48 @@ Color MapEnvironment::radiance(const glm::vec3& direction) const {
     return lookUp(place(direction, sine));
 }
 
-EnvironmentSample MapEnvironment::draw(const Tables& tables, int strategy, const glm::vec2& u) const {
+EnvironmentSample MapEnvironment::draw(const Tables& tables, int strategy, const glm::vec2& u,
+                                       const glm::vec3& normal) const {
     const auto chosen = static_cast<std::size_t>(strategy);
     double density = 0.0;
-    const glm::dvec2 p = tables[chosen].sample(u, density);
-    const double theta = kPiD * p.y;
-    const double phi = 2.0 * kPiD * (0.5 - p.x) + rotation_;
-    const double s = std::sin(theta);
+    const glm::dvec2 p = tables[chosen].sample(tables[chosen].bin(normal), u, density);
     EnvironmentSample result;
-    result.direction = {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
-    if (!(density > 0.0 && s > 0.0)) return result;
+    if (!(density > 0.0)) return result;
+    double sine = 0.0;
+    result.direction = directionOf(p, rotation_, sine);
+    if (!(sine > 0.0)) return result;
     for (std::size_t k = 0; k < tables.size(); ++k)
-        if (k != chosen) density += tables[k].pdf(p);
-    result.pdf = static_cast<float>(density / (2.0 * kPiD * kPiD * s));
+        if (k != chosen) density += tables[k].pdf(tables[k].bin(normal), p);
+    result.pdf = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
     if (!std::isfinite(result.pdf)) result.pdf = 0.0f;
     result.radiance = lookUp(p);
     return result;
 }
 
-EnvironmentSample MapEnvironment::sample(int strategy, const glm::vec2& u) const { return draw(tables_, strategy, u); }
+EnvironmentSample MapEnvironment::sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const {
+    return draw(tables_, strategy, u, normal);
+}
 
-float MapEnvironment::density(const Tables& tables, const glm::vec3& direction) const {
-    double sine = 0.0;
-    const glm::dvec2 p = place(direction, sine);
+float MapEnvironment::density(const Tables& tables, const glm::dvec2& place, double sine,
+                              const glm::vec3& normal) const {
     if (!(sine > 0.0)) return 0.0f;
     double density = 0.0;
-    for (const BilinearDistribution& table : tables) density += table.pdf(p);
+    for (const BilinearDistribution& table : tables) density += table.pdf(table.bin(normal), place);
     const auto result = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
     return std::isfinite(result) ? result : 0.0f;
 }
 
-float MapEnvironment::pdf(const glm::vec3& direction) const { return density(tables_, direction); }
+float MapEnvironment::pdf(const glm::vec3& direction, const glm::vec3& normal) const {
+    double sine = 0.0;
+    const glm::dvec2 p = place(direction, sine);
+    return density(tables_, p, sine, normal);
+}
+
+EnvironmentSample MapEnvironment::toward(const glm::vec3& direction, const glm::vec3& normal) const {
+    double sine = 0.0;
+    const glm::dvec2 p = place(direction, sine);
+    return {direction, lookUp(p), density(tables_, p, sine, normal)};
+}
 
 std::unique_ptr<const BedLight> MapEnvironment::makeBedLight() const { return std::make_unique<MapBedLight>(*this); }
 

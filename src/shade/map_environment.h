@@ -13,6 +13,7 @@ namespace stratum::shade {
 /// sample() is one half of multiple importance sampling and knows it: it draws where the map is brighter than its mean
 /// and leaves the rest to the BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling
 /// Techniques in Multiple Importance Sampling", SIGGRAPH Asia 2019. makeBedLight() draws alone and is complete.
+/// Of what is left it draws by the cosine to the normal, too (see BilinearDistribution).
 /// What little shines much, a sun or lamps, has a strategy of its own.
 class MapEnvironment final : public Environment {
 public:
@@ -21,8 +22,9 @@ public:
     MapEnvironment(LightMap map, double rotation, float scale);
     Color radiance(const glm::vec3& direction) const override;
     int strategies() const override { return static_cast<int>(tables_.size()); }
-    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
-    float pdf(const glm::vec3& direction) const override;
+    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
+    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
+    EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
     std::unique_ptr<const BedLight> makeBedLight() const override;
 
 private:
@@ -31,8 +33,9 @@ private:
     glm::dvec2 place(const glm::vec3& direction, double& sine) const;
     Color lookUp(const glm::dvec2& place) const;
     using Tables = std::vector<BilinearDistribution>;  // one a strategy
-    EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u) const;
-    float density(const Tables& tables, const glm::vec3& direction) const;
+    EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u, const glm::vec3& normal) const;
+    /// Per steradian.
+    float density(const Tables& tables, const glm::dvec2& place, double sine, const glm::vec3& normal) const;
 
     LightMap map_;
     double rotation_;

@@ -75,7 +75,7 @@ void PathIntegrator::feelEnvironment(const Path& path, const Frame& frame, const
     for (int strategy = 0; strategy < strategies; ++strategy) {
         const glm::vec2 draw = sampler.next2D();
         const EnvironmentSample light =
-            point.bed ? bed_light_->sample(strategy, draw) : scene_.environment->sample(strategy, draw);
+            point.bed ? bed_light_->sample(strategy, draw) : scene_.environment->sample(strategy, draw, frame.z);
         const glm::vec3 wi = frame.toLocal(light.direction);
         if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
         const float other = (point.bed ? kBedShare : 1.0f) * point.brdf->pdf(wo, wi);
@@ -97,10 +97,13 @@ std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Path& path, const 
     if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
     const glm::vec3 way = frame.toWorld(next->wi);
     Bounce bounce{surfaces_.leave(point, way), next->pdf, Color(0.0f)};
-    const float drawn = (point.bed ? kBedShare : 1.0f) * next->pdf;
-    bounce.escaped =
-        fromLamps(bounce.ray, kFar, next->pdf) +
-        environment.radiance(way) * balanceHeuristic(drawn, point.bed ? bed_light_->pdf(way) : environment.pdf(way));
+    bounce.escaped = fromLamps(bounce.ray, kFar, next->pdf);
+    if (point.bed) {
+        bounce.escaped += environment.radiance(way) * balanceHeuristic(kBedShare * next->pdf, bed_light_->pdf(way));
+    } else {
+        const EnvironmentSample there = environment.toward(way, frame.z);
+        bounce.escaped += there.radiance * balanceHeuristic(next->pdf, there.pdf);
+    }
     return bounce;
 }
 

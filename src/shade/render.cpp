@@ -22,6 +22,8 @@ namespace {
 
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
+/// Of a pixel, before anybody asks how noisy it is: with its neighbours in the tile enough to tell.
+constexpr int kFirstSamples = 4;
 
 /// What all tiles of a render share.
 class Renderer {
@@ -141,7 +143,7 @@ void Renderer::tileByTile() {
         TileWorker& worker = workers_.local();
         for (std::size_t n = first; n != last; ++n) {
             Tile tile(boxes_[todo[n]], recorder_);
-            int target = options_.noise > 0.0 ? std::min(16, options_.spp) : options_.spp;
+            int target = options_.noise > 0.0 ? std::min(kFirstSamples, options_.spp) : options_.spp;
             sample(tile, target, worker);
             while (target < options_.spp && tile.error() > options_.noise) {
                 target = std::min(2 * target, options_.spp);
@@ -163,7 +165,6 @@ void Renderer::tileByTile() {
 
 /// All tiles a little, and then the worst ones more, until the time is over.
 void Renderer::byTheClock() {
-    constexpr int kFirst = 4;
     const auto begin = Clock::now();
     const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     std::vector<Tile> tiles;
@@ -180,7 +181,7 @@ void Renderer::byTheClock() {
                 Tile& tile = tiles[todo[n]];
                 // The first samples are taken whatever the clock says: every pixel needs some.
                 if (tile.samples() > 0 && elapsed() >= options_.seconds) return;
-                sample(tile, std::min(std::max(kFirst, 2 * tile.samples()), options_.spp), worker);
+                sample(tile, std::min(std::max(kFirstSamples, 2 * tile.samples()), options_.spp), worker);
                 if (!progress_) continue;
                 const std::lock_guard lock(mutex);
                 const double part = std::min(1.0, elapsed() / options_.seconds);

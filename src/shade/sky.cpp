@@ -90,8 +90,15 @@ public:
         : map_(std::move(map), 0.0, scale), sun_(std::move(sun)) {}
     Color radiance(const glm::vec3& direction) const override { return map_.radiance(direction); }
     int strategies() const override { return map_.strategies(); }
-    EnvironmentSample sample(int strategy, const glm::vec2& u) const override { return map_.sample(strategy, u); }
-    float pdf(const glm::vec3& direction) const override { return map_.pdf(direction); }
+    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override {
+        return map_.sample(strategy, u, normal);
+    }
+    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override {
+        return map_.pdf(direction, normal);
+    }
+    EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override {
+        return map_.toward(direction, normal);
+    }
     std::unique_ptr<const BedLight> makeBedLight() const override { return map_.makeBedLight(); }
     std::shared_ptr<const Light> sun() const override { return sun_; }
 

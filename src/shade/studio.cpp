@@ -87,7 +87,7 @@ Color StudioEnvironment::radiance(const glm::vec3& direction) const {
     return unscaled(toStudio(direction), bed_) * scale_;
 }
 
-EnvironmentSample StudioEnvironment::sample(int, const glm::vec2& u) const {
+EnvironmentSample StudioEnvironment::sample(int, const glm::vec2& u, const glm::vec3&) const {
     EnvironmentSample result;
     const glm::vec3 d = table_.sample(u, result.pdf);
     result.radiance = unscaled(d, bed_) * scale_;
@@ -95,6 +95,8 @@ EnvironmentSample StudioEnvironment::sample(int, const glm::vec2& u) const {
     return result;
 }
 
-float StudioEnvironment::pdf(const glm::vec3& direction) const { return table_.pdf(toStudio(direction)); }
+float StudioEnvironment::pdf(const glm::vec3& direction, const glm::vec3&) const {
+    return table_.pdf(toStudio(direction));
+}
 
 }  // namespace stratum::shade

@@ -16,8 +16,8 @@ public:
 
     explicit StudioEnvironment(const EnvironmentPlacement& placement);
     Color radiance(const glm::vec3& direction) const override;
-    EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
-    float pdf(const glm::vec3& direction) const override;
+    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
+    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
     bool visible() const override { return false; }
 
 private:

@@ -38,7 +38,7 @@ class Environments : public testing::TestWithParam<Case> {};
 
 TEST_P(Environments, SampleAgreesWithRadianceAndDensity) {
     const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
-    EXPECT_NEAR(overSphere([&](const glm::vec3& d) { return double(env->pdf(d)); }), 1.0, 2e-3);
+    EXPECT_NEAR(overSphere([&](const glm::vec3& d) { return double(env->pdf(d, {0, 0, 1})); }), 1.0, 2e-3);
     const double power = overSphere([&](const glm::vec3& d) { return double(shade::luminance(env->radiance(d))); });
     double estimate = 0.0;
     double squares = 0.0;
@@ -46,10 +46,10 @@ TEST_P(Environments, SampleAgreesWithRadianceAndDensity) {
     constexpr int kSide = 256;
     for (int i = 0; i < kSide; ++i) {
         for (int j = 0; j < kSide; ++j) {
-            const auto s = env->sample(0, {(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+            const auto s = env->sample(0, {(i + 0.5f) / kSide, (j + 0.5f) / kSide}, {0, 0, 1});
             ASSERT_GT(s.pdf, 0.0f);
             ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-5f);
-            differ += std::abs(s.pdf - env->pdf(s.direction)) > 1e-3f * s.pdf;
+            differ += std::abs(s.pdf - env->pdf(s.direction, {0, 0, 1})) > 1e-3f * s.pdf;
             ASSERT_NEAR(shade::luminance(s.radiance), shade::luminance(env->radiance(s.direction)), 2e-3f);
             const double v = double(shade::luminance(s.radiance)) / double(s.pdf);
             estimate += v;
@@ -69,7 +69,7 @@ TEST_P(Environments, DensityIsPositiveWhereLightIs) {
     overSphere(
         [&](const glm::vec3& d) {
             if (shade::maxComponent(env->radiance(d)) > 0.0f) {
-                EXPECT_GT(env->pdf(d), 0.0f);
+                EXPECT_GT(env->pdf(d, {0, 0, 1}), 0.0f);
             }
             return 0.0;
         },

@@ -1,0 +1,45 @@
+// Surface normals in a few bins, for tables that depend on which way a surface looks.
+//
+// Octahedral map: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::shade {
+
+struct NormalBins {
+    static constexpr int kSide = 16;  ///< of the octahedron's square: bins are some 12 degrees wide
+    static constexpr int kCount = kSide * kSide;
+
+    /// In [0, kCount).
+    /// @param normal  finite, of any length but 0
+    static int of(const glm::vec3& normal) {
+        const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+        float x = normal.x / sum;
+        float y = normal.y / sum;
+        if (normal.z < 0.0f) {
+            const float folded = std::copysign(1.0f - std::abs(y), x);
+            y = std::copysign(1.0f - std::abs(x), y);
+            x = folded;
+        }
+        const auto cell = [](float v) { return std::clamp(static_cast<int>((0.5f * v + 0.5f) * kSide), 0, kSide - 1); };
+        return cell(y) * kSide + cell(x);
+    }
+
+    /// A normal of a bin.
+    /// @param place  in the bin's square, [0, 1]^2
+    static glm::vec3 normal(int bin, const glm::vec2& place) {
+        const float x = 2.0f * (static_cast<float>(bin % kSide) + place.x) / kSide - 1.0f;
+        const float y = 2.0f * (static_cast<float>(bin / kSide) + place.y) / kSide - 1.0f;
+        const float z = 1.0f - std::abs(x) - std::abs(y);
+        if (z >= 0.0f) return glm::normalize(glm::vec3(x, y, z));
+        return glm::normalize(glm::vec3(std::copysign(1.0f - std::abs(y), x), std::copysign(1.0f - std::abs(x), y), z));
+    }
+};
+
+}  // namespace stratum::shade
