@@ -14,7 +14,7 @@
 namespace stratum::march {
 namespace {
 
-constexpr std::size_t kGrain = 512;  // bricks a task: many enough to find their neighbours in the cache
+constexpr std::size_t kGrain = 16;  // macro cells a task: many enough to find their neighbours in the cache
 
 // Samples of a level set reach no further than its band; what does is put at its edge.
 double quantumOf(const LeafSource& source, BrickValues values) {
@@ -56,8 +56,6 @@ public:
     // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
     std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
 
-    openvdb::Coord originOf(std::size_t brick) const { return source_.origin(leaves_[brick]); }
-
     // Coordinates in bricks.
     void layOut(std::size_t brick, int x, int y, int z) const {
         if (grid_.values_ == BrickValues::Float32)
@@ -66,9 +64,60 @@ public:
             layOut(brick, x, y, z, grid_.quanta_.data(), quanta_caches_.local());
     }
 
+    // All bricks of a macro cell, one after the other in memory, without those that turn out to have no surface.
+    // Returns the macro cell as it is then. Coordinates in macro cells.
+    MacroCell layOutAll(int x, int y, int z) const {
+        return grid_.values_ == BrickValues::Float32 ? layOutAll(x, y, z, grid_.floats_.data(), float_caches_.local())
+                                                     : layOutAll(x, y, z, grid_.quanta_.data(), quanta_caches_.local());
+    }
+
 private:
     template <typename T>
     void layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+        const BrickParts<T> parts = partsOf(x, y, z, cache);
+        const CellBits surface = surfaceOf(parts);
+        std::uint32_t slot = kNoSamples;
+        if (hasAny(surface)) {
+            slot = grid_.used_.fetch_add(1, std::memory_order_relaxed) + 1;
+            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
+        }
+        for (std::size_t part = 0; part < surface.size(); ++part)
+            std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
+        // Last, so that whoever sees it sees the rest.
+        std::atomic_ref(grid_.slots_[brick]).store(slot, std::memory_order_release);
+    }
+
+    template <typename T>
+    MacroCell layOutAll(int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+        const std::uint64_t listed = grid_.macroCell(x, y, z).bricks;
+        std::array<BrickParts<T>, 64> parts;
+        std::array<CellBits, 64> surface;
+        MacroCell made;
+        std::size_t count = 0;
+        for (std::uint64_t rest = listed; rest != 0; rest &= rest - 1) {
+            const int bit = std::countr_zero(rest);
+            // The leaves of one macro cell and its neighbours have places of their own in the cache.
+            parts[count] = partsOf(4 * x + (bit >> 4), 4 * y + (bit >> 2 & 3), 4 * z + (bit & 3), cache);
+            surface[count] = surfaceOf(parts[count]);
+            if (!hasAny(surface[count])) continue;
+            made.bricks |= std::uint64_t{1} << bit;
+            ++count;
+        }
+        made.first_brick = grid_.used_.fetch_add(static_cast<std::uint32_t>(count), std::memory_order_relaxed);
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::size_t brick = made.first_brick + n;
+            march::layOut(parts[n], samples + static_cast<std::ptrdiff_t>(brick) * kBrickSamples);
+            for (std::size_t part = 0; part < surface[n].size(); ++part) grid_.clear_[brick][part] = ~surface[n][part];
+        }
+        return made;
+    }
+
+    static bool hasAny(const CellBits& bits) {
+        return std::any_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word != 0; });
+    }
+
+    template <typename T>
+    BrickParts<T> partsOf(int x, int y, int z, LeafCache<T>& cache) const {
         BrickParts<T> parts;
         for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
             const int px = x + static_cast<int>(part >> 2);
@@ -79,16 +128,7 @@ private:
             const openvdb::Coord at = grid_.origin_.offsetBy(px * kBrickEdge, py * kBrickEdge, pz * kBrickEdge);
             parts.tile[part] = march::convert(source_.tile(at), scale_, T{});
         }
-        const CellBits surface = surfaceOf(parts);
-        std::uint32_t slot = kNoSamples;
-        if (std::any_of(surface.begin(), surface.end(), [](std::uint64_t word) { return word != 0; })) {
-            slot = grid_.used_.fetch_add(1, std::memory_order_relaxed) + 1;
-            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
-        }
-        for (std::size_t part = 0; part < surface.size(); ++part)
-            std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
-        // Last, so that whoever sees it sees the rest.
-        std::atomic_ref(grid_.slots_[brick]).store(slot, std::memory_order_release);
+        return parts;
     }
 
     template <typename T>
@@ -125,19 +165,25 @@ private:
 
 BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
     const Layouter layouter(*this, source, nullptr, listBricks(source));
-    parallelFor(listed_, kGrain, [&](std::size_t first, std::size_t last) {
-        for (std::size_t brick = first; brick != last; ++brick) {
-            const openvdb::Coord at = layouter.originOf(brick) - origin_;
-            layouter.layOut(brick, at[0] / kBrickEdge, at[1] / kBrickEdge, at[2] / kBrickEdge);
+    HugeArray<MacroCell> made(macro_cells_.size());  // neighbours still need what is listed
+    parallelFor(made.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n) {
+            if (macro_cells_[n].bricks == 0) continue;
+            const auto ny = static_cast<std::size_t>(macros_[1]);
+            const auto nz = static_cast<std::size_t>(macros_[2]);
+            made[n] = layouter.layOutAll(static_cast<int>(n / nz / ny), static_cast<int>(n / nz % ny),
+                                         static_cast<int>(n % nz));
         }
     });
-    dropEmptyBricks();
+    macro_cells_ = std::move(made);
+    listed_ = brickCount();
     measureEmptySpace();
 }
 
 BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values) : values_(values) {
     const LeafSource& leaves = *source;
     layouter_ = std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves));
+    slots_ = HugeArray<std::uint32_t>(listed_);
     measureEmptySpace();
 }
 
@@ -195,7 +241,6 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source) {
         leaves[brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]))] = static_cast<std::uint32_t>(n);
     }
     clear_ = HugeArray<CellBits>(count);
-    slots_ = HugeArray<std::uint32_t>(count);
     // Room for all, of which only what is used is ever touched.
     const std::size_t samples = count * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
@@ -203,23 +248,6 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source) {
     else
         quanta_ = HugeArray<std::int16_t>(samples);
     return leaves;
-}
-
-// Rays need not stop at bricks that turned out to have no surface. The others keep their samples and move up.
-void BrickGrid::dropEmptyBricks() {
-    std::uint32_t kept = 0;
-    for (MacroCell& macro : macro_cells_) {
-        const std::uint64_t bricks = std::exchange(macro.bricks, 0);
-        std::uint32_t brick = std::exchange(macro.first_brick, kept);
-        for (std::uint64_t rest = bricks; rest != 0; rest &= rest - 1, ++brick) {
-            if (slots_[brick] == kNoSamples) continue;
-            macro.bricks |= rest & (~rest + 1);
-            clear_[kept] = clear_[brick];
-            slots_[kept] = slots_[brick];
-            ++kept;
-        }
-    }
-    listed_ = kept;
 }
 
 void BrickGrid::measureEmptySpace() {
@@ -255,8 +283,8 @@ void BrickGrid::measureEmptySpace() {
 
 std::size_t BrickGrid::bytes() const {
     const std::size_t sample = values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t);
-    return macro_cells_.size() * sizeof(MacroCell) + listed_ * (sizeof(CellBits) + sizeof(std::uint32_t)) +
-           brickCount() * static_cast<std::size_t>(kBrickSamples) * sample;
+    return macro_cells_.size() * sizeof(MacroCell) + listed_ * sizeof(CellBits) +
+           slots_.size() * sizeof(std::uint32_t) + brickCount() * static_cast<std::size_t>(kBrickSamples) * sample;
 }
 
 }  // namespace stratum::march

@@ -99,8 +99,9 @@ public:
     std::uint64_t surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
     /// Where the samples of a brick with surface begin, in units of samples.
     std::size_t firstSample(std::size_t brick) const {
-        return static_cast<std::size_t>(std::atomic_ref(slots_.data()[brick]).load(std::memory_order_acquire) - 1) *
-               static_cast<std::size_t>(kBrickSamples);
+        if (late()) [[unlikely]]
+            brick = std::atomic_ref(slots_.data()[brick]).load(std::memory_order_acquire) - 1;
+        return brick * static_cast<std::size_t>(kBrickSamples);
     }
     BrickValues values() const { return values_; }
     /// All samples; x slowest in a brick. One of both is there.
@@ -113,7 +114,8 @@ public:
     const MacroCell* macroCells() const { return macro_cells_.data(); }
     /// Complements of the surface cells.
     const CellBits* clearCells() const { return clear_.data(); }
-    /// Where each brick's samples are: 0 if it isn't laid out, kNoSamples if it has no surface, or counted from 1.
+    /// Where each brick's samples are if bricks are laid out late: 0 if it isn't laid out, kNoSamples if it has no
+    /// surface, or counted from 1. The samples of bricks that are laid out at once lie in the bricks' own order.
     const std::uint32_t* slots() const { return slots_.data(); }
     static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
 
@@ -135,7 +137,6 @@ private:
     }
     std::vector<std::uint32_t> listBricks(const LeafSource& source);
     void measureEmptySpace();
-    void dropEmptyBricks();
 
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};

@@ -1,11 +1,10 @@
 // The walk of brick_walk.h in the lanes of a vector, for one Highway target at a time. Included by brick_stream.cpp
 // alone, once a target: hence the guard that toggles.
 //
-// Rays wait in a queue, already clipped to the box. A packet holds as many rays as a vector has lanes; a lane whose ray
-// ends takes the next from the queue. A turn of a packet either moves all lanes that are in empty space out of the
-// largest empty blocks around them, or, once enough lanes stand in surface cells, solves those cells. Several packets
-// take turns, so that one computes while the others wait for memory. All state lies in arrays in the first-level
-// cache: there is more of it than registers.
+// A turn of a packet of rays either moves all lanes that are in empty space out of the largest empty blocks around
+// them, or, once enough lanes stand in surface cells, solves those cells. Then it looks up where its lanes are and
+// calls for the memory that its next turn reads; meanwhile other packets take their turns. All state lies in arrays in
+// the first-level cache: there is more of it than registers.
 #if defined(STRATUM_BRICK_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_BRICK_LANES_INL_H
 #undef STRATUM_BRICK_LANES_INL_H
@@ -13,17 +12,16 @@
 #define STRATUM_BRICK_LANES_INL_H
 #endif
 
-#include "march/beam.h"
 #include "march/brick_walk.h"
 #include "march/cell_lanes-inl.h"
 #include "march/hit_lanes-inl.h"
 #include "march/intersector.h"
 #include "march/lanes-inl.h"
+#include "march/ray_queue_lanes-inl.h"
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -37,46 +35,22 @@ namespace stratum::march {
 namespace HWY_NAMESPACE {
 
 // Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
-constexpr int kPackets = 6;
-constexpr int kHold = kLanes * 3 / 8;  // lanes in surface cells that make a test worth its turn
-constexpr int kRefill = kLanes / 4;    // lanes without a ray that make a visit to the queue worth it
-constexpr int kQueue = 8 * kLanes;     // rays
-/// What a lane keeps; one array each.
-enum Field {
-    kO,
-    kD = kO + 3,
-    kInverse = kD + 3,
-    kCell = kInverse + 3,
-    kEnd = kCell + 3,
-    kStart,
-    kIndex,
-    kT,               // since the box was met
-    kQueued,          // fields that a ray in the queue has
-    kFace = kQueued,  // axis of the face that the cell was entered by, or -1
-    kFields
-};
-
-struct Packet {
-    HWY_ALIGN double field[kFields][kLanes];
-    HWY_ALIGN std::int64_t sample[kLanes] = {};  // of a waiting lane: index of its cell's first corner
-    unsigned alive = 0, waiting = 0;
-};
-
+constexpr std::size_t kPackets = 8;
+constexpr int kHold = kLanes * 3 / 8;      // lanes in surface cells that make a test worth its turn
+constexpr std::int64_t kGroup = 0x330033;  // Mask64::group() at 0
 template <bool kAny>
 class Marcher {
 public:
     Marcher(const BrickGrid& grid, const CellMap& map, std::span<const Ray> rays, Hit* hits, std::uint8_t* blocked)
         : grid_(grid),
-          map_(map),
-          rays_(rays),
           blocked_(blocked),
           late_(grid.late()),
           corners_(grid),
           batch_(corners_, map, rays, hits),
-          beams_(grid, map) {
-        for (int axis = 0; axis < 3; ++axis) size_[axis] = grid.size()[static_cast<std::size_t>(axis)];
-        macro_y_ = size_[1] / BrickGrid::kMacroEdge;
-        macro_z_ = size_[2] / BrickGrid::kMacroEdge;
+          queue_(grid, map, rays) {
+        for (int axis = 0; axis < 3; ++axis) last_[axis] = grid.size()[static_cast<std::size_t>(axis)] - 1;
+        macro_y_ = grid.size()[1] / BrickGrid::kMacroEdge;
+        macro_z_ = grid.size()[2] / BrickGrid::kMacroEdge;
         for (Packet& packet : packets_)
             // Lanes without a ray stand in cell 0 or where their last ray ended: what they read is there, and ignored.
             for (auto& field : packet.field)
@@ -84,141 +58,36 @@ public:
     }
 
     void run() {
+        // Each packet looks half a round after it has moved: the two halves of a turn depend on one another, so that
+        // what the processor works on at a time had better be of different packets. What decides is half a round old,
+        // too, so that a wrong guess costs little.
         for (bool busy = true; busy;) {
             busy = false;
-            for (Packet& packet : packets_) {
-                if (std::popcount(kAllLanes & ~packet.alive) >= kRefill) refill(packet);
-                if (packet.alive == 0) continue;
+            for (std::size_t n = 0; n < kPackets; ++n) {
+                Packet& moving = packets_[n];
+                if (moving.alive != 0) {
+                    busy = true;
+                    if (std::popcount(moving.waiting) >= kHold || moving.waiting == moving.alive)
+                        solve(moving);
+                    else
+                        leap(moving);
+                }
+                Packet& looking = packets_[(n + kPackets / 2) % kPackets];
+                queue_.refill(looking);
+                if (looking.alive == 0) continue;
                 busy = true;
-                if (std::popcount(packet.waiting) >= kHold || packet.waiting == packet.alive)
-                    solve(packet);
-                else
-                    leap(packet);
+                look(looking);
             }
         }
-        if constexpr (!kAny) batch_.flush();
+        if constexpr (!kAny) {
+            batch_.settle();
+            batch_.flush();
+        }
     }
 
 private:
-    static HWY_INLINE V load(const Packet& p, int field) { return hn::Load(D(), p.field[field]); }
-    static HWY_INLINE void store(Packet& p, int field, V v) { hn::Store(v, D(), p.field[field]); }
     static HWY_INLINE VI gather(const void* base, VI index) {
         return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
-    }
-
-    // Walk's constructor and Walk::enter() for the next rays, as many as there are lanes.
-    void enqueue() {
-        const D d;
-        if (next_ == looked_at_) {
-            const auto ahead = std::min(rays_.size() - next_, Beams::kMostRays);
-            if constexpr (!kAny) starts_ = beams_.starts(rays_.subspan(next_, ahead));
-            looked_from_ = next_;
-            looked_at_ += ahead;
-        }
-        const double* starts = starts_.empty() ? nullptr : starts_.data() + (next_ - looked_from_);
-        const auto left = looked_at_ - next_;
-        if (starts != nullptr) {
-            const auto some = std::min<std::size_t>(left, kLanes);
-            if (std::none_of(starts, starts + some, [](double t) { return t < std::numeric_limits<double>::max(); })) {
-                next_ += some;
-                return;
-            }
-        }
-        const auto count = std::min<std::size_t>(left, kLanes);
-        const VI lane = hn::Iota(DI(), 0);
-        const VI last = whole(static_cast<std::int64_t>(count) - 1);
-        static_assert(sizeof(Ray) == 8 * sizeof(double));
-        const VI row = hn::ShiftLeft<3>(hn::IfThenElse(hn::Gt(lane, last), last, lane));
-        const double* base = &rays_[next_].origin.x;
-        for (std::size_t n = next_ + kLanes; n < std::min(next_ + 2 * kLanes, rays_.size()); ++n)
-            hwy::Prefetch(&rays_[n]);
-        V in[8];
-        for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, base, row + whole(n));
-        const V zero = hn::Zero(d);
-        const V infinity = constant(std::numeric_limits<double>::infinity());
-        const V largest = constant(std::numeric_limits<double>::max());
-        V o[3];
-        V dir[3];
-        V inverse[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            const V mx = constant(map_.to_cells[0][axis]);
-            const V my = constant(map_.to_cells[1][axis]);
-            const V mz = constant(map_.to_cells[2][axis]);
-            o[axis] = mx * in[0] + my * in[1] + mz * in[2] + constant(map_.origin[axis]);
-            dir[axis] = mx * in[3] + my * in[4] + mz * in[5];
-            inverse[axis] = constant(1) / dir[axis];
-            const M finite = hn::Le(hn::Abs(inverse[axis]), largest);
-            dir[axis] = hn::IfThenElseZero(finite, dir[axis]);
-            inverse[axis] = hn::IfThenElseZero(finite, inverse[axis]);
-        }
-        V start = in[6];
-        V end = in[7];
-        M good = hn::Not(toDouble(hn::Gt(lane, last)));
-        for (int axis = 0; axis < 3; ++axis) {
-            const V extent = constant(size_[axis]);
-            const M still = hn::Eq(dir[axis], zero);
-            const M between = hn::And(hn::Ge(o[axis], zero), hn::Le(o[axis], extent));
-            const V a = hn::Neg(o[axis]) * inverse[axis];
-            const V b = (extent - o[axis]) * inverse[axis];
-            const M swap = hn::Gt(a, b);
-            const V near = hn::IfThenElse(swap, b, a);
-            const V far = hn::IfThenElse(swap, a, b);
-            good = hn::And(good, hn::Or(hn::And(still, between), hn::AndNot(still, hn::Le(near, far))));
-            // std::max and std::min keep their first argument unless the second is beyond it.
-            start = hn::IfThenElse(hn::AndNot(still, hn::Lt(start, near)), near, start);
-            end = hn::IfThenElse(hn::AndNot(still, hn::Lt(far, end)), far, end);
-        }
-        good = hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
-        V out[kQueued];
-        out[kEnd] = end - start;
-        out[kT] = zero;
-        if (starts != nullptr) {
-            // What lies before is empty; a start in empty space changes no cell that matters, nor how it is entered.
-            HWY_ALIGN double from[kLanes] = {};
-            std::copy_n(starts, count, from);
-            out[kT] = hn::Max(hn::Load(d, from) - start, zero);
-            good = hn::And(good, hn::Lt(out[kT], out[kEnd]));
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-            out[kO + axis] = o[axis] + start * dir[axis];
-            out[kD + axis] = dir[axis];
-            out[kInverse + axis] = inverse[axis];
-            out[kCell + axis] =
-                clampTo(hn::Floor(out[kO + axis] + out[kT] * dir[axis]), zero, constant(size_[axis] - 1));
-        }
-        out[kStart] = start;
-        out[kIndex] = fromWhole(lane + whole(static_cast<std::int64_t>(next_)));
-        const unsigned kept = bitsOf(good);
-        if (kept != kAllLanes) {
-            const auto table = tableIndices(kTable.place[kept]);
-            for (V& v : out) v = hn::TableLookupLanes(v, table);
-        }
-        for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], d, queue_[n] + tail_);
-        tail_ += std::popcount(kept);
-        next_ += count;
-    }
-
-    // Gives rays to the lanes that have none.
-    void refill(Packet& p) {
-        const D d;
-        if (tail_ - head_ < kLanes && next_ < rays_.size()) {
-            for (int n = 0; n < kQueued; ++n) hn::Store(hn::LoadU(d, queue_[n] + head_), d, queue_[n]);
-            tail_ -= head_;
-            head_ = 0;
-            while (tail_ + kLanes <= kQueue && next_ < rays_.size()) enqueue();
-        }
-        if (head_ == tail_) return;
-        unsigned idle = kAllLanes & ~p.alive;
-        const auto table = tableIndices(kTable.rank[idle]);
-        while (std::popcount(idle) > tail_ - head_) idle &= ~std::bit_floor(idle);
-        const M taken = maskOf(idle);
-        for (int n = 0; n < kQueued; ++n) {
-            const V row = hn::LoadU(d, queue_[n] + head_);
-            store(p, n, hn::IfThenElse(taken, hn::TableLookupLanes(row, table), load(p, n)));
-        }
-        store(p, kFace, hn::IfThenElse(taken, constant(-1), load(p, kFace)));
-        p.alive |= idle;
-        head_ += std::popcount(idle);
     }
 
     // Where a ray leaves a block, by the three planes ahead of it. Walk::aim().
@@ -226,15 +95,10 @@ private:
         V t;
         M axis[3];
     };
-    static HWY_INLINE Exit aim(const Packet& p, const V plane[3]) {
-        const D d;
-        const V zero = hn::Zero(d);
-        const V infinity = constant(std::numeric_limits<double>::infinity());
+    static HWY_INLINE Exit aim(const Packet& p, const VI plane[3]) {
         V t[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            const M still = hn::Eq(load(p, kD + axis), zero);
-            t[axis] = hn::IfThenElse(still, infinity, (plane[axis] - load(p, kO + axis)) * load(p, kInverse + axis));
-        }
+        for (int axis = 0; axis < 3; ++axis)
+            t[axis] = (toReal(plane[axis]) - load(p, kO + axis)) * load(p, kInverse + axis);
         const M y_first = hn::Lt(t[1], t[0]);
         const V t_xy = hn::Min(t[0], t[1]);
         const M z_first = hn::Lt(t[2], t_xy);
@@ -246,42 +110,34 @@ private:
         return exit;
     }
 
-    // Moves the lanes of `moving` through their planes. Walk::advance(). Rays that end free their lanes.
-    HWY_INLINE void advance(Packet& p, const V plane[3], const Exit& exit, M moving) {
+    // Moves the lanes of `moving` to `next`. Walk::advance(). Rays that end free their lanes.
+    HWY_INLINE void advance(Packet& p, const VI next[3], const Exit& exit, M moving) const {
         const D d;
-        const V zero = hn::Zero(d);
-        const V one = constant(1);
+        const DU du;
         M ended = hn::Ge(exit.t, load(p, kEnd));
-        V next[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const V dir = load(p, kD + axis);
-            const V cell = load(p, kCell + axis);
-            const M forth = hn::Gt(dir, zero);
-            const M still = hn::Eq(dir, zero);
-            const V inner = hn::IfThenElse(forth, plane[axis] - one, plane[axis]);
-            const V outer = hn::IfThenElse(forth, plane[axis], plane[axis] - one);
-            const V there = hn::Floor(load(p, kO + axis) + exit.t * dir);
-            const V along = clampTo(there, hn::IfThenElse(forth, cell, inner), hn::IfThenElse(forth, inner, cell));
-            next[axis] = hn::IfThenElse(exit.axis[axis], outer, hn::IfThenElse(still, cell, along));
-            ended = hn::Or(ended, hn::Or(hn::Lt(next[axis], zero), hn::Ge(next[axis], constant(size_[axis]))));
+            const VI place = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
+            const VI last = whole(last_[axis]);  // what is below 0 is beyond, too
+            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, place), hn::BitCast(du, last))));
         }
         p.alive &= ~bitsOf(hn::And(ended, moving));
         moving = hn::AndNot(ended, moving);
+        const auto moved = hn::RebindMask(DI(), moving);
         for (int axis = 0; axis < 3; ++axis)
-            store(p, kCell + axis, hn::IfThenElse(moving, next[axis], load(p, kCell + axis)));
+            storeWhole(p, kCell + axis, hn::IfThenElse(moved, next[axis], loadWhole(p, kCell + axis)));
         store(p, kT, hn::IfThenElse(moving, exit.t, load(p, kT)));
-        const V face = hn::IfThenElse(exit.axis[0], zero, hn::IfThenElse(exit.axis[1], one, constant(2)));
+        const V face =
+            hn::IfThenElse(exit.axis[0], hn::Zero(d), hn::IfThenElse(exit.axis[1], constant(1), constant(2)));
         store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
     }
 
-    // One step of every lane that isn't waiting: out of the largest empty block, or to wait in a surface cell.
-    void leap(Packet& p) {
-        const D d;
+    // Where lanes are: findBlock() as far as the bricks; and calls for their surface cells.
+    void look(Packet& p) const {
         const DI di;
         const VI one = whole(1);
         const VI none = hn::Zero(di);
-        const VI group = whole(0x330033);
-        const VI c[3] = {toWhole(load(p, kCell)), toWhole(load(p, kCell + 1)), toWhole(load(p, kCell + 2))};
+        VI c[3];
+        for (int axis = 0; axis < 3; ++axis) c[axis] = hn::Xor(loadWhole(p, kCell + axis), loadWhole(p, kFlip + axis));
         const VI mx = hn::ShiftRight<5>(c[0]);
         const VI my = hn::ShiftRight<5>(c[1]);
         const VI mz = hn::ShiftRight<5>(c[2]);
@@ -293,50 +149,70 @@ private:
         const VI b =
             hn::Or(hn::Or(hn::ShiftLeft<1>(hn::And(c[0], whole(24))), hn::ShiftRight<1>(hn::And(c[1], whole(24)))),
                    hn::ShiftRight<3>(hn::And(c[2], whole(24))));
-        const auto has_brick = hn::TestBit(hn::BitCast(DU(), bricks), hn::BitCast(DU(), shiftedLeft(one, b)));
-        const M in_brick = hn::RebindMask(d, has_brick);
-        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(group, hn::And(b, whole(42)))), none);
-        VI edge = hn::IfThenElse(group_empty, whole(16), whole(8));
-
-        const VI before = hn::And(bricks, shiftedLeft(one, b) - one);
-        const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), before)));
-        // Lanes without a brick read the first one's mask and ignore it.
-        const VI brick = hn::IfThenElseZero(hn::RebindMask(di, in_brick), hn::And(first, whole(0xffffffff)) + rank);
+        const VI bit = shiftedLeft(one, b);
+        const auto has_brick = hn::TestBit(bricks, bit);
+        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(whole(kGroup), hn::And(b, whole(42)))), none);
+        const auto far = hn::Eq(bricks, none);
+        const VI empty = hn::IfThenElse(far, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
+        const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);
+        const VI radius = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(DU(), first)));
+        const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(radius - one));
+        const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), hn::And(bricks, bit - one))));
         const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
                                hn::ShiftRight<2>(hn::And(c[2], whole(4))));
-        const VI part = hn::ShiftLeft<3>(brick) + half;
-        const VI cells = hn::Not(gather(grid_.clearCells(), part));
+        // Lanes without a brick read the first one's mask and ignore it.
+        const VI brick = hn::ShiftLeft<3>(hn::And(first, whole(0xffffffff)) + rank);
+        const VI part = hn::IfThenElseZero(has_brick, brick + half);
+        storeWhole(p, kPart, part);
+        storeWhole(p, kLowBits, low_bits);
+        storeWhole(p, kBeyond, beyond);
+        HWY_ALIGN std::int64_t words[kLanes];
+        hn::Store(part, di, words);
+        const auto* clear = reinterpret_cast<const std::uint64_t*>(grid_.clearCells());
+        for (const std::int64_t word : words) hwy::Prefetch(clear + word);
+    }
+
+    // One step of every lane that isn't waiting: out of the largest empty block, or to wait in a surface cell.
+    void leap(Packet& p) {
+        const D d;
+        const DI di;
+        const VI one = whole(1);
+        const VI none = hn::Zero(di);
         const VI three = whole(3);
+        const VI part = loadWhole(p, kPart);
+        const VI cells = hn::Not(gather(grid_.clearCells(), part));
+        VI cell[3];
+        VI c[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            cell[axis] = loadWhole(p, kCell + axis);
+            c[axis] = hn::Xor(cell[axis], loadWhole(p, kFlip + axis));
+        }
         const VI at = hn::Or(hn::Or(hn::ShiftLeft<4>(hn::And(c[0], three)), hn::ShiftLeft<2>(hn::And(c[1], three))),
                              hn::And(c[2], three));
-        const auto cell_set = hn::TestBit(cells, shiftedLeft(one, at));
-        const auto cells_empty = hn::Eq(hn::And(cells, shiftedLeft(group, hn::And(at, whole(42)))), none);
-        const VI small = hn::IfThenElse(cells_empty, hn::IfThenElse(hn::Eq(cells, none), whole(4), whole(2)), one);
-        edge = hn::IfThenElse(hn::RebindMask(di, in_brick), small, edge);
-        const M surface = hn::And(in_brick, toDouble(cell_set));
-
+        const VI empty = loadWhole(p, kLowBits);
+        const M in_brick = toDouble(hn::Lt(empty, none));
         const M walking = maskOf(p.alive & ~p.waiting);
-        V plane[3];
+        const M surface = hn::And(in_brick, toDouble(hn::TestBit(cells, shiftedLeft(one, at))));
+        const auto cells_empty = hn::Eq(hn::And(cells, shiftedLeft(whole(kGroup), hn::And(at, whole(42)))), none);
+        const VI small = hn::IfThenElseZero(cells_empty, hn::IfThenElse(hn::Eq(cells, none), three, one));
+        const VI low_bits = hn::IfThenElse(hn::RebindMask(di, in_brick), small, empty);
+        const VI beyond = loadWhole(p, kBeyond);
+
+        hold(p, bitsOf(hn::And(surface, walking)), part, at, c);
+        VI last[3];
+        VI plane[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const M forth = hn::Gt(load(p, kD + axis), hn::Zero(d));
-            const VI low = hn::AndNot(edge - one, c[axis]);
-            plane[axis] = fromWhole(low + hn::IfThenElseZero(hn::RebindMask(di, forth), edge));
+            last[axis] = hn::Or(cell[axis], low_bits) + beyond;
+            plane[axis] = last[axis] + one;
         }
-        const M far = hn::And(walking, toDouble(hn::Eq(bricks, none)));
-        if (!hn::AllFalse(d, far)) {
-            const V radius = fromWhole(hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(DU(), first))));
-            const V m[3] = {fromWhole(mx), fromWhole(my), fromWhole(mz)};
-            const V macro_edge = constant(BrickGrid::kMacroEdge);
-            for (int axis = 0; axis < 3; ++axis) {
-                const M forth = hn::Gt(load(p, kD + axis), hn::Zero(d));
-                const V high = hn::Min((m[axis] + radius) * macro_edge, constant(size_[axis]));
-                const V low = hn::Max((m[axis] - (radius - constant(1))) * macro_edge, hn::Zero(d));
-                plane[axis] = hn::IfThenElse(far, hn::IfThenElse(forth, high, low), plane[axis]);
-            }
+        const Exit exit = aim(p, plane);
+        VI next[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const VI there = floorToWhole(load(p, kO + axis) + exit.t * load(p, kD + axis));
+            const VI along = hn::Min(hn::Max(there, cell[axis]), last[axis]);
+            next[axis] = hn::IfThenElse(hn::RebindMask(di, exit.axis[axis]), plane[axis], along);
         }
-        const unsigned found = bitsOf(hn::And(surface, walking));
-        if (found != 0) hold(p, found, brick, part, at, c);
-        if (p.waiting != p.alive) advance(p, plane, aim(p, plane), hn::AndNot(surface, walking));
+        advance(p, next, exit, hn::AndNot(surface, walking));
     }
 
     static HWY_INLINE VI shiftedLeft(VI v, VI count) {
@@ -345,22 +221,24 @@ private:
 
     // Remembers where the corners of surface cells lie, and calls for them. Lanes whose brick had to be laid out first
     // look again in their next turn.
-    HWY_INLINE void hold(Packet& p, unsigned found, VI brick, VI part, VI at, const VI c[3]) {
-        const VI slot = hn::And(
-            hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(brick)),
-            whole(0xffffffff));
+    HWY_INLINE void hold(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
+        VI place = hn::ShiftRight<3>(part);  // of the brick's samples; bricks that are laid out at once are in order
         if (late_) {
-            found = thereOf(found, slot, brick, part, at, c);
-            if (found == 0) return;
+            const VI slot = hn::And(
+                hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(place)),
+                whole(0xffffffff));
+            if (found != 0) found = thereOf(found, slot, place, part, at, c);
+            place = slot - whole(1);
         }
         const VI seven = whole(7);
-        const VI sample = product(slot - whole(1), whole(BrickGrid::kBrickSamples)) +
+        const VI sample = product(place, whole(BrickGrid::kBrickSamples)) +
                           product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
                           product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
         const auto newly = hn::RebindMask(DI(), maskOf(found));
-        hn::Store(hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample)), DI(), p.sample);
+        const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
+        hn::Store(samples, DI(), p.sample);
         p.waiting |= found;
-        for (unsigned rest = found; rest != 0; rest &= rest - 1) corners_.prefetch(p.sample[std::countr_zero(rest)]);
+        corners_.prefetch(samples);
     }
 
     // Which of the lanes stand in surface cells of bricks that are laid out; asks for the others' bricks.
@@ -387,18 +265,14 @@ private:
 
     // SegmentCubic and firstCrossing() for the waiting lanes. Those that don't hit walk on.
     void solve(Packet& p) {
+        if constexpr (!kAny) batch_.settle();
         const D d;
         const V zero = hn::Zero(d);
         const V one = constant(1);
         const M waiting = maskOf(p.waiting);
-        V plane[3];
-        M forth[3];
-        V cell[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            forth[axis] = hn::Gt(load(p, kD + axis), zero);
-            cell[axis] = load(p, kCell + axis);
-            plane[axis] = cell[axis] + hn::IfThenElseZero(forth[axis], one);
-        }
+        const VI ahead = whole(1);
+        VI plane[3];
+        for (int axis = 0; axis < 3; ++axis) plane[axis] = loadWhole(p, kCell + axis) + ahead;
         const Exit exit = aim(p, plane);
         const V t = load(p, kT);
         const V t_out = hn::Min(exit.t, load(p, kEnd));
@@ -408,12 +282,16 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             const V o = load(p, kO + axis);
             const V dir = load(p, kD + axis);
-            const V enter = clampTo(o + t * dir - cell[axis], zero, one);
-            const V leave = clampTo(o + t_out * dir - cell[axis], zero, one);
+            // In the cell's own coordinates rays go either way.
+            const V flip = load(p, kFlip + axis);
+            const V back = hn::And(flip, constant(-0.0));
+            const V cell = toReal(hn::Xor(loadWhole(p, kCell + axis), hn::BitCast(DI(), flip)));
+            const V enter = clampTo(hn::Xor(o + t * dir, back) - cell, zero, one);
+            const V leave = clampTo(hn::Xor(o + t_out * dir, back) - cell, zero, one);
+            const V near = hn::And(flip, one);
             const M by_this = hn::Eq(face, constant(axis));
-            in.from.v[axis] = hn::IfThenElse(by_this, hn::IfThenElse(forth[axis], zero, one), enter);
-            in.to.v[axis] =
-                hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::IfThenElse(forth[axis], one, zero), leave);
+            in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
+            in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
         }
         // Lanes that don't wait read where they last stood, or the first sample, and are ignored.
         const VI sample = hn::Load(DI(), p.sample);
@@ -434,32 +312,33 @@ private:
         V s = constant(std::numeric_limits<double>::quiet_NaN());
         if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
         p.waiting = 0;
-        if (hit != 0) {
-            if constexpr (kAny)
-                for (unsigned rest = hit; rest != 0; rest &= rest - 1)
-                    blocked_[static_cast<std::size_t>(p.field[kIndex][std::countr_zero(rest)])] = 1;
-            else
-                batch_.push(hit, {load(p, kIndex), load(p, kStart), t, t_out, s}, in, sample);
-            p.alive &= ~hit;
+        p.alive &= ~hit;
+        if constexpr (kAny) {
+            // Others write where nobody reads.
+            const auto address = [](const std::uint8_t* flag) { return std::bit_cast<std::int64_t>(flag); };
+            const VI flags = floorToWhole(load(p, kIndex)) + whole(address(blocked_));
+            HWY_ALIGN std::uint8_t* places[kLanes];
+            hn::Store(hn::IfThenElse(hn::RebindMask(DI(), maskOf(hit)), flags, whole(address(&nobody_))), DI(),
+                      reinterpret_cast<std::int64_t*>(places));
+            for (std::uint8_t* place : places) *place = 1;
+        } else {
+            batch_.push(hit, {load(p, kIndex), load(p, kStart), t, t_out, s}, in, sample);
         }
-        advance(p, plane, exit, hn::AndNot(maskOf(hit), waiting));
+        VI next[3];
+        for (int axis = 0; axis < 3; ++axis)
+            next[axis] = hn::IfThenElse(hn::RebindMask(DI(), exit.axis[axis]), plane[axis], loadWhole(p, kCell + axis));
+        advance(p, next, exit, hn::AndNot(maskOf(hit), waiting));
     }
 
     const BrickGrid& grid_;
-    const CellMap& map_;
-    const std::span<const Ray> rays_;
     std::uint8_t* const blocked_;
-    double size_[3];
+    std::uint8_t nobody_ = 0;
+    std::int64_t last_[3];  // cells
     std::int64_t macro_y_, macro_z_;
     const bool late_;
     const CornerReader corners_;
     HitBatch batch_;
-    Beams beams_;
-    std::span<const double> starts_;  // of the rays from looked_from_ to looked_at_, or none
-    std::size_t looked_from_ = 0, looked_at_ = 0;
-    std::size_t next_ = 0;     // the first ray that hasn't been queued
-    int head_ = 0, tail_ = 0;  // of the queue
-    HWY_ALIGN double queue_[kQueued][kQueue + 2 * kLanes];
+    RayQueue<!kAny> queue_;
     HWY_ALIGN Packet packets_[kPackets];
 };
 

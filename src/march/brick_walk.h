@@ -59,6 +59,8 @@ public:
             const double extent = size[static_cast<std::size_t>(axis)];
             if (direction_[axis] == 0) {
                 if (!(origin_[axis] >= 0 && origin_[axis] <= extent)) return false;
+                // So that the plane ahead of every cell is ahead, also where the ray can't reach it.
+                origin_[axis] = std::min(origin_[axis], std::nextafter(extent, 0.0));
                 continue;
             }
             double near = -origin_[axis] * inverse_[axis];
@@ -73,8 +75,7 @@ public:
         t_end_ -= t_start_;
         t_ = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            const double last = size[static_cast<std::size_t>(axis)] - 1;
-            cell_[axis] = static_cast<int>(std::clamp(origin_[axis], 0.0, last));  // not below 0: this is floor
+            cell_[axis] = cellAt(axis, origin_[axis], 0, size[static_cast<std::size_t>(axis)] - 1);
         }
         return true;
     }
@@ -107,9 +108,9 @@ public:
             if (axis == exit_axis_) {
                 cell_[axis] = d > 0 ? high[axis] : low[axis] - 1;
             } else if (d != 0) {
-                const double least = d > 0 ? cell_[axis] : low[axis];
-                const double most = d > 0 ? high[axis] - 1 : cell_[axis];
-                cell_[axis] = static_cast<int>(std::clamp(place(axis, t_exit_), least, most));
+                const int least = d > 0 ? cell_[axis] : low[axis];
+                const int most = d > 0 ? high[axis] - 1 : cell_[axis];
+                cell_[axis] = cellAt(axis, place(axis, t_exit_), least, most);
             }
         }
         t_ = t_exit_;
@@ -126,6 +127,12 @@ public:
     }
 
 private:
+    // The cell of a place, among `least` to `most`, not below 0: on a plane between two, the one that the ray goes to.
+    int cellAt(int axis, double place, int least, int most) const {
+        const double x = std::clamp<double>(place, least, most + 1);
+        const int floor = static_cast<int>(x);
+        return std::clamp(direction_[axis] < 0 && floor == x ? floor - 1 : floor, least, most);
+    }
     double place(int axis, double t) const { return origin_[axis] + t * direction_[axis]; }
 
     glm::dvec3 local(double t, int face_axis, bool entry) const {

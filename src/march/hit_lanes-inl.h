@@ -37,8 +37,14 @@ public:
         pair(index + whole(BrickGrid::kStrideX), v[4], v[5]);
         pair(index + whole(BrickGrid::kStrideX + BrickGrid::kStrideY), v[6], v[7]);
     }
-    HWY_INLINE void prefetch(std::int64_t index) const {
-        floats_ != nullptr ? prefetch(floats_ + index) : prefetch(quanta_ + index);
+    /// Calls for the corners of cells whose first ones are at `index`.
+    HWY_INLINE void prefetch(VI index) const {
+        HWY_ALIGN std::int64_t corners[kLanes];
+        hn::Store(index, DI(), corners);
+        if (floats_ != nullptr)
+            for (const std::int64_t corner : corners) prefetch(floats_ + corner);
+        else
+            for (const std::int64_t corner : corners) prefetch(quanta_ + corner);
     }
 
 private:
@@ -95,6 +101,10 @@ public:
         for (int n = 0; n < kFields; ++n) hn::StoreU(hn::TableLookupLanes(fields[n], table), d, field_[n] + count_);
         hn::StoreU(hn::BitCast(DI(), hn::TableLookupLanes(hn::BitCast(d, sample), table)), DI(), sample_ + count_);
         count_ += std::popcount(lanes);
+    }
+    /// Finishes a vector of rays if there is one. Before the next push().
+    HWY_INLINE void settle() {
+        const D d;
         if (count_ < kLanes) return;
         finish(kLanes);
         count_ -= kLanes;

@@ -37,7 +37,7 @@ using M = hn::Mask<D>;
 
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr unsigned kAllLanes = (1U << kLanes) - 1;
-constexpr double kShift = 4503599627370496.0;  // 2^52: adding it leaves a whole number in the low bits of a double
+constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52: adding it leaves a whole number in a double's low bits
 
 struct Vec3 {
     V v[3];
@@ -55,14 +55,24 @@ HWY_INLINE unsigned bitsOf(M mask) {
     return bytes[0] & kAllLanes;
 }
 HWY_INLINE M toDouble(hn::Mask<DI> mask) { return hn::RebindMask(D(), mask); }
-/// Whole numbers in [0, 2^52).
-HWY_INLINE VI toWhole(V v) {
+/// Of whole numbers in (-2^51, 2^51).
+HWY_INLINE V toReal(VI v) {
+#if HWY_TARGET == HWY_AVX2
     const V shift = constant(kShift);
-    return hn::Xor(hn::BitCast(DI(), v + shift), hn::BitCast(DI(), shift));
+    return hn::BitCast(D(), v + hn::BitCast(DI(), shift)) - shift;
+#else
+    return hn::ConvertTo(D(), v);
+#endif
 }
-HWY_INLINE V fromWhole(VI v) {
+/// Of numbers in that range.
+HWY_INLINE VI floorToWhole(V v) {
+#if HWY_TARGET == HWY_AVX2
     const V shift = constant(kShift);
-    return hn::BitCast(D(), hn::Or(v, hn::BitCast(DI(), shift))) - shift;
+    return hn::BitCast(DI(), hn::Floor(v) + shift) - hn::BitCast(DI(), shift);
+#else
+    // One instruction; Highway's ConvertTo() rounds towards 0 and has two more for what is out of range.
+    return VI{_mm512_cvt_roundpd_epi64(v.raw, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)};
+#endif
 }
 /// Of whole numbers in [0, 2^32).
 HWY_INLINE VI product(VI a, VI b) {
