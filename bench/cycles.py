@@ -60,6 +60,7 @@ class Scene:
         o = self.o
         job = {"vdb": os.path.abspath(o.vdb), "env": os.path.abspath(o.env), "size": o.size, "eye": self.eye,
                "look_at": self.look_at, "fov": 28, "albedo": ALBEDO, "bounces": o.bounces, "threads": o.threads,
+               "refine": o.refine,
                "shots": [{"output": os.path.abspath(self.path(name)), "spp": spp, "seed": seed}
                          for name, spp, seed in shots]}
         with open(self.path("cycles.json"), "w", encoding="utf-8") as file:
@@ -114,6 +115,7 @@ def parser():
     p.add_argument("--spp", type=int, default=1024)
     p.add_argument("--our-spp", type=lambda text: [int(x) for x in text.split(",")], default=[8, 16, 32])
     p.add_argument("--bounces", type=int, default=3)
+    p.add_argument("--refine", type=int, default=1, help="mesh the field on a lattice this many times as fine")
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("what", choices=["same", "time"])
     return p
