@@ -39,8 +39,8 @@ def refined(grid, n):
         values = along(values, axis, n)
     fine = pyopenvdb.FloatGrid(grid.background)
     fine.copyFromArray(np.ascontiguousarray(values), ijk=[c * n for c in low], tolerance=0.0)
-    fine.transform = grid.transform.deepCopy()
-    fine.transform.preScale(1 / n)
+    fine.transform = pyopenvdb.createLinearTransform(grid.transform.voxelSize()[0] / n)
+    fine.transform.translate(grid.transform.indexToWorld((0, 0, 0)))
     return fine
 
 

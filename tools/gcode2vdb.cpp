@@ -243,6 +243,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.source_sha256 = sha256Hex(file.bytes());
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
+    provenance.up = o.up;
     provenance.selection = tools::describeSelection(o.print);
     provenance.culled = interior == voxelize::Interior::cull;
     provenance.swept = o.interior_distance;

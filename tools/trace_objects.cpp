@@ -52,6 +52,19 @@ std::string unitOf(const openvdb::FloatGrid& grid) {
     return unit ? unit->value() : "world units";
 }
 
+// Which axis the file says points up; files of other programs don't say.
+std::string upOf(const openvdb::FloatGrid& grid) {
+    const auto up = grid.getMetadata<openvdb::StringMetadata>("up");
+    return up ? up->value() : "z";
+}
+
+// Space of the file -> that space with z up -> world.
+march::Placement upright(const march::Placement& placement) {
+    march::Placement result = placement;
+    result.linear *= march::Placement::of(glm::dvec3(1.0), {90.0, 0.0, 0.0}, glm::dvec3(0.0)).linear;
+    return result;
+}
+
 bool marchesBricks(const TraceOptions& options) { return options.march == "auto" || options.march == "brick"; }
 
 IntersectorPtr intersectorOf(const openvdb::FloatGrid::ConstPtr& grid, const TraceOptions& options) {
@@ -72,6 +85,7 @@ void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
 
 /// What is made of one grid of one file, or of one shape.
 struct Shape {
+    bool y_up = false;  // the file's own word
     IntersectorPtr intersector;
     std::map<std::string, march::AttributeSummary> summaries;
     Json report;
@@ -135,6 +149,7 @@ private:
                         {"bytes", file ? 0 : grid->memUsage()}};
         shape.line = fmt::format("{}: {} active voxels of {:g} {}", object.vdb, humanCount(static_cast<double>(active)),
                                  head.voxelSize()[0], unitOf(head));
+        shape.y_up = upOf(head) == "y";
         warnOfThinBand(object.vdb, head);
         march::Annotation annotation;
         for (const std::string& name : attributes_) {
@@ -201,7 +216,8 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
     result.reports = Json::array();
     for (std::size_t n = 0; n < objects.size(); ++n) {
         const Shape& shape = reader.shapeOf(objects[n]);
-        scene.push_back({shape.intersector, objects[n].placement});
+        const bool y_up = objects[n].up.empty() ? shape.y_up : objects[n].up == "y";
+        scene.push_back({shape.intersector, y_up ? upright(objects[n].placement) : objects[n].placement});
         result.reports.push_back(shape.report);
         if (std::find(result.lines.begin(), result.lines.end(), shape.line) == result.lines.end())
             result.lines.push_back(shape.line);

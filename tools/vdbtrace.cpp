@@ -40,7 +40,7 @@ Examples:
 struct Options {
     tools::CommonOptions common;
     std::vector<std::string> inputs;
-    std::string output, grid, march = "auto", size, view, crop, write_brdf, aov, normals;
+    std::string output, grid, file_up, march = "auto", size, view, crop, write_brdf, aov, normals;
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
@@ -62,6 +62,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("FILE.vdb|SCENE.json");
     app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
+
+    app.add_option("--file-up", o.file_up,
+                   "Which axis of the level set points up: z or y (default: what the file says, or z)")
+        ->check(CLI::IsMember({"z", "y"}))
+        ->type_name("AXIS");
 
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
@@ -259,6 +264,8 @@ void readScene(Options& o, int argc, char** argv) {
     over->render = file.render;
     over->tone = file.tone;
     over->spp_given = file.spp_given;
+    over->denoise = file.denoise;
+    over->file_up = file.file_up;
     CLI::App app;
     addOptions(app, *over);
     app.parse(argc, argv);
@@ -289,7 +296,8 @@ struct Frame {
     double load_seconds = 0.0, build_seconds = 0.0;
 };
 
-void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects& objects,
+/// Returns its report.
+Json renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects& objects,
                  const shade::SceneDescription& scene, int threads) {
     tools::Stopwatch watch;
     shade::PictureFile picture(frame.output);
@@ -339,33 +347,31 @@ void renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
     if (!scene.smooth_normals)
         skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
-    tools::writeStats(
-        o.common,
-        {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
-         {"output", frame.output},
-         {"image",
-          {{"width", o.render.width},
-           {"height", o.render.height},
-           {"spp", o.render.spp},
-           {"mean_spp", result.mean_spp}}},
-         {"rays",
-          {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
-         {"march", objects.intersector->name()},
-         {"march_bytes", objects.intersector->bytes()},
-         {"integrator", o.render.integrator.name},
-         {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
-         {"notes", o.notes},
-         {"seconds",
-          {{"load", frame.load_seconds},
-           {"build", frame.build_seconds},
-           {"render", render_seconds},
-           {"denoise", denoise_seconds},
-           {"write", write_seconds},
-           {"total", total_seconds}}},
-         {"mrays_per_second", mrays},
-         {"peak_rss_bytes", tools::peakRssBytes()},
-         {"threads", threads},
-         {"skipped", skipped}});
+    return {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
+            {"output", frame.output},
+            {"image",
+             {{"width", o.render.width},
+              {"height", o.render.height},
+              {"spp", o.render.spp},
+              {"mean_spp", result.mean_spp}}},
+            {"rays",
+             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
+            {"march", objects.intersector->name()},
+            {"march_bytes", objects.intersector->bytes()},
+            {"integrator", o.render.integrator.name},
+            {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
+            {"notes", o.notes},
+            {"seconds",
+             {{"load", frame.load_seconds},
+              {"build", frame.build_seconds},
+              {"render", render_seconds},
+              {"denoise", denoise_seconds},
+              {"write", write_seconds},
+              {"total", total_seconds}}},
+            {"mrays_per_second", mrays},
+            {"peak_rss_bytes", tools::peakRssBytes()},
+            {"threads", threads},
+            {"skipped", skipped}};
 }
 
 void run(Options& o, int argc, char** argv) {
@@ -394,6 +400,7 @@ void run(Options& o, int argc, char** argv) {
     const std::size_t count = o.inputs.size() * turns;
     std::optional<shade::SceneDescription> scene;
     glm::dvec3 middle(0.0);
+    Json reports = Json::array();
     // From the last, which is the whole print and gives the camera, the bed and the light to all.
     for (std::size_t n = o.inputs.size(); n-- > 0;) {
         std::vector<shade::ObjectOptions> wanted = o.objects;
@@ -401,6 +408,7 @@ void run(Options& o, int argc, char** argv) {
             wanted.emplace_back();
             wanted.back().vdb = o.inputs[n];
             wanted.back().grid = o.grid;
+            wanted.back().up = o.file_up;
         }
         const tools::TraceObjects objects = tools::readTraceObjects(wanted, reading);
         for (const std::string& line : objects.lines) tools::say(o.common, line);
@@ -423,12 +431,14 @@ void run(Options& o, int argc, char** argv) {
             if (turn > 0)
                 view.camera =
                     scene->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle);
-            renderFrame(o,
-                        {fs::path(o.inputs[n]).filename().string(), numbered(o.output, n * turns + turn, count),
-                         objects.load_seconds, objects.build_seconds + scene_seconds},
-                        objects, view, limit.threads());
+            reports.push_back(
+                renderFrame(o,
+                            {fs::path(o.inputs[n]).filename().string(), numbered(o.output, n * turns + turn, count),
+                             objects.load_seconds, objects.build_seconds + scene_seconds},
+                            objects, view, limit.threads()));
         }
     }
+    tools::writeStats(o.common, reports.size() == 1 ? reports.front() : reports);
 }
 
 }  // namespace

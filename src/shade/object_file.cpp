@@ -55,6 +55,13 @@ std::string beside(const std::filesystem::path& folder, const std::string& text)
     return !text.empty() && std::filesystem::is_regular_file(path, error) ? path.string() : text;
 }
 
+std::string readUp(JsonSection& section) {
+    std::string up;
+    section.read("file_up", up);
+    if (!up.empty() && up != "y" && up != "z") section.fail("file_up", "y or z");
+    return up;
+}
+
 ObjectOptions readObject(JsonSection section, const std::filesystem::path& folder) {
     ObjectOptions object;
     section.read("vdb", object.vdb);
@@ -63,6 +70,7 @@ ObjectOptions readObject(JsonSection section, const std::filesystem::path& folde
     if (object.vdb.empty() == (sdf == nullptr)) section.fail("", "either \"vdb\" or \"sdf\"");
     if (!object.vdb.empty()) object.vdb = (folder / object.vdb).string();
     if (auto transform = section.section("transform")) object.placement = readPlacement(std::move(*transform));
+    object.up = readUp(section);
     object.material = readMaterial(section, folder);
     std::string color_by;
     section.read("color_by", color_by);
@@ -75,6 +83,7 @@ ObjectOptions readObject(JsonSection section, const std::filesystem::path& folde
         section.read("voxel_size", object.voxel_size);
         section.read("tolerance", object.tolerance);
         if (!object.grid.empty()) section.fail("grid", "no grid: the object is an sdf");
+        if (!object.up.empty()) section.fail("file_up", "no file's axis: the object is an sdf");
         if (!object.material.by.empty()) section.fail("material", "one material: an sdf has no attributes");
     }
     section.finish();

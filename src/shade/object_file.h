@@ -16,6 +16,7 @@ struct ObjectOptions {
     std::string vdb;          ///< path of a level set's file
     std::string grid;         ///< empty: chosen as by --grid
     march::SdfPtr sdf;        ///< a shape by formula, in its own space
+    std::string up;           ///< axis of the file that points up: "y", "z", or empty for what the file says
     double voxel_size = 0.0;  ///< of an sdf that is voxelized; 0: traced as it is
     double tolerance = 1e-4;  ///< of an sdf that is traced as it is, see makeSdfIntersector()
     march::Placement placement;
@@ -24,6 +25,9 @@ struct ObjectOptions {
 
 /// Reads one entry of "objects". Throws InputError with the path of what is wrong.
 ObjectOptions readObject(JsonSection section, const std::filesystem::path& folder);
+
+/// The key "file_up": y, z or nothing. Throws InputError.
+std::string readUp(JsonSection& section);
 
 /// A file beside the scene, if there is one of that name; else the text as it is: a preset.
 std::string beside(const std::filesystem::path& folder, const std::string& text);

@@ -1,12 +1,11 @@
 #include "shade/plastic.h"
 
+#include "shade/gloss_mixture.h"
+
 #include <cmath>
 
 namespace stratum::shade {
 namespace {
-
-/// Below this cosine floats can't tell directions apart (wo + wi may vanish); no light is scattered there.
-constexpr float kGrazing = 1e-6f;
 
 /// Directional albedo of the coat by quadrature over visible normals, which flattens the integrand for every alpha.
 double quadrature(const Ggx& ggx, float cosine) {
@@ -33,7 +32,8 @@ double quadrature(const Ggx& ggx, float cosine) {
 Plastic::Plastic(const Color& body, float alpha) : body_(body), body_max_(maxComponent(body)), ggx_{alpha} {
     for (int i = 0; i < kNodes; ++i) {
         const float s = static_cast<float>(i) / (kNodes - 1);
-        table_[static_cast<std::size_t>(i)] = static_cast<float>(quadrature(ggx_, std::max(s * s * s * s, kGrazing)));
+        table_[static_cast<std::size_t>(i)] =
+            static_cast<float>(quadrature(ggx_, std::max(s * s * s * s, GlossMixture::kGrazing)));
     }
     // Eavg = integral of E 2 cos dcos = integral of E(s) 8 s^7 ds, for the table's straight pieces; each is cut finely
     // enough for Simpson's rule to be exact to float rounding.
@@ -79,30 +79,17 @@ float Plastic::coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h
 }
 
 Color Plastic::eval(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > kGrazing && wi.z > kGrazing)) return Color(0.0f);
+    if (!(GlossMixture::above(wo) && GlossMixture::above(wi))) return Color(0.0f);
     const float body = (1.0f - coatAlbedo(wo.z)) * (1.0f - coatAlbedo(wi.z)) / one_minus_mean_ * kInvPi;
     return body_ * body + Color(coat(wo, wi, glm::normalize(wo + wi)));
 }
 
 float Plastic::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > kGrazing && wi.z > kGrazing)) return 0.0f;
-    const float share = coatShare(wo.z);
-    return share * ggx_.pdfReflected(wo, glm::normalize(wo + wi)) + (1.0f - share) * wi.z * kInvPi;
+    return GlossMixture{ggx_, coatShare(wo.z)}.pdf(wo, wi);
 }
 
 std::optional<BrdfSample> Plastic::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
-    if (!(wo.z > kGrazing)) return std::nullopt;
-    glm::vec3 wi;
-    if (lobe < coatShare(wo.z)) {
-        const glm::vec3 h = ggx_.sampleVisible(wo, u);
-        wi = glm::normalize(2.0f * glm::dot(wo, h) * h - wo);
-    } else {
-        wi = toCosineHemisphere(u);
-    }
-    if (!(wi.z > kGrazing)) return std::nullopt;
-    const float density = pdf(wo, wi);
-    if (!(density > 0.0f && std::isfinite(density))) return std::nullopt;
-    return BrdfSample{wi, eval(wo, wi), density};
+    return GlossMixture{ggx_, coatShare(wo.z)}.sample(*this, wo, lobe, u);
 }
 
 }  // namespace stratum::shade

@@ -102,6 +102,9 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     } else {
         file.print = (folder / file.print).string();
     }
+    file.file_up = readUp(top);
+    if (!file.objects.empty() && !file.file_up.empty())
+        top.fail("file_up", "to stand with the objects: each has its own");
     top.read("color_by", file.scene.color_by);
     std::string normals = "geometric";
     top.read("normals", normals);
@@ -120,6 +123,11 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     top.readInteger("spp", file.render.spp);
     top.readInteger("seed", file.render.seed);
     top.read("noise", file.render.noise);
+    top.read("time", file.render.seconds);
+    std::string checkpoint;
+    top.read("checkpoint", checkpoint);
+    file.render.checkpoint = checkpoint;
+    top.read("denoise", file.denoise);
     top.read("exposure", file.tone.exposure);
     std::string aov;
     top.read("aov", aov);

@@ -22,6 +22,8 @@ struct SceneFile {
     std::vector<std::string> notes;      ///< what a report must say, e.g. the residual of a solved pose
     SceneOptions scene;
     RenderOptions render;
+    std::string file_up;  ///< of `print`: "y", "z", or empty for what the file says
+    bool denoise = false;
     bool spp_given = false;  ///< whether the file says how many samples, or leaves them to the default
     ToneOptions tone;
 };

@@ -1,17 +1,12 @@
 #include "shade/table_brdf.h"
 
-#include "shade/sampling.h"
+#include "shade/gloss_mixture.h"
 
 #include <glm/common.hpp>
 
 #include <cmath>
 
 namespace stratum::shade {
-namespace {
-
-constexpr float kGrazing = 1e-6f;
-
-}  // namespace
 
 TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std::vector<std::string> notes)
     : table_(std::move(table)), notes_(std::move(notes)) {
@@ -78,30 +73,17 @@ Color TableBrdf::albedo(const glm::vec3& wo) const {
 }
 
 Color TableBrdf::eval(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > kGrazing && wi.z > kGrazing)) return Color(0.0f);
+    if (!(GlossMixture::above(wo) && GlossMixture::above(wi))) return Color(0.0f);
     const Color value = table_.at(wo, wi);
     return scaled_ ? value * glm::min(scale(wo.z), scale(wi.z)) : value;
 }
 
 float TableBrdf::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
-    if (!(wo.z > kGrazing && wi.z > kGrazing)) return 0.0f;
-    const float share = glossShare(wo.z);
-    return share * ggx_.pdfReflected(wo, glm::normalize(wo + wi)) + (1.0f - share) * wi.z * kInvPi;
+    return GlossMixture{ggx_, glossShare(wo.z)}.pdf(wo, wi);
 }
 
 std::optional<BrdfSample> TableBrdf::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
-    if (!(wo.z > kGrazing)) return std::nullopt;
-    glm::vec3 wi;
-    if (lobe < glossShare(wo.z)) {
-        const glm::vec3 h = ggx_.sampleVisible(wo, u);
-        wi = glm::normalize(2.0f * glm::dot(wo, h) * h - wo);
-    } else {
-        wi = toCosineHemisphere(u);
-    }
-    if (!(wi.z > kGrazing)) return std::nullopt;
-    const float density = pdf(wo, wi);
-    if (!(density > 0.0f && std::isfinite(density))) return std::nullopt;
-    return BrdfSample{wi, eval(wo, wi), density};
+    return GlossMixture{ggx_, glossShare(wo.z)}.sample(*this, wo, lobe, u);
 }
 
 }  // namespace stratum::shade

@@ -20,6 +20,7 @@ void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance
     text("source_sha256", provenance.source_sha256);
     text("slicer", provenance.slicer);
     text("unit", provenance.unit);
+    text("up", provenance.up);
     text("snapshot", provenance.snapshot);
     text("selection", provenance.selection);
     text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");

@@ -17,6 +17,7 @@ struct Provenance {
     std::string source_sha256;  ///< "source_sha256"
     std::string slicer;         ///< "slicer", left out if empty
     std::string unit = "mm";    ///< "unit": of world space
+    std::string up = "z";       ///< "up": axis of world space that points away from the bed, z or y
     std::string snapshot;       ///< "snapshot": label of a partial print, left out if empty
     std::string selection;      ///< "selection": --layers and --features, left out if empty
     bool culled = false;        ///< "enclosed": whether surfaces that the outside can't reach are there

@@ -1,5 +1,7 @@
 #include "shade/directional.h"
 
+#include "shade/sphere_checks.h"
+
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
@@ -22,6 +24,25 @@ TEST(DirectionalLight, IsTheSameEverywhere) {
     }
     EXPECT_FALSE(light.hasExtent());
     EXPECT_FALSE(light.meet({}));
+}
+
+TEST(SunLight, SamplesItsDensity) {
+    const glm::vec3 to = glm::normalize(glm::vec3(1, -2, 3));
+    for (const float diameter : {2.0f, 20.0f}) {
+        const shade::SunLight sun(to, Color(2.0f), diameter);
+        const auto density = [&](const glm::vec3& d) {
+            march::Ray ray;
+            ray.direction = glm::normalize(glm::dvec3(d));
+            const auto met = sun.meet(ray);
+            return met ? double(met->pdf) : 0.0;
+        };
+        const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> {
+            return sun.sample(glm::dvec3(0.0), u)->direction;
+        };
+        // Cells that end with the disc: those that its rim cuts would test the quadrature.
+        const double rim = 0.4999 * double(diameter) * std::numbers::pi / 180.0;
+        EXPECT_LT(test::chiSquaredZ(to, rim, draw, density, 200000, 5), 4.0) << diameter;
+    }
 }
 
 TEST(SunLight, IsAsBrightAndAsWideAsItSays) {

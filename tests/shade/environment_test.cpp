@@ -6,6 +6,8 @@
 #include "shade/sampling.h"
 #include "shade/studio.h"
 
+#include "shade/sphere_checks.h"
+
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
@@ -62,6 +64,34 @@ TEST_P(Environments, SampleAgreesWithRadianceAndDensity) {
     EXPECT_LT(differ, 0.005 * n);
     // The table follows the light: the estimate's spread is small.
     EXPECT_LT(std::sqrt(squares / n - estimate * estimate), 0.25 * estimate);
+}
+
+TEST_P(Environments, SamplesItsDensity) {
+    const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
+    const glm::vec3 up(0, 0, 1);
+    const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> {
+        const auto s = env->sample(0, u, up);
+        if (!(s.pdf > 0.0f)) return std::nullopt;
+        return s.direction;
+    };
+    EXPECT_LT(test::chiSquaredZ(
+                  up, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(env->pdf(d, up)); }, 300000, 2),
+              4.0);
+}
+
+TEST_P(Environments, BedLightSamplesItsDensity) {
+    const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
+    const auto light = env->makeBedLight();
+    ASSERT_EQ(light->strategies(), 1);
+    const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> {
+        const auto s = light->sample(0, u);
+        if (!(s.pdf > 0.0f)) return std::nullopt;
+        return s.direction;
+    };
+    EXPECT_LT(
+        test::chiSquaredZ(
+            {0, 0, 1}, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(light->pdf(d)); }, 300000, 2),
+        4.0);
 }
 
 TEST_P(Environments, DensityIsPositiveWhereLightIs) {

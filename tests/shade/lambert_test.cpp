@@ -27,6 +27,18 @@ TEST(Lambert, SamplesItsDensity) {
     EXPECT_LT(test::chiSquaredZ(brdf, wo, 400000, 1), 4.0);
 }
 
+TEST(Lambert, IsReciprocalAndLosesNothingWhenWhite) {
+    const Lambert brdf(Color(1.0f));
+    for (const double c : {0.02, 0.4, 1.0}) {
+        const glm::vec3 wo = test::direction(c, 0.3);
+        EXPECT_NEAR(test::albedo(brdf, wo), 1.0, 1e-5);
+        for (const double other : {0.1, 0.7, 1.0}) {
+            const glm::vec3 wi = test::direction(other, 2.0);
+            EXPECT_EQ(brdf.eval(wo, wi), brdf.eval(wi, wo));
+        }
+    }
+}
+
 TEST(Lambert, IsOpaque) {
     const Lambert brdf(Color(0.7f));
     const glm::vec3 above(0.0f, 0.0f, 1.0f);

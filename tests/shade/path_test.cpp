@@ -3,6 +3,7 @@
 #include "shade/analytic_prints.h"
 #include "shade/constant.h"
 #include "shade/directional.h"
+#include "shade/mean_radiance.h"
 #include "shade/plastic.h"
 #include "shade/rectangle_light.h"
 #include "shade/render.h"
@@ -14,28 +15,10 @@ namespace {
 
 using shade::Color;
 
-shade::SceneDescription sceneOf(const march::Intersector& print, const char* brdf, const char* env, bool bed) {
-    shade::SceneOptions options;
-    options.brdf = brdf;
-    options.env = env;
-    options.bed = bed;
-    return shade::makeScene(options, print, 32, 24);
-}
-
 /// Mean radiance along one ray.
 Color mean(const march::Intersector& print, const shade::SceneDescription& scene, const march::Ray& ray, int bounces,
            std::uint32_t samples = 4096) {
-    const shade::PathIntegrator path(scene, print, bounces);
-    const auto tracer = print.makeTracer();
-    shade::Sampler sampler(1, samples);
-    shade::RayCounts rays;
-    shade::TraceContext context{*tracer, sampler, rays};
-    glm::dvec3 sum(0.0);
-    for (std::uint32_t s = 0; s < samples; ++s) {
-        sampler.start(3, 4, s);
-        sum += glm::dvec3(path.radiance(ray, context).rgb);
-    }
-    return Color(sum / double(samples));
+    return test::meanRadiance(print, shade::PathIntegrator(scene, print, bounces), ray, samples);
 }
 
 march::Ray towards(const glm::dvec3& from, const glm::dvec3& to) {
@@ -49,7 +32,7 @@ TEST(Path, FurnaceOnAConvexBodyIsItsAlbedo) {
     const auto ball = test::sphere({0, 0, 0}, 1.0);
     for (const auto& [brdf, albedo] :
          {std::pair{"lambert:0.5,0.8,1", Color(0.5f, 0.8f, 1.0f)}, std::pair{"plastic:1,1,1,0.25", Color(1.0f)}}) {
-        const auto scene = sceneOf(ball, brdf, "constant:1,1,1", false);
+        const auto scene = test::plainScene(ball, brdf, "constant:1,1,1", false);
         for (const double y : {0.0, 0.6, 0.97}) {
             for (const int bounces : {1, 3}) {
                 const Color c = mean(ball, scene, towards({y, 0, 5}, {y, 0, 0}), bounces);
@@ -64,7 +47,7 @@ TEST(Path, FurnaceOnAConcaveBodyIsWhiteWhenAllBouncesCount) {
     test::Vase vase;
     vase.layers = 30;
     const auto print = vase.intersector();
-    const auto scene = sceneOf(print, "lambert:1,1,1", "constant:1,1,1", false);
+    const auto scene = test::plainScene(print, "lambert:1,1,1", "constant:1,1,1", false);
     const Color deep = mean(print, scene, towards({0, -2, 60}, {0, 0, 1}), 64, 512);
     const Color wall = mean(print, scene, towards({0, -60, 6}, {0, 0, 5}), 64, 512);
     EXPECT_NEAR(deep.r, 1.0f, 0.01f);
@@ -73,7 +56,7 @@ TEST(Path, FurnaceOnAConcaveBodyIsWhiteWhenAllBouncesCount) {
 
 TEST(Path, DirectionalLightOnPaper) {
     const auto none = test::nothing();
-    auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);
+    auto scene = test::plainScene(none, "lambert:1,1,1", "constant:0,0,0", true);
     scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0.6f, 0.8f), Color(2.0f)));
     scene.backdrop.reset();
     const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 3, 16);
@@ -82,7 +65,7 @@ TEST(Path, DirectionalLightOnPaper) {
 
 TEST(Path, ShadowOfADirectionalLight) {
     const auto ball = test::sphere({0, 0, 3}, 1.0);
-    auto scene = sceneOf(ball, "lambert:0,0,0", "constant:0,0,0", true);
+    auto scene = test::plainScene(ball, "lambert:0,0,0", "constant:0,0,0", true);
     scene.bed->z = 0.0;
     scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0, 1), Color(1.0f)));
     EXPECT_EQ(mean(ball, scene, towards({5, 0, 1}, {0.9, 0, 0}), 1, 16).r, 0.0f);
@@ -92,7 +75,7 @@ TEST(Path, ShadowOfADirectionalLight) {
 TEST(Path, LampsWithExtentAreSampledInBothWaysToTheSameEnd) {
     // The same integral by the lamp's samples alone. A near lamp over a glossy ball: here both ways have work to do.
     const auto ball = test::sphere({0, 0, 0}, 1.0);
-    auto scene = sceneOf(ball, "plastic:0.6,0.3,0.1,0.15", "constant:0,0,0", false);
+    auto scene = test::plainScene(ball, "plastic:0.6,0.3,0.1,0.15", "constant:0,0,0", false);
     const shade::RectangleLight lamp({0, 0, 2}, {1, 0, 0}, {0, -1, 0}, Color(3.0f));
     scene.lights.push_back(std::make_shared<shade::RectangleLight>(lamp));
     const march::Ray ray = towards({2, 0, 2}, glm::normalize(glm::dvec3(0.4, 0, 1)));
@@ -122,7 +105,7 @@ TEST(Path, AStreamAnswersAsItsRaysDoOneByOne) {
     const auto print = vase.intersector();
     for (const bool bed : {true, false}) {
         for (const bool lamps : {true, false}) {
-            auto scene = sceneOf(print, "plastic:0.6,0.3,0.1,0.15", "sky", bed);
+            auto scene = test::plainScene(print, "plastic:0.6,0.3,0.1,0.15", "sky", bed);
             if (lamps)
                 scene.lights.push_back(std::make_shared<shade::RectangleLight>(
                     glm::dvec3(0, 0, 40), glm::dvec3(9, 0, 0), glm::dvec3(0, -9, 0), Color(3.0f)));
@@ -157,7 +140,7 @@ TEST(Path, AStreamAnswersAsItsRaysDoOneByOne) {
 
 TEST(Path, AmbientLightReachesEverywhere) {
     const auto none = test::nothing();
-    auto scene = sceneOf(none, "lambert:1,1,1", "constant:0,0,0", true);
+    auto scene = test::plainScene(none, "lambert:1,1,1", "constant:0,0,0", true);
     scene.ambient = Color(0.5f);
     scene.backdrop.reset();
     EXPECT_NEAR(mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 1, 64).r, 0.5f * scene.bed->albedo.r, 1e-5f);
@@ -166,7 +149,7 @@ TEST(Path, AmbientLightReachesEverywhere) {
 TEST(Path, EnvironmentSamplingIsUnbiased) {
     // The same integral without importance sampling of the light: uniform directions, no MIS.
     const auto ball = test::sphere({0, 0, 0}, 1.0);
-    const auto scene = sceneOf(ball, "plastic:0.6,0.3,0.1,0.3", "studio", false);
+    const auto scene = test::plainScene(ball, "plastic:0.6,0.3,0.1,0.3", "studio", false);
     const glm::vec3 n = glm::normalize(glm::vec3(0.3f, -0.5f, 0.4f));
     const glm::vec3 eye = glm::normalize(glm::vec3(0.5f, -0.8f, 0.1f));
     const shade::Frame frame(n);
@@ -189,7 +172,7 @@ TEST(Path, EnvironmentSamplingIsUnbiased) {
 
 TEST(Path, BedUnderAnOpenSkyHasItsAlbedo) {
     const auto none = test::nothing();
-    const auto scene = sceneOf(none, "lambert:1,1,1", "constant:1,1,1", true);
+    const auto scene = test::plainScene(none, "lambert:1,1,1", "constant:1,1,1", true);
     const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, -1}), 3, 256);
     EXPECT_NEAR(c.r, scene.bed->albedo.r, 0.002f);
 }
@@ -200,7 +183,7 @@ TEST(Path, NonsenseNormalsStayFinite) {
                                                hit = {1.0, ray.origin + ray.direction, glm::dvec3(std::nan(""))};
                                                return ray.origin.z > 4.5;
                                            });
-    auto scene = sceneOf(broken, shade::kDefaultBrdf, "studio", false);
+    auto scene = test::plainScene(broken, shade::kDefaultBrdf, "studio", false);
     const Color c = mean(broken, scene, towards({0, 0, 5}, {0, 0, 0}), 2, 64);
     EXPECT_TRUE(shade::isFinite(c));
     EXPECT_GT(c.r, 0.0f);

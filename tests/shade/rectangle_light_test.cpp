@@ -1,5 +1,7 @@
 #include "shade/rectangle_light.h"
 
+#include "shade/sphere_checks.h"
+
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
@@ -38,6 +40,20 @@ TEST(RectangleLight, GivesTheIrradianceOfItsArea) {
         EXPECT_NEAR(double(shade::irradianceFrom(light, glm::dvec3(0.0)).r), expected, 3e-3 * expected)
             << c.x << " " << c.z;
     }
+}
+
+TEST(RectangleLight, SamplesItsDensity) {
+    const RectangleLight light({1, 0, 3}, {0, 1, 0}, {2, 0, 0}, Color(3.0f));
+    const glm::dvec3 point(0.2, 0.4, 1.0);
+    const auto density = [&](const glm::vec3& d) {
+        march::Ray ray;
+        ray.origin = point;
+        ray.direction = glm::normalize(glm::dvec3(d));
+        const auto met = light.meet(ray);
+        return met ? double(met->pdf) : 0.0;
+    };
+    const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> { return light.sample(point, u)->direction; };
+    EXPECT_LT(test::chiSquaredZ({0, 0, 1}, 1.2, draw, density, 200000, 5), 4.0);
 }
 
 TEST(RectangleLight, SamplesAndMeetingsAgree) {

@@ -15,7 +15,8 @@ TEST(SceneFile, ReadsEveryKey) {
     test::writeText(scratch / "s.json", R"({
       // comments explain
       "print": "part.vdb", "grid": "surface", "output": "out.exr",
-      "size": [320, 240], "crop": [1, 2, 3, 4], "spp": 8, "seed": 7, "noise": 0.1, "exposure": -1.5,
+      "size": [320, 240], "crop": [1, 2, 3, 4], "spp": 8, "seed": 7, "noise": 0.1, "time": 30, "checkpoint": "part.state",
+      "denoise": true, "exposure": -1.5, "file_up": "y",
       "aov": "normal,depth", "material": "lambert:1,1,1", "bed": false,
       "camera": {"view": "top", "eye": [1, 2, 3], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov": 40},
       "environment": {"map": "map.hdr", "rotation": 90, "exposure": 2},
@@ -32,6 +33,10 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_TRUE(file.spp_given);
     EXPECT_EQ(file.render.seed, 7u);
     EXPECT_EQ(file.render.noise, 0.1);
+    EXPECT_EQ(file.render.seconds, 30.0);
+    EXPECT_EQ(file.render.checkpoint, "part.state");
+    EXPECT_TRUE(file.denoise);
+    EXPECT_EQ(file.file_up, "y");
     EXPECT_EQ(file.tone.exposure, -1.5);
     EXPECT_EQ(file.render.aovs.size(), 2u);
     EXPECT_EQ(file.scene.brdf, "lambert:1,1,1");
@@ -56,6 +61,8 @@ TEST(SceneFile, LeavesDefaultsAlone) {
     EXPECT_EQ(file.scene.env, "studio");
     EXPECT_EQ(file.render.spp, 16);
     EXPECT_FALSE(file.spp_given);
+    EXPECT_FALSE(file.denoise);
+    EXPECT_EQ(file.file_up, "");
 }
 
 TEST(SceneFile, SaysWhatIsWrong) {
@@ -79,6 +86,9 @@ TEST(SceneFile, SaysWhatIsWrong) {
     refused(R"({"print": "p.vdb", "spp": 1e99})", "spp");
     refused(R"({"print": "p.vdb", "bed": 1})", "bed: expected true or false");
     refused(R"({"print": "p.vdb", "lights": [1]})", "lights");
+    refused(R"({"print": "p.vdb", "denoise": 1})", "denoise: expected true or false");
+    refused(R"({"print": "p.vdb", "file_up": "x"})", "file_up: expected y or z");
+    refused(R"({"file_up": "y", "objects": [{"vdb": "p.vdb"}]})", "file_up");
     refused(R"([1])", "the file: expected an object");
 }
 

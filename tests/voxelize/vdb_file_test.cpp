@@ -58,6 +58,7 @@ TEST_F(VdbFile, SaysWhereItCameFrom) {
     EXPECT_EQ(back->metaValue<std::string>("source_sha256"), "00ff");
     EXPECT_EQ(back->metaValue<std::string>("slicer"), "PrusaSlicer 2.5.0");
     EXPECT_EQ(back->metaValue<std::string>("unit"), "mm");
+    EXPECT_EQ(back->metaValue<std::string>("up"), "z");
     EXPECT_EQ(back->metaValue<std::string>("program"), "gcode2vdb " STRATUM_VERSION);
     EXPECT_DOUBLE_EQ(back->metaValue<double>("voxel_size_mm"), 0.05);
     EXPECT_EQ(back->metaValue<openvdb::Int64>("file_voxel_count"),
