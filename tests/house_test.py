@@ -5,15 +5,17 @@ import re
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# Which rooms a room may include from. march and voxelize meet only in openvdb::FloatGrid.
+# Which rooms a room may include from. march and voxelize meet only in openvdb::FloatGrid and, brick by brick, in
+# ondemand.
 MAY_INCLUDE = {
     "io": set(),
     "parallel": set(),
     "gcode": {"io"},
     "voxelize": {"io", "parallel", "gcode"},
     "march": {"io", "parallel"},
+    "ondemand": {"io", "parallel", "gcode", "voxelize", "march"},
     "shade": {"io", "parallel", "march"},
-    "study": {"io", "parallel", "gcode", "voxelize", "march", "shade"},
+    "study": {"io", "parallel", "gcode", "voxelize", "march", "ondemand", "shade"},
 }
 WITHOUT_OPENVDB = {"io", "parallel", "gcode", "shade"}
 MOST_LINES = 500

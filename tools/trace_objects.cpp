@@ -5,6 +5,7 @@
 #include "io/error.h"
 #include "march/annotation.h"
 #include "march/attribute_grid.h"
+#include "march/brick_grid.h"
 #include "march/brick_intersector.h"
 #include "march/grid_axes.h"
 #include "march/level_set_file.h"
@@ -12,16 +13,14 @@
 #include "march/sdf_intersector.h"
 #include "march/sphere_intersector.h"
 #include "march/vdb_intersector.h"
+#include "ondemand/print_attributes.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -31,20 +30,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Want = std::tuple<std::string, std::string, std::string>;  // file, grid, attribute
 using IntersectorPtr = std::shared_ptr<const march::Intersector>;
-
-// People hand over what they have; say which tool takes it.
-void refuseOtherFormats(const std::string& input) {
-    std::ifstream file(input, std::ios::binary);
-    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", input));
-    std::array<char, 4> magic{};
-    file.read(magic.data(), magic.size());
-    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", input));
-    if (std::string_view(magic.data(), magic.size()) == std::string_view(" BDV", 4)) return;
-    const std::string extension = std::filesystem::path(input).extension().string();
-    if (extension == ".gcode" || extension == ".gco" || extension == ".g")
-        throw InputError(fmt::format("{}: is G-code; make a level set of it first: gcode2vdb {}", input, input));
-    throw InputError(fmt::format("{}: is not an OpenVDB file; expected a .vdb with a level set", input));
-}
 
 // What the file says its world unit is; other programs' files don't say.
 std::string unitOf(const openvdb::FloatGrid& grid) {
@@ -81,6 +66,29 @@ void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
                "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
                "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
                path, half_width);
+}
+
+// What the bricks of a print took, after those of `before`.
+std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& intersector, double seconds,
+                               std::function<Json()> before) {
+    return [field = print.field, intersector, parse = print.parse_seconds, seconds, before = std::move(before)] {
+        Json all = before ? before() : Json::array();
+        const ondemand::PrintFieldTimes& times = field->times();
+        const march::BrickGrid& bricks = *march::bricksOf(*intersector);
+        all.push_back({{"print", field->name()},
+                       {"seconds",
+                        {{"parse", parse},
+                         {"bins", times.bins},
+                         {"box", times.box},
+                         {"map", times.map},
+                         {"list", seconds - parse - times.bins - times.box - times.map}}},
+                       {"bricks_listed", bricks.listedCount()},
+                       {"bricks_made", bricks.brickCount()},
+                       {"leaves_made", field->leavesMade()},
+                       {"print_bytes", field->bytes()},
+                       {"brick_bytes", bricks.bytes()}});
+        return all;
+    };
 }
 
 /// What is made of one grid of one file, or of one shape.
@@ -134,8 +142,8 @@ private:
     }
 
     Shape fromFile(const shade::ObjectOptions& object) {
+        if (!isVdbFile(object.vdb)) return fromPrint(object);
         watch_.lap();
-        refuseOtherFormats(object.vdb);
         Shape shape;
         // Bricks are laid out from the file as rays come to them, unless something else wants the grid.
         std::shared_ptr<const march::LeafFile> file;
@@ -158,7 +166,7 @@ private:
                 attribute = march::readAttributeGrid(object.vdb, name, head);
                 shape.summaries[name] = march::summarize(*attribute);
             }
-            annotation.attributes.push_back(attribute);
+            annotation.attributes.push_back(march::makeAttributeSource(attribute));
         }
         if (options_.smooth_normals) annotation.smooth = grid;
         result_.load_seconds += watch_.lap();
@@ -167,6 +175,37 @@ private:
         grid.reset();  // bricks hold all that rays need
         shape.intersector = march::annotate(plain, std::move(annotation));
         result_.build_seconds += watch_.lap();
+        return shape;
+    }
+
+    Shape fromPrint(const shade::ObjectOptions& object) {
+        if (!marchesBricks(options_))
+            throw UsageError(
+                fmt::format("--march {}: needs a level set; make one of {} with gcode2vdb, or take --march "
+                            "brick",
+                            options_.march, object.vdb));
+        watch_.lap();
+        TracedPrint print = readTracedPrint(object.vdb, options_.prints);
+        Shape shape;
+        shape.report = print.report;
+        shape.line = print.line;
+        const IntersectorPtr plain = march::makeBrickIntersector(print.field, options_.values);
+        march::Annotation annotation;
+        for (const std::string& name : attributes_) {
+            std::shared_ptr<const march::AttributeSource> source;
+            if (wanted(object, name)) {
+                const voxelize::Attribute attribute = ondemand::attributeNamed(name);
+                source = ondemand::makePrintAttribute(print.field, attribute);
+                shape.summaries[name] = ondemand::summarize(*print.field, attribute, print.selection);
+            }
+            annotation.attributes.push_back(std::move(source));
+        }
+        if (options_.smooth_normals) annotation.smooth_field = print.field;
+        shape.intersector = march::annotate(plain, std::move(annotation));
+        const double seconds = watch_.lap();
+        result_.load_seconds += print.parse_seconds;
+        result_.build_seconds += seconds - print.parse_seconds;
+        result_.on_demand = reportOf(print, plain, seconds, result_.on_demand);
         return shape;
     }
 

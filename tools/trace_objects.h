@@ -1,6 +1,8 @@
 // vdbtrace's input: level sets and shapes, read, laid out for rays and put together.
 #pragma once
 
+#include "trace_print.h"
+
 #include "march/brick_layout.h"
 #include "march/scene_intersector.h"
 #include "shade/object_file.h"
@@ -9,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +26,7 @@ struct TraceOptions {
     std::string color_by;  ///< --color-by, of level sets that have no material of their own
     bool smooth_normals = false;
     std::vector<shade::Label> labels;  ///< that the picture shows; every level set must have them
+    TracePrintOptions prints;          ///< of G-code
 };
 
 struct TraceObjects {
@@ -30,6 +34,8 @@ struct TraceObjects {
     std::vector<shade::ObjectMaterial> materials;  ///< by march::Hit::object; empty if all are of the scene's
     decltype(shade::SceneDescription::labels) labels;
     nlohmann::ordered_json reports;  ///< of each object, for --stats
+    /// Of each print that is sampled where rays come: what that took, to be asked when they have come.
+    std::function<nlohmann::ordered_json()> on_demand;
     std::vector<std::string> lines;  ///< of each, for people
     double load_seconds = 0.0, build_seconds = 0.0;
 };

@@ -32,6 +32,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kExamples = R"(
 Examples:
   vdbtrace part.vdb                                 part.png, 1280 x 960, studio light
+  vdbtrace part.gcode                               the same without a .vdb: voxels are made where rays come
+  vdbtrace part.gcode --printed 50% --voxel-size 0.05
   vdbtrace part.vdb -o part.png --view front --spp 64
   vdbtrace part.vdb -o part.exr --integrator ao     linear values, for compositing and measuring
   vdbtrace part.vdb --brdf plastic:0.8,0.1,0.05,0.2 --env constant:1,1,1
@@ -46,6 +48,7 @@ struct Options {
     std::vector<float> phong;
     bool spp_given = false, denoise = false;
     march::BrickValues values = march::BrickValues::Int16;
+    tools::TracePrintOptions prints;
     std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
     std::vector<std::string> notes;
     shade::SceneOptions scene;
@@ -56,10 +59,10 @@ struct Options {
 void addOptions(CLI::App& app, Options& o) {
     app.add_option(
            "IN", o.inputs,
-           "A level set, or a scene that names some; options override the scene. Several level sets make a series "
-           "of pictures with the camera of the last")
+           "A level set, a print (G-code in any container), or a scene that names some; options override the scene. "
+           "Several level sets or prints make a series of pictures with the camera of the last")
         ->required()
-        ->type_name("FILE.vdb|SCENE.json");
+        ->type_name("FILE.vdb|FILE.gcode|SCENE.json");
     app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
 
@@ -193,6 +196,11 @@ void addOptions(CLI::App& app, Options& o) {
             {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
         ->type_name("float|int16")
         ->group(tracing);
+    tools::addPrintOptions(app, o.prints.print);
+    app.add_option("--printed", o.prints.printed,
+                   "G-code: what is printed by then: 25%, layer:40, or time:90 (minutes of extruding)")
+        ->type_name("WHEN")
+        ->group("What to convert");
     tools::addCommonOptions(
         app, o.common,
         {"--output",  "--size",    "--spp",       "--noise",      "--denoise", "--view",     "--eye",
@@ -358,6 +366,7 @@ Json renderFrame(const Options& o, const Frame& frame, const tools::TraceObjects
              {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
             {"march", objects.intersector->name()},
             {"march_bytes", objects.intersector->bytes()},
+            {"on_demand", objects.on_demand ? objects.on_demand() : Json::array()},
             {"integrator", o.render.integrator.name},
             {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
             {"notes", o.notes},
@@ -390,7 +399,9 @@ void run(Options& o, int argc, char** argv) {
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
     tools::TraceOptions reading{
-        o.march, o.values, o.scene.brdf, o.scene.color_by, o.scene.smooth_normals, shade::labelsOf(o.render.aovs)};
+        o.march, o.values, o.scene.brdf, o.scene.color_by, o.scene.smooth_normals, shade::labelsOf(o.render.aovs),
+        o.prints};
+    reading.prints.quiet = o.common.quiet;
     if (const std::string& name = o.render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
         const shade::Label label = shade::parseLabel(name);
         if (std::find(reading.labels.begin(), reading.labels.end(), label) == reading.labels.end())

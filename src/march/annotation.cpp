@@ -1,6 +1,5 @@
 #include "march/annotation.h"
 
-#include "march/attribute_grid.h"
 #include "march/smooth_normal.h"
 
 #include <algorithm>
@@ -12,9 +11,11 @@ namespace {
 class AnnotatedTracer final : public Tracer {
 public:
     AnnotatedTracer(std::unique_ptr<Tracer> rays, const Annotation& annotation) : rays_(std::move(rays)) {
-        if (annotation.smooth) smooth_.emplace(*annotation.smooth);
-        for (const auto& grid : annotation.attributes)
-            attributes_.push_back(grid ? makeAttributeLookup(*grid) : nullptr);
+        if (annotation.smooth)
+            smooth_.emplace(*annotation.smooth);
+        else if (annotation.smooth_field)
+            smooth_.emplace(*annotation.smooth_field);
+        for (const auto& source : annotation.attributes) attributes_.push_back(source ? source->makeLookup() : nullptr);
     }
 
     bool intersect(const Ray& ray, Hit& hit) override { return rays_->intersect(ray, hit); }
@@ -54,8 +55,8 @@ public:
     std::size_t bytes() const override {
         std::size_t sum = shape_->bytes();
         if (annotation_.smooth) sum += annotation_.smooth->memUsage();
-        for (const auto& grid : annotation_.attributes)
-            if (grid) sum += grid->memUsage();
+        for (const auto& source : annotation_.attributes)
+            if (source) sum += source->bytes();
         return sum;
     }
 
@@ -67,7 +68,8 @@ private:
 }  // namespace
 
 bool Annotation::empty() const {
-    return !smooth && std::all_of(attributes.begin(), attributes.end(), [](const auto& grid) { return !grid; });
+    return !smooth && !smooth_field &&
+           std::all_of(attributes.begin(), attributes.end(), [](const auto& source) { return !source; });
 }
 
 std::shared_ptr<const Intersector> annotate(std::shared_ptr<const Intersector> shape, Annotation annotation) {

@@ -1,7 +1,9 @@
 // An Intersector that also knows what its grids say at a hit.
 #pragma once
 
+#include "march/attribute_grid.h"
 #include "march/intersector.h"
+#include "march/leaf_field.h"
 
 #include <openvdb/openvdb.h>
 
@@ -11,8 +13,9 @@
 namespace stratum::march {
 
 struct Annotation {
-    openvdb::FloatGrid::ConstPtr smooth;                  ///< the level set, for smooth normals; null: geometric ones
-    std::vector<openvdb::GridBase::ConstPtr> attributes;  ///< by number; null where there is no such attribute
+    openvdb::FloatGrid::ConstPtr smooth;  ///< the level set, for smooth normals; null: geometric ones
+    std::vector<std::shared_ptr<const AttributeSource>> attributes;  ///< by number; null where there is no such one
+    std::shared_ptr<const LeafField> smooth_field = nullptr;         ///< instead of `smooth`
 
     bool empty() const;
 };

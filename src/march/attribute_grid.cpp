@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace stratum::march {
 namespace {
@@ -149,6 +150,25 @@ std::unique_ptr<AttributeLookup> makeAttributeLookup(const openvdb::GridBase& gr
     std::unique_ptr<AttributeLookup> lookup;
     visit(grid, [&](const auto& typed) { lookup = std::make_unique<Lookup<std::decay_t<decltype(typed)>>>(typed); });
     return lookup;
+}
+
+namespace {
+
+class GridAttribute final : public AttributeSource {
+public:
+    explicit GridAttribute(openvdb::GridBase::ConstPtr grid) : grid_(std::move(grid)) {}
+    std::unique_ptr<AttributeLookup> makeLookup() const override { return makeAttributeLookup(*grid_); }
+    std::size_t bytes() const override { return grid_->memUsage(); }
+
+private:
+    openvdb::GridBase::ConstPtr grid_;
+};
+
+}  // namespace
+
+std::shared_ptr<const AttributeSource> makeAttributeSource(openvdb::GridBase::ConstPtr grid) {
+    if (!grid) return nullptr;
+    return std::make_shared<const GridAttribute>(std::move(grid));
 }
 
 }  // namespace stratum::march

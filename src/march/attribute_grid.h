@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,5 +33,17 @@ public:
 };
 
 std::unique_ptr<AttributeLookup> makeAttributeLookup(const openvdb::GridBase& grid);
+
+/// An attribute of a level set, wherever its values are kept. Immutable; shared by all threads.
+class AttributeSource {
+public:
+    virtual ~AttributeSource() = default;
+    virtual std::unique_ptr<AttributeLookup> makeLookup() const = 0;
+    /// Memory taken.
+    virtual std::size_t bytes() const = 0;
+};
+
+/// That of a grid; null for null.
+std::shared_ptr<const AttributeSource> makeAttributeSource(openvdb::GridBase::ConstPtr grid);
 
 }  // namespace stratum::march

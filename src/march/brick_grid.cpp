@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kGrain = 16;  // macro cells a task: many enough to find their neighbours in the cache
 
 // Samples of a level set reach no further than its band; what does is put at its edge.
-double quantumOf(const LeafSource& source, BrickValues values) {
-    return values == BrickValues::Int16 ? static_cast<double>(source.background()) / kMostQuanta : 1;
+double quantumOf(float background, BrickValues values) {
+    return values == BrickValues::Int16 ? static_cast<double>(background) / kMostQuanta : 1;
 }
 
 // Converted leaves that a thread has used lately: those that neighbouring bricks share are converted once. The eight of
@@ -27,9 +27,14 @@ template <typename T>
 class LeafCache {
 public:
     struct Entry {
-        std::uint32_t key = 0;  // the leaf's brick, counted from 1
+        std::uint64_t key = 0;  // see keyOf()
+        bool uniform = false;   // background, all of it
         LeafSamples<T> samples;
     };
+    static std::uint64_t keyOf(int x, int y, int z) {
+        const auto part = [](int c) { return static_cast<std::uint64_t>(c) + 1; };
+        return part(x) << 42 | part(y) << 21 | part(z);
+    }
     Entry& at(int x, int y, int z) {
         return entries_[static_cast<std::size_t>((x & kLast) << (2 * kBits) | (y & kLast) << kBits | (z & kLast))];
     }
@@ -42,16 +47,20 @@ private:
 
 }  // namespace
 
-// Makes bricks of a source's leaves, from any thread.
+// Makes bricks of leaves, from any thread.
 class BrickGrid::Layouter {
 public:
     Layouter(const BrickGrid& grid, const LeafSource& source, std::shared_ptr<const LeafSource> owned,
              std::vector<std::uint32_t> leaves)
         : grid_(grid),
-          source_(source),
+          source_(&source),
           owned_(std::move(owned)),
           leaves_(std::move(leaves)),
-          scale_(static_cast<float>(1 / quantumOf(source, grid.values_))) {}
+          scale_(static_cast<float>(1 / quantumOf(source.background(), grid.values_))) {}
+    Layouter(const BrickGrid& grid, std::shared_ptr<const LeafField> field)
+        : grid_(grid),
+          field_(std::move(field)),
+          scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))) {}
 
     // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
     std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
@@ -123,40 +132,67 @@ private:
             const int px = x + static_cast<int>(part >> 2);
             const int py = y + static_cast<int>(part >> 1 & 1);
             const int pz = z + static_cast<int>(part & 1);
-            parts.leaf[part] = leafAt(px, py, pz, cache);
+            parts.leaf[part] = field_ ? madeAt(px, py, pz, cache) : leafAt(px, py, pz, cache);
             if (parts.leaf[part] != nullptr) continue;
-            const openvdb::Coord at = grid_.origin_.offsetBy(px * kBrickEdge, py * kBrickEdge, pz * kBrickEdge);
-            parts.tile[part] = march::convert(source_.tile(at), scale_, T{});
+            const float tile = field_ ? field_->background() : source_->tile(coordOf(px, py, pz));
+            parts.tile[part] = march::convert(tile, scale_, T{});
         }
         return parts;
     }
 
+    openvdb::Coord coordOf(int x, int y, int z) const {
+        return grid_.origin_.offsetBy(x * kBrickEdge, y * kBrickEdge, z * kBrickEdge);
+    }
+
+    // Of the source, null where it has no leaf.
     template <typename T>
     const LeafSamples<T>* leafAt(int x, int y, int z, LeafCache<T>& cache) const {
         if (x >= 4 * grid_.macros_[0] || y >= 4 * grid_.macros_[1] || z >= 4 * grid_.macros_[2]) return nullptr;
         const MacroCell& macro = grid_.macroCell(x >> 2, y >> 2, z >> 2);
         if ((macro.bricks >> Mask64::bit(x & 3, y & 3, z & 3) & 1) == 0) return nullptr;
-        const std::size_t brick = brickIndex(macro, x & 3, y & 3, z & 3);
         auto& entry = cache.at(x, y, z);
-        const auto key = static_cast<std::uint32_t>(brick) + 1;
+        const std::uint64_t key = cache.keyOf(x, y, z);
         if (entry.key == key) return &entry.samples;
         entry.key = 0;  // in case that reading throws
         alignas(64) float scratch[LeafSource::kLeafSamples];
-        if (!march::convert(source_.samples(leaves_[brick], scratch), scale_, entry.samples)) {
-            const openvdb::Coord at = source_.origin(leaves_[brick]);
-            throw InputError(
-                fmt::format("the level set {} has a voxel that is not a finite number, among the 8 x 8 x 8 voxels from "
-                            "index ({}, {}, {}); make the grid again",
-                            source_.name(), at[0], at[1], at[2]));
-        }
+        const std::uint32_t leaf = leaves_[brickIndex(macro, x & 3, y & 3, z & 3)];
+        keep(source_->samples(leaf, scratch), source_->name(), source_->origin(leaf), entry.samples);
         entry.key = key;
         return &entry.samples;
     }
 
+    // Of the field, null where all is background.
+    template <typename T>
+    const LeafSamples<T>* madeAt(int x, int y, int z, LeafCache<T>& cache) const {
+        auto& entry = cache.at(x, y, z);
+        const std::uint64_t key = cache.keyOf(x, y, z);
+        if (entry.key != key) {
+            entry.key = 0;  // in case that making throws
+            alignas(64) float scratch[LeafSource::kLeafSamples];
+            const openvdb::Coord at = coordOf(x, y, z);
+            const float* made = field_->samples(at, scratch);
+            entry.uniform = made == nullptr;
+            if (made != nullptr) keep(made, field_->name(), at, entry.samples);
+            entry.key = key;
+        }
+        return entry.uniform ? nullptr : &entry.samples;
+    }
+
+    template <typename T>
+    void keep(const float* samples, const std::string& name, const openvdb::Coord& at, LeafSamples<T>& out) const {
+        if (march::convert(samples, scale_, out)) return;
+        throw InputError(
+            fmt::format("the level set {} has a voxel that is not a finite number, among the 8 x 8 x 8 voxels from "
+                        "index ({}, {}, {}); make the grid again",
+                        name, at[0], at[1], at[2]));
+    }
+
     const BrickGrid& grid_;
-    const LeafSource& source_;
+    // One of both is there.
+    const LeafSource* const source_ = nullptr;
     const std::shared_ptr<const LeafSource> owned_;
     const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
+    const std::shared_ptr<const LeafField> field_;
     const float scale_;
     mutable std::array<std::mutex, 64> doors_;
     mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
@@ -164,7 +200,7 @@ private:
 };
 
 BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
-    const Layouter layouter(*this, source, nullptr, listBricks(source));
+    const Layouter layouter(*this, source, nullptr, listBricks(source, false));
     HugeArray<MacroCell> made(macro_cells_.size());  // neighbours still need what is listed
     parallelFor(made.size(), kGrain, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
@@ -182,7 +218,14 @@ BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(val
 
 BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values) : values_(values) {
     const LeafSource& leaves = *source;
-    layouter_ = std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves));
+    layouter_ = std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves, true));
+    slots_ = HugeArray<std::uint32_t>(listed_);
+    measureEmptySpace();
+}
+
+BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values) : values_(values) {
+    listBricks(*field);
+    layouter_ = std::make_unique<const Layouter>(*this, std::move(field));
     slots_ = HugeArray<std::uint32_t>(listed_);
     measureEmptySpace();
 }
@@ -202,52 +245,76 @@ std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, c
 }
 
 // Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
-std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source) {
-    unit_ = quantumOf(source, values_);
+std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool late) {
+    unit_ = quantumOf(source.background(), values_);
     const std::size_t count = source.leafCount();
     openvdb::CoordBBox box;
     for (std::size_t n = 0; n < count; ++n) {
         const openvdb::Coord low = source.origin(n);
         box.expand(openvdb::CoordBBox(low, low.offsetBy(kBrickEdge - 1)));
     }
-    double cells = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        origin_[axis] = box.min()[axis] & ~(kMacroEdge - 1);
-        macros_[a] = (box.max()[axis] - origin_[axis]) / kMacroEdge + 1;
-        size_[a] = macros_[a] * kMacroEdge;
-        cells *= macros_[a];
-    }
-    if (cells > 2147483648.0 || count >= kNoSamples)
-        throw InputError(fmt::format(
-            "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
-            "or use --march vdb",
-            size_[0], size_[1], size_[2], count));
-    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+    std::array<int, 3> macros{};
+    const openvdb::Coord origin = box.min() & ~(kMacroEdge - 1);
+    for (int axis = 0; axis < 3; ++axis)
+        macros[static_cast<std::size_t>(axis)] = (box.max()[axis] - origin[axis]) / kMacroEdge + 1;
+    setBox(origin, macros, count);
     const auto within = [](int cell) { return cell / kBrickEdge & 3; };
     for (std::size_t n = 0; n < count; ++n) {
         const openvdb::Coord at = source.origin(n) - origin_;
         macroOf(at).bricks |= std::uint64_t{1} << Mask64::bit(within(at[0]), within(at[1]), within(at[2]));
     }
-    std::uint32_t first = 0;
-    for (MacroCell& macro : macro_cells_) {
-        macro.first_brick = first;
-        first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
-    }
-    listed_ = count;
+    countBricks(late);
     std::vector<std::uint32_t> leaves(count);
     for (std::size_t n = 0; n < count; ++n) {
         const openvdb::Coord at = source.origin(n) - origin_;
         leaves[brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]))] = static_cast<std::uint32_t>(n);
     }
-    clear_ = HugeArray<CellBits>(count);
+    return leaves;
+}
+
+void BrickGrid::listBricks(const LeafField& field) {
+    unit_ = quantumOf(field.background(), values_);
+    const BrickMap& map = field.bricks();
+    std::size_t count = 0;
+    for (const std::uint64_t mask : map.masks) count += static_cast<std::size_t>(std::popcount(mask));
+    setBox(map.origin, map.macros, count);
+    for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = map.masks[n];
+    countBricks(true);
+}
+
+void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves) {
+    origin_ = origin;
+    macros_ = macros;
+    double cells = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        size_[axis] = macros[axis] * kMacroEdge;
+        cells *= macros[axis];
+    }
+    if (cells > 2147483648.0 || leaves >= kNoSamples)
+        throw InputError(fmt::format(
+            "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
+            "or use --march vdb",
+            size_[0], size_[1], size_[2], leaves));
+    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+}
+
+// Numbers the bricks whose bits are set, and makes room for them.
+void BrickGrid::countBricks(bool late) {
+    std::uint32_t first = 0;
+    for (MacroCell& macro : macro_cells_) {
+        macro.first_brick = first;
+        first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
+    }
+    listed_ = first;
+    // A picture writes few of them if they are laid out late.
+    using Pages = HugeArray<CellBits>::Pages;
+    clear_ = HugeArray<CellBits>(listed_, late ? Pages::small : Pages::huge);
     // Room for all, of which only what is used is ever touched.
-    const std::size_t samples = count * static_cast<std::size_t>(kBrickSamples);
+    const std::size_t samples = listed_ * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
         floats_ = HugeArray<float>(samples);
     else
         quanta_ = HugeArray<std::int16_t>(samples);
-    return leaves;
 }
 
 void BrickGrid::measureEmptySpace() {

@@ -12,6 +12,7 @@
 
 #include "march/brick_layout.h"
 #include "march/huge_array.h"
+#include "march/leaf_field.h"
 #include "march/leaf_source.h"
 
 #include <openvdb/openvdb.h>
@@ -70,6 +71,8 @@ public:
     BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
     /// Lays bricks out when require() asks for them, which then throws as above.
     BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values);
+    /// The same for samples that aren't there yet either.
+    BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values);
     ~BrickGrid();
     BrickGrid(const BrickGrid&) = delete;
     BrickGrid& operator=(const BrickGrid&) = delete;
@@ -119,6 +122,8 @@ public:
     const std::uint32_t* slots() const { return slots_.data(); }
     static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
 
+    /// Bricks that have an index.
+    std::size_t listedCount() const { return listed_; }
     /// Bricks with surface that are laid out.
     std::size_t brickCount() const { return used_.load(std::memory_order_relaxed); }
     /// Memory taken for all.
@@ -135,7 +140,10 @@ private:
     MacroCell& macroOf(const openvdb::Coord& cell) {
         return macro_cells_[macroIndex(cell[0] / kMacroEdge, cell[1] / kMacroEdge, cell[2] / kMacroEdge)];
     }
-    std::vector<std::uint32_t> listBricks(const LeafSource& source);
+    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool late);
+    void listBricks(const LeafField& field);
+    void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
+    void countBricks(bool late);
     void measureEmptySpace();
 
     openvdb::Coord origin_;

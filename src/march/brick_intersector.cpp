@@ -78,6 +78,11 @@ public:
           map_(*file.head().transform().baseMap(), bricks_.origin()),
           bounds_(worldBounds(file.head().transform(), file.activeBox())),
           voxel_size_(GridAxes(file.head().transform()).shortest()) {}
+    BrickIntersector(const LeafField& field, std::shared_ptr<const LeafField> owned, BrickValues values)
+        : bricks_(std::move(owned), values),
+          map_(*field.transform().baseMap(), bricks_.origin()),
+          bounds_(worldBounds(field.transform(), field.activeBox())),
+          voxel_size_(GridAxes(field.transform()).shortest()) {}
 
     std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<BrickTracer>(bricks_, map_); }
     std::string_view name() const override { return "brick"; }
@@ -90,6 +95,7 @@ public:
         return std::max(1e-3 * voxel_size_, 4 * std::numeric_limits<double>::epsilon() * farthest);
     }
     std::size_t bytes() const override { return bricks_.bytes(); }
+    const BrickGrid& bricks() const { return bricks_; }
 
 private:
     BrickGrid bricks_;
@@ -111,6 +117,16 @@ std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile
     const LeafFile& leaves = *file;
     if (leaves.leafCount() < kSmall) return std::make_unique<BrickIntersector>(leaves, leaves, values);
     return std::make_unique<BrickIntersector>(leaves, std::move(file), values);
+}
+
+std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafField> field, BrickValues values) {
+    const LeafField& leaves = *field;
+    return std::make_unique<BrickIntersector>(leaves, std::move(field), values);
+}
+
+const BrickGrid* bricksOf(const Intersector& intersector) {
+    const auto* bricks = dynamic_cast<const BrickIntersector*>(&intersector);
+    return bricks != nullptr ? &bricks->bricks() : nullptr;
 }
 
 }  // namespace stratum::march

@@ -3,6 +3,7 @@
 
 #include "march/brick_layout.h"
 #include "march/intersector.h"
+#include "march/leaf_field.h"
 #include "march/leaf_file.h"
 
 #include <openvdb/openvdb.h>
@@ -20,5 +21,12 @@ std::unique_ptr<Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid
 /// costs what it shows. The hits are the same.
 std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile> file,
                                                   BrickValues values = BrickValues::Int16);
+/// The same of a level set whose samples are made where rays come. The hits are those of its grid.
+std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafField> field,
+                                                  BrickValues values = BrickValues::Int16);
+
+class BrickGrid;
+/// The bricks of an intersector made above; null for others.
+const BrickGrid* bricksOf(const Intersector& intersector);
 
 }  // namespace stratum::march

@@ -20,9 +20,12 @@ class HugeArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
 public:
+    /// Whether whole huge pages come and go, or small ones: for tables of which little is ever written, here and there.
+    enum class Pages { huge, small };
+
     HugeArray() = default;
     /// Throws std::bad_alloc if there is no room in the address space.
-    explicit HugeArray(std::size_t size) : size_(size) {
+    explicit HugeArray(std::size_t size, Pages pages = Pages::huge) : size_(size) {
         constexpr std::size_t kHugePage = std::size_t{1} << 21;
         const std::size_t wanted = (size + 1) * sizeof(T);
         const bool large = wanted >= kHugePage;
@@ -37,7 +40,7 @@ public:
             const std::size_t skipped = (kHugePage - address % kHugePage) % kHugePage;
             data_ = reinterpret_cast<T*>(map_.get() + skipped);
             // Only advice: what it returns changes nothing.
-            (void)madvise(data_, wanted, MADV_HUGEPAGE);
+            (void)madvise(data_, wanted, pages == Pages::huge ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);
         } else {
             data_ = reinterpret_cast<T*>(map_.get());
         }

@@ -8,21 +8,72 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace stratum::march {
 
+namespace {
+
+class GridSamples final : public SampleReader {
+public:
+    explicit GridSamples(const openvdb::FloatGrid& grid) : accessor_(grid.getConstAccessor()) {}
+    float at(const openvdb::Coord& place) override { return accessor_.getValue(place); }
+
+private:
+    openvdb::FloatGrid::ConstAccessor accessor_;
+};
+
+// Keeps the leaves lately asked for: a megabyte, once a hit asks.
+class FieldSamples final : public SampleReader {
+public:
+    explicit FieldSamples(const LeafField& field) : field_(field) {}
+    float at(const openvdb::Coord& place) override {
+        if (leaves_.empty()) leaves_.resize(std::size_t{kSide} * kSide * kSide);
+        const openvdb::Coord origin = place & ~(kEdge - 1);
+        const auto part = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) / kEdge % kSide; };
+        Leaf& leaf = leaves_[(part(0) * kSide + part(1)) * kSide + part(2)];
+        if (leaf.origin != origin) {
+            leaf.origin = openvdb::Coord::max();  // in case that making throws
+            leaf.samples = field_.samples(origin, leaf.scratch.data());
+            leaf.origin = origin;
+        }
+        if (leaf.samples == nullptr) return field_.background();
+        const openvdb::Coord in = place - origin;
+        return leaf.samples[(in[0] * kEdge + in[1]) * kEdge + in[2]];
+    }
+
+private:
+    static constexpr int kEdge = 8;
+    static constexpr unsigned kSide = 8;
+    struct Leaf {
+        openvdb::Coord origin = openvdb::Coord::max();
+        const float* samples = nullptr;  // in scratch, or elsewhere; null: background
+        std::array<float, std::size_t{kEdge} * kEdge * kEdge> scratch;
+    };
+    const LeafField& field_;
+    std::vector<Leaf> leaves_;
+};
+
+}  // namespace
+
+SmoothNormal::SmoothNormal(const openvdb::math::Transform& transform, std::unique_ptr<SampleReader> samples)
+    : map_(transform.baseMap()), samples_(std::move(samples)), to_index_(glm::inverse(GridAxes(transform).edges)) {}
+
 SmoothNormal::SmoothNormal(const openvdb::FloatGrid& grid)
-    : map_(grid.transform().baseMap()),
-      accessor_(grid.getConstAccessor()),
-      to_index_(glm::inverse(GridAxes(grid.transform()).edges)) {}
+    : SmoothNormal(grid.transform(), std::make_unique<GridSamples>(grid)) {}
+
+SmoothNormal::SmoothNormal(const LeafField& field)
+    : SmoothNormal(field.transform(), std::make_unique<FieldSamples>(field)) {}
 
 double SmoothNormal::field(const glm::dvec3& p) {
     const openvdb::Coord cell = openvdb::Coord::floor(openvdb::Vec3d(p.x, p.y, p.z));
     Corners corners;
     for (int c = 0; c < 8; ++c)
         corners[static_cast<std::size_t>(c)] =
-            static_cast<double>(accessor_.getValue(cell.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
+            static_cast<double>(samples_->at(cell.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
     return interpolate(corners, p - glm::dvec3(cell[0], cell[1], cell[2]));
 }
 

@@ -1,13 +1,16 @@
 #include "shade/scene.h"
 
 #include "io/error.h"
+#include "parallel/parallel_for.h"
 #include "shade/sampling.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace stratum::shade {
 namespace {
@@ -33,21 +36,28 @@ std::string_view labelName(Label label) {
 }
 
 double restingHeight(const march::Intersector& print) {
-    constexpr int kSide = 128;
+    constexpr std::size_t kSide = 128;
     const march::Box box = print.bounds();
     const glm::dvec3 size = box.max - box.min;
-    const auto tracer = print.makeTracer();
-    double lowest = std::numeric_limits<double>::infinity();
-    march::Ray ray;
-    ray.direction = {0.0, 0.0, 1.0};
-    for (int i = 0; i < kSide; ++i) {
-        for (int j = 0; j < kSide; ++j) {
-            ray.origin = {box.min.x + size.x * (i + 0.5) / kSide, box.min.y + size.y * (j + 0.5) / kSide,
-                          box.min.z - std::max(size.z, print.voxelSize())};
-            march::Hit hit;
-            if (tracer->intersect(ray, hit)) lowest = std::min(lowest, hit.position.z);
+    std::array<double, kSide> lowest_of{};
+    parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {
+        const auto tracer = print.makeTracer();
+        std::array<march::Ray, kSide> rays;
+        std::array<march::Hit, kSide> hits;
+        for (std::size_t i = first; i != last; ++i) {
+            for (std::size_t j = 0; j < kSide; ++j) {
+                rays[j].origin = {box.min.x + size.x * (static_cast<double>(i) + 0.5) / kSide,
+                                  box.min.y + size.y * (static_cast<double>(j) + 0.5) / kSide,
+                                  box.min.z - std::max(size.z, print.voxelSize())};
+                rays[j].direction = {0.0, 0.0, 1.0};
+            }
+            tracer->intersectStream(rays, hits);
+            lowest_of[i] = std::numeric_limits<double>::infinity();
+            for (const march::Hit& hit : hits)
+                if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
         }
-    }
+    });
+    const double lowest = *std::min_element(lowest_of.begin(), lowest_of.end());
     return std::isfinite(lowest) ? std::clamp(lowest, box.min.z, box.max.z) : box.min.z;
 }
 

@@ -17,7 +17,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -25,16 +24,6 @@
 
 namespace stratum::voxelize {
 namespace {
-
-std::size_t availableMemory() {
-    std::ifstream meminfo("/proc/meminfo");
-    std::string key;
-    std::size_t kilobytes = 0;
-    std::string unit;
-    while (meminfo >> key >> kilobytes >> unit)
-        if (key == "MemAvailable:") return kilobytes * 1024 / 10 * 9;
-    return std::size_t{4} << 30;
-}
 
 // Calls back at most once a percent, one thread at a time.
 class ProgressMeter {
@@ -54,23 +43,6 @@ private:
     std::atomic<std::size_t> done_{0};
     std::mutex mutex_;
 };
-
-openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
-    const double edge = lattice.voxel_size * placement.unit;
-    // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
-    constexpr double kSmallestEdge = 1.45e-5;
-    if (edge < kSmallestEdge)
-        throw UsageError(
-            fmt::format("voxels of {:g} world units are smaller than the {:g} that OpenVDB can place; choose --unit mm "
-                        "or cm, or a voxel of {:g} mm or more",
-                        edge, kSmallestEdge, kSmallestEdge / placement.unit));
-    auto transform = openvdb::math::Transform::createLinearTransform(edge);
-    transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
-                                            (placement.offset[2] + lattice.origin_z) * placement.unit));
-    // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
-    if (placement.up_y) transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
-    return transform;
-}
 
 // When culling, voxels: the masks look one leaf far.
 constexpr double kDeepestBand = 8;

@@ -4,6 +4,7 @@
 #include "gcode/toolpath.h"
 #include "voxelize/attributes.h"
 #include "voxelize/lattice.h"
+#include "voxelize/placement.h"
 
 #include <openvdb/openvdb.h>
 
@@ -15,13 +16,6 @@
 #include <vector>
 
 namespace stratum::voxelize {
-
-/// From print space to the grid's world space: world = unit * (print + offset).
-struct Placement {
-    double unit = 1;               ///< world units a mm: 1 for mm, 0.1 for cm, 0.001 for m
-    double offset[3] = {0, 0, 0};  ///< mm
-    bool up_y = false;             ///< turn print z to world y: (x, y, z) becomes (x, z, -y)
-};
 
 /// What becomes of surfaces that no outside point can reach.
 enum class Interior : std::uint8_t {

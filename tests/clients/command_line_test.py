@@ -118,7 +118,7 @@ check(differing == [] or (0 <= differing[0] and differing[-1] - differing[0] < 3
 PNG = path("out.png")
 refused([VDBTRACE, "missing.vdb", "-o", PNG], 3, "missing.vdb")
 refused([VDBTRACE, path("empty.gcode"), "-o", PNG], 3, "empty")
-refused([VDBTRACE, TILE, "-o", PNG], 3, "gcode2vdb")
+refused([VDBTRACE, TILE, "-o", PNG, "--march", "vdb"], 2, "gcode2vdb")
 refused([VDBTRACE, make("cut.vdb", before[: len(before) // 2]), "-o", PNG], 3, "cut.vdb")
 refused([VDBTRACE, make("text.vdb", "solid\n"), "-o", PNG], 3, "text.vdb")
 refused([VDBTRACE, OUT, "-o", path("out.jpg")], 2, ".png")

@@ -101,7 +101,7 @@ TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {
 TEST_F(AttributeGrid, AnnotatesHits) {
     const std::shared_ptr<const Intersector> plain = makeBrickIntersector(*surface);
     EXPECT_EQ(annotate(plain, {}).get(), plain.get());
-    const auto shape = annotate(plain, {surface, {tool, nullptr}});
+    const auto shape = annotate(plain, {surface, {makeAttributeSource(tool), nullptr}});
     const auto tracer = shape->makeTracer();
     Hit hit;
     ASSERT_TRUE(tracer->intersect({{20, 0.3, 0.77}, {-1, 0, 0}}, hit));

@@ -1,0 +1,145 @@
+#include "ondemand/brick_map.h"
+
+#include "io/error.h"
+#include "parallel/parallel_for.h"
+#include "voxelize/bead_field.h"
+#include "voxelize/footprint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace stratum::ondemand {
+namespace {
+
+constexpr int kBrick = 8;   // cells
+constexpr int kMacro = 32;  // cells
+constexpr int kBricks = kMacro / kBrick;
+constexpr double kSlack = 1e-3;  // voxels, against rounding
+
+// Bricks [first, last] along z, from the map's origin.
+using Run = std::pair<int, int>;
+
+class Mapper {
+public:
+    Mapper(const PrintLayout& layout, const openvdb::CoordBBox& active, march::BrickMap& map)
+        : layout_(layout),
+          map_(map),
+          low_((active.min() & ~(kBrick - 1)) - map.origin),
+          high_((active.max() & ~(kBrick - 1)) - map.origin),
+          // The samples of a brick are nine along each axis: those of its cells' corners.
+          footprints_(*layout.toolpath, kBrick * layout.lattice.voxel_size, 0.5 * kBrick * layout.lattice.voxel_size,
+                      kSlack * layout.lattice.voxel_size) {
+        for (int axis = 0; axis < 3; ++axis) {
+            low_[axis] /= kBrick;
+            high_[axis] /= kBrick;
+        }
+        first_i_ = map.origin[0] / kBrick;
+        first_j_ = map.origin[1] / kBrick;
+    }
+
+    // Beads by the macro slabs across z that they reach: layers' beads are a run of ranks each, direct beads are
+    // listed.
+    void listSlabs() {
+        const voxelize::LayerStack& stack = layout_.stack;
+        slabs_.resize(static_cast<std::size_t>(map_.macros[2]));
+        for (const voxelize::Layer& layer : stack.layers) {
+            const double radius = layer.radius * (1 + 2 * voxelize::kWeldGap);
+            addRun(runOf(layer.centre_z - radius, layer.centre_z + radius), layer.first, layer.last);
+        }
+        for (std::size_t n = 0; n < layout_.direct.size(); ++n) {
+            const auto rank = static_cast<std::uint32_t>(stack.first_direct + n);
+            const double band = layout_.lattice.background();
+            addRun(runOf(layout_.direct[n].z_min + band, layout_.direct[n].z_max - band), rank, rank + 1);
+        }
+    }
+
+    void mapSlab(std::size_t slab) {
+        const auto columns_i = static_cast<std::size_t>(map_.macros[0]);
+        const auto columns_j = static_cast<std::size_t>(map_.macros[1]);
+        // Apart from the map, where slabs of other threads lie beside these words.
+        std::vector<std::uint64_t> words(columns_i * columns_j);
+        for (const Part& part : slabs_[slab]) {
+            const int base = static_cast<int>(slab) * kBricks;
+            std::uint64_t z = 0;
+            for (int k = std::max(part.run.first - base, 0); k <= std::min(part.run.second - base, kBricks - 1); ++k)
+                z |= std::uint64_t{1} << k;
+            for (std::uint32_t rank = part.first; rank != part.last; ++rank) {
+                const gcode::Bead& bead = layout_.toolpath->beads[layout_.stack.beads[rank]];
+                footprints_.forEachColumn(bead, [&](int i0, int i1, int j) {
+                    const int y = j - first_j_;
+                    if (y < low_[1] || y > high_[1]) return;
+                    const std::uint64_t row = z << ((y & 3) << 2);
+                    const int x1 = std::min(i1 - first_i_, high_[0]);
+                    for (int x = std::max(i0 - first_i_, low_[0]); x <= x1; ++x)
+                        words[static_cast<std::size_t>(x >> 2) * columns_j + static_cast<std::size_t>(y >> 2)] |=
+                            row << ((x & 3) << 4);
+                });
+            }
+        }
+        const auto slabs = static_cast<std::size_t>(map_.macros[2]);
+        for (std::size_t n = 0; n < words.size(); ++n) map_.masks[n * slabs + slab] = words[n];
+    }
+
+private:
+    struct Part {
+        Run run;
+        std::uint32_t first, last;  // ranks
+    };
+
+    // The bricks that a solid from z_min to z_max (mm) has samples of.
+    Run runOf(double z_min, double z_max) const {
+        const double edge = kBrick * layout_.lattice.voxel_size;
+        const double origin = layout_.lattice.origin_z + map_.origin[2] * layout_.lattice.voxel_size;
+        const double slack = kSlack / kBrick;
+        return {std::max(static_cast<int>(std::ceil((z_min - origin) / edge - 1 - slack)), low_[2]),
+                std::min(static_cast<int>(std::floor((z_max - origin) / edge + slack)), high_[2])};
+    }
+
+    void addRun(const Run& run, std::uint32_t first, std::uint32_t last) {
+        if (run.first > run.second) return;
+        for (int slab = run.first / kBricks; slab <= run.second / kBricks; ++slab) {
+            std::vector<Part>& parts = slabs_[static_cast<std::size_t>(slab)];
+            parts.push_back({run, first, last});
+        }
+    }
+
+    const PrintLayout& layout_;
+    march::BrickMap& map_;
+    openvdb::Coord low_, high_;  // bricks with active voxels, from the map's origin
+    const voxelize::Footprints footprints_;
+    int first_i_ = 0, first_j_ = 0;
+    std::vector<std::vector<Part>> slabs_;
+};
+
+}  // namespace
+
+march::BrickMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) {
+    march::BrickMap map;
+    map.origin = active.min() & ~(kMacro - 1);
+    double macros = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int count = (active.max()[axis] - map.origin[axis]) / kMacro + 1;
+        map.macros[static_cast<std::size_t>(axis)] = count;
+        macros *= count;
+    }
+    constexpr double kMost = 2147483648.0;
+    if (macros > kMost)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm makes {:.3g} blocks of 32 x 32 x 32 voxels, more than can be "
+                        "laid out for rays; choose a larger voxel",
+                        layout.lattice.voxel_size, macros));
+    map.masks.resize(static_cast<std::size_t>(macros));
+    Mapper mapper(layout, active, map);
+    mapper.listSlabs();
+    parallelFor(static_cast<std::size_t>(map.macros[2]), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t slab = first; slab != last; ++slab) mapper.mapSlab(slab);
+    });
+    return map;
+}
+
+}  // namespace stratum::ondemand

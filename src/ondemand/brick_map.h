@@ -1,0 +1,16 @@
+// Where a print may have surface: a bit a brick, from the beads' outlines alone.
+#pragma once
+
+#include "march/leaf_field.h"
+#include "ondemand/print_layout.h"
+
+#include <openvdb/openvdb.h>
+
+namespace stratum::ondemand {
+
+/// The bricks (see march/brick_grid.h) whose 9^3 samples a bead's solid comes near: a brick has surface only if one of
+/// its samples is inside. No voxel is evaluated. `active` is the box of active voxels. Parallel; the result does not
+/// depend on the number of threads.
+march::BrickMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active);
+
+}  // namespace stratum::ondemand

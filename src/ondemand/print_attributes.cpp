@@ -1,0 +1,194 @@
+#include "ondemand/print_attributes.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace stratum::ondemand {
+namespace {
+
+using voxelize::Attribute;
+
+constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
+
+enum class Kind : std::uint8_t { integer, number, color };
+
+Kind kindOf(Attribute attribute) {
+    switch (attribute) {
+        case Attribute::time:
+        case Attribute::width:
+        case Attribute::speed:
+            return Kind::number;
+        case Attribute::color:
+            return Kind::color;
+        default:
+            return Kind::integer;
+    }
+}
+
+glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, std::uint32_t bead) {
+    switch (kindOf(attribute)) {
+        case Kind::integer:
+            return {static_cast<float>(values.integer(attribute, bead)), 0.0F, 0.0F};
+        case Kind::number:
+            return {values.number(attribute, bead), 0.0F, 0.0F};
+        default: {
+            const openvdb::Vec3f color = values.color(bead);
+            return {color[0], color[1], color[2]};
+        }
+    }
+}
+
+class Lookup final : public march::AttributeLookup {
+public:
+    Lookup(const PrintField& field, const voxelize::BeadAttributes& values, Attribute attribute)
+        : field_(field),
+          values_(values),
+          attribute_(attribute),
+          map_(field.transform().baseMap()),
+          maker_(field.layout(), true) {}
+
+    // As march::AttributeLookup of a grid.
+    std::optional<glm::vec3> at(const glm::dvec3& position) override {
+        const openvdb::Vec3d p = map_->applyInverseMap(openvdb::Vec3d(position.x, position.y, position.z));
+        const openvdb::Coord cell = openvdb::Coord::floor(p);
+        double nearest = 4.0;  // more than any corner's
+        std::uint32_t bead = kEnd;
+        for (int c = 0; c < 8; ++c) {
+            const openvdb::Coord voxel = cell.offsetBy(c >> 2, c >> 1 & 1, c & 1);
+            const double square = (p - voxel.asVec3d()).lengthSqr();
+            if (square >= nearest) continue;
+            const auto here = ownerOf(voxel);
+            if (!here) continue;
+            nearest = square;
+            bead = *here;
+        }
+        if (bead == kEnd) return std::nullopt;
+        return valueOf(values_, attribute_, bead);
+    }
+
+private:
+    struct Owned {
+        openvdb::Coord origin{openvdb::Coord::max()};
+        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> active{};
+        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead{};
+    };
+
+    // The bead whose surface is nearest to an active voxel; nothing for others.
+    std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel) {
+        const openvdb::Coord origin = voxel & ~(voxelize::kLeafDim - 1);
+        const auto bit = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) >> 3; };
+        constexpr unsigned kLast = kSide - 1;
+        Owned& leaf = cache_[(bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast)];
+        if (leaf.origin != origin) fill(leaf, origin);
+        const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
+        if ((leaf.active[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
+        return leaf.bead[n];
+    }
+
+    void fill(Owned& leaf, const openvdb::Coord& origin) {
+        leaf.origin = openvdb::Coord::max();  // in case that making throws
+        leaf.active = {};
+        if (maker_.make(origin, kEnd) == voxelize::LeafContent::surface) {
+            std::array<float, voxelize::Leaf::SIZE> values;
+            voxelize::storeLeaf(maker_.column().planes(), field_.background(), values.data(), leaf.active.data());
+            maker_.column().owners(leaf.bead);
+            for (std::uint32_t& rank : leaf.bead)
+                if (rank != kEnd) rank = field_.layout().stack.beads[rank];
+        }
+        leaf.origin = origin;
+    }
+
+    static constexpr std::size_t kSide = 8;
+    const PrintField& field_;
+    const voxelize::BeadAttributes& values_;
+    const Attribute attribute_;
+    const openvdb::math::MapBase::ConstPtr map_;
+    LeafMaker maker_;
+    std::vector<Owned> cache_ = std::vector<Owned>(kSide * kSide * kSide);
+};
+
+class PrintAttribute final : public march::AttributeSource {
+public:
+    PrintAttribute(std::shared_ptr<const PrintField> field, Attribute attribute)
+        : field_(std::move(field)),
+          attribute_(attribute),
+          values_(*field_->layout().toolpath, std::span(&attribute_, 1)) {}
+
+    std::unique_ptr<march::AttributeLookup> makeLookup() const override {
+        return std::make_unique<Lookup>(*field_, values_, attribute_);
+    }
+    std::size_t bytes() const override {
+        return attribute_ == Attribute::time ? field_->layout().toolpath->beads.size() * sizeof(float) : 0;
+    }
+
+private:
+    const std::shared_ptr<const PrintField> field_;
+    const Attribute attribute_;
+    const voxelize::BeadAttributes values_;
+};
+
+}  // namespace
+
+voxelize::Attribute attributeNamed(std::string_view name) {
+    try {
+        const std::vector<Attribute> attributes = voxelize::parseGrids(name);
+        if (attributes.size() == 1) return attributes.front();
+    } catch (const UsageError&) {
+        // said below, for what was asked here
+    }
+    throw UsageError(fmt::format(
+        "{}: prints have no such attribute; choose layer, time, feature, tool, object, width, speed or color", name));
+}
+
+std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
+                                                                 voxelize::Attribute attribute) {
+    return std::make_shared<const PrintAttribute>(std::move(field), attribute);
+}
+
+march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
+                                  std::span<const std::uint32_t> selection) {
+    // The empty grid of that attribute knows its kind and the names.
+    const gcode::Toolpath& toolpath = *field.layout().toolpath;
+    const auto nothing = openvdb::FloatGrid::create();
+    const std::array<Attribute, 1> wanted{attribute};
+    const auto grids = voxelize::makeAttributeGrids(toolpath, wanted, *nothing);
+    march::AttributeSummary summary = march::summarize(*grids.front());
+    const voxelize::BeadAttributes values(toolpath, wanted);
+    const auto before = [](const glm::vec3& a, const glm::vec3& b) {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    };
+    std::set<glm::vec3, decltype(before)> colors(before);
+    glm::vec3 last(-1.0F);
+    bool any = false;
+    for (const std::uint32_t bead : selection) {
+        const glm::vec3 value = valueOf(values, attribute, bead);
+        if (value == last) continue;
+        last = value;
+        if (summary.kind == march::AttributeSummary::Kind::color) {
+            colors.insert(value);
+            continue;
+        }
+        const auto number = static_cast<double>(value.x);
+        if (!std::isfinite(number)) continue;
+        summary.least = any ? std::min(summary.least, number) : number;
+        summary.most = any ? std::max(summary.most, number) : number;
+        any = true;
+    }
+    if (colors.size() > march::AttributeSummary::kMostColors)
+        throw InputError(fmt::format("{} has more than {} colours; a print has a few", field.name(),
+                                     march::AttributeSummary::kMostColors));
+    summary.colors.assign(colors.begin(), colors.end());
+    return summary;
+}
+
+}  // namespace stratum::ondemand

@@ -1,0 +1,62 @@
+// Toolpath -> a level set that is sampled where rays come: pictures without a grid.
+#pragma once
+
+#include "gcode/toolpath.h"
+#include "march/leaf_field.h"
+#include "ondemand/print_layout.h"
+#include "voxelize/placement.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace stratum::ondemand {
+
+/// What making it took, for reports.
+struct PrintFieldTimes {
+    double bins = 0;  ///< seconds: layers, and which beads reach which column
+    double box = 0;   ///< the box of the active voxels
+    double map = 0;   ///< which bricks may have surface
+};
+
+class PrintField final : public march::LeafField {
+public:
+    /// `selection`: indices into toolpath->beads, ascending, not empty. The samples are, bit for bit, those of
+    /// voxelize::voxelize() with Interior::keep. Throws UsageError for what does not fit.
+    PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::span<const std::uint32_t> selection,
+               const voxelize::Lattice& lattice, const voxelize::Placement& placement, std::string name);
+    ~PrintField() override;
+    PrintField(const PrintField&) = delete;
+    PrintField& operator=(const PrintField&) = delete;
+
+    const march::BrickMap& bricks() const override { return map_; }
+    const float* samples(const openvdb::Coord& origin, float* scratch) const override;
+    float background() const override { return background_; }
+    const openvdb::math::Transform& transform() const override { return *transform_; }
+    openvdb::CoordBBox activeBox() const override { return active_; }
+    std::string name() const override { return name_; }
+    std::size_t bytes() const override;
+
+    const PrintLayout& layout() const { return layout_; }
+    const PrintFieldTimes& times() const { return times_; }
+    /// Leaves evaluated so far, by all threads. Not while rays are traced.
+    std::size_t leavesMade() const;
+
+private:
+    struct Threads;
+
+    const openvdb::math::Transform::Ptr transform_;
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    PrintFieldTimes times_;
+    const PrintLayout layout_;
+    const float background_;
+    const std::string name_;
+    openvdb::CoordBBox active_;
+    march::BrickMap map_;
+    const std::unique_ptr<Threads> threads_;
+};
+
+}  // namespace stratum::ondemand

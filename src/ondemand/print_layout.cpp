@@ -1,0 +1,94 @@
+#include "ondemand/print_layout.h"
+
+#include "voxelize/bead_field.h"
+#include "voxelize/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace stratum::ondemand {
+namespace {
+
+using voxelize::kLeafDim;
+
+double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& lattice) {
+    double thickest = 0;
+    for (const voxelize::Layer& layer : stack.layers) thickest = std::max(thickest, layer.radius);
+    return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
+}
+
+}  // namespace
+
+PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, std::span<const std::uint32_t> selection,
+                         const voxelize::Lattice& the_lattice, double the_unit)
+    : toolpath(std::move(the_toolpath)),
+      lattice(the_lattice),
+      unit(the_unit),
+      stack(voxelize::stackLayers(*toolpath, selection)),
+      bins(*toolpath, stack, lattice, voxelize::availableMemory() / 4),
+      reach(reachOf(stack, lattice)) {
+    direct.reserve(stack.direct().size());
+    for (const std::uint32_t bead : stack.direct()) {
+        const voxelize::Bounds box = voxelize::BeadField(*toolpath, toolpath->beads[bead]).bounds();
+        direct.push_back({box.min[2] - lattice.background(), box.max[2] + lattice.background()});
+    }
+}
+
+std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {
+    if (bins.size() == 0) return std::nullopt;
+    const auto place = [](int at, int first) { return (at - first) >> 3; };
+    static_assert(kLeafDim == 8);
+    const int ci = place(i, bins.originI(0));
+    const int cj = place(j, bins.originJ(0));
+    if (ci < 0 || cj < 0 || ci >= static_cast<int>(bins.columnsI()) || cj >= static_cast<int>(bins.columnsJ()))
+        return std::nullopt;
+    const std::size_t column = static_cast<std::size_t>(cj) * bins.columnsI() + static_cast<std::size_t>(ci);
+    if (bins[column].empty()) return std::nullopt;
+    return column;
+}
+
+std::size_t PrintLayout::bytes() const {
+    return bins.bytes() + direct.capacity() * sizeof(Extent) +
+           (stack.beads.capacity() + stack.layer.capacity()) * sizeof(std::uint32_t) +
+           stack.layers.capacity() * sizeof(voxelize::Layer) + stack.welds.capacity() * sizeof(voxelize::Weld);
+}
+
+voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_t end) {
+    const auto column = layout_.columnOf(origin[0], origin[1]);
+    if (!column) return voxelize::LeafContent::outside;
+    const voxelize::LayerStack& stack = layout_.stack;
+    const auto height = [this](int k) { return layout_.lattice.origin_z + k * layout_.lattice.voxel_size; };
+    const double z_min = height(origin[2]);
+    const double z_max = height(origin[2] + kLeafDim - 1);
+    // Ranks ascend with the layers' planes: what matters to this leaf is one run of them. A column is opened for that
+    // alone, not for its hundreds of layers.
+    const auto below = [](const voxelize::Layer& layer, double z) { return layer.centre_z < z; };
+    const auto first =
+        std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below) - stack.layers.begin();
+    const auto last =
+        std::lower_bound(stack.layers.begin(), stack.layers.end(), z_max + layout_.reach, below) - stack.layers.begin();
+    const std::span<const std::uint32_t> all = layout_.bins[*column];
+    const std::uint32_t end_rank = stack.first_direct;
+    const auto rankOf = [&](std::ptrdiff_t layer) {
+        return layer < std::ssize(stack.layers) ? stack.layers[static_cast<std::size_t>(layer)].first : end_rank;
+    };
+    const auto from = std::lower_bound(all.begin(), all.end(), rankOf(first));
+    const auto to = std::lower_bound(from, all.end(), rankOf(last));
+    const auto direct = std::lower_bound(to, all.end(), end_rank);
+    std::span<const std::uint32_t> ranks(from, to);
+    if (direct != all.end()) {
+        ranks_.assign(from, to);
+        for (auto rank = direct; rank != all.end(); ++rank) {
+            const PrintLayout::Extent& extent = layout_.direct[*rank - end_rank];
+            if (extent.z_min <= z_max && extent.z_max >= z_min) ranks_.push_back(*rank);
+        }
+        ranks = ranks_;
+    }
+    if (ranks.empty()) return voxelize::LeafContent::outside;
+    column_.open(origin[0], origin[1], ranks, end);
+    return column_.evaluate(origin[2] >> 3);
+}
+
+}  // namespace stratum::ondemand

@@ -1,0 +1,59 @@
+// Toolpath -> what it takes to sample the print anywhere: layers, bins, and a thread's way to one leaf.
+#pragma once
+
+#include "gcode/toolpath.h"
+#include "voxelize/lattice.h"
+#include "voxelize/layer_stack.h"
+#include "voxelize/leaf_column.h"
+#include "voxelize/plan_bins.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace stratum::ondemand {
+
+/// What all threads share. Immutable.
+struct PrintLayout {
+    /// `selection`: indices into toolpath->beads, ascending, not empty. `unit` is world units a mm. Parallel. Throws
+    /// UsageError if the bins don't fit.
+    PrintLayout(std::shared_ptr<const gcode::Toolpath> toolpath, std::span<const std::uint32_t> selection,
+                const voxelize::Lattice& lattice, double unit);
+
+    /// The leaf column that holds the samples (i, j, *), if any bead reaches it.
+    std::optional<std::size_t> columnOf(int i, int j) const;
+    std::size_t bytes() const;
+
+    const std::shared_ptr<const gcode::Toolpath> toolpath;
+    const voxelize::Lattice lattice;
+    const double unit;
+    const voxelize::LayerStack stack;
+    const voxelize::PlanBins bins;
+    const double reach;  ///< mm from a layer's centre plane within which it matters to a leaf, of the thickest layer
+    struct Extent {
+        double z_min, z_max;  // mm, with the band
+    };
+    std::vector<Extent> direct;  ///< of the beads from stack.first_direct on
+};
+
+/// Evaluates leaves one at a time, wherever they are. One a thread.
+class LeafMaker {
+public:
+    /// `layout` must outlive it. With `owners` its column knows them.
+    explicit LeafMaker(const PrintLayout& layout, bool owners = false)
+        : layout_(layout), column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit, owners) {}
+
+    /// The leaf from this index-space coordinate, of the beads below index `end`. The values are column().planes().
+    voxelize::LeafContent make(const openvdb::Coord& origin, std::uint32_t end);
+    const voxelize::LeafColumn& column() const { return column_; }
+
+private:
+    const PrintLayout& layout_;
+    voxelize::LeafColumn column_;
+    std::vector<std::uint32_t> ranks_;
+};
+
+}  // namespace stratum::ondemand

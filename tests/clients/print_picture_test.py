@@ -1,0 +1,111 @@
+"""Pictures straight from G-code are, byte for byte, those of the level set that gcode2vdb writes."""
+
+import gzip
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+
+from run_tools import BIN, check, gcode
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_print_picture_")
+GCODE2VDB = os.path.join(BIN, "gcode2vdb")
+VDBTRACE = os.path.join(BIN, "vdbtrace")
+GEAR = shutil.copy(gcode("gear.gcode"), os.path.join(FOLDER, "part"))
+SMALL = ["--size", "200x150", "--quiet"]
+
+
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
+def call(*command):
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=FOLDER)
+
+
+def picture(source, name, *options):
+    """The linear values; the same source name, so that the files have the same metadata."""
+    done = call(VDBTRACE, source, "-o", path(name), *SMALL, *options)
+    check(done.returncode == 0, f"{name}: exit {done.returncode}: {done.stderr.strip()}")
+    if done.returncode != 0:
+        return None
+    with open(path(name), "rb") as file:
+        return file.read()
+
+
+def same(label, print_options, vdb_options, *trace_options):
+    """One picture of the print, and one of the level set that stands in the same place under the same name."""
+    late = picture("part", "late.exr", *print_options, *trace_options)
+    os.rename(path("part"), path("kept"))
+    done = call(GCODE2VDB, path("kept"), "-o", path("eager.vdb"), "--quiet", *vdb_options)
+    check(done.returncode == 0, f"{label}: {done.stderr.strip()}")
+    made = "eager.vdb" if os.path.exists(path("eager.vdb")) else None
+    if "--snapshots" in vdb_options:
+        made = next(name for name in os.listdir(FOLDER) if name.startswith("eager.") and name.endswith(".vdb") and name != "eager.vdb")
+    os.rename(path(made), path("part"))
+    eager = picture("part", "eager.exr", *trace_options)
+    os.rename(path("kept"), path("part"))
+    for name in os.listdir(FOLDER):
+        if name.startswith("eager.") and name.endswith(".vdb"):
+            os.remove(path(name))
+    check(late is not None and late == eager, f"{label}: the same bytes as from the level set")
+
+
+TWO = ["--voxels-per-layer", "2"]
+CULL = ["--interior", "cull"]
+same("ao", TWO, TWO, "--integrator", "ao", "--spp", "2")
+same("path, culled", TWO, TWO + CULL, "--spp", "2")
+same("odd voxel size, floats", ["--voxel-size", "0.07"], ["--voxel-size", "0.07"], "--spp", "1", "--brick-values", "float")
+same("default voxel size", [], [], "--spp", "1")
+some = TWO + ["--layers", "5:20", "--features", "-infill,-solid-infill"]
+same("layers and features", some, some, "--spp", "1")
+same("a cut by volume", TWO + ["--printed", "40%"], TWO + ["--snapshots", "40%"], "--spp", "1")
+same("a cut by layer", TWO + ["--printed", "layer:9"], TWO + ["--snapshots", "layer:9"], "--spp", "1")
+same("a cut by time", TWO + ["--printed", "time:3"], TWO + ["--snapshots", "time:3"], "--spp", "1")
+grids = TWO + ["--grids", "feature,layer,color,speed"]
+same("features as colours", TWO, grids, "--color-by", "feature", "--spp", "1")
+same("filament's colours", TWO, grids, "--color-by", "color", "--spp", "1")
+same("layers beside the picture", TWO, grids, "--aov", "layer,feature", "--spp", "1")
+same("smooth normals", TWO, TWO, "--normals", "smooth", "--spp", "1")
+
+# --- any number of threads --------------------------------------------------------------------------------------------
+one = picture("part", "one.exr", "--spp", "2", "--threads", "1")
+for threads in ("2", "8"):
+    check(picture("part", "more.exr", "--spp", "2", "--threads", threads) == one, f"{threads} threads: the same bytes")
+
+# --- containers, and a scene that names G-code --------------------------------------------------------------------------
+with open(path("part"), "rb") as source, gzip.open(path("packed"), "wb") as packed:
+    packed.write(source.read())
+os.rename(path("part"), path("plain"))
+os.rename(path("packed"), path("part"))
+check(picture("part", "packed.exr", "--spp", "2") == one, "from gzip: the same bytes")
+os.rename(path("plain"), path("part"))
+with open(path("scene.json"), "w", encoding="utf-8") as scene:
+    json.dump({"objects": [{"vdb": "part"}, {"vdb": "part", "transform": {"translate": [60, 0, 0]}}]}, scene)
+check(picture("scene.json", "scene.png", "--spp", "1") is not None, "two of the same print in a scene")
+
+# --- what it took -------------------------------------------------------------------------------------------------------
+done = call(VDBTRACE, "part", "-o", path("s.png"), *SMALL, "--spp", "1", "--integrator", "ao", "--stats", "-")
+stats = json.loads(done.stdout)
+took = stats["on_demand"][0]
+check(set(took["seconds"]) >= {"parse", "bins", "box", "map"}, "--stats has the times")
+check(0 < took["bricks_made"] <= took["bricks_listed"], "--stats counts bricks")
+check(took["leaves_made"] > 0 and took["brick_bytes"] > 0, "--stats counts leaves and bytes")
+check(stats["input"]["voxel_size_mm"] > 0 and stats["input"]["choice"] != "", "--stats has the voxel size and why")
+
+# --- clear refusals -----------------------------------------------------------------------------------------------------
+for options, status, text in ((["--printed", "sometimes"], 2, "every:N"), (["--printed", "10%,20%"], 2, "one moment"),
+                              (["--layers", "900:"], 3, "layers 1 to"), (["--half-width", "1"], 2, "half-width"),
+                              (["--voxel-size", "0"], 2, "voxel"), (["--color-by", "temperature"], 2, "layer, time"),
+                              (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel")):
+    done = call(VDBTRACE, "part", "-o", path("refused.png"), *SMALL, *options)
+    check(done.returncode == status and text in done.stderr,
+          f"{' '.join(options)}: exit {done.returncode}: {done.stderr.strip()}")
+check(not os.path.exists(path("refused.png")), "refusals leave no file behind")
+with open(path("prose"), "w", encoding="utf-8") as file:
+    file.write("Dear printer, please print a boat.\n")
+done = call(VDBTRACE, "prose", "-o", path("refused.png"), *SMALL)
+check(done.returncode == 3 and "prose" in done.stderr, f"neither a level set nor G-code: {done.stderr.strip()}")
+
+shutil.rmtree(FOLDER)

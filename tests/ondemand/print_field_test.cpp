@@ -1,0 +1,188 @@
+#include "ondemand/print_field.h"
+
+#include "corpus.h"
+#include "gcode/reader.h"
+#include "io/mapped_file.h"
+#include "march/brick_grid.h"
+#include "march/brick_walk.h"
+#include "parallel/parallel_for.h"
+#include "toolpaths.h"
+#include "voxelize/selection.h"
+#include "voxelize/voxelizer.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <optional>
+#include <random>
+
+namespace stratum::ondemand {
+namespace {
+
+using ToolpathPtr = std::shared_ptr<const gcode::Toolpath>;
+
+struct Print {
+    const char* name;
+    const char* path;    // below data/gcode or the corpus's gcode
+    const char* layers;  // as for --layers
+    bool corpus;
+    int per_layer;
+};
+
+class FieldOfPrint : public testing::TestWithParam<Print> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Prints, FieldOfPrint,
+    testing::Values(Print{"hull", "hull.gcode", "1:30", false, 4}, Print{"gear", "gear.gcode", "1:", false, 2},
+                    Print{"gear_odd", "gear.gcode", "1:", false, 3}, Print{"gear_coarse", "gear.gcode", "1:", false, 1},
+                    Print{"arcs_superslicer", "preprocess_cancellation-superslicer.gcode", "1:20", true, 2},
+                    Print{"vase", "vase_ps25.gcode", "1:40", true, 2},
+                    Print{"mixed_heights", "gcode-preview-benchy_slic3r.gcode", "1:40", true, 2},
+                    Print{"tools", "filaswitch-mc_testmodel1_Cura.gcode", "1:20", true, 2}),
+    [](const auto& print) { return std::string(print.param.name); });
+
+// Every leaf in the box of the grid and around it: the same bits as the grid has there.
+void expectSameSamples(const PrintField& field, const openvdb::FloatGrid& grid) {
+    ASSERT_EQ(field.activeBox(), grid.evalActiveVoxelBoundingBox());
+    ASSERT_EQ(field.transform(), grid.transform());
+    ASSERT_EQ(field.background(), grid.background());
+    openvdb::CoordBBox leaves(field.activeBox().min() & ~7, field.activeBox().max() & ~7);
+    leaves.expand(8);
+    const auto planes = static_cast<std::size_t>((leaves.max()[0] - leaves.min()[0]) / 8 + 1);
+    std::atomic<std::size_t> wrong{0};
+    std::atomic<std::size_t> made{0};
+    parallelFor(planes, 1, [&](std::size_t first, std::size_t last) {
+        const auto accessor = grid.getConstAccessor();
+        std::vector<float> scratch(512);
+        for (std::size_t plane = first; plane != last; ++plane)
+            for (int j = leaves.min()[1]; j <= leaves.max()[1]; j += 8)
+                for (int k = leaves.min()[2]; k <= leaves.max()[2]; k += 8) {
+                    const openvdb::Coord at(leaves.min()[0] + 8 * static_cast<int>(plane), j, k);
+                    const float* samples = field.samples(at, scratch.data());
+                    const auto* leaf = grid.tree().probeConstLeaf(at);
+                    if (leaf == nullptr) {
+                        // A tile, of one value.
+                        const float tile = accessor.getValue(at);
+                        const bool same = samples == nullptr
+                                              ? tile == field.background()
+                                              : std::all_of(samples, samples + 512, [&](float v) { return v == tile; });
+                        wrong += same ? 0 : 1;
+                        continue;
+                    }
+                    ++made;
+                    if (samples == nullptr || std::memcmp(samples, leaf->buffer().data(), 512 * sizeof(float)) != 0)
+                        ++wrong;
+                }
+    });
+    EXPECT_EQ(wrong.load(), 0U);
+    EXPECT_EQ(made.load(), grid.tree().leafCount());
+}
+
+// The brick grids of both have the same box, and every surface cell of one is one of the other.
+void expectSameBricks(const std::shared_ptr<const PrintField>& field, const openvdb::FloatGrid& grid) {
+    const march::BrickGrid eager(grid, march::BrickValues::Int16);
+    const march::BrickGrid late(field, march::BrickValues::Int16);
+    ASSERT_EQ(late.origin(), eager.origin());
+    ASSERT_EQ(late.size(), eager.size());
+    EXPECT_EQ(late.brickCount(), 0U);
+    const auto size = eager.size();
+    std::atomic<std::size_t> wrong{0};
+    std::atomic<std::size_t> surface_cells{0};
+    parallelFor(static_cast<std::size_t>(size[0]), 8, [&](std::size_t first, std::size_t last) {
+        for (int x = static_cast<int>(first); x != static_cast<int>(last); ++x)
+            for (int y = 0; y < size[1]; ++y)
+                for (int z = 0; z < size[2]; ++z) {
+                    const march::Block a = findBlock(eager, {x, y, z});
+                    const march::Block b = findBlock(late, {x, y, z});
+                    if (a.surface != b.surface) ++wrong;
+                    if (!a.surface || !b.surface) {
+                        // Skip what both know to be empty, along z.
+                        z = std::max(z, std::min(a.high.z, b.high.z) - 1);
+                        continue;
+                    }
+                    ++surface_cells;
+                    if (cornersOf(eager, a.brick, {x, y, z}) != cornersOf(late, b.brick, {x, y, z})) ++wrong;
+                }
+    });
+    EXPECT_EQ(wrong.load(), 0U);
+    EXPECT_GT(surface_cells.load(), 1000U);
+    EXPECT_EQ(late.brickCount(), eager.brickCount());
+}
+
+void expectSame(const ToolpathPtr& toolpath, const std::vector<std::uint32_t>& selection,
+                const voxelize::LatticeRequest& request, const voxelize::Placement& placement = {}) {
+    openvdb::initialize();
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), request);
+    voxelize::VoxelizeOptions options;
+    options.placement = placement;
+    const auto grid = voxelize::voxelize(*toolpath, selection, lattice, options);
+    const auto field = std::make_shared<const PrintField>(toolpath, selection, lattice, placement, "print");
+    expectSameSamples(*field, *grid);
+    expectSameBricks(field, *grid);
+}
+
+TEST_P(FieldOfPrint, HasTheSamplesOfTheGrid) {
+    const Print& print = GetParam();
+    const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "corpus file " << print.path << " is not there";
+    const MappedFile file(path);
+    const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), print.path));
+    voxelize::Selection selection;
+    voxelize::parseLayers(print.layers, selection);
+    expectSame(toolpath, voxelize::selectBeads(*toolpath, selection), {std::nullopt, print.per_layer});
+}
+
+// Beads of all kinds in all directions: level, sloped, round, arcs, single points, far from the origin.
+std::shared_ptr<gcode::Toolpath> tangle(unsigned seed) {
+    auto toolpath = std::make_shared<gcode::Toolpath>();
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> where(-6, 6);
+    const double far = seed % 2 == 0 ? 0 : 900;
+    for (int n = 0; n < 60; ++n) {
+        const double z = 0.2 * (1 + n % 12);
+        if (n % 3 == 0)
+            test::addArc(*toolpath, far + where(random), where(random), 1.5, where(random), where(random), z, 0.2, 0.5,
+                         0.2);
+        else
+            test::addBead(*toolpath, far + where(random), where(random), z, far + where(random), where(random),
+                          n % 5 == 0 ? z + 0.1 : z, n % 7 == 0 ? 0.15 : 0.5, n % 4 == 0 ? 0.3 : 0.2);
+    }
+    return toolpath;
+}
+
+TEST(PrintField, HasTheSamplesOfTheGridOfBeadsOfAllKinds) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE(seed);
+        const auto toolpath = tangle(seed);
+        expectSame(toolpath, test::allBeads(*toolpath), {0.1, std::nullopt});
+        expectSame(toolpath, test::allBeads(*toolpath), {0.073, std::nullopt});
+    }
+}
+
+TEST(PrintField, HasTheSamplesOfTheGridWhereverItIsPlaced) {
+    const auto toolpath = tangle(3);
+    voxelize::Placement placement;
+    placement.unit = 0.1;
+    placement.offset[0] = -901.3;
+    placement.offset[2] = 5;
+    placement.up_y = true;
+    expectSame(toolpath, test::allBeads(*toolpath), {0.1, std::nullopt}, placement);
+}
+
+TEST(PrintField, ListsFewBricksWithoutSurface) {
+    const auto toolpath = tangle(2);
+    const std::vector<std::uint32_t> selection = test::allBeads(*toolpath);
+    openvdb::initialize();
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.05, std::nullopt});
+    const auto field = std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print");
+    const march::BrickGrid late(field, march::BrickValues::Int16);
+    const march::BrickGrid eager(*voxelize::voxelize(*toolpath, selection, lattice), march::BrickValues::Int16);
+    EXPECT_LE(late.listedCount(), 2 * eager.brickCount());
+    EXPECT_EQ(field->leavesMade(), 0U);
+}
+
+}  // namespace
+}  // namespace stratum::ondemand

@@ -1,0 +1,91 @@
+#include "trace_print.h"
+
+#include "command_line.h"
+
+#include "gcode/input_bytes.h"
+#include "gcode/reader.h"
+#include "io/error.h"
+#include "voxelize/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace stratum::tools {
+namespace {
+
+// Those of the selection that are printed by then.
+void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
+    const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath);
+    if (cuts.size() != 1)
+        throw UsageError(fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40 or time:90", printed));
+    const auto last = std::lower_bound(selection.begin(), selection.end(), cuts.front().bead_count);
+    selection.erase(last, selection.end());
+    if (selection.empty())
+        throw UsageError(fmt::format("--printed {}: nothing of what is selected is printed by then", printed));
+}
+
+}  // namespace
+
+bool isVdbFile(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", path));
+    std::array<char, 4> magic{};
+    file.read(magic.data(), magic.size());
+    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", path));
+    return std::string_view(magic.data(), magic.size()) == std::string_view(" BDV", 4);
+}
+
+TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& options) {
+    Stopwatch watch;
+    TracedPrint result;
+    std::shared_ptr<const gcode::Toolpath> toolpath;
+    std::size_t bytes = 0;
+    {
+        const gcode::InputBytes file(path);
+        bytes = file.bytes().size();
+        gcode::ReadOptions read = options.print.read;
+        ProgressBar bar("reading", options.quiet);
+        read.progress = bar.callback();
+        toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), file.name(), read));
+        if (!options.quiet)
+            for (const gcode::Warning& warning : toolpath->warnings)
+                fmt::print(stderr, "vdbtrace: {}:{}: {}{}\n", file.name(), warning.first_line, warning.text,
+                           warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
+    }
+    result.parse_seconds = watch.lap();
+    std::vector<std::uint32_t> selection = voxelize::selectBeads(*toolpath, selectionOf(options.print, *toolpath));
+    if (!options.printed.empty()) cut(selection, options.printed, *toolpath);
+    const voxelize::Lattice lattice = latticeFor(options.print, *toolpath, selection,
+                                                 voxelize::boundsOf(*toolpath, selection), voxelize::Interior::keep);
+    constexpr double kLeastHalfWidth = 2;
+    if (lattice.half_width < kLeastHalfWidth)
+        throw UsageError(fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",
+                                     lattice.half_width, kLeastHalfWidth));
+    result.field =
+        std::make_shared<const ondemand::PrintField>(toolpath, selection, lattice, voxelize::Placement(), path);
+    result.report = {{"path", path},
+                     {"bytes", bytes},
+                     {"format", toolpath->format},
+                     {"slicer", toolpath->slicer},
+                     {"beads", toolpath->beads.size()},
+                     {"selected_beads", selection.size()},
+                     {"layers", toolpath->layer_count},
+                     {"voxel_size_mm", lattice.voxel_size},
+                     {"half_width", lattice.half_width},
+                     {"choice", lattice.reason}};
+    const std::string chosen = describeSelection(options.print);
+    if (!chosen.empty()) result.report["selection"] = chosen;
+    if (!options.printed.empty()) result.report["printed"] = options.printed;
+    result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", path, selection.size(), toolpath->beads.size(),
+                              lattice.voxel_size, lattice.reason);
+    result.selection = std::move(selection);
+    return result;
+}
+
+}  // namespace stratum::tools

@@ -1,0 +1,38 @@
+// vdbtrace's way from G-code to rays: nothing is voxelized before a ray comes to it.
+#pragma once
+
+#include "print_options.h"
+
+#include "ondemand/print_field.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stratum::tools {
+
+/// How to take a print.
+struct TracePrintOptions {
+    PrintOptions print;
+    std::string printed;  ///< --printed: a cut as for --snapshots; empty: all of it
+    bool quiet = false;
+};
+
+struct TracedPrint {
+    std::shared_ptr<const ondemand::PrintField> field;
+    std::vector<std::uint32_t> selection;  ///< its beads
+    nlohmann::ordered_json report;         ///< for --stats
+    std::string line;                      ///< for people
+    double parse_seconds = 0;
+};
+
+/// Whether a file holds an OpenVDB grid, by its first bytes. Throws InputError for one that can't be read or is empty.
+bool isVdbFile(const std::string& path);
+
+/// Reads G-code in any container. Throws InputError, UsageError.
+TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& options);
+
+}  // namespace stratum::tools
