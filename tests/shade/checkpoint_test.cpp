@@ -5,11 +5,17 @@
 #include "shade/analytic_prints.h"
 #include "shade/render.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <string>
 
 namespace stratum {
@@ -71,6 +77,60 @@ TEST(Checkpoint, AnInterruptedRenderEndsAsAnUninterruptedOne) {
                                               [&](std::uint64_t, std::uint64_t) { ++calls; })));
         EXPECT_EQ(calls, 0);
     }
+}
+
+/// Not a test: what the process does that the next test kills.
+TEST(Checkpoint, DISABLED_RendersUntilItIsKilled) {
+    const char* file = std::getenv("STRATUM_TEST_CHECKPOINT");
+    ASSERT_NE(file, nullptr);
+    rendered(smallOptions(file));
+}
+
+/// Files in a folder beside the checkpoint "c": one is being written.
+int others(const fs::path& folder) {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(folder)) count += entry.path().filename() != "c";
+    return count;
+}
+
+TEST(Checkpoint, AKilledProcessLosesNothingThatWasWritten) {
+    const test::ScratchFolder scratch;
+    const fs::path file = scratch / "c";
+    ::setenv("STRATUM_TEST_CHECKPOINT", file.c_str(), 1);
+    std::mt19937 random(3);
+    int killed = 0;
+    int writing = 0;
+    for (int run = 0; run < 6; ++run) {
+        const int before = others(scratch.path());
+        const pid_t child = ::fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {  // a process of its own: threads don't survive a fork
+            const int silence = ::open("/dev/null", O_WRONLY);
+            ::dup2(silence, STDOUT_FILENO);
+            ::execl("/proc/self/exe", "test_shade", "--gtest_also_run_disabled_tests",
+                    "--gtest_filter=Checkpoint.DISABLED_RendersUntilItIsKilled", nullptr);
+            ::_exit(1);
+        }
+        int status = 0;
+        pid_t ended = 0;
+        // Odd runs are killed as soon as a file is being written, the others some time after that.
+        while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 && others(scratch.path()) == before) ::usleep(20);
+        if (run % 2 == 0) ::usleep(static_cast<useconds_t>(random() % 3000));
+        if (ended == 0) {
+            ::kill(child, SIGKILL);
+            ASSERT_EQ(::waitpid(child, &status, 0), child);
+        }
+        killed += WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+        writing += others(scratch.path()) > before;
+    }
+    EXPECT_GE(killed, 3);
+    EXPECT_GE(writing, 1);  // a half-written file was left behind, and does no harm
+    std::uint64_t first = 0;
+    const auto resumed = rendered(smallOptions(file), "lambert:0.5,0.25,0.125",
+                                  [&](std::uint64_t done, std::uint64_t) { first = first == 0 ? done : first; });
+    EXPECT_TRUE(sameBytes(rendered(smallOptions({})), resumed));
+    EXPECT_TRUE(first == 0 || first > 1024u) << first;  // what was finished is not done again
+    ::unsetenv("STRATUM_TEST_CHECKPOINT");
 }
 
 TEST(Checkpoint, OfAnotherPictureIsRefused) {
