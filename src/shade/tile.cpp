@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace stratum::shade {
 namespace {
@@ -44,28 +45,38 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
                   const PixelFilter& filter, TileWorker& worker) {
     // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
     const auto each = static_cast<std::size_t>(target - samples_);
+    const std::size_t most = std::min(kStream, sums_.size() * each);
+    worker.rays.resize(most);
+    worker.samplers.resize(most, worker.sampler);
+    worker.points.resize(most);
+    worker.pixels.resize(most);
+    std::size_t waiting = 0;
     std::size_t summed = 0;
     const auto flush = [&] {
-        worker.points.resize(worker.rays.size());
-        worker.pixels.resize(worker.rays.size());
-        integrator.radianceStream(worker.rays, worker.samplers, *worker.tracer, rays_, worker.points, worker.pixels);
-        for (std::size_t n = 0; n < worker.pixels.size(); ++n) {
+        integrator.radianceStream(std::span(worker.rays).first(waiting), std::span(worker.samplers).first(waiting),
+                                  *worker.tracer, rays_, std::span(worker.points).first(waiting),
+                                  std::span(worker.pixels).first(waiting));
+        for (std::size_t n = 0; n < waiting; ++n) {
             const std::size_t pixel = summed++ / each;
             sums_[pixel].add(worker.pixels[n]);
             recorder.add(worker.points[n], layers_.data() + pixel * layer_size_);
         }
-        worker.rays.clear();
-        worker.samplers.clear();
+        waiting = 0;
     };
     for (int y = box_.y0; y < box_.y1; ++y)
         for (int x = box_.x0; x < box_.x1; ++x)
             for (int s = samples_; s < target; ++s) {
-                Sampler sampler = worker.sampler;
+                // Made where they stay: to copy what has just been written in smaller parts waits for all of them.
+                Sampler& sampler = worker.samplers[waiting];
+                sampler = worker.sampler;
                 sampler.start(x, y, static_cast<std::uint32_t>(s));
                 const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
-                worker.rays.push_back(camera.hasLens() ? camera.ray(place, sampler.next2D()) : camera.ray(place));
-                worker.samplers.push_back(sampler);
-                if (worker.rays.size() == kStream) flush();
+                march::Ray& ray = worker.rays[waiting];
+                if (camera.hasLens())
+                    ray = camera.ray(place, sampler.next2D());
+                else
+                    ray = camera.ray(place);
+                if (++waiting == kStream) flush();
             }
     flush();
     samples_ = target;

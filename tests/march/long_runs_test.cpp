@@ -8,6 +8,7 @@
 #include "io/mapped_file.h"
 #include "parallel/parallel_for.h"
 #include "random_rays.h"
+#include "rubble.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxelizer.h"
 
@@ -72,13 +73,14 @@ protected:
 
 TEST_F(LongRuns, AMillionRaysMeetWhatTheBruteMarchMeets) {
     const std::size_t kRays = full(1000000);
+    const auto held = test::quantized(*grid_);  // the field that bricks hold, of 16-bit samples
     std::atomic<std::size_t> hits{0};
     std::atomic<std::size_t> missed{0};
     std::atomic<std::size_t> extra{0};
     std::atomic<std::size_t> moved{0};
     std::atomic<std::size_t> crossings{0};  // that the brute march's steps jump over
     inBlocks(kRays, [&](Tracer& tracer, std::mt19937& random, std::size_t count) {
-        test::BruteMarch brute(*grid_);
+        test::BruteMarch brute(*held);
         for (std::size_t n = 0; n < count; ++n) {
             Ray ray;
             const glm::dvec3 target = anywhere(random);
