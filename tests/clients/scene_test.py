@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import tempfile
+import zlib
 
 from run_tools import BIN, check, gcode
 
@@ -58,8 +59,19 @@ alone = scene("same.json", objects=[{"vdb": "tile.vdb", "transform": {"rotate": 
 plain = pixels(trace("plain.png", "tile.vdb"))
 check(len(plain) > 1000 and pixels(trace("same.png", alone)) == plain, "a scene of one object in its place")
 
-# A y-up file that a transform sets upright again shows the same picture.
-upright = scene("upright.json", objects=[{"vdb": "tile_y.vdb", "transform": {"rotate": [90, 0, 0]}}])
+# A y-up file says so and stands upright; told that its z is up, it lies on its back until a transform turns it.
+def apart(a, b):
+    """Share of the bytes of two pictures of one size that differ."""
+    a, b = zlib.decompress(pixels(a)), zlib.decompress(pixels(b))
+    return sum(x != y for x, y in zip(a, b)) / len(a)
+
+
+mask = ("--integrator", "mask")
+standing = trace("mask.png", "tile.vdb", *mask)
+check(apart(standing, trace("mask_y.png", "tile_y.vdb", *mask)) < 0.01, "a y-up file stands upright by itself")
+check(apart(standing, trace("mask_z.png", "tile_y.vdb", *mask, "--file-up", "z")) > 0.01, "--file-up z lays it down")
+upright = scene("upright.json", objects=[{"vdb": "tile_y.vdb", "file_up": "z", "transform": {"rotate": [90, 0, 0]}}])
+check(apart(standing, trace("mask_t.png", upright, *mask)) < 0.01, "and a transform sets it upright again")
 trace("upright.exr", upright, "--integrator", "depth")
 stats = path("stats.json")
 done = call(VDBTRACE, upright, *SMALL, "-o", path("u.png"), "--stats", stats)
@@ -83,7 +95,10 @@ check(len(pictures) == 4, "colours by four attributes are four pictures")
 trace("labels.exr", "tile.vdb", "--aov", "layer,tool,feature")
 trace("feature.png", "tile.vdb", "--integrator", "feature")
 check(trace("sharp.exr", "tile.vdb") != trace("lens.exr", "tile.vdb", "--f-number", "1", "--focus", "100,90,4"), "a lens blurs")
-trace_all = call(VDBTRACE, "tile.vdb", *SMALL, "--turntable", "3", "-o", path("turn.png"))
+trace_all = call(VDBTRACE, "tile.vdb", *SMALL, "--turntable", "3", "-o", path("turn.png"), "--stats", stats)
+with open(stats, encoding="utf-8") as file:
+    reports = json.load(file)
+check([os.path.basename(r["output"]) for r in reports] == [f"turn_00{n}.png" for n in range(3)], "a report of each picture")
 check(trace_all.returncode == 0 and all(os.path.exists(path(f"turn_00{n}.png")) for n in range(3)), "a turntable of 3")
 
 check(call(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.2", "--snapshots", "50%,100%", "--quiet",
