@@ -75,18 +75,20 @@ std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& i
         Json all = before ? before() : Json::array();
         const ondemand::PrintFieldTimes& times = field->times();
         const march::BrickGrid& bricks = *march::bricksOf(*intersector);
-        all.push_back({{"print", field->name()},
-                       {"seconds",
-                        {{"parse", parse},
-                         {"bins", times.bins},
-                         {"box", times.box},
-                         {"map", times.map},
-                         {"list", seconds - parse - times.bins - times.box - times.map}}},
-                       {"bricks_listed", bricks.listedCount()},
-                       {"bricks_made", bricks.brickCount()},
-                       {"leaves_made", field->leavesMade()},
-                       {"print_bytes", field->bytes()},
-                       {"brick_bytes", bricks.bytes()}});
+        all.push_back(
+            {{"print", field->name()},
+             {"seconds",
+              {{"parse", parse},
+               {"bins", times.bins},
+               {"box", times.box},
+               {"map", times.map},
+               {"list", seconds - parse - times.bins - times.box - times.map}}},
+             {"bricks_listed", bricks.listedCount()},
+             {"bricks_made", bricks.brickCount()},
+             {"leaves_made", field->leavesMade()},
+             {"printed_beads", std::min<std::size_t>(field->printed(), field->layout().toolpath->beads.size())},
+             {"print_bytes", field->bytes()},
+             {"brick_bytes", bricks.bytes()}});
         return all;
     };
 }
@@ -189,7 +191,8 @@ private:
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;
-        const IntersectorPtr plain = march::makeBrickIntersector(print.field, options_.values);
+        const std::shared_ptr<march::Intersector> plain =
+            march::makeBrickIntersector(std::shared_ptr<const march::LeafField>(print.field), options_.values);
         march::Annotation annotation;
         for (const std::string& name : attributes_) {
             std::shared_ptr<const march::AttributeSource> source;
@@ -205,6 +208,12 @@ private:
         const double seconds = watch_.lap();
         result_.load_seconds += print.parse_seconds;
         result_.build_seconds += seconds - print.parse_seconds;
+        if (print.moments.size() > 1) {
+            result_.moments = print.moments.size();
+            result_.showMoment = [field = print.field, plain, moments = print.moments](std::size_t n) {
+                march::bricksOf(*plain)->update(field->printUntil(moments[n]));
+            };
+        }
         result_.on_demand = reportOf(print, plain, seconds, result_.on_demand);
         return shape;
     }

@@ -34,6 +34,9 @@ struct TraceObjects {
     std::vector<shade::ObjectMaterial> materials;  ///< by march::Hit::object; empty if all are of the scene's
     decltype(shade::SceneDescription::labels) labels;
     nlohmann::ordered_json reports;  ///< of each object, for --stats
+    /// How many pictures a growing print makes, and what brings it to one of them; see TracePrintOptions::series.
+    std::size_t moments = 1;
+    std::function<void(std::size_t)> showMoment;
     /// Of each print that is sampled where rays come: what that took, to be asked when they have come.
     std::function<nlohmann::ordered_json()> on_demand;
     std::vector<std::string> lines;  ///< of each, for people

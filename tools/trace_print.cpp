@@ -30,6 +30,18 @@ void cut(std::vector<std::uint32_t>& selection, const std::string& printed, cons
         throw UsageError(fmt::format("--printed {}: nothing of what is selected is printed by then", printed));
 }
 
+// Equal steps of the extruded volume; the last one is all. Prints of few beads have fewer.
+std::vector<std::uint32_t> momentsOf(int series, const gcode::Toolpath& toolpath) {
+    std::vector<std::uint32_t> moments;
+    std::string steps;
+    for (int n = 1; n < series; ++n) steps += fmt::format("{}{:.9g}%", n > 1 ? "," : "", 100.0 * n / series);
+    if (!steps.empty())
+        for (const voxelize::Snapshot& step : voxelize::parseSnapshots(steps, toolpath))
+            moments.push_back(static_cast<std::uint32_t>(step.bead_count));
+    moments.push_back(static_cast<std::uint32_t>(toolpath.beads.size()));
+    return moments;
+}
+
 }  // namespace
 
 bool isVdbFile(const std::string& path) {
@@ -67,8 +79,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     if (lattice.half_width < kLeastHalfWidth)
         throw UsageError(fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",
                                      lattice.half_width, kLeastHalfWidth));
-    result.field =
-        std::make_shared<const ondemand::PrintField>(toolpath, selection, lattice, voxelize::Placement(), path);
+    result.field = std::make_shared<ondemand::PrintField>(toolpath, selection, lattice, voxelize::Placement(), path);
     result.report = {{"path", path},
                      {"bytes", bytes},
                      {"format", toolpath->format},
@@ -85,6 +96,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", path, selection.size(), toolpath->beads.size(),
                               lattice.voxel_size, lattice.reason);
     result.selection = std::move(selection);
+    result.moments = momentsOf(options.series, *toolpath);
     return result;
 }
 

@@ -18,11 +18,13 @@ namespace stratum::tools {
 struct TracePrintOptions {
     PrintOptions print;
     std::string printed;  ///< --printed: a cut as for --snapshots; empty: all of it
+    int series = 1;       ///< --progress-series: as many moments, the last one the end
     bool quiet = false;
 };
 
 struct TracedPrint {
-    std::shared_ptr<const ondemand::PrintField> field;
+    std::shared_ptr<ondemand::PrintField> field;
+    std::vector<std::uint32_t> moments;    ///< of the series: what lies before these beads is printed; the last is all
     std::vector<std::uint32_t> selection;  ///< its beads
     nlohmann::ordered_json report;         ///< for --stats
     std::string line;                      ///< for people

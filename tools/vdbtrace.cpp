@@ -201,6 +201,12 @@ void addOptions(CLI::App& app, Options& o) {
                    "G-code: what is printed by then: 25%, layer:40, or time:90 (minutes of extruding)")
         ->type_name("WHEN")
         ->group("What to convert");
+    app.add_option("--progress-series", o.prints.series,
+                   "G-code: N numbered pictures of a print that grows by equal volumes, one camera for all")
+        ->check(CLI::Range(1, 100000))
+        ->excludes("--printed")
+        ->type_name("N")
+        ->group("What to convert");
     tools::addCommonOptions(
         app, o.common,
         {"--output",  "--size",    "--spp",       "--noise",      "--denoise", "--view",     "--eye",
@@ -393,7 +399,8 @@ void run(Options& o, int argc, char** argv) {
     const bool linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     if (!o.render.aovs.empty() && !linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
-    if (!o.render.checkpoint.empty() && o.inputs.size() * static_cast<std::size_t>(o.turntable) > 1)
+    if (!o.render.checkpoint.empty() &&
+        (o.prints.series > 1 || o.inputs.size() * static_cast<std::size_t>(o.turntable) > 1))
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (o.denoise) shade::addDenoisingGuides(o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
@@ -408,7 +415,6 @@ void run(Options& o, int argc, char** argv) {
             reading.labels.push_back(label);
     }
     const auto turns = static_cast<std::size_t>(o.turntable);
-    const std::size_t count = o.inputs.size() * turns;
     std::optional<shade::SceneDescription> scene;
     glm::dvec3 middle(0.0);
     Json reports = Json::array();
@@ -421,7 +427,12 @@ void run(Options& o, int argc, char** argv) {
             wanted.back().grid = o.grid;
             wanted.back().up = o.file_up;
         }
+        if (o.prints.series > 1 && o.inputs.size() * wanted.size() > 1)
+            throw UsageError("--progress-series is of one print alone");
         const tools::TraceObjects objects = tools::readTraceObjects(wanted, reading);
+        if (o.prints.series > 1 && !objects.showMoment)
+            throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
+        const std::size_t count = o.inputs.size() * objects.moments * turns;
         for (const std::string& line : objects.lines) tools::say(o.common, line);
         tools::Stopwatch watch;
         if (!scene) {
@@ -436,17 +447,27 @@ void run(Options& o, int argc, char** argv) {
         }
         scene->objects = objects.materials;
         scene->labels = objects.labels;
-        const double scene_seconds = watch.lap();
-        for (std::size_t turn = 0; turn < turns; ++turn) {
-            shade::SceneDescription view = *scene;
-            if (turn > 0)
-                view.camera =
-                    scene->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle);
-            reports.push_back(
-                renderFrame(o,
-                            {fs::path(o.inputs[n]).filename().string(), numbered(o.output, n * turns + turn, count),
-                             objects.load_seconds, objects.build_seconds + scene_seconds},
-                            objects, view, limit.threads()));
+        double before_seconds = watch.lap();
+        // From the whole print down to its first part: what one picture has made, the next one mostly keeps.
+        for (std::size_t moment = objects.moments; moment-- > 0;) {
+            if (moment + 1 < objects.moments) {
+                objects.showMoment(moment);
+                before_seconds = watch.lap();
+            }
+            const bool first = moment + 1 == objects.moments;
+            for (std::size_t turn = 0; turn < turns; ++turn) {
+                shade::SceneDescription view = *scene;
+                if (turn > 0)
+                    view.camera =
+                        scene->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle);
+                reports.push_back(renderFrame(
+                    o,
+                    {fs::path(o.inputs[n]).filename().string(),
+                     numbered(o.output, (n * objects.moments + moment) * turns + turn, count),
+                     first ? objects.load_seconds : 0.0, (first ? objects.build_seconds : 0.0) + before_seconds},
+                    objects, view, limit.threads()));
+                watch.lap();
+            }
         }
     }
     tools::writeStats(o.common, reports.size() == 1 ? reports.front() : reports);

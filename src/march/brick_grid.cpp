@@ -80,6 +80,13 @@ public:
                                                      : layOutAll(x, y, z, grid_.quanta_.data(), quanta_caches_.local());
     }
 
+    // What it remembers of leaves is no longer so.
+    void forgetLeaves() const {
+        float_caches_.clear();
+        quanta_caches_.clear();
+    }
+    const LeafField* field() const { return field_.get(); }
+
 private:
     template <typename T>
     void layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
@@ -87,7 +94,7 @@ private:
         const CellBits surface = surfaceOf(parts);
         std::uint32_t slot = kNoSamples;
         if (hasAny(surface)) {
-            slot = grid_.used_.fetch_add(1, std::memory_order_relaxed) + 1;
+            slot = grid_.takeSlot();
             march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
         }
         for (std::size_t part = 0; part < surface.size(); ++part)
@@ -242,6 +249,44 @@ void BrickGrid::require(std::size_t brick, int x, int y, int z) const {
 std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
     require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge);
     return surface(brick, part);
+}
+
+// A new one, or that of a brick that was forgotten.
+std::uint32_t BrickGrid::takeSlot() const {
+    if (free_taken_.load(std::memory_order_relaxed) < free_.size()) {
+        const std::size_t next = free_taken_.fetch_add(1, std::memory_order_relaxed);
+        if (next < free_.size()) return free_[next];
+    }
+    return used_.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
+void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
+    const LeafField& field = *layouter_->field();
+    const BrickMap& map = field.bricks();
+    layouter_->forgetLeaves();
+    free_.erase(free_.begin(), free_.begin() + static_cast<std::ptrdiff_t>(freeTaken()));
+    free_taken_ = 0;
+    for (const openvdb::Coord& leaf : leaves)
+        for (int part = 0; part < 8; ++part) {
+            // The leaf's own brick, and those before it that take its first samples.
+            const openvdb::Coord at =
+                (leaf - origin_)
+                    .offsetBy(-(part >> 2) * kBrickEdge, -(part >> 1 & 1) * kBrickEdge, -(part & 1) * kBrickEdge);
+            if (at[0] < 0 || at[1] < 0 || at[2] < 0 || at[0] >= size_[0] || at[1] >= size_[1] || at[2] >= size_[2])
+                continue;
+            const std::size_t n = macroIndex(at[0] / kMacroEdge, at[1] / kMacroEdge, at[2] / kMacroEdge);
+            MacroCell macro = macro_cells_[n];
+            macro.bricks = map.masks[n];  // also if it isn't shown
+            const int b[3] = {at[0] / kBrickEdge & 3, at[1] / kBrickEdge & 3, at[2] / kBrickEdge & 3};
+            if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
+            const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
+            if (slots_[brick] == 0) continue;
+            if (slots_[brick] != kNoSamples) free_.push_back(slots_[brick]);
+            slots_[brick] = 0;
+            clear_[brick] = {};
+        }
+    for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = field.shows(n) ? map.masks[n] : 0;
+    measureEmptySpace();
 }
 
 // Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.

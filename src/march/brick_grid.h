@@ -18,6 +18,7 @@
 #include <openvdb/openvdb.h>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -25,6 +26,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace stratum::march {
@@ -89,6 +91,11 @@ public:
         return macro.first_brick + static_cast<std::size_t>(std::popcount(macro.bricks & before));
     }
 
+    /// For a field that has changed: forgets the bricks that have samples of these leaves (index-space coordinates of
+    /// their first samples), and asks which macro cells it shows now. All others stay as they are. Not while rays are
+    /// traced.
+    void update(std::span<const openvdb::Coord> leaves);
+
     /// Whether bricks are laid out as they are asked for.
     bool late() const { return layouter_ != nullptr; }
     /// Lays out the brick at this place, unless it is. From any thread.
@@ -125,7 +132,7 @@ public:
     /// Bricks that have an index.
     std::size_t listedCount() const { return listed_; }
     /// Bricks with surface that are laid out.
-    std::size_t brickCount() const { return used_.load(std::memory_order_relaxed); }
+    std::size_t brickCount() const { return slotsTaken() - (free_.size() - freeTaken()); }
     /// Memory taken for all.
     std::size_t bytes() const;
 
@@ -145,6 +152,9 @@ private:
     void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
     void countBricks(bool late);
     void measureEmptySpace();
+    std::uint32_t takeSlot() const;
+    std::size_t slotsTaken() const { return used_.load(std::memory_order_relaxed); }
+    std::size_t freeTaken() const { return std::min(free_taken_.load(std::memory_order_relaxed), free_.size()); }
 
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};
@@ -159,6 +169,8 @@ private:
     mutable HugeArray<float> floats_;
     mutable HugeArray<std::int16_t> quanta_;
     mutable std::atomic<std::uint32_t> used_{0};
+    std::vector<std::uint32_t> free_;  // slots of forgotten bricks; the first free_taken_ are in use again
+    mutable std::atomic<std::size_t> free_taken_{0};
     std::unique_ptr<const Layouter> layouter_;
 };
 

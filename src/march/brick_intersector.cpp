@@ -96,6 +96,7 @@ public:
     }
     std::size_t bytes() const override { return bricks_.bytes(); }
     const BrickGrid& bricks() const { return bricks_; }
+    BrickGrid& bricks() { return bricks_; }
 
 private:
     BrickGrid bricks_;
@@ -126,6 +127,11 @@ std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFiel
 
 const BrickGrid* bricksOf(const Intersector& intersector) {
     const auto* bricks = dynamic_cast<const BrickIntersector*>(&intersector);
+    return bricks != nullptr ? &bricks->bricks() : nullptr;
+}
+
+BrickGrid* bricksOf(Intersector& intersector) {
+    auto* bricks = dynamic_cast<BrickIntersector*>(&intersector);
     return bricks != nullptr ? &bricks->bricks() : nullptr;
 }
 

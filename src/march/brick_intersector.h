@@ -28,5 +28,6 @@ std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFiel
 class BrickGrid;
 /// The bricks of an intersector made above; null for others.
 const BrickGrid* bricksOf(const Intersector& intersector);
+BrickGrid* bricksOf(Intersector& intersector);
 
 }  // namespace stratum::march

@@ -26,6 +26,11 @@ public:
     /// Every brick with a surface cell is among these, others may be. Its box is that of the leaves with active voxels,
     /// widened to macro cells, so that rays are clipped as in a grid.
     virtual const BrickMap& bricks() const = 0;
+    /// Whether anything of this macro cell of bricks() may be there as the field is now; see BrickGrid::update().
+    virtual bool shows(std::size_t macro) const {
+        (void)macro;
+        return true;
+    }
     /// The samples of the leaf from this index-space coordinate (multiples of 8) in world units, x slowest, z fastest,
     /// written to `scratch`, which has room for 512. Null if all of them are `background()`.
     virtual const float* samples(const openvdb::Coord& origin, float* scratch) const = 0;

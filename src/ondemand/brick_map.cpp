@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -26,11 +27,12 @@ using Run = std::pair<int, int>;
 
 class Mapper {
 public:
-    Mapper(const PrintLayout& layout, const openvdb::CoordBBox& active, march::BrickMap& map)
+    Mapper(const PrintLayout& layout, const openvdb::CoordBBox& active, PrintMap& result)
         : layout_(layout),
-          map_(map),
-          low_((active.min() & ~(kBrick - 1)) - map.origin),
-          high_((active.max() & ~(kBrick - 1)) - map.origin),
+          map_(result.bricks),
+          first_bead_(result.first_bead),
+          low_((active.min() & ~(kBrick - 1)) - map_.origin),
+          high_((active.max() & ~(kBrick - 1)) - map_.origin),
           // The samples of a brick are nine along each axis: those of its cells' corners.
           footprints_(*layout.toolpath, kBrick * layout.lattice.voxel_size, 0.5 * kBrick * layout.lattice.voxel_size,
                       kSlack * layout.lattice.voxel_size) {
@@ -38,8 +40,8 @@ public:
             low_[axis] /= kBrick;
             high_[axis] /= kBrick;
         }
-        first_i_ = map.origin[0] / kBrick;
-        first_j_ = map.origin[1] / kBrick;
+        first_i_ = map_.origin[0] / kBrick;
+        first_j_ = map_.origin[1] / kBrick;
     }
 
     // Beads by the macro slabs across z that they reach: layers' beads are a run of ranks each, direct beads are
@@ -63,26 +65,34 @@ public:
         const auto columns_j = static_cast<std::size_t>(map_.macros[1]);
         // Apart from the map, where slabs of other threads lie beside these words.
         std::vector<std::uint64_t> words(columns_i * columns_j);
+        std::vector<std::uint32_t> firsts(words.size(), std::numeric_limits<std::uint32_t>::max());
         for (const Part& part : slabs_[slab]) {
             const int base = static_cast<int>(slab) * kBricks;
             std::uint64_t z = 0;
             for (int k = std::max(part.run.first - base, 0); k <= std::min(part.run.second - base, kBricks - 1); ++k)
                 z |= std::uint64_t{1} << k;
             for (std::uint32_t rank = part.first; rank != part.last; ++rank) {
-                const gcode::Bead& bead = layout_.toolpath->beads[layout_.stack.beads[rank]];
+                const std::uint32_t index = layout_.stack.beads[rank];
+                const gcode::Bead& bead = layout_.toolpath->beads[index];
                 footprints_.forEachColumn(bead, [&](int i0, int i1, int j) {
                     const int y = j - first_j_;
                     if (y < low_[1] || y > high_[1]) return;
                     const std::uint64_t row = z << ((y & 3) << 2);
                     const int x1 = std::min(i1 - first_i_, high_[0]);
-                    for (int x = std::max(i0 - first_i_, low_[0]); x <= x1; ++x)
-                        words[static_cast<std::size_t>(x >> 2) * columns_j + static_cast<std::size_t>(y >> 2)] |=
-                            row << ((x & 3) << 4);
+                    for (int x = std::max(i0 - first_i_, low_[0]); x <= x1; ++x) {
+                        const std::size_t word =
+                            static_cast<std::size_t>(x >> 2) * columns_j + static_cast<std::size_t>(y >> 2);
+                        words[word] |= row << ((x & 3) << 4);
+                        firsts[word] = std::min(firsts[word], index);
+                    }
                 });
             }
         }
         const auto slabs = static_cast<std::size_t>(map_.macros[2]);
-        for (std::size_t n = 0; n < words.size(); ++n) map_.masks[n * slabs + slab] = words[n];
+        for (std::size_t n = 0; n < words.size(); ++n) {
+            map_.masks[n * slabs + slab] = words[n];
+            first_bead_[n * slabs + slab] = firsts[n];
+        }
     }
 
 private:
@@ -110,6 +120,7 @@ private:
 
     const PrintLayout& layout_;
     march::BrickMap& map_;
+    std::vector<std::uint32_t>& first_bead_;
     openvdb::Coord low_, high_;  // bricks with active voxels, from the map's origin
     const voxelize::Footprints footprints_;
     int first_i_ = 0, first_j_ = 0;
@@ -118,8 +129,9 @@ private:
 
 }  // namespace
 
-march::BrickMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) {
-    march::BrickMap map;
+PrintMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) {
+    PrintMap result;
+    march::BrickMap& map = result.bricks;
     map.origin = active.min() & ~(kMacro - 1);
     double macros = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -134,12 +146,13 @@ march::BrickMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& a
                         "laid out for rays; choose a larger voxel",
                         layout.lattice.voxel_size, macros));
     map.masks.resize(static_cast<std::size_t>(macros));
-    Mapper mapper(layout, active, map);
+    result.first_bead.resize(map.masks.size());
+    Mapper mapper(layout, active, result);
     mapper.listSlabs();
     parallelFor(static_cast<std::size_t>(map.macros[2]), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t slab = first; slab != last; ++slab) mapper.mapSlab(slab);
     });
-    return map;
+    return result;
 }
 
 }  // namespace stratum::ondemand

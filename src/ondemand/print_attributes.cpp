@@ -98,7 +98,7 @@ private:
     void fill(Owned& leaf, const openvdb::Coord& origin) {
         leaf.origin = openvdb::Coord::max();  // in case that making throws
         leaf.active = {};
-        if (maker_.make(origin, kEnd) == voxelize::LeafContent::surface) {
+        if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
             std::array<float, voxelize::Leaf::SIZE> values;
             voxelize::storeLeaf(maker_.column().planes(), field_.background(), values.data(), leaf.active.data());
             maker_.column().owners(leaf.bead);

@@ -1,12 +1,13 @@
 #include "ondemand/print_field.h"
 
 #include "ondemand/active_box.h"
-#include "ondemand/brick_map.h"
+#include "voxelize/footprint.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <chrono>
-#include <limits>
+#include <cmath>
 #include <utility>
 
 namespace stratum::ondemand {
@@ -54,14 +55,53 @@ PrintField::~PrintField() = default;
 const float* PrintField::samples(const openvdb::Coord& origin, float* scratch) const {
     Worker& worker = threads_->workers.local();
     ++worker.made;
-    const voxelize::LeafContent content = worker.maker.make(origin, std::numeric_limits<std::uint32_t>::max());
+    const voxelize::LeafContent content = worker.maker.make(origin, end_);
     if (content == voxelize::LeafContent::outside) return nullptr;
     std::uint64_t mask[voxelize::Leaf::NodeMaskType::WORD_COUNT];
     voxelize::storeLeaf(worker.maker.column().planes(), background_, scratch, mask);
     return scratch;
 }
 
-std::size_t PrintField::bytes() const { return layout_.bytes() + map_.masks.size() * sizeof(std::uint64_t); }
+std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
+    const std::uint32_t from = std::min(end, end_);
+    const std::uint32_t to = std::max(end, end_);
+    end_ = end;
+    const voxelize::LayerStack& stack = layout_.stack;
+    const voxelize::Lattice& lattice = layout_.lattice;
+    const double h = lattice.voxel_size;
+    constexpr int kDim = voxelize::kLeafDim;
+    const voxelize::Footprints footprints(*layout_.toolpath, kDim * h, 0.5 * (kDim - 1) * h, lattice.background());
+    const auto leafOf = [&](double z) { return static_cast<int>(std::floor((z - lattice.origin_z) / (kDim * h))); };
+    std::vector<openvdb::Coord> leaves;
+    for (std::uint32_t rank = 0; rank < stack.beads.size(); ++rank) {
+        const std::uint32_t bead = stack.beads[rank];
+        if (bead < from || bead >= to) continue;
+        double z_min = 0;
+        double z_max = 0;
+        if (rank >= stack.first_direct) {
+            const PrintLayout::Extent& extent = layout_.direct[rank - stack.first_direct];
+            z_min = extent.z_min;
+            z_max = extent.z_max;
+        } else {
+            // A bead can weld what lies below it: as far as LeafColumn::touched() says.
+            const voxelize::Layer& layer = stack.layers[stack.layer[rank]];
+            const double reach = layer.radius * (1 + 2 * voxelize::kWeldGap) + lattice.background();
+            z_min = layer.centre_z - reach;
+            z_max = layer.centre_z + reach;
+        }
+        footprints.forEachColumn(layout_.toolpath->beads[bead], [&](int i0, int i1, int j) {
+            for (int i = i0; i <= i1; ++i)
+                for (int k = leafOf(z_min); k <= leafOf(z_max); ++k) leaves.emplace_back(i * kDim, j * kDim, k * kDim);
+        });
+    }
+    std::sort(leaves.begin(), leaves.end());
+    leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+    return leaves;
+}
+
+std::size_t PrintField::bytes() const {
+    return layout_.bytes() + map_.bricks.masks.size() * (sizeof(std::uint64_t) + sizeof(std::uint32_t));
+}
 
 std::size_t PrintField::leavesMade() const {
     std::size_t made = 0;

@@ -3,15 +3,18 @@
 
 #include "gcode/toolpath.h"
 #include "march/leaf_field.h"
+#include "ondemand/brick_map.h"
 #include "ondemand/print_layout.h"
 #include "voxelize/placement.h"
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace stratum::ondemand {
 
@@ -32,7 +35,14 @@ public:
     PrintField(const PrintField&) = delete;
     PrintField& operator=(const PrintField&) = delete;
 
-    const march::BrickMap& bricks() const override { return map_; }
+    /// Brings the print to what the selected beads before index `end` of the toolpath have made of it, and returns the
+    /// leaves whose samples may have changed by that: ascending, each once. Its box and its bricks stay those of the
+    /// whole selection. Not while rays are traced; see march::BrickGrid::update().
+    std::vector<openvdb::Coord> printUntil(std::uint32_t end);
+    std::uint32_t printed() const { return end_; }
+
+    const march::BrickMap& bricks() const override { return map_.bricks; }
+    bool shows(std::size_t macro) const override { return map_.first_bead[macro] < end_; }
     const float* samples(const openvdb::Coord& origin, float* scratch) const override;
     float background() const override { return background_; }
     const openvdb::math::Transform& transform() const override { return *transform_; }
@@ -55,7 +65,8 @@ private:
     const float background_;
     const std::string name_;
     openvdb::CoordBBox active_;
-    march::BrickMap map_;
+    PrintMap map_;
+    std::uint32_t end_ = std::numeric_limits<std::uint32_t>::max();
     const std::unique_ptr<Threads> threads_;
 };
 

@@ -94,6 +94,21 @@ check(0 < took["bricks_made"] <= took["bricks_listed"], "--stats counts bricks")
 check(took["leaves_made"] > 0 and took["brick_bytes"] > 0, "--stats counts leaves and bytes")
 check(stats["input"]["voxel_size_mm"] > 0 and stats["input"]["choice"] != "", "--stats has the voxel size and why")
 
+# --- a print that grows: the same as each moment alone, under a camera that doesn't depend on it ---------------------------
+VIEW = ["--eye", "150,-160,120", "--look-at", "100,100,5", "--no-bed", "--spp", "1", *TWO]
+done = call(VDBTRACE, "part", "-o", path("film.png"), *SMALL, *VIEW, "--progress-series", "4", "--stats", "-")
+check(done.returncode == 0, f"a series: {done.stderr.strip()}")
+frames = json.loads(done.stdout)
+check([frame["output"].endswith(f"film_{3 - n:03}.png") for n, frame in enumerate(frames)] == [True] * 4, "numbered")
+sizes = [frame["on_demand"][0]["printed_beads"] for frame in frames]
+check(sizes == sorted(sizes, reverse=True) and len(set(sizes)) == 4, f"every picture has fewer beads: {sizes}")
+for n, cut in enumerate(("25%", "50%", "75%")):
+    alone = picture("part", "alone.png", *VIEW, "--printed", cut)
+    with open(path(f"film_{n:03}.png"), "rb") as file:
+        check(file.read() == alone, f"picture {n} is that of {cut} alone")
+refused = call(VDBTRACE, "part", "part", "-o", path("refused.png"), *SMALL, "--progress-series", "4")
+check(refused.returncode == 2 and "one print" in refused.stderr, "a series of two prints is refused")
+
 # --- clear refusals -----------------------------------------------------------------------------------------------------
 for options, status, text in ((["--printed", "sometimes"], 2, "every:N"), (["--printed", "10%,20%"], 2, "one moment"),
                               (["--layers", "900:"], 3, "layers 1 to"), (["--half-width", "1"], 2, "half-width"),

@@ -171,6 +171,58 @@ TEST(PrintField, HasTheSamplesOfTheGridWhereverItIsPlaced) {
     expectSame(toolpath, test::allBeads(*toolpath), {0.1, std::nullopt}, placement);
 }
 
+// A print that grows and shrinks: what is kept and what is made again are the cells of the partial print's grid.
+TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
+    openvdb::initialize();
+    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear"));
+    const auto selection = voxelize::selectBeads(*toolpath, {});
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {std::nullopt, 2});
+    const auto field = std::make_shared<PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print");
+    march::BrickGrid late(std::shared_ptr<const march::LeafField>(field), march::BrickValues::Int16);
+    const auto whole = static_cast<std::uint32_t>(toolpath->beads.size());
+    std::size_t changed_before = 0;
+    for (const std::uint32_t end : {whole, whole / 2 + 7, whole / 2 + 8, whole / 3, whole}) {
+        SCOPED_TRACE(end);
+        const auto changed = field->printUntil(end);
+        late.update(changed);
+        if (end == whole / 2 + 8) {
+            // One bead.
+            EXPECT_GT(changed.size(), 0U);
+            EXPECT_LT(changed.size(), changed_before / 20);
+        }
+        changed_before = changed.size();
+        voxelize::Voxelizer voxelizer(*toolpath, selection, lattice);
+        const march::BrickGrid eager(*voxelizer.printUntil(end), march::BrickValues::Int16);
+        const openvdb::Coord shift = eager.origin() - late.origin();
+        std::atomic<std::size_t> wrong{0};
+        std::atomic<std::size_t> surface_cells{0};
+        parallelFor(static_cast<std::size_t>(late.size()[0]), 8, [&](std::size_t first, std::size_t last) {
+            for (int x = static_cast<int>(first); x != static_cast<int>(last); ++x)
+                for (int y = 0; y < late.size()[1]; ++y)
+                    for (int z = 0; z < late.size()[2]; ++z) {
+                        const march::Block b = findBlock(late, {x, y, z});
+                        const glm::ivec3 at(x - shift[0], y - shift[1], z - shift[2]);
+                        const bool within = at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < eager.size()[0] &&
+                                            at.y < eager.size()[1] && at.z < eager.size()[2];
+                        const march::Block a = within ? findBlock(eager, at) : march::Block{b.low, b.high, 0, false};
+                        if (a.surface != b.surface) ++wrong;
+                        if (!a.surface || !b.surface) {
+                            if (!a.surface && !b.surface)
+                                z = std::max(z, std::min(within ? a.high.z + shift[2] : b.high.z, b.high.z) - 1);
+                            continue;
+                        }
+                        ++surface_cells;
+                        if (cornersOf(eager, a.brick, at) != cornersOf(late, b.brick, {x, y, z})) ++wrong;
+                    }
+        });
+        EXPECT_EQ(wrong.load(), 0U);
+        EXPECT_GT(surface_cells.load(), 1000U);
+        EXPECT_EQ(late.brickCount(), eager.brickCount());
+    }
+}
+
 TEST(PrintField, ListsFewBricksWithoutSurface) {
     const auto toolpath = tangle(2);
     const std::vector<std::uint32_t> selection = test::allBeads(*toolpath);
