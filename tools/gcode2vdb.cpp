@@ -14,7 +14,10 @@
 #include "voxelize/enclosed_volume.h"
 #include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"
+#include "voxelize/mesh_file.h"
 #include "voxelize/selection.h"
+#include "voxelize/surface_mesh.h"
+#include "voxelize/usd_file.h"
 #include "voxelize/vdb_file.h"
 #include "voxelize/voxelizer.h"
 
@@ -38,6 +41,7 @@ Examples:
   gcode2vdb part.gcode                              part.vdb, voxel size chosen from the layer height
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
+  gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
@@ -54,8 +58,10 @@ struct Options {
     std::string dump_toolpath;
     bool summary = false;
     tools::PrintOptions print;
-    std::string interior = "keep";
+    std::string interior;  // empty: what the output wants
+    double adaptivity = 0.05;
     bool interior_distance = false;
+    bool usda = false;
     std::string grids;
     std::string up = "z";
     std::string snapshots;
@@ -70,8 +76,9 @@ void addOptions(CLI::App& app, Options& o) {
                    "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
         ->required()
         ->type_name("FILE");
-    app.add_option("-o,--output", o.output, "The .vdb to write; a folder if there are several inputs")
-        ->type_name("OUT.vdb");
+    app.add_option("-o,--output", o.output,
+                   "A .vdb, or a mesh: .stl, .ply, .obj; a folder for .vdb files if there are several inputs")
+        ->type_name("FILE");
     tools::addPrintOptions(app, o.print);
     const char* lattice = "Lattice";
     app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
@@ -87,7 +94,9 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("AXIS")
         ->group(lattice);
     const char* what = "What to convert";
-    app.add_option("--interior", o.interior, "keep all inner surfaces, or cull what no outside point can reach")
+    app.add_option(
+           "--interior", o.interior,
+           "keep all inner surfaces (the default for .vdb), or cull what no outside point can reach (for meshes)")
         ->check(CLI::IsMember({"keep", "cull"}))
         ->type_name("HOW")
         ->group(what);
@@ -113,6 +122,12 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
         ->transform(CLI::CheckedTransformer(compressions).description(""))
         ->type_name("KIND")
+        ->group(writing);
+    app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
+        ->group(writing);
+    app.add_option("--adaptivity", o.adaptivity, "Meshes: 0 keeps all faces, 0.5 merges many (default 0.05)")
+        ->check(CLI::Range(0.0, 0.5))
+        ->type_name("A")
         ->group(writing);
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
@@ -205,6 +220,13 @@ Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid
             {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
 }
 
+Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
+    return {{"vertices", mesh.points.size()},
+            {"triangles", mesh.triangleCount()},
+            {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
+}
+
 Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
     tools::Stopwatch total;
     tools::Stopwatch watch;
@@ -232,7 +254,9 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, tools::selectionOf(o.print, toolpath));
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
-    const auto interior = o.interior == "cull" ? voxelize::Interior::cull : voxelize::Interior::keep;
+    const bool as_mesh = voxelize::isMeshPath(output);
+    const auto interior =
+        o.interior == "cull" || (o.interior.empty() && as_mesh) ? voxelize::Interior::cull : voxelize::Interior::keep;
     const std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
     const voxelize::Lattice lattice = tools::latticeFor(o.print, toolpath, selection, bounds, interior);
     tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
@@ -257,6 +281,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     voxelize::Voxelizer voxelizer(toolpath, selection, lattice, options);
     double voxelize_seconds = watch.lap();
     double cull_seconds = 0;
+    double mesh_seconds = 0;
     double write_seconds = 0;
     Json files = Json::array();
     Json grid_report;
@@ -272,9 +297,20 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         voxelize_seconds += watch.lap();
         cull_seconds += voxelizer.report().exterior_seconds;
         provenance.snapshot = job.label;
-        voxelize::describe(*grid, lattice, provenance);
-        grids.insert(grids.begin(), grid);
-        voxelize::writeVdb(grids, job.path, o.file);
+        std::optional<voxelize::SurfaceMesh> mesh;
+        if (as_mesh) {
+            mesh = voxelize::meshSurface(*grid, {provenance.culled, o.adaptivity});
+            mesh_seconds += watch.lap();
+            voxelize::writeMesh(*mesh, job.path);
+        } else {
+            voxelize::describe(*grid, lattice, provenance);
+            grids.insert(grids.begin(), grid);
+            voxelize::writeVdb(grids, job.path, o.file);
+            if (o.usda) {
+                const fs::path scene = fs::path(job.path).replace_extension(".usda");
+                voxelize::writeUsda(grids, job.path, scene, {0.001 / kUnits.at(o.unit), o.up == "y"});
+            }
+        }
         write_seconds += watch.lap();
         const auto bytes = fs::file_size(job.path);
         files.push_back({{"path", job.path.string()},
@@ -284,10 +320,14 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                          {"active_voxels", grid->activeVoxelCount()},
                          {"leaves_evaluated", voxelizer.report().leaves_evaluated},
                          {"leaves_reused", voxelizer.report().leaves_reused}});
+        if (mesh) files.back()["mesh"] = describeMesh(*mesh, *grid, lattice);
         tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
                                          tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
                                          tools::humanBytes(static_cast<double>(bytes))));
+        if (mesh)
+            tools::say(o.common,
+                       fmt::format("  {} triangles", tools::humanCount(static_cast<double>(mesh->triangleCount()))));
         // Counting the enclosed volume reads every leaf once more: only for a report.
         if (!o.common.stats.empty() && job.label.empty()) {
             grid_report = describeGrid(*grid, lattice);
@@ -336,6 +376,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
              {{"parse", parse_seconds},
               {"cull", cull_seconds},
               {"voxelize", voxelize_seconds - cull_seconds},
+              {"mesh", mesh_seconds},
               {"write", write_seconds},
               {"total", total_seconds}}},
             {"peak_rss_bytes", tools::peakRssBytes()},
@@ -356,8 +397,13 @@ void run(const Options& o) {
     if (o.inputs.size() == 1) {
         fs::path output = o.output;
         if (output.empty()) output = outputName(o.inputs.front());
-        if (output.extension() != ".vdb")
-            throw UsageError(fmt::format("-o {}: the name must end in .vdb", output.string()));
+        const bool mesh = voxelize::isMeshPath(output);
+        if (!mesh && output.extension() != ".vdb")
+            throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
+        if (mesh && o.usda)
+            throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
+        if (mesh && !o.grids.empty())
+            throw UsageError(fmt::format("--grids: a mesh has no voxels; write a .vdb, not {}", output.string()));
         tools::writeStats(o.common, convert(o, o.inputs.front(), output, limit.threads()));
         return;
     }

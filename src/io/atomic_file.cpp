@@ -88,6 +88,9 @@ void AtomicFile::commit() {
     const bool flushed = fd >= 0 && ::fsync(fd) == 0;
     const int error = errno;
     if (fd >= 0) ::close(fd);
+    if (!flushed && error == ENOENT)
+        throw OutputError(fmt::format("{}: its folder vanished while it was written; make it again and start anew",
+                                      destination_.string()));
     if (!flushed)
         throw OutputError(fmt::format("{}: could not be flushed to the disk ({}); is the disk full?",
                                       destination_.string(), std::strerror(error)));
@@ -99,7 +102,7 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::removeOnSignals() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGXFSZ}) {
         struct sigaction action {};
         action.sa_handler = removeAndDie;
         ::sigaction(signal, &action, nullptr);

@@ -21,7 +21,8 @@ public:
     /// Flushes the temporary to the disk and renames it. Throws OutputError.
     void commit();
 
-    /// Makes SIGINT, SIGTERM and SIGHUP remove the temporaries under way before the process ends by that signal.
+    /// Makes SIGINT, SIGTERM, SIGHUP, SIGPIPE and those of exceeded limits remove the temporaries under way before the
+    /// process ends by that signal; a shell then sees 128 plus its number, 130 for SIGINT.
     static void removeOnSignals();
 
 private:
