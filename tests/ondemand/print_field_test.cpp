@@ -4,6 +4,7 @@
 #include "gcode/reader.h"
 #include "io/mapped_file.h"
 #include "march/brick_grid.h"
+#include "march/brick_intersector.h"
 #include "march/brick_walk.h"
 #include "parallel/parallel_for.h"
 #include "toolpaths.h"
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <random>
@@ -221,6 +223,46 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
         EXPECT_GT(surface_cells.load(), 1000U);
         EXPECT_EQ(late.brickCount(), eager.brickCount());
     }
+}
+
+// All threads at the same bricks at once: the grid's hits, bit for bit, and each brick made once.
+TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
+    const auto toolpath = tangle(2);
+    const std::vector<std::uint32_t> selection = test::allBeads(*toolpath);
+    openvdb::initialize();
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
+    const auto grid = voxelize::voxelize(*toolpath, selection, lattice);
+    const auto eager = march::makeBrickIntersector(*grid);
+    const std::unique_ptr<march::Intersector> late = march::makeBrickIntersector(
+        std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"));
+    ASSERT_EQ(late->bounds().min, eager->bounds().min);
+    ASSERT_EQ(late->bounds().max, eager->bounds().max);
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<march::Ray> rays(2000);
+    for (march::Ray& ray : rays) {
+        ray.origin = {3 * normal(random), 3 * normal(random), 1.2 + normal(random)};
+        const glm::dvec3 way(normal(random), normal(random), normal(random));
+        ray.direction = way / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+    }
+    std::vector<march::Hit> expected(rays.size());
+    eager->makeTracer()->intersectStream(rays, expected);
+    std::atomic<std::size_t> wrong{0};
+    std::atomic<std::size_t> hits{0};
+    parallelFor(8, 1, [&](std::size_t, std::size_t) {
+        std::vector<march::Hit> found(rays.size());
+        late->makeTracer()->intersectStream(rays, found);
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            if (found[n].t != expected[n].t) ++wrong;
+            if (!std::isfinite(found[n].t)) continue;
+            ++hits;
+            if (found[n].normal != expected[n].normal) ++wrong;
+        }
+    });
+    EXPECT_EQ(wrong.load(), 0U);
+    EXPECT_GT(hits.load(), 1000U);
+    EXPECT_LE(march::bricksOf(*late)->brickCount(), march::bricksOf(*eager)->brickCount());
 }
 
 TEST(PrintField, ListsFewBricksWithoutSurface) {
