@@ -208,10 +208,9 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("N")
         ->group("What to convert");
     tools::addCommonOptions(
-        app, o.common,
-        {"--output",  "--size",    "--spp",       "--noise",      "--denoise", "--view",     "--eye",
-         "--look-at", "--fov",     "--turntable", "--integrator", "--brdf",    "--color-by", "--env",
-         "--bed",     "--threads", "--stats",     "--quiet",      "--version", "--help",     "--help-all"});
+        app, o.common, {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
+                        "--look-at", "--turntable", "--integrator", "--brdf",    "--color-by", "--env",     "--bed",
+                        "--threads", "--stats",     "--quiet",      "--version", "--help",     "--help-all"});
     app.footer(kExamples);
 }
 

@@ -5,7 +5,19 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 namespace stratum::voxelize {
+namespace {
+
+// openvdb::io::File writes the same bytes, but to a stream of its own whose failures it doesn't look at: on a full disk
+// half a file would pass for a whole one.
+class CheckedArchive : public openvdb::io::Archive {
+public:
+    void writeTo(std::ostream& stream, const openvdb::GridPtrVec& grids) const { write(stream, grids, true); }
+};
+
+}  // namespace
 
 void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance& provenance) {
     const auto text = [&grid](const char* name, const std::string& value) {
@@ -37,16 +49,18 @@ void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& pat
     AtomicFile output(path);
     for (const openvdb::GridBase::Ptr& grid : grids) grid->setSaveFloatAsHalf(options.half);
     try {
-        openvdb::io::File file(output.temporary().string());
+        CheckedArchive archive;
         std::uint32_t flags = openvdb::io::COMPRESS_NONE;
         // The active mask says which voxels differ from the background; the rest need no bytes.
         if (options.compression == Compression::blosc)
             flags = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
         if (options.compression == Compression::zip)
             flags = openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK;
-        file.setCompression(flags);
-        file.write(grids);
-        file.close();
+        archive.setCompression(flags);
+        std::ofstream stream(output.temporary(), std::ios::binary);
+        archive.writeTo(stream, grids);
+        stream.close();
+        if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
     } catch (const openvdb::Exception& error) {
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
     }
