@@ -7,6 +7,7 @@
 #include "study/memory.h"
 #include "study/need.h"
 #include "study/render.h"
+#include "study/seeds.h"
 #include "study/stability.h"
 
 #include <fmt/format.h>
@@ -31,7 +32,9 @@ Examples:
   vdbstudy geometry part.gcode -o studies --layers 1:20
   vdbstudy stability -o studies                     a hundred cases that could go wrong
   vdbstudy render part.gcode -o studies             error of pictures against run time
-  vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost)";
+  vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost
+  vdbstudy seeds --scenes data/scenes/*.json -o studies
+  vdbstudy seeds prints/ -o studies                 level sets beside beads and prisms)";
 
 struct Options {
     tools::CommonOptions common;
@@ -40,6 +43,7 @@ struct Options {
     study::GeometryOptions geometry;
     study::NeedOptions need;
     study::RenderStudyOptions render;
+    study::SeedsOptions seeds;
 };
 
 // A verb, and the study that it asks for.
@@ -103,6 +107,18 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
     verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
+    CLI::App* seeds = addVerb(app, o, "seeds", "Level sets and formulas beside polygons and beads: the two theses");
+    seeds->add_option("PRINT", o.seeds.prints, "Prints, or folders of them")->type_name("FILE.gcode|DIR");
+    seeds->add_option("--scenes", o.seeds.scenes, "Scenes of spheres, boxes and cylinders")->type_name("SCENE.json");
+    seeds->add_option("--env", o.seeds.environment, "Light of the prints, as vdbtrace takes it (default studio)")
+        ->type_name("SPEC|FILE");
+    seeds->add_option("--spp", o.seeds.spp, "Samples a pixel of the prints (default 32)")
+        ->check(CLI::Range(1, 65536))
+        ->type_name("N");
+    seeds->add_option("--frames", o.seeds.frames, "Of each scene (default 10)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    verbs.push_back({seeds, [&o] { return study::studySeeds(o.seeds, study::seedPeers(), o.study); }});
     return verbs;
 }
 

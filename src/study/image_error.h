@@ -12,6 +12,15 @@ namespace stratum::study {
 /// none. Linear values; films of one size (std::invalid_argument if not).
 double relativeSquaredError(const shade::Film& picture, const shade::Film& reference);
 
+/// Two kinds of pictures of one scene, each rendered twice with seeds of its own: how much of their difference is
+/// noise.
+struct Separated {
+    double noise = 0;  ///< relMSE of one picture of the first kind against its own limit
+    double bias = 0;   ///< relMSE between the limits of both kinds; unbiased, so it may come out a little below zero
+};
+/// The bias is the mean product of two independent differences: (a1 - b1)(a2 - b2) / (r^2 + 0.01), r the mean of all.
+Separated separateNoise(const shade::Film& a1, const shade::Film& a2, const shade::Film& b1, const shade::Film& b2);
+
 /// A picture as a screen shows it: sRGB-encoded values in [0, 1], row by row from the top. Not rounded to bytes.
 struct DisplayPicture {
     int width = 0, height = 0;

@@ -14,7 +14,6 @@
 #include "voxelize/voxelizer.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <unistd.h>
@@ -65,12 +64,6 @@ double availableBytes() {
     return static_cast<double>(::sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-std::size_t peakSoFar() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
 std::size_t writtenBytes(const openvdb::FloatGrid::Ptr& grid, const fs::path& path, bool half, double& seconds) {
     voxelize::FileOptions options;
     options.half = half;
@@ -89,12 +82,7 @@ std::string measure(const std::string& print, int count, Interior interior, cons
     const gcode::Toolpath toolpath = readPrint(print);
     const auto beads = voxelize::selectBeads(toolpath, {});
     const voxelize::Lattice lattice = latticeOf(toolpath, beads, count);
-    double part = 0;
-    for (const std::uint32_t index : beads) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        part += gcode::beadLength(toolpath, bead) *
-                gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
-    }
+    const double part = volumeOf(toolpath, beads);
     const double estimate = voxelize::estimateBytes(toolpath, beads, lattice, interior);
     const auto line = [](const Row& cells) {
         const std::string text = csvLine(cells);

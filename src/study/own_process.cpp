@@ -56,6 +56,12 @@ bool readUntil(int in, std::chrono::steady_clock::time_point end, std::string& t
 
 }  // namespace
 
+std::size_t peakSoFar() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
 Outcome inOwnProcess(const std::function<std::string()>& work, double seconds) {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error("the system gives no pipe");

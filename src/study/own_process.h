@@ -18,4 +18,7 @@ struct Outcome {
 /// if the system gives no process.
 Outcome inOwnProcess(const std::function<std::string()>& work, double seconds = 3600);
 
+/// Largest resident set of this process until now, bytes.
+std::size_t peakSoFar();
+
 }  // namespace stratum::study

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 namespace stratum::study {
@@ -25,6 +26,26 @@ TEST(RelativeSquaredError, IsItsFormula) {
     one.pixels()[5].rgb.g = 0.2f;
     EXPECT_NEAR(relativeSquaredError(one, filled(0.0f)), 4.0 / 36, 1e-6);
     EXPECT_THROW(relativeSquaredError(filled(1), filled(1, shade::FilmContent::radiance, 5)), std::invalid_argument);
+}
+
+// Known noise on two known grey pictures is told from the difference of the greys.
+TEST(SeparateNoise, FindsBoth) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    const auto noisy = [&](float mean, float deviation) {
+        shade::Film film = filled(mean, shade::FilmContent::radiance, 8000);
+        for (shade::Pixel& p : film.pixels())
+            for (int c = 0; c < 3; ++c) p.rgb[c] += deviation * normal(random);
+        return film;
+    };
+    const double scale = 1 / (0.5 * 0.5 + 0.01);
+    const Separated apart =
+        separateNoise(noisy(0.51f, 0.03f), noisy(0.51f, 0.03f), noisy(0.49f, 0.05f), noisy(0.49f, 0.05f));
+    EXPECT_NEAR(apart.noise, 0.0009 * scale, 0.0009 * scale * 0.05);
+    EXPECT_NEAR(apart.bias, 0.0004 * scale, 0.0004 * scale * 0.15);
+    const Separated same =
+        separateNoise(noisy(0.5f, 0.03f), noisy(0.5f, 0.03f), noisy(0.5f, 0.03f), noisy(0.5f, 0.03f));
+    EXPECT_NEAR(same.bias, 0, 0.00006 * scale);
 }
 
 TEST(Displayed, IsWhatThePngHoldsButForItsDither) {
