@@ -34,8 +34,9 @@ struct NormalBins {
     /// A normal of a bin.
     /// @param place  in the bin's square, [0, 1]^2
     static glm::vec3 normal(int bin, const glm::vec2& place) {
+        const int row = bin / kSide;
         const float x = 2.0f * (static_cast<float>(bin % kSide) + place.x) / kSide - 1.0f;
-        const float y = 2.0f * (static_cast<float>(bin / kSide) + place.y) / kSide - 1.0f;
+        const float y = 2.0f * (static_cast<float>(row) + place.y) / kSide - 1.0f;
         const float z = 1.0f - std::abs(x) - std::abs(y);
         if (z >= 0.0f) return glm::normalize(glm::vec3(x, y, z));
         return glm::normalize(glm::vec3(std::copysign(1.0f - std::abs(y), x), std::copysign(1.0f - std::abs(x), y), z));
