@@ -102,18 +102,20 @@ void BilinearDistribution::sumCells() {
 void BilinearDistribution::weighBlocks(const Direction& direction) {
     constexpr std::array<glm::vec2, 5> kInBin = {
         {{0.5f, 0.5f}, {0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}, {1.0f, 1.0f}}};
-    constexpr int kProbes = 3;  // of a block, each way; the outer ones on its edges
+    constexpr std::size_t kProbes = 3;  // of a block, each way; the outer ones on its edges
     // Nothing that may rise above some normal's horizon, between probes, is left without weight.
     constexpr float kBelowHorizon = 0.03f;
     std::vector<glm::vec3> probes;
     if (direction) {
         bins_ = NormalBins::kCount;
         for (std::size_t block = 0; block < block_weights_.size(); ++block) {
-            for (int p = 0; p < kProbes * kProbes; ++p) {
-                const double across = (p % kProbes) / (kProbes - 1.0);
-                const double down = (p / kProbes) / (kProbes - 1.0);
+            const std::size_t block_row = block / block_columns_;
+            for (std::size_t p = 0; p < kProbes * kProbes; ++p) {
+                const std::size_t probe_row = p / kProbes;
+                const double across = static_cast<double>(p % kProbes) / (kProbes - 1.0);
+                const double down = static_cast<double>(probe_row) / (kProbes - 1.0);
                 const double column = (static_cast<double>(block % block_columns_) + across) * double(side());
-                const double row = (static_cast<double>(block / block_columns_) + down) * double(side());
+                const double row = (static_cast<double>(block_row) + down) * double(side());
                 probes.push_back(direction({(column + 0.5) / columns_, std::clamp((row - 0.5) / rows_, 0.0, 1.0)}));
             }
         }

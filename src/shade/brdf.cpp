@@ -24,7 +24,7 @@ std::filesystem::path tableFolder() {
     // Installed, they stand where the program does, wherever the tree was moved to.
     std::error_code missing;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", missing);
-    const std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
+    std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
     if (std::filesystem::is_directory(installed, missing)) return installed;
     return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
 }
