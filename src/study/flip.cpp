@@ -95,12 +95,12 @@ Plane convolve(const Plane& in, int width, int height, const Kernel& along_x, co
             for (int y = static_cast<int>(first); y < static_cast<int>(last); ++y)
                 for (int x = 0; x < width; ++x) {
                     double sum = 0;
-                    for (int k = -radius; k <= radius; ++k) {
+                    for (std::size_t n = 0; n < kernel.size(); ++n) {
+                        const int k = static_cast<int>(n) - radius;
                         const int fx = rows ? std::clamp(x + k, 0, width - 1) : x;
                         const int fy = rows ? y : std::clamp(y + k, 0, height - 1);
-                        sum += kernel[static_cast<std::size_t>(k + radius)] *
-                               from[static_cast<std::size_t>(fy) * static_cast<std::size_t>(width) +
-                                    static_cast<std::size_t>(fx)];
+                        sum += kernel[n] * from[static_cast<std::size_t>(fy) * static_cast<std::size_t>(width) +
+                                                static_cast<std::size_t>(fx)];
                     }
                     to[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
                         sum;
@@ -177,9 +177,10 @@ Seen look(const DisplayPicture& picture, const Spaces& spaces, double pixels_per
     const Kernel smooth = gaussian(variance, radius);
     Kernel first = smooth;
     Kernel second = smooth;
-    for (int k = -radius; k <= radius; ++k) {
-        first[static_cast<std::size_t>(k + radius)] *= -k;
-        second[static_cast<std::size_t>(k + radius)] *= k * k / variance - 1;
+    for (std::size_t n = 0; n < smooth.size(); ++n) {
+        const int k = static_cast<int>(n) - radius;
+        first[n] *= -k;
+        second[n] *= k * k / variance - 1;
     }
     balance(first);
     balance(second);
