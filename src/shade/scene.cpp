@@ -94,7 +94,6 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
     if (auto sun = scene.environment->sun()) scene.lights.push_back(std::move(sun));
 
     bed.centre = {0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y)};
-    const Color paper = paperRadiance(scene, bed.albedo, {bed.centre.x, bed.centre.y, bed.z});
     if (placement.bed) {
         const double reach = 0.5 * glm::length(box.max - box.min);
         bed.fade_begin = 1.0 * reach;
@@ -102,8 +101,10 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
         scene.bed = bed;
     }
     // The paper's own colour a little darker, as the light of a real lamp falls off behind the subject.
-    if (options.backdrop && (scene.bed || !scene.environment->visible()))
+    if (options.backdrop && (scene.bed || !scene.environment->visible())) {
+        const Color paper = paperRadiance(scene, bed.albedo, {bed.centre.x, bed.centre.y, bed.z});
         scene.backdrop = Backdrop{paper * 0.72f, paper * 0.35f};
+    }
     return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "study/geometry.h"
 
 #include "march/brick_intersector.h"
+#include "parallel/parallel_for.h"
 #include "study/page.h"
 #include "study/power_law.h"
 #include "study/print.h"
@@ -34,6 +35,7 @@ const Row kColumns{"print",
                    "half_width",
                    "precision",
                    "voxel_mm",
+                   "narrow_share",
                    "lost_share",
                    "mean_mm",
                    "rms_mm",
@@ -63,6 +65,7 @@ enum Column : std::size_t {
     kHalfWidth,
     kPrecision,
     kVoxel,
+    kNarrow,
     kLost,
     kMean,
     kRms,
@@ -116,10 +119,14 @@ struct Subject {
     voxelize::Lattice one_per_layer;
     std::optional<UnionField> exact;
     std::vector<UnionField::SurfacePoint> points;
+    std::vector<double> clearance;  // in front of each
     std::size_t volume_points = 0;
 };
 
-Subject prepare(const GeometryOptions& options, std::size_t points, bool quick) {
+// How much empty space a point must have in front for the grid to be asked for its surface, voxels.
+constexpr double kResolved = 2;
+
+Subject prepare(const GeometryOptions& options, std::size_t points, double fewest_per_layer, bool quick) {
     Subject subject;
     subject.toolpath = readPrint(options.print);
     voxelize::Selection selection;
@@ -130,6 +137,12 @@ Subject prepare(const GeometryOptions& options, std::size_t points, bool quick) 
     subject.one_per_layer = latticeOf(subject.toolpath, subject.beads, 1);
     subject.exact.emplace(subject.toolpath, subject.beads, 1.5 * subject.one_per_layer.layer_height);
     subject.points = subject.exact->samplePoints(points);
+    subject.clearance.resize(points);
+    parallelFor(points, 256, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n)
+            subject.clearance[n] = subject.exact->clearance(
+                subject.points[n], kResolved * subject.one_per_layer.layer_height / fewest_per_layer);
+    });
     subject.volume_points = quick ? std::size_t{1} << 15 : std::size_t{1} << 18;
     return subject;
 }
@@ -156,12 +169,17 @@ Row measure(const Subject& subject, const Configuration& c, int runs) {
     const std::size_t bytes = grid->memUsage();
     const auto intersector = march::makeBrickIntersector(*grid);
     grid.reset();
-    const SurfaceError error = surfaceError(*intersector, subject.points, 2 * lattice.voxel_size);
+    std::vector<UnionField::SurfacePoint> open;
+    for (std::size_t n = 0; n < subject.points.size(); ++n)
+        if (subject.clearance[n] >= kResolved * lattice.voxel_size) open.push_back(subject.points[n]);
+    const double narrow_share = 1 - static_cast<double>(open.size()) / static_cast<double>(subject.points.size());
+    // Far beyond any error that such a point may have, so that "largest" is the error's and not the search's.
+    const SurfaceError error = surfaceError(*intersector, open, 8 * lattice.voxel_size);
     const Spread back = backwardError(*intersector, *subject.exact, subject.points.size());
     Row row{fmt::format("{:.9g}", lattice.voxel_size)};
-    for (const double v :
-         {error.lost_share, error.distance.mean, error.distance.rms, error.distance.p999, error.distance.max,
-          error.angle.mean, error.angle.rms, error.angle.p999, error.angle.max, back.mean, back.p999, back.max})
+    for (const double v : {narrow_share, error.lost_share, error.distance.mean, error.distance.rms, error.distance.p999,
+                           error.distance.max, error.angle.mean, error.angle.rms, error.angle.p999, error.angle.max,
+                           back.mean, back.p999, back.max})
         row.push_back(fmt::format("{:.5g}", v));
     for (const double v : {volume.value, volume.excess, volume.excess_error, stats_volume})
         row.push_back(fmt::format("{:.6g}", v));
@@ -236,15 +254,16 @@ void writePage(const fs::path& path, const std::vector<Row>& rows, const std::ve
     Page page("Geometric error against voxel size and time", command);
     page.paragraph(fmt::format(
         "{}, {} points spread evenly by area over the exact surface of the union of its level beads, inner surfaces "
-        "included, in double; and from each the nearest zero of the trilinear level set that rays through bricks find. "
-        "\"Lost\" are points without one within two voxels: the means leave them out, and where there are any, "
-        "\"largest\" and \"99.9 %\" run into that limit: they then tell the "
-        "limit, not the error. Angles near 180 degrees are zeros of a wall that faces the other way. \"Back\" are hits "
+        "included, in double. Beads side by side leave gaps that narrow down to nothing, and most of the area of a "
+        "solid layer is such: no grid holds what is thinner than its voxels. \"Narrow\" is the share of points with "
+        "less than {:g} voxels of empty space in front, along their normal; they are left to the volume's error. From "
+        "each of the others the nearest zero of the trilinear level set that rays through bricks find, as far as 8 "
+        "voxels away; \"lost\" are those without one. Angles near 180 degrees are zeros of a wall that faces the "
+        "other way: at a crease between two beads, or where a thin spot of empty space is closed. \"Back\" are hits "
         "of rays from outside and their distance to the exact union. Volumes are counted at quasi-random points, in "
-        "the "
-        "trilinear field and in the exact union, with the standard error of the difference; beside it what --stats "
-        "reports. Seconds are the median of three builds.",
-        rows.front()[kPrint], rows.front()[kPoints]));
+        "the trilinear field and in the exact union, with the standard error of the difference; beside it what "
+        "--stats reports. Seconds are the median of three builds.",
+        rows.front()[kPrint], rows.front()[kPoints], kResolved));
     addPlots(page, rows);
     addOrders(page, rows);
     page.heading("Everything measured");
@@ -260,28 +279,12 @@ void writePage(const fs::path& path, const std::vector<Row>& rows, const std::ve
         line.push_back(fmt::format("{:.1f}", value(row, kBytes) * 1e-6));
         cells.push_back(std::move(line));
     }
-    page.table({"lattice",
-                "voxels a layer",
-                "half-width",
-                "precision",
-                "voxel mm",
-                "lost",
-                "mean mm",
-                "RMS mm",
-                "99.9 % mm",
-                "max mm",
-                "mean \u00b0",
-                "RMS \u00b0",
-                "99.9 % \u00b0",
-                "max \u00b0",
-                "back mean mm",
-                "back 99.9 % mm",
-                "back max mm",
-                "volume %",
-                "\u00b1 %",
-                "s",
-                "MB"},
-               cells);
+    page.table(
+        {"lattice",    "voxels a layer", "half-width",     "precision",   "voxel mm",    "narrow",     "lost",
+         "mean mm",    "RMS mm",         "99.9 % mm",      "max mm",      "mean \u00b0", "RMS \u00b0", "99.9 % \u00b0",
+         "max \u00b0", "back mean mm",   "back 99.9 % mm", "back max mm", "volume %",    "\u00b1 %",   "s",
+         "MB"},
+        cells);
     page.write(path);
 }
 
@@ -313,7 +316,7 @@ StudyReport studyGeometry(const GeometryOptions& options, const StudyOptions& co
                 fmt::format("{:g}", c.half_width),
                 c.precision};
         if (table.find(key) == nullptr) {
-            if (!subject) subject = prepare(options, points, common.quick);
+            if (!subject) subject = prepare(options, points, counts.front(), common.quick);
             Row row = key;
             const Row measured = measure(*subject, c, common.quick ? 1 : 3);
             row.insert(row.end(), measured.begin(), measured.end());

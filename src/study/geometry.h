@@ -30,7 +30,7 @@ Spread spreadOf(std::vector<double> values);
 struct SurfaceError {
     Spread distance;        ///< mm, to the nearest zero of the trilinear field that was found
     Spread angle;           ///< degrees, between the normals there
-    double lost_share = 0;  ///< of the points that have no zero within `search`: features that the grid has not
+    double lost_share = 0;  ///< of the points that have no zero within `search`
 };
 
 /// For each point the nearest zero of the trilinear field: along the normal, both ways, and along 24 more directions,

@@ -1,7 +1,11 @@
 #include "study/need.h"
 
 #include "io/error.h"
+#include "march/annotation.h"
 #include "march/brick_intersector.h"
+#include "march/scene_intersector.h"
+#include "shade/denoise.h"
+#include "shade/picture.h"
 #include "shade/render.h"
 #include "shade/scene.h"
 #include "study/own_process.h"
@@ -18,7 +22,10 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <memory>
 #include <optional>
 
 namespace stratum::study {
@@ -26,8 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Row kColumns{"print",           "sha256",        "capability",     "run",
-                   "convert_seconds", "build_seconds", "render_seconds", "peak_rss_bytes"};
+const Row kColumns{"print", "sha256", "capability", "run", "convert_cpu", "build_cpu", "render_cpu", "peak_rss_bytes"};
 constexpr std::size_t kKeys = 4;
 constexpr std::size_t kConvert = 4, kBuild = 5, kRender = 6, kPeak = 7;
 
@@ -35,6 +41,8 @@ constexpr std::size_t kConvert = 4, kBuild = 5, kRender = 6, kPeak = 7;
 struct Setup {
     std::vector<voxelize::Attribute> attributes;
     bool interior_distance = false;
+    bool second_object = false;  // the print once more, where no ray goes
+    bool denoise = false;
     shade::SceneOptions scene;
     shade::RenderOptions render;
 };
@@ -48,7 +56,8 @@ struct Capability {
 constexpr const char* kNone = "none";
 constexpr const char* kNoneAgain = "none, once more";
 
-std::vector<Capability> capabilities() {
+// `map`: a file with the light of an environment.
+std::vector<Capability> capabilities(const std::string& map) {
     using shade::Aov;
     return {
         {kNone, "a matt print in even light", [](Setup&) {}},
@@ -61,6 +70,11 @@ std::vector<Capability> capabilities() {
         {"measured material", "--brdf pla-blue", [](Setup& s) { s.scene.brdf = "pla-blue"; }},
         {"studio light", "--env studio", [](Setup& s) { s.scene.env = "studio"; }},
         {"sky", "--env sky", [](Setup& s) { s.scene.env = "sky"; }},
+        {"map of light", "--env FILE.exr, 512 x 256", [map](Setup& s) { s.scene.env = map; }},
+        {"smooth normals", "--normals smooth", [](Setup& s) { s.scene.smooth_normals = true; }},
+        {"second object", "a scene of two objects, one out of sight", [](Setup& s) { s.second_object = true; }},
+        {"lens", "--f-number 8", [](Setup& s) { s.scene.camera.f_number = 8; }},
+        {"denoiser", "--denoise", [](Setup& s) { s.denoise = true; }},
         {"bed", "--bed", [](Setup& s) { s.scene.bed = true; }},
         {"layer of normals", "--aov normal", [](Setup& s) { s.render.aovs = {Aov::normal}; }},
         {"layers of everything", "--aov normal,depth,position,albedo,mask",
@@ -98,16 +112,66 @@ std::string measure(const std::string& print, const Setup& setup, int threads) {
                                grid = voxelizer.printAll();
                                attributes = voxelizer.attributes(setup.attributes);
                                if (setup.interior_distance) voxelize::sweepInterior(*grid);
-                           }).wall;
-    std::unique_ptr<march::Intersector> intersector;
+                           }).cpu;
+    std::shared_ptr<const march::Intersector> intersector;
     std::optional<shade::SceneDescription> scene;
     const double build = timesOf([&] {
                              intersector = march::makeBrickIntersector(*grid);
+                             march::Annotation annotation;
+                             if (setup.scene.smooth_normals) annotation.smooth = grid;
+                             intersector = march::annotate(std::move(intersector), std::move(annotation));
                              scene =
                                  shade::makeScene(setup.scene, *intersector, setup.render.width, setup.render.height);
-                         }).wall;
-    const double render = timesOf([&] { shade::render(*intersector, *scene, setup.render); }).wall;
+                         }).cpu;
+    if (setup.second_object)
+        intersector = march::makeSceneIntersector(
+            {{intersector, {}}, {intersector, march::Placement::of({1, 1, 1}, {0, 0, 0}, {1e4, 0, 0})}});
+    shade::RenderOptions options = setup.render;
+    if (setup.denoise) shade::addDenoisingGuides(options);
+    const double render = timesOf([&] {
+                              shade::RenderResult result = shade::render(*intersector, *scene, options);
+                              if (setup.denoise) shade::denoise(result.film);
+                          }).cpu;
     return fmt::format("{:.5f},{:.5f},{:.5f}", convert, build, render);
+}
+
+// A sky that brightens upwards, with a lamp: 512 x 256 pixels.
+std::string writeMap(const fs::path& folder) {
+    fs::create_directories(folder);
+    const fs::path path = folder / "need_map.exr";
+    shade::Film film(512, 256, {0, 0, 512, 256});
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 512; ++x) {
+            const bool lamp = std::abs(x - 128) < 16 && std::abs(y - 64) < 16;
+            film.at(x, y) = {shade::Color(lamp ? 20.0f : static_cast<float>(256 - y) / 256.0f), 1.0f};
+        }
+    shade::PictureFile(path).write(film, {});
+    return path.string();
+}
+
+// What scripts/need_off.py has counted, if it has: capability, where, instructions, share of all.
+void addSwitchedOff(Page& page, const fs::path& csv, StudyReport& report) {
+    std::ifstream file(csv);
+    std::vector<Row> rows;
+    for (std::string line; std::getline(file, line);) rows.push_back(parseCsvLine(line));
+    if (rows.size() < 2) return;
+    constexpr double kMost = 1;  // %
+    std::vector<Row> cells;
+    for (std::size_t n = 1; n < rows.size(); ++n) {
+        Row row = rows[n];
+        const bool over = std::atof(row.back().c_str()) > kMost;
+        row.emplace_back(over ? "over 1 %" : "ok");
+        if (over) report.findings.push_back(fmt::format("{} costs {} % when it is off", row[0], rows[n].back()));
+        cells.push_back(std::move(row));
+    }
+    page.heading("What it costs when it is off");
+    page.paragraph(
+        "The least picture once more, counted instruction by instruction (valgrind's callgrind: the same figure every "
+        "time, whatever else the machine does): how many of the program's own instructions are spent in the functions "
+        "of "
+        "each capability while it is off, with what they call. Functions that the compiler has merged into their "
+        "callers, a test of a flag mostly, can't be told apart.");
+    page.table({"capability", "functions", "instructions", "% of all", "verdict"}, cells, "over 1 %");
 }
 
 double median(std::vector<double> values) {
@@ -122,13 +186,17 @@ std::string percent(double with, double without) { return fmt::format("{:+.1f}",
 StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
     const int repeats = options.repeats > 0 ? options.repeats : common.quick ? 3 : 7;
     ResultTable table(common.folder / "need.csv", kColumns, kKeys, common.fresh);
-    const std::vector<Capability> all = capabilities();
+    // In a process of its own: writing starts threads, which would not survive the forks to come.
+    const Outcome map = inOwnProcess([&] { return writeMap(common.folder / "references"); });
+    if (!map.failure.empty()) throw OutputError(map.failure);
+    const std::vector<Capability> all = capabilities(map.text);
     Page page("What each capability costs", common.command);
     page.paragraph(fmt::format(
         "Each print is converted at two voxels a layer and rendered with 16 samples a pixel: with the least there is, "
         "and "
         "with one capability more. Medians of {} runs, each a process of its own, taking turns; percentages are of the "
-        "least. \"{}\" is the least measured twice: what it shows is the noise of this machine.",
+        "least. Seconds are CPU time of all threads. \"{}\" is the least measured twice: what it shows is the noise of "
+        "this machine.",
         repeats, kNoneAgain));
     StudyReport report;
     double done = 0;
@@ -169,8 +237,10 @@ StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
             rows.push_back(std::move(row));
         }
         page.heading(name);
-        page.table({"capability", "how", "convert s", "%", "build s", "%", "render s", "%", "peak MB", "%"}, rows);
+        page.table({"capability", "how", "convert CPU s", "%", "build CPU s", "%", "render CPU s", "%", "peak MB", "%"},
+                   rows);
     }
+    addSwitchedOff(page, common.folder / "need_off.csv", report);
     report.csv = table.path();
     report.html = common.folder / "need.html";
     report.rows = table.rows().size();

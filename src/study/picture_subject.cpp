@@ -26,7 +26,7 @@ struct PictureSubject::Print {
     }
 };
 
-PictureSubject::PictureSubject(std::string print, int width, int height, int scene_per_layer)
+PictureSubject::PictureSubject(const std::string& print, int width, int height, int scene_per_layer)
     : print_(std::make_unique<Print>()), width_(width), height_(height), scene_per_layer_(scene_per_layer) {
     print_->toolpath = readPrint(print);
     print_->beads = voxelize::selectBeads(print_->toolpath, {});

@@ -27,7 +27,7 @@ class PictureSubject {
 public:
     /// @param scene_per_layer  voxels a layer of the level set that camera and bed are fitted to, for all others as
     /// well
-    PictureSubject(std::string print, int width, int height, int scene_per_layer);
+    PictureSubject(const std::string& print, int width, int height, int scene_per_layer);
     ~PictureSubject();
     PictureSubject(const PictureSubject&) = delete;
     PictureSubject& operator=(const PictureSubject&) = delete;

@@ -138,7 +138,7 @@ public:
     }
     /// A picture for the page.
     fs::path show(const std::string& name, const shade::Film& film) const {
-        const fs::path file = fileOf(name, "png");
+        fs::path file = fileOf(name, "png");
         shade::PictureFile(file).write(film, {});
         return file;
     }
@@ -193,6 +193,14 @@ shade::Film pictureOf(const Variant& v, PictureSubject& subject, int spp, std::u
     return std::move(*sum);
 }
 
+// Both shown in the way of the picture: shares are not tone-mapped, and a reference doesn't know that it is one of
+// shares.
+double flipOf(const shade::Film& reference, const shade::Film& picture) {
+    shade::Film same(reference.frameWidth(), reference.frameHeight(), reference.region(), picture.content());
+    same.pixels() = reference.pixels();
+    return meanFlip(displayed(same), displayed(picture));
+}
+
 double value(const Row& row, std::size_t column) { return std::atof(row[column].c_str()); }
 
 // Rows of one variant and number of samples, over its seeds.
@@ -213,6 +221,7 @@ public:
             p.spp = key.second;
             const auto column = [&rows_of = group](std::size_t c) {
                 std::vector<double> values;
+                values.reserve(rows_of.size());
                 for (const Row* row : rows_of) values.push_back(value(*row, c));
                 return values;
             };
@@ -239,9 +248,9 @@ public:
     }
     const std::vector<Point>& of(const std::string& variant) const { return points_.at(variant); }
 
-    Series series(const std::string& variant, double Point::*x, double Point::*y, std::string name = {},
+    Series series(const std::string& variant, double Point::*x, double Point::*y, const std::string& name = {},
                   bool dashed = false, int color = -1) const {
-        Series s{name.empty() ? variant : std::move(name), {}, dashed, true, color};
+        Series s{name.empty() ? variant : name, {}, dashed, true, color};
         for (const Point& p : of(variant)) s.points.emplace_back(p.*x, p.*y);
         return s;
     }
@@ -271,6 +280,7 @@ void addSlopes(Page& page, const Results& results, const std::vector<Variant>& v
         const std::vector<Point>& points = results.of(v.name);
         const auto law = [&](double Point::*x, double Point::*y) {
             std::vector<std::pair<double, double>> pairs;
+            pairs.reserve(points.size());
             for (const Point& p : points) pairs.emplace_back(p.*x, p.*y);
             return fitPowerLaw(pairs);
         };
@@ -332,11 +342,12 @@ void addVoxels(Page& page, const Results& results, const Plan& plan, References&
             const std::vector<Point>& points = results.of(nameOf(n));
             // Noise falls with the order that was measured, from its last point on.
             std::vector<std::pair<double, double>> pairs;
+            pairs.reserve(points.size());
             for (const Point& p : points) pairs.emplace_back(p.spp, p.error);
             const PowerLaw noise = fitPowerLaw(pairs);
             cells.push_back({std::to_string(n), fmt::format("{:.3e}", bias),
-                             fmt::format("{:.4f}", meanFlip(displayed(fine), displayed(coarse))),
-                             fmt::format("{:.3e}", points.back().error), std::to_string(points.back().spp),
+                             fmt::format("{:.4f}", flipOf(fine, coarse)), fmt::format("{:.3e}", points.back().error),
+                             std::to_string(points.back().spp),
                              fmt::format("{:.0f}", std::pow(bias / noise.factor, 1 / noise.exponent))});
         }
         ++color;
@@ -395,11 +406,11 @@ StudyReport studyRender(const RenderStudyOptions& options, const StudyOptions& c
                     row.push_back(fmt::format("{:.5g}", times.cpu));
                     row.push_back(std::to_string(rays));
                     row.push_back(fmt::format("{:.5g}", relativeSquaredError(*film, reference)));
-                    row.push_back(fmt::format("{:.5g}", meanFlip(displayed(reference), displayed(*film))));
+                    row.push_back(fmt::format("{:.5g}", flipOf(reference, *film)));
                     if (v.kind.integrator.name == "path") {
                         const shade::Film& fine = referenceNamed(finest);
                         row.push_back(fmt::format("{:.5g}", relativeSquaredError(*film, fine)));
-                        row.push_back(fmt::format("{:.5g}", meanFlip(displayed(fine), displayed(*film))));
+                        row.push_back(fmt::format("{:.5g}", flipOf(fine, *film)));
                     } else {
                         row.insert(row.end(), 2, "");
                     }

@@ -60,6 +60,20 @@ StabilityCase rays(std::string name, std::string quantity, double tolerance, std
     return {"rays", std::move(name), std::move(quantity), tolerance, std::move(why), std::move(measure)};
 }
 
+// A level set with its tracer, in floats: nothing but the method is tested.
+class TracedField {
+public:
+    explicit TracedField(const openvdb::FloatGrid& grid)
+        : intersector_(march::makeBrickIntersector(grid, march::BrickValues::Float32)),
+          tracer_(intersector_->makeTracer()) {}
+    march::Tracer* operator->() const { return tracer_.get(); }
+    double surfaceOffset() const { return intersector_->surfaceOffset(); }
+
+private:
+    std::unique_ptr<march::Intersector> intersector_;
+    std::unique_ptr<march::Tracer> tracer_;
+};
+
 glm::dvec3 randomDirection(std::mt19937& random) {
     std::normal_distribution<double> normal;
     return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
@@ -67,15 +81,14 @@ glm::dvec3 randomDirection(std::mt19937& random) {
 
 // Rays that come in to a level plane at this angle; the largest error of the height at which they are said to hit.
 double grazing(double angle, double offset) {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, offset), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*plane({0, 0, 1}, offset));
     double largest = 0;
     for (int n = 0; n < 200; ++n) {
         const double turn = 0.031 * n;
         const glm::dvec3 d{std::cos(turn) * std::cos(angle), std::sin(turn) * std::cos(angle), -std::sin(angle)};
         const glm::dvec3 target{0.37 * std::sin(1.7 * n), 0.53 * std::cos(2.3 * n), offset};
         march::Hit hit;
-        if (!tracer->intersect({target - 2.0 * d, d}, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect({target - 2.0 * d, d}, hit)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(hit.position.z - offset));
     }
     return largest;
@@ -83,13 +96,12 @@ double grazing(double angle, double offset) {
 
 // A ray straight down along x = y = `at` voxels on a plane; some at lattice planes and edges.
 double downAt(double at) {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*plane({0, 0, 1}, 0.034));
     double largest = 0;
     for (const double other : {0.0, 0.5, 1.0, at})
         for (const double zero : {0.0, -0.0, 1e-310, -5e-324}) {
             march::Hit hit;
-            if (!tracer->intersect({{at * kVoxel, other * kVoxel, 5}, {zero, zero, -1}}, hit))
+            if (!field->intersect({{at * kVoxel, other * kVoxel, 5}, {zero, zero, -1}}, hit))
                 return std::numeric_limits<double>::infinity();
             largest = std::max(largest, std::abs(hit.position.z - 0.034));
         }
@@ -98,15 +110,14 @@ double downAt(double at) {
 
 // The largest error of t, less the way, of rays to the middle of a ball from this far.
 double fromAfar(double away) {
-    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*ball());
     std::mt19937 random(3);
     double largest = 0;
     for (int n = 0; n < 500; ++n) {
         const glm::dvec3 out = randomDirection(random);
         march::Hit near;
         march::Hit far;
-        if (!tracer->intersect({3.0 * out, -out}, near) || !tracer->intersect({away * out, -out}, far))
+        if (!field->intersect({3.0 * out, -out}, near) || !field->intersect({away * out, -out}, far))
             return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs((far.t - away) - (near.t - 3)));
     }
@@ -115,23 +126,21 @@ double fromAfar(double away) {
 
 // Rays that must meet a ball: their share that does not. Aim: where, as a part of the radius, they pass the middle.
 double missesOfABall(double aim) {
-    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*ball());
     std::mt19937 random(5);
     int missed = 0;
     constexpr int kRays = 20000;
     for (int n = 0; n < kRays; ++n) {
         const glm::dvec3 d = randomDirection(random);
         const glm::dvec3 side = glm::normalize(glm::cross(d, randomDirection(random)));
-        missed += tracer->occluded({2 * aim * side - 5.0 * d, d}) ? 0 : 1;
+        missed += field->occluded({2 * aim * side - 5.0 * d, d}) ? 0 : 1;
     }
     return static_cast<double>(missed) / kRays;
 }
 
 // Rays from inside a closed ball, along lattice planes, edges and at random: the share that gets out.
 double leaks(bool on_lattice) {
-    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*ball());
     std::mt19937 random(6);
     std::uniform_real_distribution<double> where(-1, 1);
     int out = 0;
@@ -146,7 +155,7 @@ double leaks(bool on_lattice) {
             if (n % 8 == 0) ray.direction[(n + 2) % 3] = -1;
             ray.direction = glm::normalize(ray.direction);
         }
-        out += tracer->occluded(ray) ? 0 : 1;
+        out += field->occluded(ray) ? 0 : 1;
     }
     return static_cast<double>(out) / kRays;
 }
@@ -155,8 +164,7 @@ double leaks(bool on_lattice) {
 double meetingsAgain(double away) {
     const auto grid = ball();
     grid->transform().postTranslate(openvdb::Vec3d(away, -away, away));
-    const auto intersector = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*grid);
     const glm::dvec3 centre(away, -away, away);
     std::mt19937 random(7);
     int met = 0;
@@ -164,18 +172,17 @@ double meetingsAgain(double away) {
     for (int n = 0; n < kRays; ++n) {
         const glm::dvec3 out = randomDirection(random);
         march::Hit hit;
-        if (!tracer->intersect({centre + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect({centre + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
         // Between the normal and nearly along the surface.
         const glm::dvec3 leave = glm::normalize(hit.normal + 0.95 * randomDirection(random));
-        met += tracer->occluded({hit.position + intersector->surfaceOffset() * hit.normal, leave}) ? 1 : 0;
+        met += field->occluded({hit.position + field.surfaceOffset() * hit.normal, leave}) ? 1 : 0;
     }
     return static_cast<double>(met) / kRays;
 }
 
 // Whether one ray and a stream of rays give the same bits: the share that does not.
 double streamDiffers() {
-    const auto intersector = march::makeBrickIntersector(*ball(), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*ball());
     std::mt19937 random(8);
     std::uniform_real_distribution<double> where(-2.5, 2.5);
     std::vector<march::Ray> all;
@@ -183,11 +190,11 @@ double streamDiffers() {
     for (int n = 0; n < 5000; ++n)
         all.push_back({{where(random), where(random), where(random)}, randomDirection(random)});
     std::vector<march::Hit> hits(all.size());
-    tracer->intersectStream(all, hits);
+    field->intersectStream(all, hits);
     int other = 0;
     for (std::size_t n = 0; n < all.size(); ++n) {
         march::Hit hit;
-        if (!tracer->intersect(all[n], hit)) hit.t = std::numeric_limits<double>::infinity();
+        if (!field->intersect(all[n], hit)) hit.t = std::numeric_limits<double>::infinity();
         other += std::bit_cast<std::uint64_t>(hit.t) != std::bit_cast<std::uint64_t>(hits[n].t) ? 1 : 0;
     }
     return other;
@@ -196,17 +203,16 @@ double streamDiffers() {
 // Intervals that end or begin just before and just behind the surface: answers that are wrong. "Just" is the rounding
 // of t: eight times 2^-53 of the way.
 double wrongIntervals() {
-    const auto intersector = march::makeBrickIntersector(*plane({0, 0, 1}, 0.034), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*plane({0, 0, 1}, 0.034));
     const march::Ray down{{0.11, 0.23, 1}, {0, 0, -1}};
     march::Hit hit;
-    if (!tracer->intersect(down, hit)) return 99;
+    if (!field->intersect(down, hit)) return 99;
     int wrong = 0;
     const auto expect = [&](double t_min, double t_max, bool expected) {
         march::Ray ray = down;
         ray.t_min = t_min;
         ray.t_max = t_max;
-        wrong += tracer->occluded(ray) != expected ? 1 : 0;
+        wrong += field->occluded(ray) != expected ? 1 : 0;
     };
     const double rounding = 8 * 0x1p-53 * hit.t;
     expect(0, hit.t - rounding, false);
@@ -221,14 +227,13 @@ double wrongIntervals() {
 // The largest difference, mm, between a ball's hits and the paper's, for a ball of this voxel (of world units).
 double scaledBall(double scale) {
     const auto grid = ball(static_cast<float>(2 * scale), openvdb::Vec3f(0), static_cast<float>(kVoxel * scale));
-    const auto intersector = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*grid);
     std::mt19937 random(9);
     double largest = 0;
     for (int n = 0; n < 1000; ++n) {
         const glm::dvec3 out = randomDirection(random);
         march::Hit hit;
-        if (!tracer->intersect({scale * 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect({scale * 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(hit.t / scale - 3));
     }
     return largest;
@@ -236,15 +241,14 @@ double scaledBall(double scale) {
 
 double tiltedPlane() {
     const openvdb::Vec3d normal = openvdb::Vec3d(1, 2, 3).unit();
-    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.05), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*plane(normal, 0.05));
     std::mt19937 random(10);
     double largest = 0;
     for (int n = 0; n < 5000; ++n) {
         const glm::dvec3 d = randomDirection(random);
         if (std::abs(normal.dot(openvdb::Vec3d(d.x, d.y, d.z))) < 0.2) continue;
         march::Hit hit;
-        if (!tracer->intersect({-1.5 * d, d}, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect({-1.5 * d, d}, hit)) return std::numeric_limits<double>::infinity();
         const glm::dvec3& p = hit.position;
         largest = std::max(largest, std::abs(normal.dot(openvdb::Vec3d(p.x, p.y, p.z)) - 0.05));
     }
@@ -253,13 +257,12 @@ double tiltedPlane() {
 
 double normalOfATiltedPlane() {
     const openvdb::Vec3d normal = openvdb::Vec3d(-2, 1, 4).unit();
-    const auto intersector = march::makeBrickIntersector(*plane(normal, 0.02), march::BrickValues::Float32);
-    const auto tracer = intersector->makeTracer();
+    const TracedField field(*plane(normal, 0.02));
     double largest = 0;
     for (int n = 0; n < 500; ++n) {
         march::Hit hit;
         const march::Ray ray{{0.9 * std::sin(3.1 * n), 0.9 * std::cos(1.3 * n), 3}, {0, 0, -1}};
-        if (!tracer->intersect(ray, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect(ray, hit)) return std::numeric_limits<double>::infinity();
         const glm::dvec3 exact(normal[0], normal[1], normal[2]);
         largest = std::max(largest, glm::length(hit.normal - exact));
     }

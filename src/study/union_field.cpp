@@ -245,6 +245,18 @@ std::vector<UnionField::SurfacePoint> UnionField::samplePoints(std::size_t count
     return points;
 }
 
+double UnionField::clearance(const SurfacePoint& point, double limit) const {
+    // Away from the point's own bead distances grow as fast as the way; what makes them shrink again is another wall.
+    constexpr double kLeave = 1e-5;  // mm: well above rounding, well below anything printed
+    double t = kLeave;
+    while (t < limit) {
+        const double free = distance(point.position + t * point.normal);
+        if (free <= 0.1 * kLeave) return t;
+        t += free;
+    }
+    return limit;
+}
+
 UnionField::Volume UnionField::volume(std::size_t points_of_each, const std::function<Inside()>& other,
                                       int shifts) const {
     // Powers of the root of x^4 = x + 1: M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.

@@ -34,6 +34,10 @@ public:
     /// `seed` and the number alone. Parallel.
     std::vector<SurfacePoint> samplePoints(std::size_t count, std::uint32_t seed = 1) const;
 
+    /// How far the empty space in front of a point of the surface goes, along its normal, mm; `limit` if farther. What
+    /// is narrower than a few voxels can't be on a grid: gaps between beads side by side narrow down to nothing.
+    double clearance(const SurfacePoint& point, double limit) const;
+
     /// mm^3, and their standard errors: of the union, and by how much another solid is larger, both counted at the same
     /// quasi-random points of the union's box, so that their difference is known better than either.
     struct Volume {

@@ -68,12 +68,12 @@ TEST(Seeds, MeasuresAFolderOfPrints) {
     SeedsOptions options;
     options.prints = {prints.path().string()};
     const StudyReport report = studySeeds(options, {}, common);
-    EXPECT_EQ(report.rows, 1U);
+    EXPECT_EQ(report.rows, 2U);  // two voxels a layer, and four
     const Row row = rowsOf(folder.path() / "seeds_prints.csv", 5).at("level set");
     EXPECT_NEAR(std::stod(row.at(7)), 0.71, 0.05);  // cm3 enclosed
     EXPECT_GT(std::stod(row.at(14)), 0);
     EXPECT_TRUE(std::filesystem::exists(report.html));
-    EXPECT_EQ(studySeeds(options, {}, common).resumed, 1U);
+    EXPECT_EQ(studySeeds(options, {}, common).resumed, 2U);
 }
 
 TEST(Seeds, SaysWhatItNeeds) {

@@ -120,5 +120,22 @@ TEST(UnionField, RefusesWhatHasNoLevelBead) {
     EXPECT_THROW(UnionField(toolpath, allBeads(toolpath), 0.3).samplePoints(1), UsageError);
 }
 
+// Two beads side by side, 0.05 apart at their widest: that is the least that points between them see.
+TEST(UnionField, TellsHowMuchSpaceIsInFront) {
+    gcode::Toolpath toolpath;
+    addBead(toolpath, 0, 0, 0.2, 4, 0, 0.2, 0.6, 0.2);
+    addBead(toolpath, 0, 0.65, 0.2, 4, 0.65, 0.2, 0.6, 0.2);
+    const UnionField field(toolpath, allBeads(toolpath), 0.3);
+    EXPECT_NEAR(field.clearance({{2, 0.3, 0.1}, {0, 1, 0}}, 1), 0.05, 1e-4);
+    EXPECT_EQ(field.clearance({{2, -0.3, 0.1}, {0, -1, 0}}, 1), 1);
+    EXPECT_EQ(field.clearance({{2, 0.1, 0.2}, {0, 0, 1}}, 1), 1);
+    // At 30 degrees up the other side is farther away, and met where the mirror image of the point is not.
+    const double up = std::sin(0.5);
+    const double out = std::cos(0.5);
+    const double seen = field.clearance({{2, 0.2 + 0.1 * out, 0.1 + 0.1 * up}, {0, out, up}}, 1);
+    EXPECT_GT(seen, 0.05);
+    for (const auto& point : field.samplePoints(2000)) EXPECT_GT(field.clearance(point, 1), 0.049);
+}
+
 }  // namespace
 }  // namespace stratum::study
