@@ -239,6 +239,7 @@ std::string bashCompletion(const CLI::App& app) {
     }
     if (!verbs.empty()) {
         std::vector<std::string> names;
+        names.reserve(verbs.size());
         for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
         script += fmt::format(
             "    if [[ $COMP_CWORD -eq 1 ]]; then\n        COMPREPLY=($(compgen -W \"$words {}\" -- \"$cur\"))\n"
