@@ -108,7 +108,7 @@ public:
 
 private:
     static std::string briefFooter(const CLI::App& app) {
-        const std::string footer = app.get_footer();
+        std::string footer = app.get_footer();
         const std::size_t examples = footer.find(kExamplesTitle);
         if (examples == std::string::npos) return footer;
         std::size_t end = footer.find('\n', examples);
