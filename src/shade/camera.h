@@ -51,7 +51,7 @@ public:
 
     /// The ray through a point of the frame, in pixels.
     march::Ray ray(const glm::dvec2& pixel) const {
-        const double scale = 2.0 * tan_half_ / height_;
+        const double scale = pixelSize();
         const double x = (pixel.x - 0.5 * width_) * scale;
         const double y = (0.5 * height_ - pixel.y) * scale;
         march::Ray ray;
@@ -76,6 +76,8 @@ public:
     const glm::dvec3& right() const { return right_; }
     const glm::dvec3& up() const { return up_; }
     const glm::dvec3& forward() const { return forward_; }
+    /// The side of a pixel on a plane at distance 1.
+    double pixelSize() const { return 2.0 * tan_half_ / height_; }
     int width() const { return width_; }
     int height() const { return height_; }
     double fov() const { return fov_; }

@@ -20,6 +20,9 @@ public:
     /// Offset from the pixel's centre, in pixels, within +-kRadius.
     /// @param u  uniform in [0, 1)^2
     glm::dvec2 offset(const glm::vec2& u) const { return {quantile(u.x), quantile(u.y)}; }
+    /// The offsets at equal steps of u, from 0 to 1; between them offset() is linear.
+    static constexpr int kNodes = 1025;
+    const std::array<double, kNodes>& quantiles() const { return quantiles_; }
     /// The window's weight, for checking; 0 beyond the radius.
     static double weight(double offset);
 
@@ -32,7 +35,6 @@ private:
         return (1.0 - w) * quantiles_[n] + w * quantiles_[n + 1];
     }
 
-    static constexpr int kNodes = 1025;
     std::array<double, kNodes> quantiles_{};
 };
 

@@ -85,6 +85,17 @@ public:
         draw_ = 0;
     }
 
+    /// Leaves out a draw, of one dimension or of two.
+    void skip() { ++draw_; }
+    /// What the draws are made of: those of one block differ by index alone, those of one index by block.
+    std::uint32_t block() const { return block_; }
+    std::uint32_t index() const { return index_; }
+
+    /// Begins the next sample of the same pixel.
+    void startNext() {
+        ++index_;
+        draw_ = 0;
+    }
     /// Uniform in [0, 1).
     float next1D() {
         const std::uint32_t key = sobol::hash(block_, draw_++);

@@ -1,5 +1,7 @@
 #include "shade/tile.h"
 
+#include "shade/primary_rays.h"
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -46,38 +48,39 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
     // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
     const auto each = static_cast<std::size_t>(target - samples_);
     const std::size_t most = std::min(kStream, sums_.size() * each);
+    worker.places.resize(most);
     worker.rays.resize(most);
     worker.samplers.resize(most, worker.sampler);
     worker.points.resize(most);
     worker.pixels.resize(most);
     std::size_t waiting = 0;
-    std::size_t summed = 0;
+    std::size_t pixel = 0;  // the one that is summed up,
+    std::size_t taken = 0;  // and how many of its samples are in
     const auto flush = [&] {
+        primaryRays(camera, filter, std::span(worker.places).first(waiting), std::span(worker.samplers).first(waiting),
+                    std::span(worker.rays).first(waiting));
         integrator.radianceStream(std::span(worker.rays).first(waiting), std::span(worker.samplers).first(waiting),
                                   *worker.tracer, rays_, std::span(worker.points).first(waiting),
                                   std::span(worker.pixels).first(waiting));
         for (std::size_t n = 0; n < waiting; ++n) {
-            const std::size_t pixel = summed++ / each;
             sums_[pixel].add(worker.pixels[n]);
             recorder.add(worker.points[n], layers_.data() + pixel * layer_size_);
+            if (++taken < each) continue;
+            taken = 0;
+            ++pixel;
         }
         waiting = 0;
     };
     for (int y = box_.y0; y < box_.y1; ++y)
-        for (int x = box_.x0; x < box_.x1; ++x)
-            for (int s = samples_; s < target; ++s) {
-                // Made where they stay: to copy what has just been written in smaller parts waits for all of them.
-                Sampler& sampler = worker.samplers[waiting];
-                sampler = worker.sampler;
-                sampler.start(x, y, static_cast<std::uint32_t>(s));
-                const glm::dvec2 place = glm::dvec2(x + 0.5, y + 0.5) + filter.offset(sampler.next2D());
-                march::Ray& ray = worker.rays[waiting];
-                if (camera.hasLens())
-                    ray = camera.ray(place, sampler.next2D());
-                else
-                    ray = camera.ray(place);
+        for (int x = box_.x0; x < box_.x1; ++x) {
+            Sampler sampler = worker.sampler;
+            sampler.start(x, y, static_cast<std::uint32_t>(samples_));
+            for (int s = samples_; s < target; ++s, sampler.startNext()) {
+                worker.samplers[waiting] = sampler;
+                worker.places[waiting] = {x, y};
                 if (++waiting == kStream) flush();
             }
+        }
     flush();
     samples_ = target;
 }

@@ -17,6 +17,7 @@ struct TileWorker {
     std::unique_ptr<march::Tracer> tracer;
     Sampler sampler;  // a pattern: copied for every sample
     // Samples on the way.
+    std::vector<glm::ivec2> places;  // pixels
     std::vector<march::Ray> rays;
     std::vector<Sampler> samplers;
     std::vector<SurfacePoint> points;  // what they meet first

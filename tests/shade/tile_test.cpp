@@ -27,7 +27,7 @@ TEST(Tile, SamplesInTwoGoesAreThoseInOne) {
     const auto integrator = shade::makeIntegrator({}, scene, ball);
     const shade::PixelFilter filter;
     const auto filmOf = [&](std::vector<int> targets) {
-        shade::TileWorker worker{ball.makeTracer(), shade::Sampler(3, 32), {}, {}, {}, {}};
+        shade::TileWorker worker{ball.makeTracer(), shade::Sampler(3, 32), {}, {}, {}, {}, {}};
         shade::Tile tile({2, 3, 18, 17}, recorder);
         for (const int target : targets) tile.sample(target, scene.camera, *integrator, recorder, filter, worker);
         EXPECT_EQ(tile.samples(), 32);
