@@ -1,10 +1,12 @@
 #include "io/error.h"
 #include "march/brick_intersector.h"
+#include "ondemand/print_field.h"
 #include "shade/picture.h"
 #include "shade/render.h"
 #include "study/image_error.h"
 #include "study/own_process.h"
 #include "study/print.h"
+#include "study/seed_print_rows.h"
 #include "study/seeds.h"
 #include "study/times.h"
 #include "voxelize/enclosed_volume.h"
@@ -20,6 +22,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 
 namespace stratum::study {
@@ -33,34 +36,8 @@ const Row kColumns{"print",          "sha256",       "light",        "size",    
                    "convert_wall",   "build_wall",   "render_wall",  "rays",       "noise",
                    "bias",           "series_cpu"};
 constexpr std::size_t kKeys = 6;
-enum Column : std::size_t {
-    kPrint,
-    kHash,
-    kLight,
-    kSize,
-    kSpp,
-    kKind,
-    kExtruded,
-    kEnclosed,
-    kPrimitives,
-    kBytes,
-    kPeak,
-    kRead,
-    kConvert,
-    kBuild,
-    kRender,
-    kConvertWall,
-    kBuildWall,
-    kRenderWall,
-    kRays,
-    kNoise,
-    kBias,
-    kSeries
-};
 
-constexpr const char* kLevelSet = "level set";
 constexpr const char* kFineLevelSet = "level set, 4 a layer";
-constexpr int kSamples = 32;  // a pixel: what totals are told for
 
 // A way to hold a print for rays. Another way is another entry of representations().
 struct Representation {
@@ -68,10 +45,16 @@ struct Representation {
     int per_layer = 0;  // of a level set, voxels a layer; 0: none
     int corners = 0;    // of prisms; 0: beads as they are
     double split = 0;
+    bool on_demand = false;  // of a level set: bricks are made when rays come to them
 };
 
 std::vector<Representation> representations() {
-    return {{kLevelSet, 2}, {kFineLevelSet, 4}, {"beads, 8:1", 0, 0, 8}, {"4-gons, 8:1", 0, 4, 8}};
+    return {{kLevelSet, 2},
+            {kFineLevelSet, 4},
+            {"level set on demand", 2, 0, 0, true},
+            {"level set on demand, 4 a layer", 4, 0, 0, true},
+            {"beads, 8:1", 0, 0, 8},
+            {"4-gons, 8:1", 0, 4, 8}};
 }
 
 // Of one print a class only: more of the same.
@@ -95,12 +78,13 @@ struct Shot {
 };
 
 struct Print {
-    gcode::Toolpath toolpath;
+    std::shared_ptr<const gcode::Toolpath> toolpath;
     std::vector<std::uint32_t> beads;
 };
 
 struct Held {
     Traced traced;
+    std::shared_ptr<ondemand::PrintField> field;  // of a level set on demand
     Times convert, build;
     double enclosed_cm3 = 0;
 };
@@ -114,12 +98,20 @@ voxelize::VoxelizeOptions culled() {
 Held hold(const Representation& r, const Print& print, const SeedPeers& peers, bool measure_volume) {
     Held held;
     if (r.per_layer == 0) {
-        held.build = timesOf([&] { held.traced = peers.beads(print.toolpath, r.corners, r.split); });
+        held.build = timesOf([&] { held.traced = peers.beads(*print.toolpath, r.corners, r.split); });
         return held;
     }
-    const voxelize::Lattice lattice = latticeOf(print.toolpath, print.beads, r.per_layer);
+    const voxelize::Lattice lattice = latticeOf(*print.toolpath, print.beads, r.per_layer);
+    if (r.on_demand) {
+        held.convert = timesOf([&] {
+            held.field = std::make_shared<ondemand::PrintField>(print.toolpath, print.beads, lattice,
+                                                                voxelize::Placement(), r.name);
+            held.traced.intersector = march::makeBrickIntersector(std::shared_ptr<const march::LeafField>(held.field));
+        });
+        return held;
+    }
     openvdb::FloatGrid::Ptr grid;
-    held.convert = timesOf([&] { grid = voxelize::voxelize(print.toolpath, print.beads, lattice, culled()); });
+    held.convert = timesOf([&] { grid = voxelize::voxelize(*print.toolpath, print.beads, lattice, culled()); });
     held.build = timesOf([&] { held.traced.intersector = march::makeBrickIntersector(*grid); });
     held.traced.primitives = static_cast<std::size_t>(grid->activeVoxelCount());
     if (measure_volume) held.enclosed_cm3 = voxelize::enclosedVolume(*grid) * 1e-3;
@@ -128,11 +120,18 @@ Held hold(const Representation& r, const Print& print, const SeedPeers& peers, b
 
 // CPU seconds to have the print ready for rays at 25, 50, 75 and 100 % of its volume.
 double seriesSeconds(const Representation& r, const Print& print, const SeedPeers& peers) {
-    const auto steps = voxelize::parseSnapshots("25%,50%,75%,100%", print.toolpath);
-    if (r.per_layer > 0) {
-        const voxelize::Lattice lattice = latticeOf(print.toolpath, print.beads, r.per_layer);
+    const auto steps = voxelize::parseSnapshots("25%,50%,75%,100%", *print.toolpath);
+    if (r.on_demand)
         return timesOf([&] {
-                   voxelize::Voxelizer voxelizer(print.toolpath, print.beads, lattice, culled());
+                   const Held held = hold(r, print, peers, false);
+                   for (const voxelize::Snapshot& step : steps)
+                       held.field->printUntil(static_cast<std::uint32_t>(step.bead_count));
+               })
+            .cpu;
+    if (r.per_layer > 0) {
+        const voxelize::Lattice lattice = latticeOf(*print.toolpath, print.beads, r.per_layer);
+        return timesOf([&] {
+                   voxelize::Voxelizer voxelizer(*print.toolpath, print.beads, lattice, culled());
                    for (const voxelize::Snapshot& step : steps)
                        march::makeBrickIntersector(*voxelizer.printUntil(static_cast<std::uint32_t>(step.bead_count)));
                })
@@ -140,7 +139,7 @@ double seriesSeconds(const Representation& r, const Print& print, const SeedPeer
     }
     double sum = 0;
     for (const voxelize::Snapshot& step : steps) {
-        gcode::Toolpath part = print.toolpath;
+        gcode::Toolpath part = *print.toolpath;
         part.beads.resize(step.bead_count);
         sum += timesOf([&] { peers.beads(part, r.corners, r.split); }).cpu;
     }
@@ -149,7 +148,7 @@ double seriesSeconds(const Representation& r, const Print& print, const SeedPeer
 
 // The same camera, bed and light for all ways to hold a print.
 shade::SceneDescription sceneOf(const Print& print, const march::Intersector& held, const Shot& shot) {
-    const voxelize::Bounds b = voxelize::boundsOf(print.toolpath, print.beads);
+    const voxelize::Bounds b = voxelize::boundsOf(*print.toolpath, print.beads);
     const shade::Camera camera = shade::Camera::make(
         {}, {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}, shot.width, shot.height);
     shade::SceneOptions options;
@@ -170,17 +169,26 @@ std::string measure(const std::string& path, const Representation& r, const Seed
     openvdb::initialize();
     Print print;
     const Times read = timesOf([&] {
-        print.toolpath = readPrint(path);
-        print.beads = voxelize::selectBeads(print.toolpath, {});
+        print.toolpath = std::make_shared<const gcode::Toolpath>(readPrint(path));
+        print.beads = voxelize::selectBeads(*print.toolpath, {});
     });
-    const Held held = hold(r, print, peers, false);
+    Held held = hold(r, print, peers, false);
     const auto scene = sceneOf(print, *held.traced.intersector, shot);
     shade::RenderOptions options;
     options.width = shot.width;
     options.height = shot.height;
     options.spp = shot.spp;
     shade::RenderResult result;
-    const Times render = timesOf([&] { result = shade::render(*held.traced.intersector, scene, options); });
+    Times render = timesOf([&] { result = shade::render(*held.traced.intersector, scene, options); });
+    if (held.field) {
+        // What the first picture takes more than another is the making of its bricks.
+        held.traced.primitives = held.field->leavesMade() * 512;
+        options.seed = 2;
+        const Times again = timesOf([&] { shade::render(*held.traced.intersector, scene, options); });
+        options.seed = 1;
+        held.build = {std::max(0.0, render.wall - again.wall), std::max(0.0, render.cpu - again.cpu)};
+        render = again;
+    }
     const std::size_t peak = peakSoFar();
     const std::size_t bytes = held.traced.intersector->bytes();
     if (!picture.empty()) {
@@ -201,12 +209,12 @@ std::string measure(const std::string& path, const Representation& r, const Seed
     double enclosed = 0;
     if (shot.compare) {
         series = fmt::format("{:.4g}", seriesSeconds(r, print, peers));
-        if (r.per_layer > 0) enclosed = hold(r, print, peers, true).enclosed_cm3;
+        if (r.per_layer > 0 && !r.on_demand) enclosed = hold(r, print, peers, true).enclosed_cm3;
         if (peers.beads) {
             // The middle of the frame, at its own resolution.
             const int half_width = shot.width / 20;
             const int half_height = shot.height / 20;
-            options.spp = kSamples;
+            options.spp = kSeedSamples;
             options.crop = shade::PixelBox{shot.width / 2 - half_width, shot.height / 2 - half_height,
                                            shot.width / 2 + half_width, shot.height / 2 + half_height};
             const Held exact = hold({"", 0, 0, 0}, print, peers, false);
@@ -222,7 +230,7 @@ std::string measure(const std::string& path, const Representation& r, const Seed
         }
     }
     const std::string line =
-        csvLine({fmt::format("{:.5g}", volumeOf(print.toolpath, print.beads) * 1e-3),
+        csvLine({fmt::format("{:.5g}", volumeOf(*print.toolpath, print.beads) * 1e-3),
                  enclosed > 0 ? fmt::format("{:.5g}", enclosed) : "", std::to_string(held.traced.primitives),
                  std::to_string(bytes), std::to_string(peak), fmt::format("{:.4g}", read.cpu),
                  fmt::format("{:.4g}", held.convert.cpu), fmt::format("{:.4g}", held.build.cpu),
@@ -230,160 +238,6 @@ std::string measure(const std::string& path, const Representation& r, const Seed
                  fmt::format("{:.4g}", held.build.wall), fmt::format("{:.4g}", render.wall),
                  std::to_string(result.rays.total()), noise, bias, series});
     return line.substr(0, line.size() - 1);
-}
-
-double value(const Row& row, std::size_t column) {
-    return row[column].empty() ? std::numeric_limits<double>::quiet_NaN() : std::atof(row[column].c_str());
-}
-// What rendering takes with the thesis's number of samples: it grows with them.
-double renderSeconds(const Row& row) { return value(row, kRender) * kSamples / value(row, kSpp); }
-double total(const Row& row) { return value(row, kConvert) + value(row, kBuild) + renderSeconds(row); }
-
-bool exactEnough(const Row& row) { return value(row, kBias) < value(row, kNoise); }
-
-// All rows of one print.
-struct PrintResult {
-    std::string name;
-    std::vector<Row> rows, sweep;
-    fs::path picture;
-    double enclosed = 0;
-
-    const Row* find(const std::string& kind) const {
-        for (const Row& row : rows)
-            if (row[kKind] == kind) return &row;
-        return nullptr;
-    }
-    // The fastest in all of the level sets, or of the peers: of those that are exact enough for the picture, if any.
-    const Row* best(bool level_sets) const {
-        const Row* least = nullptr;
-        for (const Row& row : rows) {
-            if (row[kKind].starts_with(kLevelSet) != level_sets) continue;
-            const bool better = least == nullptr || std::pair(!exactEnough(row), total(row)) <
-                                                        std::pair(!exactEnough(*least), total(*least));
-            if (better) least = &row;
-        }
-        return least;
-    }
-};
-
-const char* classOf(double cm3) { return cm3 < 30 ? "small" : cm3 < 300 ? "middle" : "large"; }
-
-std::string orNothing(double v, const char* format) {
-    return std::isfinite(v) ? fmt::format(fmt::runtime(format), v) : "-";
-}
-
-void addEverything(Page& page, const std::vector<PrintResult>& results) {
-    std::vector<Row> cells;
-    for (const PrintResult& r : results)
-        for (const Row& row : r.rows)
-            cells.push_back({r.name, classOf(r.enclosed), fmt::format("{:.1f}", r.enclosed),
-                             fmt::format("{:.1f}", value(row, kExtruded)), row[kKind], row[kPrimitives],
-                             fmt::format("{:.1f}", value(row, kBytes) * 1e-6),
-                             fmt::format("{:.0f}", value(row, kPeak) * 1e-6),
-                             fmt::format("{:.2f}", value(row, kConvert)), fmt::format("{:.2f}", value(row, kBuild)),
-                             fmt::format("{:.1f}", renderSeconds(row)), fmt::format("{:.1f}", total(row)),
-                             fmt::format("{:.2f}", value(row, kRays) / value(row, kRender) * 1e-6),
-                             orNothing(value(row, kNoise), "{:.2e}"), orNothing(value(row, kBias), "{:.2e}"),
-                             orNothing(value(row, kSeries), "{:.2f}")});
-    page.table({"print", "class", "cm\u00b3 enclosed", "cm\u00b3 extruded", "as", "primitives", "MB", "peak MB",
-                "convert s", "build s", "render s", "total s", "Mrays/CPU s", "noise", "bias", "series s"},
-               cells);
-}
-
-void addVerdict(Page& page, const std::vector<PrintResult>& results, StudyReport& report) {
-    std::vector<Row> cells;
-    int large = 0;
-    int reached = 0;
-    for (const PrintResult& r : results) {
-        const Row* own = r.best(true);
-        const Row* peer = r.best(false);
-        if (own == nullptr || peer == nullptr) continue;
-        const double ratio = total(*peer) / total(*own);
-        const double own_ready = value(*own, kConvert) + value(*own, kBuild);
-        const double peer_ready = value(*peer, kConvert) + value(*peer, kBuild);
-        // Time is what it takes to be ready, and so much for each sample: where do the lines cross?
-        const double own_sample = value(*own, kRender) / value(*own, kSpp);
-        const double peer_sample = value(*peer, kRender) / value(*peer, kSpp);
-        const double crossing = (own_ready - peer_ready) / (peer_sample - own_sample);
-        const bool below = exactEnough(*own);
-        const bool counts = r.enclosed >= 100;
-        const bool ok = ratio >= 1.5 && below;
-        large += counts ? 1 : 0;
-        reached += counts && ok ? 1 : 0;
-        const bool faster_rays = own_sample < peer_sample;
-        std::string where = own_ready < peer_ready
-                                ? (faster_rays ? "always" : fmt::format("below {:.0f} spp", crossing))
-                                : (faster_rays ? fmt::format("above {:.0f} spp", crossing) : "never");
-        cells.push_back({r.name, fmt::format("{:.1f}", r.enclosed), (*own)[kKind], (*peer)[kKind],
-                         fmt::format("{:.2f}", ratio), fmt::format("{:.2f}", peer_sample / own_sample),
-                         std::move(where), below ? "yes" : "no", counts ? (ok ? "reached" : "not reached") : "-"});
-    }
-    if (cells.empty()) return;
-    page.heading("Level set against the best peer");
-    page.paragraph(
-        "The fastest level set and the fastest peer, of those whose bias is below the noise of the picture (the "
-        "fastest of all if none is): total CPU time (convert, build, render at 32 spp) of the peer by the level set's; "
-        "the same of a sample alone; from which number of samples on the level set is ahead. The aim, for 100 "
-        "cm\u00b3 and more: 1.5 times faster, bias below the noise.");
-    page.table({"print", "cm\u00b3", "level set", "best peer", "total, times", "a sample, times", "level set is ahead",
-                "bias below noise", "aim"},
-               cells, "not reached");
-    report.findings.push_back(
-        fmt::format("level set at least 1.5 times faster than the best peer, bias below noise: "
-                    "{} of {} prints of 100 cm\u00b3 and more",
-                    reached, large));
-    page.paragraph(fmt::format("Of {} prints of 100 cm\u00b3 and more, {} reach the aim.", large, reached));
-}
-
-void addPlots(Page& page, const std::vector<PrintResult>& results, const std::vector<Representation>& kinds) {
-    Plot times{"Total time at 32 spp", "cm\u00b3 enclosed", "CPU seconds", true, true, {}};
-    Plot ready{"Ready for rays (convert and build)", "cm\u00b3 enclosed", "CPU seconds", true, true, {}};
-    Plot memory{"Memory that rays need", "cm\u00b3 enclosed", "MB", true, true, {}};
-    for (const Representation& kind : kinds) {
-        Series t{kind.name, {}, false, false};
-        Series b = t;
-        Series m = t;
-        for (const PrintResult& r : results) {
-            const Row* row = r.find(kind.name);
-            if (row == nullptr) continue;
-            t.points.emplace_back(r.enclosed, total(*row));
-            b.points.emplace_back(r.enclosed, value(*row, kConvert) + value(*row, kBuild));
-            m.points.emplace_back(r.enclosed, value(*row, kBytes) * 1e-6);
-        }
-        if (t.points.empty()) continue;
-        times.series.push_back(std::move(t));
-        ready.series.push_back(std::move(b));
-        memory.series.push_back(std::move(m));
-    }
-    page.plot(times);
-    page.plot(ready);
-    page.plot(memory);
-}
-
-void addSplits(Page& page, const std::vector<PrintResult>& results) {
-    for (const PrintResult& r : results) {
-        if (r.sweep.empty()) continue;
-        Plot plot{fmt::format("Segments cut at a largest length : width, {}", r.name),
-                  "largest length : width (128: whole)",
-                  "CPU seconds",
-                  true,
-                  true,
-                  {}};
-        for (const char* kind : {"beads", "4-gons"}) {
-            Series ready{fmt::format("{}, build", kind), {}, true};
-            Series render{fmt::format("{}, render", kind), {}};
-            for (const Row& row : r.sweep) {
-                if (!row[kKind].starts_with(kind)) continue;
-                const std::string ratio = row[kKind].substr(row[kKind].find(' ') + 1);
-                const double x = ratio == "whole" ? 128 : std::atof(ratio.c_str());
-                ready.points.emplace_back(x, value(row, kBuild));
-                render.points.emplace_back(x, value(row, kRender));
-            }
-            plot.series.push_back(std::move(ready));
-            plot.series.push_back(std::move(render));
-        }
-        page.plot(plot);
-    }
 }
 
 }  // namespace
@@ -403,11 +257,11 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
     const std::vector<Representation> ways = splits();
     const fs::path pictures = common.folder / "references";
     fs::create_directories(pictures);
-    std::vector<PrintResult> results;
+    std::vector<SeedPrintResult> results;
     std::map<std::string, std::string> swept;  // class: the print whose segments are cut in all ways
     double done = 0;
     for (const std::string& path : options.prints) {
-        PrintResult result;
+        SeedPrintResult result;
         result.name = fs::path(path).stem().string();
         result.picture = pictures / (result.name + ".png");
         const std::string hash = shortHash(path);
@@ -434,8 +288,8 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
         };
         for (const Representation& kind : kinds)
             if (auto row = rowOf(kind, shot)) result.rows.push_back(std::move(*row));
-        result.enclosed = value(result.rows.front(), kEnclosed);
-        const std::string size = classOf(result.enclosed);
+        result.enclosed = seedValue(result.rows.front(), kEnclosed);
+        const std::string size = seedClassOf(result.enclosed);
         if (swept.emplace(size, result.name).first->second == result.name) {
             for (const Representation& way : ways)
                 if (auto row = rowOf(way, small)) result.sweep.push_back(std::move(*row));
@@ -446,12 +300,14 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
         if (common.progress) common.progress(++done / static_cast<double>(options.prints.size()));
     }
     std::sort(results.begin(), results.end(),
-              [](const PrintResult& a, const PrintResult& b) { return a.enclosed < b.enclosed; });
+              [](const SeedPrintResult& a, const SeedPrintResult& b) { return a.enclosed < b.enclosed; });
     page.heading("Prints: level sets, beads and prisms (\u0160pilar 2025)");
     page.paragraph(fmt::format(
         "{} prints, {}x{} pixels, path tracing with three bounces by the same code for all, a "
         "modelled measured material (pla-blue), light: {}. The level set has 2 voxels a layer where nothing else "
-        "is said, and what the outside can't see is culled; beads are analytic, cut where they are longer than eight "
+        "is said, and what the outside can't see is culled; on demand, its bricks are made when "
+        "rays come to them, which counts as \"build\" (what a first picture takes more than a second one), and "
+        "primitives are the voxels evaluated; beads are analytic, cut where they are longer than eight "
         "widths; n-gons are prisms of n "
         "sides, cut likewise; both are traced by Embree, in packets of 16 where rays run side by side. Times are CPU "
         "seconds of all threads; pictures were rendered with {} samples a pixel, and their time is told for {} in "
@@ -461,14 +317,12 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
         "below "
         "zero is less than can be measured. \"Series\" is CPU time until the print at 25, 50, 75 and 100 % is ready "
         "for rays, pictures not counted.",
-        results.size(), shot.width, shot.height, fs::path(shot.light).filename().string(), shot.spp, kSamples));
-    for (const PrintResult& r : results)
+        results.size(), shot.width, shot.height, fs::path(shot.light).filename().string(), shot.spp, kSeedSamples));
+    for (const SeedPrintResult& r : results)
         if (fs::exists(r.picture)) page.picture(r.picture, r.name);
-    addPlots(page, results, kinds);
-    addVerdict(page, results, report);
-    addSplits(page, results);
-    page.heading("Everything measured of prints");
-    addEverything(page, results);
+    std::vector<std::string> names;
+    for (const Representation& kind : kinds) names.push_back(kind.name);
+    addSeedPrints(page, results, names, report);
     report.rows += table.rows().size();
     report.resumed += table.resumed();
 }

@@ -68,12 +68,14 @@ TEST(Seeds, MeasuresAFolderOfPrints) {
     SeedsOptions options;
     options.prints = {prints.path().string()};
     const StudyReport report = studySeeds(options, {}, common);
-    EXPECT_EQ(report.rows, 2U);  // two voxels a layer, and four
-    const Row row = rowsOf(folder.path() / "seeds_prints.csv", 5).at("level set");
+    EXPECT_EQ(report.rows, 4U);  // two voxels a layer, and four, kept and on demand
+    const auto rows = rowsOf(folder.path() / "seeds_prints.csv", 5);
+    const Row row = rows.at("level set");
     EXPECT_NEAR(std::stod(row.at(7)), 0.71, 0.05);  // cm3 enclosed
     EXPECT_GT(std::stod(row.at(14)), 0);
+    EXPECT_EQ(row.at(18), rows.at("level set on demand").at(18)) << "rays of the same picture";
     EXPECT_TRUE(std::filesystem::exists(report.html));
-    EXPECT_EQ(studySeeds(options, {}, common).resumed, 2U);
+    EXPECT_EQ(studySeeds(options, {}, common).resumed, 4U);
 }
 
 TEST(Seeds, SaysWhatItNeeds) {
