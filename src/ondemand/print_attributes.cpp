@@ -17,26 +17,12 @@ namespace stratum::ondemand {
 namespace {
 
 using voxelize::Attribute;
+using Kind = voxelize::AttributeKind;
 
 constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
 
-enum class Kind : std::uint8_t { integer, number, color };
-
-Kind kindOf(Attribute attribute) {
-    switch (attribute) {
-        case Attribute::time:
-        case Attribute::width:
-        case Attribute::speed:
-            return Kind::number;
-        case Attribute::color:
-            return Kind::color;
-        default:
-            return Kind::integer;
-    }
-}
-
 glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, std::uint32_t bead) {
-    switch (kindOf(attribute)) {
+    switch (voxelize::attributeKind(attribute)) {
         case Kind::integer:
             return {static_cast<float>(values.integer(attribute, bead)), 0.0F, 0.0F};
         case Kind::number:

@@ -17,21 +17,6 @@ constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "
                                                  "object", "width", "speed",   "color"};
 constexpr float kGrey = 0.8f;
 
-enum class Kind : std::uint8_t { integer, number, color };
-
-Kind kindOf(Attribute attribute) {
-    switch (attribute) {
-        case Attribute::time:
-        case Attribute::width:
-        case Attribute::speed:
-            return Kind::number;
-        case Attribute::color:
-            return Kind::color;
-        default:
-            return Kind::integer;
-    }
-}
-
 // IEC 61966-2-1.
 float linear(std::uint8_t srgb) {
     const double v = srgb / 255.0;
@@ -57,6 +42,19 @@ void fill(openvdb::GridBase& base, const openvdb::Coord& origin, std::span<const
 }
 
 }  // namespace
+
+AttributeKind attributeKind(Attribute attribute) {
+    switch (attribute) {
+        case Attribute::time:
+        case Attribute::width:
+        case Attribute::speed:
+            return AttributeKind::number;
+        case Attribute::color:
+            return AttributeKind::color;
+        default:
+            return AttributeKind::integer;
+    }
+}
 
 std::string_view attributeName(Attribute attribute) { return kNames[static_cast<std::size_t>(attribute)]; }
 
@@ -131,14 +129,14 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& to
     std::vector<openvdb::GridBase::Ptr> grids;
     for (const Attribute attribute : attributes) {
         openvdb::GridBase::Ptr grid;
-        switch (kindOf(attribute)) {
-            case Kind::integer:
+        switch (attributeKind(attribute)) {
+            case AttributeKind::integer:
                 grid = emptyGrid<openvdb::Int32Grid>(surface);
                 break;
-            case Kind::number:
+            case AttributeKind::number:
                 grid = emptyGrid<openvdb::FloatGrid>(surface);
                 break;
-            case Kind::color:
+            case AttributeKind::color:
                 grid = emptyGrid<openvdb::Vec3SGrid>(surface);
                 break;
         }
@@ -160,14 +158,14 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& to
 
 void fillLeaf(openvdb::GridBase& grid, Attribute attribute, const openvdb::Coord& origin, const BeadAttributes& values,
               std::span<const std::uint32_t> beads_of_voxels) {
-    switch (kindOf(attribute)) {
-        case Kind::integer:
+    switch (attributeKind(attribute)) {
+        case AttributeKind::integer:
             return fill<openvdb::Int32Grid>(grid, origin, beads_of_voxels,
                                             [&](std::uint32_t bead) { return values.integer(attribute, bead); });
-        case Kind::number:
+        case AttributeKind::number:
             return fill<openvdb::FloatGrid>(grid, origin, beads_of_voxels,
                                             [&](std::uint32_t bead) { return values.number(attribute, bead); });
-        case Kind::color:
+        case AttributeKind::color:
             return fill<openvdb::Vec3SGrid>(grid, origin, beads_of_voxels,
                                             [&](std::uint32_t bead) { return values.color(bead); });
     }

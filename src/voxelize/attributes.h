@@ -29,6 +29,10 @@ enum class Attribute : std::uint8_t {
 std::vector<Attribute> parseGrids(std::string_view text);
 std::string_view attributeName(Attribute attribute);
 
+/// What its grid holds: Int32, float or Vec3f.
+enum class AttributeKind : std::uint8_t { integer, number, color };
+AttributeKind attributeKind(Attribute attribute);
+
 /// A value of every bead for every attribute; made once, read by all threads.
 class BeadAttributes {
 public:
