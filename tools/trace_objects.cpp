@@ -68,10 +68,23 @@ void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
                path, half_width);
 }
 
+Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, std::size_t limit) {
+    Json report{{"limit_bytes", limit}, {"holds_all", !cache.bounded()}};
+    if (!cache.bounded()) return report;
+    const march::BrickCacheCounts counts = cache.counts();
+    report["bricks"] = counts.slots;
+    report["hits"] = counts.hits;
+    report["made"] = counts.made;
+    report["evicted"] = counts.evicted;
+    report["peak_bytes"] = counts.peak * bricks.brickBytes();
+    return report;
+}
+
 // What the bricks of a print took, after those of `before`.
 std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& intersector, double seconds,
-                               std::function<Json()> before) {
-    return [field = print.field, intersector, parse = print.parse_seconds, seconds, before = std::move(before)] {
+                               std::size_t cache_bytes, std::function<Json()> before) {
+    return [field = print.field, intersector, parse = print.parse_seconds, seconds, cache_bytes,
+            before = std::move(before)] {
         Json all = before ? before() : Json::array();
         const ondemand::PrintFieldTimes& times = field->times();
         const march::BrickGrid& bricks = *march::bricksOf(*intersector);
@@ -82,13 +95,16 @@ std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& i
                {"bins", times.bins},
                {"box", times.box},
                {"map", times.map},
-               {"list", seconds - parse - times.bins - times.box - times.map}}},
+               {"list", seconds - parse - times.bins - times.box - times.map},
+               {"bricks_all_threads", bricks.layoutSeconds()}}},
              {"bricks_listed", bricks.listedCount()},
              {"bricks_made", bricks.brickCount()},
              {"leaves_made", field->leavesMade()},
              {"printed_beads", std::min<std::size_t>(field->printed(), field->layout().toolpath->beads.size())},
              {"print_bytes", field->bytes()},
              {"brick_bytes", bricks.bytes()}});
+        if (cache_bytes != march::BrickGrid::kNoBound)
+            all.back()["brick_cache"] = reportOf(bricks.cache(), bricks, cache_bytes);
         return all;
     };
 }
@@ -173,7 +189,8 @@ private:
         if (options_.smooth_normals) annotation.smooth = grid;
         result_.load_seconds += watch_.lap();
         const IntersectorPtr plain =
-            file ? march::makeBrickIntersector(std::move(file), options_.values) : intersectorOf(grid, options_);
+            file ? march::makeBrickIntersector(std::move(file), options_.values, options_.brick_cache)
+                 : intersectorOf(grid, options_);
         grid.reset();  // bricks hold all that rays need
         shape.intersector = march::annotate(plain, std::move(annotation));
         result_.build_seconds += watch_.lap();
@@ -191,8 +208,8 @@ private:
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;
-        const std::shared_ptr<march::Intersector> plain =
-            march::makeBrickIntersector(std::shared_ptr<const march::LeafField>(print.field), options_.values);
+        const std::shared_ptr<march::Intersector> plain = march::makeBrickIntersector(
+            std::shared_ptr<const march::LeafField>(print.field), options_.values, options_.brick_cache);
         march::Annotation annotation;
         for (const std::string& name : attributes_) {
             std::shared_ptr<const march::AttributeSource> source;
@@ -214,7 +231,7 @@ private:
                 march::bricksOf(*plain)->update(field->printUntil(moments[n]));
             };
         }
-        result_.on_demand = reportOf(print, plain, seconds, result_.on_demand);
+        result_.on_demand = reportOf(print, plain, seconds, options_.brick_cache, result_.on_demand);
         return shape;
     }
 

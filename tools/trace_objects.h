@@ -3,6 +3,7 @@
 
 #include "trace_print.h"
 
+#include "march/brick_grid.h"
 #include "march/brick_layout.h"
 #include "march/scene_intersector.h"
 #include "shade/object_file.h"
@@ -25,8 +26,9 @@ struct TraceOptions {
     std::string brdf;      ///< --brdf, of objects that have none of their own
     std::string color_by;  ///< --color-by, of level sets that have no material of their own
     bool smooth_normals = false;
-    std::vector<shade::Label> labels;  ///< that the picture shows; every level set must have them
-    TracePrintOptions prints;          ///< of G-code
+    std::size_t brick_cache = march::BrickGrid::kNoBound;  ///< --brick-cache, bytes
+    std::vector<shade::Label> labels;                      ///< that the picture shows; every level set must have them
+    TracePrintOptions prints;                              ///< of G-code
 };
 
 struct TraceObjects {

@@ -9,6 +9,7 @@
 #include "shade/picture.h"
 #include "shade/render.h"
 #include "shade/scene_file.h"
+#include "voxelize/voxel_choice.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,7 +43,7 @@ Examples:
 struct Options {
     tools::CommonOptions common;
     std::vector<std::string> inputs;
-    std::string output, grid, file_up, march = "auto", size, view, crop, write_brdf, aov, normals;
+    std::string output, grid, file_up, march = "auto", size, view, crop, write_brdf, aov, normals, brick_cache;
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
@@ -195,6 +196,12 @@ void addOptions(CLI::App& app, Options& o) {
         ->transform(CLI::CheckedTransformer(std::map<std::string, march::BrickValues>{
             {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
         ->type_name("float|int16")
+        ->group(tracing);
+    app.add_option(
+           "--brick-cache", o.brick_cache,
+           "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and "
+           "the picture stays the same. Of each print, and of each large level set (default: no bound)")
+        ->type_name("SIZE")
         ->group(tracing);
     tools::addPrintOptions(app, o.prints.print);
     app.add_option("--printed", o.prints.printed,
@@ -404,10 +411,19 @@ void run(Options& o, int argc, char** argv) {
     if (o.denoise) shade::addDenoisingGuides(o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
-    tools::TraceOptions reading{
-        o.march, o.values, o.scene.brdf, o.scene.color_by, o.scene.smooth_normals, shade::labelsOf(o.render.aovs),
-        o.prints};
+    tools::TraceOptions reading{.march = o.march,
+                                .values = o.values,
+                                .brdf = o.scene.brdf,
+                                .color_by = o.scene.color_by,
+                                .smooth_normals = o.scene.smooth_normals,
+                                .labels = shade::labelsOf(o.render.aovs),
+                                .prints = o.prints};
     reading.prints.quiet = o.common.quiet;
+    if (!o.brick_cache.empty()) {
+        if (o.march != "auto" && o.march != "brick")
+            throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
+        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
+    }
     if (const std::string& name = o.render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
         const shade::Label label = shade::parseLabel(name);
         if (std::find(reading.labels.begin(), reading.labels.end(), label) == reading.labels.end())

@@ -7,6 +7,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <type_traits>
 #include <utility>
@@ -65,12 +66,12 @@ public:
     // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
     std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
 
-    // Coordinates in bricks.
-    void layOut(std::size_t brick, int x, int y, int z) const {
-        if (grid_.values_ == BrickValues::Float32)
-            layOut(brick, x, y, z, grid_.floats_.data(), float_caches_.local());
-        else
-            layOut(brick, x, y, z, grid_.quanta_.data(), quanta_caches_.local());
+    // Coordinates in bricks. False if there is no room.
+    bool layOut(std::size_t brick, int x, int y, int z) const {
+        if (!grid_.slots_.anyLeft()) return false;
+        return grid_.values_ == BrickValues::Float32
+                   ? layOut(brick, x, y, z, grid_.floats_.data(), float_caches_.local())
+                   : layOut(brick, x, y, z, grid_.quanta_.data(), quanta_caches_.local());
     }
 
     // All bricks of a macro cell, one after the other in memory, without those that turn out to have no surface.
@@ -89,18 +90,19 @@ public:
 
 private:
     template <typename T>
-    void layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+    bool layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
         const BrickParts<T> parts = partsOf(x, y, z, cache);
         const CellBits surface = surfaceOf(parts);
-        std::uint32_t slot = kNoSamples;
+        std::uint32_t slot = BrickSlots::kNoSamples;
         if (hasAny(surface)) {
-            slot = grid_.takeSlot();
+            slot = grid_.slots_.take(brick);
+            if (slot == 0) return false;  // another thread was faster
             march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
         }
         for (std::size_t part = 0; part < surface.size(); ++part)
             std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
-        // Last, so that whoever sees it sees the rest.
-        std::atomic_ref(grid_.slots_[brick]).store(slot, std::memory_order_release);
+        grid_.slots_.publish(brick, slot);
+        return true;
     }
 
     template <typename T>
@@ -119,7 +121,7 @@ private:
             made.bricks |= std::uint64_t{1} << bit;
             ++count;
         }
-        made.first_brick = grid_.used_.fetch_add(static_cast<std::uint32_t>(count), std::memory_order_relaxed);
+        made.first_brick = grid_.slots_.takeRow(static_cast<std::uint32_t>(count));
         for (std::size_t n = 0; n < count; ++n) {
             const std::size_t brick = made.first_brick + n;
             march::layOut(parts[n], samples + static_cast<std::ptrdiff_t>(brick) * kBrickSamples);
@@ -207,7 +209,7 @@ private:
 };
 
 BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
-    const Layouter layouter(*this, source, nullptr, listBricks(source, false));
+    const Layouter layouter(*this, source, nullptr, listBricks(source, false, kNoBound));
     HugeArray<MacroCell> made(macro_cells_.size());  // neighbours still need what is listed
     parallelFor(made.size(), kGrain, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
@@ -223,49 +225,47 @@ BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(val
     measureEmptySpace();
 }
 
-BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values) : values_(values) {
+BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes)
+    : values_(values) {
     const LeafSource& leaves = *source;
-    layouter_ = std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves, true));
-    slots_ = HugeArray<std::uint32_t>(listed_);
+    layouter_ =
+        std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves, true, cache_bytes));
     measureEmptySpace();
 }
 
-BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values) : values_(values) {
-    listBricks(*field);
+BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes)
+    : values_(values) {
+    listBricks(*field, cache_bytes);
     layouter_ = std::make_unique<const Layouter>(*this, std::move(field));
-    slots_ = HugeArray<std::uint32_t>(listed_);
     measureEmptySpace();
 }
 
 BrickGrid::~BrickGrid() = default;
 
-void BrickGrid::require(std::size_t brick, int x, int y, int z) const {
-    const std::atomic_ref slot(slots_[brick]);
-    if (slot.load(std::memory_order_acquire) != 0) return;
+bool BrickGrid::require(std::size_t brick, int x, int y, int z) const {
+    if (slots_.of(brick) != 0) return true;
     const std::scoped_lock lock(layouter_->doorOf(brick));
-    if (slot.load(std::memory_order_relaxed) == 0) layouter_->layOut(brick, x, y, z);
+    if (slots_.of(brick) != 0) return true;
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const bool there = layouter_->layOut(brick, x, y, z);
+    layout_ns_.fetch_add(std::chrono::nanoseconds(Clock::now() - start).count(), std::memory_order_relaxed);
+    return there;
 }
 
 std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
-    require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge);
-    return surface(brick, part);
-}
-
-// A new one, or that of a brick that was forgotten.
-std::uint32_t BrickGrid::takeSlot() const {
-    if (free_taken_.load(std::memory_order_relaxed) < free_.size()) {
-        const std::size_t next = free_taken_.fetch_add(1, std::memory_order_relaxed);
-        if (next < free_.size()) return free_[next];
+    while (!require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge)) slots_.makeRoom(true);
+    if (slots_.bounded()) {
+        if (const std::uint32_t slot = slots_.of(brick); slot != BrickSlots::kNoSamples) slots_.mark(slot);
+        slots_.count(1);
     }
-    return used_.fetch_add(1, std::memory_order_relaxed) + 1;
+    return surface(brick, part);
 }
 
 void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
     const LeafField& field = *layouter_->field();
     const BrickMap& map = field.bricks();
     layouter_->forgetLeaves();
-    free_.erase(free_.begin(), free_.begin() + static_cast<std::ptrdiff_t>(freeTaken()));
-    free_taken_ = 0;
     for (const openvdb::Coord& leaf : leaves)
         for (int part = 0; part < 8; ++part) {
             // The leaf's own brick, and those before it that take its first samples.
@@ -280,9 +280,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
             const int b[3] = {at[0] / kBrickEdge & 3, at[1] / kBrickEdge & 3, at[2] / kBrickEdge & 3};
             if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
             const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
-            if (slots_[brick] == 0) continue;
-            if (slots_[brick] != kNoSamples) free_.push_back(slots_[brick]);
-            slots_[brick] = 0;
+            slots_.forget(brick);
             clear_[brick] = {};
         }
     for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = field.shows(n) ? map.masks[n] : 0;
@@ -290,7 +288,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
 }
 
 // Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
-std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool late) {
+std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool late, std::size_t cache_bytes) {
     unit_ = quantumOf(source.background(), values_);
     const std::size_t count = source.leafCount();
     openvdb::CoordBBox box;
@@ -308,7 +306,7 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool 
         const openvdb::Coord at = source.origin(n) - origin_;
         macroOf(at).bricks |= std::uint64_t{1} << Mask64::bit(within(at[0]), within(at[1]), within(at[2]));
     }
-    countBricks(late);
+    countBricks(late, cache_bytes);
     std::vector<std::uint32_t> leaves(count);
     for (std::size_t n = 0; n < count; ++n) {
         const openvdb::Coord at = source.origin(n) - origin_;
@@ -317,14 +315,14 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool 
     return leaves;
 }
 
-void BrickGrid::listBricks(const LeafField& field) {
+void BrickGrid::listBricks(const LeafField& field, std::size_t cache_bytes) {
     unit_ = quantumOf(field.background(), values_);
     const BrickMap& map = field.bricks();
     std::size_t count = 0;
     for (const std::uint64_t mask : map.masks) count += static_cast<std::size_t>(std::popcount(mask));
     setBox(map.origin, map.macros, count);
     for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = map.masks[n];
-    countBricks(true);
+    countBricks(true, cache_bytes);
 }
 
 void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves) {
@@ -335,7 +333,7 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
         size_[axis] = macros[axis] * kMacroEdge;
         cells *= macros[axis];
     }
-    if (cells > 2147483648.0 || leaves >= kNoSamples)
+    if (cells > 2147483648.0 || leaves >= BrickSlots::kNoSamples)
         throw InputError(fmt::format(
             "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
             "or use --march vdb",
@@ -344,7 +342,7 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
 }
 
 // Numbers the bricks whose bits are set, and makes room for them.
-void BrickGrid::countBricks(bool late) {
+void BrickGrid::countBricks(bool late, std::size_t cache_bytes) {
     std::uint32_t first = 0;
     for (MacroCell& macro : macro_cells_) {
         macro.first_brick = first;
@@ -354,8 +352,18 @@ void BrickGrid::countBricks(bool late) {
     // A picture writes few of them if they are laid out late.
     using Pages = HugeArray<CellBits>::Pages;
     clear_ = HugeArray<CellBits>(listed_, late ? Pages::small : Pages::huge);
-    // Room for all, of which only what is used is ever touched.
-    const std::size_t samples = listed_ * static_cast<std::size_t>(kBrickSamples);
+    // Room for all, of which only what is used is ever touched, or for as many as there may be.
+    std::size_t bricks = listed_;
+    if (late) {
+        slots_.open(listed_, cache_bytes / brickBytes());
+        bricks = slots_.size();
+        if (slots_.bounded() && bricks < BrickSlots::kLeastBound)
+            throw UsageError(fmt::format(
+                "--brick-cache: {} bytes hold {} bricks of {} bytes; the rays that are on their way at a time need {}: "
+                "give {} bytes or more",
+                cache_bytes, bricks, brickBytes(), BrickSlots::kLeastBound, BrickSlots::kLeastBound * brickBytes()));
+    }
+    const std::size_t samples = bricks * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
         floats_ = HugeArray<float>(samples);
     else
@@ -394,9 +402,8 @@ void BrickGrid::measureEmptySpace() {
 }
 
 std::size_t BrickGrid::bytes() const {
-    const std::size_t sample = values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t);
-    return macro_cells_.size() * sizeof(MacroCell) + listed_ * sizeof(CellBits) +
-           slots_.size() * sizeof(std::uint32_t) + brickCount() * static_cast<std::size_t>(kBrickSamples) * sample;
+    return macro_cells_.size() * sizeof(MacroCell) + listed_ * sizeof(CellBits) + slots_.bytes() +
+           brickCount() * brickBytes();
 }
 
 }  // namespace stratum::march

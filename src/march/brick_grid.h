@@ -7,10 +7,12 @@
 // All coordinates are cells, counted from the grid's lowest corner.
 //
 // Bricks are laid out at once, or each when the first ray comes to it: then a brick is there for every leaf, all its
-// cells count as surface until it is laid out, and a picture costs what it shows.
+// cells count as surface until it is laid out, and a picture costs what it shows. With a bound on what may be laid out
+// at once (see brick_slots.h), bricks come and go; what is known of their surface cells stays.
 #pragma once
 
 #include "march/brick_layout.h"
+#include "march/brick_slots.h"
 #include "march/huge_array.h"
 #include "march/leaf_field.h"
 #include "march/leaf_source.h"
@@ -65,16 +67,18 @@ public:
     static constexpr std::ptrdiff_t kStrideY = kSamples;
     static constexpr std::ptrdiff_t kStrideX = kStrideY * kSamples;
     static constexpr std::ptrdiff_t kBrickSamples = kStrideX * kSamples;
+    static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
     /// Lays out every brick, in parallel. The source is not needed afterwards.
     /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, and, with the
     /// place, for samples that are no finite numbers.
     BrickGrid(const LeafSource& source, BrickValues values);
     BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
-    /// Lays bricks out when require() asks for them, which then throws as above.
-    BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values);
+    /// Lays bricks out when require() asks for them, which then throws as above. No more than `cache_bytes` of samples
+    /// at once: throws UsageError if that is no room for BrickSlots::kLeastBound bricks.
+    BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes = kNoBound);
     /// The same for samples that aren't there yet either.
-    BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values);
+    BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes = kNoBound);
     ~BrickGrid();
     BrickGrid(const BrickGrid&) = delete;
     BrickGrid& operator=(const BrickGrid&) = delete;
@@ -98,19 +102,22 @@ public:
 
     /// Whether bricks are laid out as they are asked for.
     bool late() const { return layouter_ != nullptr; }
-    /// Lays out the brick at this place, unless it is. From any thread.
-    void require(std::size_t brick, int x, int y, int z) const;
+    /// Lays out the brick at this place, unless it is. From any thread. False if there is no room for it.
+    bool require(std::size_t brick, int x, int y, int z) const;
+    /// What samples are read by. With a bound, from require() on until they have been read a Reading must be held, and
+    /// makeRoom() called when there is no room.
+    BrickSlots& cache() const { return slots_; }
 
     /// The surface cells among 4^3 of a brick's, `part` = x << 2 | y << 1 | z; all, before it is laid out.
     std::uint64_t surface(std::size_t brick, std::size_t part) const {
         return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
     }
-    /// The same after require() of the brick that `cell` is in.
+    /// The same after require() of the brick that `cell` is in; waits for room.
     std::uint64_t surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
     /// Where the samples of a brick with surface begin, in units of samples.
     std::size_t firstSample(std::size_t brick) const {
         if (late()) [[unlikely]]
-            brick = std::atomic_ref(slots_.data()[brick]).load(std::memory_order_acquire) - 1;
+            brick = slots_.of(brick) - 1;
         return brick * static_cast<std::size_t>(kBrickSamples);
     }
     BrickValues values() const { return values_; }
@@ -124,15 +131,21 @@ public:
     const MacroCell* macroCells() const { return macro_cells_.data(); }
     /// Complements of the surface cells.
     const CellBits* clearCells() const { return clear_.data(); }
-    /// Where each brick's samples are if bricks are laid out late: 0 if it isn't laid out, kNoSamples if it has no
-    /// surface, or counted from 1. The samples of bricks that are laid out at once lie in the bricks' own order.
-    const std::uint32_t* slots() const { return slots_.data(); }
-    static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
+    /// Where each brick's samples are if bricks are laid out late: BrickSlots::table(). The samples of bricks that are
+    /// laid out at once lie in the bricks' own order.
+    const std::uint32_t* slots() const { return slots_.table(); }
 
     /// Bricks that have an index.
     std::size_t listedCount() const { return listed_; }
     /// Bricks with surface that are laid out.
-    std::size_t brickCount() const { return slotsTaken() - (free_.size() - freeTaken()); }
+    std::size_t brickCount() const { return slots_.taken(); }
+    /// Memory of a brick's samples.
+    std::size_t brickBytes() const {
+        return static_cast<std::size_t>(kBrickSamples) *
+               (values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t));
+    }
+    /// What laying out bricks late took, all threads' seconds together.
+    double layoutSeconds() const { return 1e-9 * static_cast<double>(layout_ns_.load(std::memory_order_relaxed)); }
     /// Memory taken for all.
     std::size_t bytes() const;
 
@@ -147,14 +160,11 @@ private:
     MacroCell& macroOf(const openvdb::Coord& cell) {
         return macro_cells_[macroIndex(cell[0] / kMacroEdge, cell[1] / kMacroEdge, cell[2] / kMacroEdge)];
     }
-    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool late);
-    void listBricks(const LeafField& field);
+    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool late, std::size_t cache_bytes);
+    void listBricks(const LeafField& field, std::size_t cache_bytes);
     void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
-    void countBricks(bool late);
+    void countBricks(bool late, std::size_t cache_bytes);
     void measureEmptySpace();
-    std::uint32_t takeSlot() const;
-    std::size_t slotsTaken() const { return used_.load(std::memory_order_relaxed); }
-    std::size_t freeTaken() const { return std::min(free_taken_.load(std::memory_order_relaxed), free_.size()); }
 
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};
@@ -165,12 +175,10 @@ private:
     std::size_t listed_ = 0;  // bricks that have an index
     // Written when a brick is laid out, also in a grid that is const to those who trace it.
     mutable HugeArray<CellBits> clear_;
-    mutable HugeArray<std::uint32_t> slots_;
+    mutable BrickSlots slots_;
     mutable HugeArray<float> floats_;
     mutable HugeArray<std::int16_t> quanta_;
-    mutable std::atomic<std::uint32_t> used_{0};
-    std::vector<std::uint32_t> free_;  // slots of forgotten bricks; the first free_taken_ are in use again
-    mutable std::atomic<std::size_t> free_taken_{0};
+    mutable std::atomic<std::int64_t> layout_ns_{0};
     std::unique_ptr<const Layouter> layouter_;
 };
 

@@ -31,6 +31,7 @@ public:
 private:
     // With `hit` the nearest root is refined; without, the first sign change is enough.
     bool trace(const Ray& ray, Hit* hit) const {
+        const BrickSlots::Reading reading(grid_.cache());
         Walk walk(map_.to_cells * ray.origin + map_.origin, map_.to_cells * ray.direction);
         if (!walk.enter(ray.t_min, ray.t_max, grid_.size())) return false;
         while (true) {
@@ -72,14 +73,16 @@ public:
           map_(*grid.transform().baseMap(), bricks_.origin()),
           bounds_(narrowBandBounds(grid)),
           voxel_size_(GridAxes(grid.transform()).shortest()) {}
-    template <typename Source>
-    BrickIntersector(const LeafFile& file, Source&& source, BrickValues values)
-        : bricks_(std::forward<Source>(source), values),
+    // `bricks` makes the BrickGrid.
+    template <typename... Bricks>
+    BrickIntersector(const LeafFile& file, Bricks&&... bricks)
+        : bricks_(std::forward<Bricks>(bricks)...),
           map_(*file.head().transform().baseMap(), bricks_.origin()),
           bounds_(worldBounds(file.head().transform(), file.activeBox())),
           voxel_size_(GridAxes(file.head().transform()).shortest()) {}
-    BrickIntersector(const LeafField& field, std::shared_ptr<const LeafField> owned, BrickValues values)
-        : bricks_(std::move(owned), values),
+    BrickIntersector(const LeafField& field, std::shared_ptr<const LeafField> owned, BrickValues values,
+                     std::size_t cache_bytes)
+        : bricks_(std::move(owned), values, cache_bytes),
           map_(*field.transform().baseMap(), bricks_.origin()),
           bounds_(worldBounds(field.transform(), field.activeBox())),
           voxel_size_(GridAxes(field.transform()).shortest()) {}
@@ -112,17 +115,19 @@ std::unique_ptr<Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid
     return std::make_unique<BrickIntersector>(grid, values);
 }
 
-std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile> file, BrickValues values) {
+std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile> file, BrickValues values,
+                                                  std::size_t cache_bytes) {
     // About 10 ms to read: worth it, for then damage shows before the picture begins, and empty bricks are known.
     constexpr std::size_t kSmall = 4096;
     const LeafFile& leaves = *file;
     if (leaves.leafCount() < kSmall) return std::make_unique<BrickIntersector>(leaves, leaves, values);
-    return std::make_unique<BrickIntersector>(leaves, std::move(file), values);
+    return std::make_unique<BrickIntersector>(leaves, std::move(file), values, cache_bytes);
 }
 
-std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafField> field, BrickValues values) {
+std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafField> field, BrickValues values,
+                                                  std::size_t cache_bytes) {
     const LeafField& leaves = *field;
-    return std::make_unique<BrickIntersector>(leaves, std::move(field), values);
+    return std::make_unique<BrickIntersector>(leaves, std::move(field), values, cache_bytes);
 }
 
 const BrickGrid* bricksOf(const Intersector& intersector) {

@@ -8,6 +8,8 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 
 namespace stratum::march {
@@ -18,12 +20,15 @@ namespace stratum::march {
 std::unique_ptr<Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid,
                                                   BrickValues values = BrickValues::Int16);
 /// The same of a file: large level sets are laid out, brick by brick, when rays first come there, so that a picture
-/// costs what it shows. The hits are the same.
+/// costs what it shows. The hits are the same. Their samples take no more than `cache_bytes` at a time: what no ray
+/// came to lately makes room. Throws UsageError if that is too little (see BrickGrid).
 std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafFile> file,
-                                                  BrickValues values = BrickValues::Int16);
+                                                  BrickValues values = BrickValues::Int16,
+                                                  std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
 /// The same of a level set whose samples are made where rays come. The hits are those of its grid.
 std::unique_ptr<Intersector> makeBrickIntersector(std::shared_ptr<const LeafField> field,
-                                                  BrickValues values = BrickValues::Int16);
+                                                  BrickValues values = BrickValues::Int16,
+                                                  std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
 
 class BrickGrid;
 /// The bricks of an intersector made above; null for others.

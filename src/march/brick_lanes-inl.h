@@ -45,6 +45,9 @@ public:
         : grid_(grid),
           blocked_(blocked),
           late_(grid.late()),
+          bounded_(grid.cache().bounded()),
+          cache_(grid.cache()),
+          reading_(cache_),
           corners_(grid),
           batch_(corners_, map, rays, hits),
           queue_(grid, map, rays) {
@@ -63,6 +66,7 @@ public:
         // too, so that a wrong guess costs little.
         for (bool busy = true; busy;) {
             busy = false;
+            if (bounded_ && (full_ || cache_.roomWanted())) rest();
             for (std::size_t n = 0; n < kPackets; ++n) {
                 Packet& moving = packets_[n];
                 if (moving.alive != 0) {
@@ -83,6 +87,7 @@ public:
             batch_.settle();
             batch_.flush();
         }
+        if (bounded_) cache_.count(cells_);
     }
 
 private:
@@ -219,15 +224,14 @@ private:
         return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
     }
 
-    // Remembers where the corners of surface cells lie, and calls for them. Lanes whose brick had to be laid out first
-    // look again in their next turn.
+    // Remembers where the corners of surface cells lie, and calls for them. Lanes for whose brick there is no room look
+    // again in their next turn.
     HWY_INLINE void hold(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
         VI place = hn::ShiftRight<3>(part);  // of the brick's samples; bricks that are laid out at once are in order
         if (late_) {
-            const VI slot = hn::And(
-                hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(place)),
-                whole(0xffffffff));
+            VI slot = slotsOf(place);
             if (found != 0) found = thereOf(found, slot, place, part, at, c);
+            if (bounded_ && found != 0) note(found, slot);
             place = slot - whole(1);
         }
         const VI seven = whole(7);
@@ -241,26 +245,64 @@ private:
         corners_.prefetch(samples);
     }
 
-    // Which of the lanes stand in surface cells of bricks that are laid out; asks for the others' bricks.
-    HWY_NOINLINE unsigned thereOf(unsigned found, VI slot, VI brick, VI part, VI at, const VI c[3]) const {
-        const unsigned not_there = bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found;
-        if (not_there != 0) require(not_there, brick, c);
+    HWY_INLINE VI slotsOf(VI brick) const {
+        return hn::And(
+            hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(brick)),
+            whole(0xffffffff));
+    }
+
+    // Which of the lanes stand in surface cells of bricks that are laid out, after asking for the others' bricks.
+    HWY_NOINLINE unsigned thereOf(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
+        const auto missing = [&]() HWY_ATTR { return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found; };
+        unsigned not_there = missing();
+        if (not_there != 0) {
+            require(not_there, brick, c);
+            std::atomic_signal_fence(std::memory_order_acquire);
+            // Those that have it now read it before anybody may take it away: every brick takes a ray on.
+            slot = slotsOf(brick);
+            not_there = missing();
+        }
         // The bits may be older than the slot: laid out by another thread in between.
         std::atomic_signal_fence(std::memory_order_acquire);
         const VI clear = gather(grid_.clearCells(), part);
         return found & ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
     }
 
-    HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) const {
+    HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) {
         HWY_ALIGN std::int64_t bricks[kLanes];
         HWY_ALIGN std::int64_t place[3][kLanes];
         hn::Store(brick, DI(), bricks);
         for (int axis = 0; axis < 3; ++axis) hn::Store(hn::ShiftRight<3>(c[axis]), DI(), place[axis]);
         for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
             const int lane = std::countr_zero(rest);
-            grid_.require(static_cast<std::size_t>(bricks[lane]), static_cast<int>(place[0][lane]),
-                          static_cast<int>(place[1][lane]), static_cast<int>(place[2][lane]));
+            if (!grid_.require(static_cast<std::size_t>(bricks[lane]), static_cast<int>(place[0][lane]),
+                               static_cast<int>(place[1][lane]), static_cast<int>(place[2][lane])))
+                full_ = true;
         }
+    }
+
+    // These lanes read their slots.
+    HWY_NOINLINE void note(unsigned lanes, VI slot) {
+        HWY_ALIGN std::int64_t slots[kLanes];
+        hn::Store(slot, DI(), slots);
+        for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
+            cache_.mark(static_cast<std::uint32_t>(slots[std::countr_zero(rest)]));
+        cells_ += static_cast<unsigned>(std::popcount(lanes));
+    }
+
+    // Finishes what has begun to read samples, so that bricks may be taken away.
+    HWY_NOINLINE void rest() {
+        for (Packet& packet : packets_) {
+            if (packet.waiting == 0) continue;
+            solve(packet);
+            look(packet);
+        }
+        if constexpr (!kAny) {
+            batch_.settle();
+            batch_.flush();
+        }
+        cache_.makeRoom(full_);
+        full_ = false;
     }
 
     // SegmentCubic and firstCrossing() for the waiting lanes. Those that don't hit walk on.
@@ -335,7 +377,11 @@ private:
     std::uint8_t nobody_ = 0;
     std::int64_t last_[3];  // cells
     std::int64_t macro_y_, macro_z_;
-    const bool late_;
+    const bool late_, bounded_;
+    BrickSlots& cache_;
+    const BrickSlots::Reading reading_;
+    bool full_ = false;        // a brick was asked for, and there was no room
+    std::uint64_t cells_ = 0;  // looked into
     const CornerReader corners_;
     HitBatch batch_;
     RayQueue<!kAny> queue_;

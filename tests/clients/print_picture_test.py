@@ -74,6 +74,14 @@ one = picture("part", "one.exr", "--spp", "2", "--threads", "1")
 for threads in ("2", "8"):
     check(picture("part", "more.exr", "--spp", "2", "--threads", threads) == one, f"{threads} threads: the same bytes")
 
+# --- any room for bricks ------------------------------------------------------------------------------------------------
+for room, threads in (("100kB", "2"), ("100kB", "8"), ("300kB", "1"), ("1MB", "8"), ("9GB", "2")):
+    check(picture("part", "more.exr", "--spp", "2", "--threads", threads, "--brick-cache", room) == one,
+          f"{room} of bricks, {threads} threads: the same bytes")
+
+# --- a moment after the last one is the whole print -------------------------------------------------------------------------
+check(picture("part", "more.exr", "--spp", "2", "--printed", "time:100000") == one, "long after the end: the same bytes")
+
 # --- containers, and a scene that names G-code --------------------------------------------------------------------------
 with open(path("part"), "rb") as source, gzip.open(path("packed"), "wb") as packed:
     packed.write(source.read())
@@ -94,9 +102,17 @@ check(0 < took["bricks_made"] <= took["bricks_listed"], "--stats counts bricks")
 check(took["leaves_made"] > 0 and took["brick_bytes"] > 0, "--stats counts leaves and bytes")
 check(stats["input"]["voxel_size_mm"] > 0 and stats["input"]["choice"] != "", "--stats has the voxel size and why")
 
+done = call(VDBTRACE, "part", "-o", path("s.png"), *SMALL, "--spp", "1", "--integrator", "ao", "--stats", "-",
+            "--brick-cache", "150kB")
+cache = json.loads(done.stdout)["on_demand"][0]["brick_cache"]
+check(cache["limit_bytes"] == 150000 and 90000 < cache["peak_bytes"] <= 150000, f"bricks stay within bounds: {cache}")
+check(cache["made"] > took["bricks_made"] and cache["evicted"] >= cache["made"] - cache["bricks"] and cache["hits"] > 0,
+      f"--stats counts what came and went: {cache}")
+
 # --- a print that grows: the same as each moment alone, under a camera that doesn't depend on it ---------------------------
 VIEW = ["--eye", "150,-160,120", "--look-at", "100,100,5", "--no-bed", "--spp", "1", *TWO]
-done = call(VDBTRACE, "part", "-o", path("film.png"), *SMALL, *VIEW, "--progress-series", "4", "--stats", "-")
+done = call(VDBTRACE, "part", "-o", path("film.png"), *SMALL, *VIEW, "--progress-series", "4", "--stats", "-",
+            "--brick-cache", "400kB")
 check(done.returncode == 0, f"a series: {done.stderr.strip()}")
 frames = json.loads(done.stdout)
 check([frame["output"].endswith(f"film_{3 - n:03}.png") for n, frame in enumerate(frames)] == [True] * 4, "numbered")
@@ -113,9 +129,12 @@ check(refused.returncode == 2 and "one print" in refused.stderr, "a series of tw
 for options, status, text in ((["--printed", "sometimes"], 2, "every:N"), (["--printed", "10%,20%"], 2, "one moment"),
                               (["--layers", "900:"], 3, "layers 1 to"), (["--half-width", "1"], 2, "half-width"),
                               (["--voxel-size", "0"], 2, "voxel"), (["--color-by", "temperature"], 2, "layer, time"),
-                              (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel")):
+                              (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel"),
+                              (["--brick-cache", "90kB"], 2, "give 93312 bytes"), (["--brick-cache", "much"], 2, "size"),
+                              (["--brick-cache", "1MB", "--march", "vdb"], 2, "no bricks"),
+                              (["--printed", "layer:100000"], 2, "layer"), (["--printed", "250%"], 2, "%"), (["--printed", "layer:0"], 2, "nothing|expected one")):
     done = call(VDBTRACE, "part", "-o", path("refused.png"), *SMALL, *options)
-    check(done.returncode == status and text in done.stderr,
+    check(done.returncode == status and any(part in done.stderr for part in text.split("|")),
           f"{' '.join(options)}: exit {done.returncode}: {done.stderr.strip()}")
 check(not os.path.exists(path("refused.png")), "refusals leave no file behind")
 with open(path("prose"), "w", encoding="utf-8") as file:

@@ -1,5 +1,6 @@
 #include "march/brick_grid.h"
 
+#include "io/error.h"
 #include "march/brick_walk.h"
 #include "parallel/parallel_for.h"
 #include "spheres.h"
@@ -89,6 +90,32 @@ TEST(BrickGrid, LaysLateBricksOutOnceForAllThreads) {
     });
     EXPECT_EQ(late.brickCount(), all.brickCount());
     expectAllCells(*grid, late);
+}
+
+TEST(BrickGrid, HoldsEveryCellInWhateverRoomThereIs) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
+    const std::size_t all = BrickGrid(*grid, BrickValues::Int16).brickCount();
+    for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
+        const std::size_t brick = BrickGrid(*grid, values).brickBytes();
+        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values, BrickSlots::kLeastBound * brick + 1);
+        const BrickSlots::Reading reading(late.cache());
+        // Twice: once what is asked for again has been evicted.
+        for (int round = 0; round < 2; ++round) {
+            expectAllCells(*grid, late);
+            EXPECT_LE(late.brickCount(), BrickSlots::kLeastBound);
+            EXPECT_EQ(late.cache().counts().peak, BrickSlots::kLeastBound);
+        }
+        EXPECT_GT(late.cache().counts().made, all);
+    }
+}
+
+TEST(BrickGrid, RefusesRoomForFewerBricksThanRaysNeed) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.1F);
+    const auto source = std::make_shared<GridLeaves>(*grid);
+    const std::size_t least = BrickSlots::kLeastBound * BrickGrid(*grid, BrickValues::Int16).brickBytes();
+    EXPECT_NO_THROW(BrickGrid(source, BrickValues::Int16, least));
+    EXPECT_THROW(BrickGrid(source, BrickValues::Int16, least - 1), UsageError);
+    EXPECT_THROW(BrickGrid(source, BrickValues::Float32, least), UsageError);
 }
 
 TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {

@@ -225,6 +225,19 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
     }
 }
 
+// From around tangle(2) and from inside, in all directions.
+std::vector<march::Ray> raysThrough(std::size_t count) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<march::Ray> rays(count);
+    for (march::Ray& ray : rays) {
+        ray.origin = {3 * normal(random), 3 * normal(random), 1.2 + normal(random)};
+        const glm::dvec3 way(normal(random), normal(random), normal(random));
+        ray.direction = way / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+    }
+    return rays;
+}
+
 // All threads at the same bricks at once: the grid's hits, bit for bit, and each brick made once.
 TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
     const auto toolpath = tangle(2);
@@ -238,14 +251,7 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
         std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"));
     ASSERT_EQ(late->bounds().min, eager->bounds().min);
     ASSERT_EQ(late->bounds().max, eager->bounds().max);
-    std::mt19937 random(5);
-    std::normal_distribution<double> normal;
-    std::vector<march::Ray> rays(2000);
-    for (march::Ray& ray : rays) {
-        ray.origin = {3 * normal(random), 3 * normal(random), 1.2 + normal(random)};
-        const glm::dvec3 way(normal(random), normal(random), normal(random));
-        ray.direction = way / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
-    }
+    const std::vector<march::Ray> rays = raysThrough(2000);
     std::vector<march::Hit> expected(rays.size());
     eager->makeTracer()->intersectStream(rays, expected);
     std::atomic<std::size_t> wrong{0};
@@ -263,6 +269,51 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
     EXPECT_EQ(wrong.load(), 0U);
     EXPECT_GT(hits.load(), 1000U);
     EXPECT_LE(march::bricksOf(*late)->brickCount(), march::bricksOf(*eager)->brickCount());
+}
+
+// Bricks come and go under the rays of many threads: the same hits, whatever room there is.
+TEST(PrintField, IsTracedInLittleRoomAsTheGridIs) {
+    const auto toolpath = tangle(2);
+    const std::vector<std::uint32_t> selection = test::allBeads(*toolpath);
+    openvdb::initialize();
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
+    const auto eager = march::makeBrickIntersector(*voxelize::voxelize(*toolpath, selection, lattice));
+    const std::size_t brick = march::bricksOf(*eager)->brickBytes();
+    const std::vector<march::Ray> rays = raysThrough(600);
+    std::vector<march::Hit> expected(rays.size());
+    eager->makeTracer()->intersectStream(rays, expected);
+    for (const std::size_t room : {march::BrickSlots::kLeastBound, std::size_t{100}, std::size_t{500}}) {
+        SCOPED_TRACE(room);
+        const std::unique_ptr<march::Intersector> late = march::makeBrickIntersector(
+            std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"),
+            march::BrickValues::Int16, room * brick);
+        std::atomic<std::size_t> wrong{0};
+        parallelFor(4, 1, [&](std::size_t first, std::size_t) {
+            const auto tracer = late->makeTracer();
+            std::vector<march::Hit> found(rays.size());
+            std::vector<std::uint8_t> blocked(rays.size());
+            if (first % 2 == 0) {
+                tracer->intersectStream(rays, found);
+                tracer->occludedStream(rays, blocked);
+            } else {
+                tracer->march::Tracer::intersectStream(rays, found);  // one by one
+                tracer->march::Tracer::occludedStream(rays, blocked);
+            }
+            for (std::size_t n = 0; n < rays.size(); ++n) {
+                if (found[n].t != expected[n].t) ++wrong;
+                if ((blocked[n] != 0) != std::isfinite(expected[n].t)) ++wrong;
+                if (std::isfinite(found[n].t) && found[n].normal != expected[n].normal) ++wrong;
+            }
+        });
+        EXPECT_EQ(wrong.load(), 0U);
+        const march::BrickCacheCounts counts = march::bricksOf(*late)->cache().counts();
+        EXPECT_EQ(counts.slots, room);
+        EXPECT_EQ(counts.peak, room);
+        EXPECT_GT(counts.evicted, 0U);
+        EXPECT_LE(counts.made - counts.evicted, room);
+        EXPECT_GT(counts.hits, 0U);
+    }
 }
 
 TEST(PrintField, ListsFewBricksWithoutSurface) {
