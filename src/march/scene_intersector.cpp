@@ -1,6 +1,7 @@
 #include "march/scene_intersector.h"
 
 #include "io/error.h"
+#include "march/box_tree.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 namespace stratum::march {
@@ -48,25 +51,6 @@ struct Member {
     double most_stretch = 1.0;  // longest image of a unit vector
     bool turned = false;        // whether `linear` is more than 1
 
-    /// Whether the ray meets the box in its interval. Errs on the side of yes: only what is surely past is left out.
-    bool meets(const Ray& ray) const {
-        double near = ray.t_min;
-        double far = ray.t_max;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double inverse = 1 / ray.direction[axis];
-            if (!std::isfinite(inverse)) {
-                if (ray.origin[axis] < box.min[axis] || ray.origin[axis] > box.max[axis]) return false;
-                continue;
-            }
-            const double a = (box.min[axis] - ray.origin[axis]) * inverse;
-            const double b = (box.max[axis] - ray.origin[axis]) * inverse;
-            near = std::max(near, std::min(a, b));
-            far = std::min(far, std::max(a, b));
-        }
-        // Three roundings each; their exact values may be the other way round.
-        constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
-        return near - std::abs(near) * kRounding <= far + std::abs(far) * kRounding;
-    }
     /// `stretch` is own units per world unit along the ray.
     Ray inOwnSpace(const Ray& ray, double& stretch) const {
         Ray own = ray;
@@ -102,50 +86,74 @@ struct Member {
     }
 };
 
+struct Members {
+    std::vector<Member> all;
+    std::optional<BoxTree> tree;  // if there are many
+};
+
+// Objects are always traced in the order of their numbers, each no farther than the nearest hit so far; the tree only
+// leaves out objects whose box the ray misses anyway. So it changes no bit, wherever objects touch.
 class SceneTracer final : public Tracer {
 public:
-    explicit SceneTracer(const std::vector<Member>& members) : members_(members) {
-        for (const Member& member : members) tracers_.push_back(member.shape->makeTracer());
+    explicit SceneTracer(const Members& members) : members_(members.all), tree_(members.tree) {
+        for (const Member& member : members_) tracers_.push_back(member.shape->makeTracer());
     }
 
     bool intersect(const Ray& ray, Hit& hit) override {
+        const BoxTest test(ray);
         Ray rest = ray;
         bool found = false;
-        for (std::size_t m = 0; m < members_.size(); ++m) {
-            if (!members_[m].meets(rest)) continue;
+        const auto tryMember = [&](std::uint32_t m) {
+            if (!test.meets(members_[m].box, rest.t_max)) return;
             double stretch = 1.0;
             const Ray own = members_[m].inOwnSpace(rest, stretch);
             Hit here;
-            if (!tracers_[m]->intersect(own, here)) continue;
-            const Hit there = members_[m].inWorld(here, ray, stretch, static_cast<std::uint32_t>(m));
+            if (!tracers_[m]->intersect(own, here)) return;
+            const Hit there = members_[m].inWorld(here, ray, stretch, m);
             // Where two objects touch, the one that is named first is seen, in streams as well.
-            if (found && !(there.t < hit.t)) continue;
+            if (found && !(there.t < hit.t)) return;
             hit = there;
             rest.t_max = hit.t;
             found = true;
+        };
+        if (!tree_) {
+            for (std::uint32_t m = 0; m < members_.size(); ++m) tryMember(m);
+            return found;
         }
+        met_.clear();
+        tree_->visit(test, ray.t_max, [this](std::uint32_t m) {
+            met_.push_back(m);
+            return false;
+        });
+        std::sort(met_.begin(), met_.end());
+        for (const std::uint32_t m : met_) tryMember(m);
         return found;
     }
 
     bool occluded(const Ray& ray) override {
-        double stretch = 1.0;
-        for (std::size_t m = 0; m < members_.size(); ++m)
-            if (members_[m].meets(ray) && tracers_[m]->occluded(members_[m].inOwnSpace(ray, stretch))) return true;
+        const BoxTest test(ray);
+        const auto blocks = [&](std::uint32_t m) {
+            double stretch = 1.0;
+            return tracers_[m]->occluded(members_[m].inOwnSpace(ray, stretch));
+        };
+        if (tree_) return tree_->visit(test, ray.t_max, blocks);
+        for (std::uint32_t m = 0; m < members_.size(); ++m)
+            if (test.meets(members_[m].box, ray.t_max) && blocks(m)) return true;
         return false;
     }
 
     // Object by object, so that each has a stream of its own.
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
         for (Hit& hit : hits) hit.t = kInfinity;
-        for (std::size_t m = 0; m < members_.size(); ++m) {
-            gather(m, rays, [&](std::size_t n) { return hits[n].t; });
+        listMet(rays);
+        for (std::uint32_t m = 0; m < members_.size(); ++m) {
+            if (!gather(m, rays, [&](std::size_t n) { return hits[n].t; })) continue;
             own_hits_.assign(own_.size(), Hit{});
             tracers_[m]->intersectStream(own_, own_hits_);
             for (std::size_t k = 0; k < own_.size(); ++k) {
                 if (!std::isfinite(own_hits_[k].t)) continue;
                 const std::size_t n = places_[k];
-                const Hit there =
-                    members_[m].inWorld(own_hits_[k], rays[n], stretches_[k], static_cast<std::uint32_t>(m));
+                const Hit there = members_[m].inWorld(own_hits_[k], rays[n], stretches_[k], m);
                 if (there.t < hits[n].t) hits[n] = there;
             }
         }
@@ -153,8 +161,9 @@ public:
 
     void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
         std::fill(blocked.begin(), blocked.end(), std::uint8_t{0});
-        for (std::size_t m = 0; m < members_.size(); ++m) {
-            gather(m, rays, [&](std::size_t n) { return blocked[n] != 0 ? -kInfinity : kInfinity; });
+        listMet(rays);
+        for (std::uint32_t m = 0; m < members_.size(); ++m) {
+            if (!gather(m, rays, [&](std::size_t n) { return blocked[n] != 0 ? -kInfinity : kInfinity; })) continue;
             own_blocked_.assign(own_.size(), 0);
             tracers_[m]->occludedStream(own_, own_blocked_);
             for (std::size_t k = 0; k < own_.size(); ++k) blocked[places_[k]] |= own_blocked_[k];
@@ -171,26 +180,52 @@ public:
     }
 
 private:
-    // The rays that meet member m nearer than `limit` of each says.
+    // With a tree: which rays meet the box of each member, in the order of both, by counting.
+    void listMet(std::span<const Ray> rays) {
+        if (!tree_) return;
+        met_.clear();
+        ray_of_.clear();
+        met_end_.assign(members_.size(), 0);
+        for (std::uint32_t n = 0; n < rays.size(); ++n)
+            tree_->visit(BoxTest(rays[n]), rays[n].t_max, [&](std::uint32_t m) {
+                met_.push_back(m);
+                ray_of_.push_back(n);
+                ++met_end_[m];
+                return false;
+            });
+        std::exclusive_scan(met_end_.begin(), met_end_.end(), met_end_.begin(), std::uint32_t{0});
+        met_rays_.resize(met_.size());
+        for (std::size_t k = 0; k < met_.size(); ++k) met_rays_[met_end_[met_[k]]++] = ray_of_[k];
+    }
+
+    // The rays that meet member m nearer than `limit` of each says; false if there are none.
     template <typename Limit>
-    void gather(std::size_t m, std::span<const Ray> rays, const Limit& limit) {
+    bool gather(std::uint32_t m, std::span<const Ray> rays, const Limit& limit) {
         own_.clear();
         places_.clear();
         stretches_.clear();
-        for (std::size_t n = 0; n < rays.size(); ++n) {
+        const auto add = [&](std::size_t n) {
             Ray rest = rays[n];
             rest.t_max = std::min(rest.t_max, limit(n));
-            if (!members_[m].meets(rest)) continue;
+            if (!BoxTest(rest).meets(members_[m].box, rest.t_max)) return;
             double stretch = 1.0;
             own_.push_back(members_[m].inOwnSpace(rest, stretch));
             stretches_.push_back(stretch);
             places_.push_back(n);
-        }
+        };
+        if (tree_)
+            for (std::uint32_t k = m == 0 ? 0 : met_end_[m - 1]; k < met_end_[m]; ++k) add(met_rays_[k]);
+        else
+            for (std::size_t n = 0; n < rays.size(); ++n) add(n);
+        return !own_.empty();
     }
 
     const std::vector<Member>& members_;
+    const std::optional<BoxTree>& tree_;
     std::vector<std::unique_ptr<Tracer>> tracers_;
-    // Of the stream under way.
+    // Of the stream under way: pairs of a member and a ray; rays by member, and where those of each end.
+    std::vector<std::uint32_t> met_, ray_of_, met_rays_, met_end_;
+    // Of its member's turn.
     std::vector<Ray> own_;
     std::vector<Hit> own_hits_;
     std::vector<std::uint8_t> own_blocked_;
@@ -200,7 +235,7 @@ private:
 
 class SceneIntersector final : public Intersector {
 public:
-    explicit SceneIntersector(const std::vector<SceneObject>& objects)
+    SceneIntersector(const std::vector<SceneObject>& objects, std::size_t many)
         : bounds_{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)} {
         std::vector<const Intersector*> shapes;
         for (const SceneObject& object : objects) {
@@ -221,7 +256,7 @@ public:
                     throw UsageError(
                         fmt::format("object {}: its transform can't be undone; every scale must be a finite number "
                                     "other than 0",
-                                    members_.size()));
+                                    members_.all.size()));
                 square += length * length;
             }
             if (member.turned) member.most_stretch = std::sqrt(square);
@@ -239,12 +274,16 @@ public:
                     names_ += member.shape->name();
                 }
             }
-            members_.push_back(std::move(member));
+            members_.all.push_back(std::move(member));
         }
         if (!(bounds_.min.x <= bounds_.max.x))
             throw UsageError("the scene has only endless shapes; add one that has an end, for the camera to look at");
         const double farthest = glm::length(glm::max(glm::abs(bounds_.min), glm::abs(bounds_.max)));
         offset_ = std::max(offset_, 4 * std::numeric_limits<double>::epsilon() * farthest);
+        if (objects.size() < many) return;
+        std::vector<Box> boxes;
+        for (const Member& member : members_.all) boxes.push_back(member.box);
+        bytes_ += members_.tree.emplace(boxes).bytes();
     }
 
     std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<SceneTracer>(members_); }
@@ -256,7 +295,7 @@ public:
     double surfaceOffset() const override { return offset_; }
 
 private:
-    std::vector<Member> members_;
+    Members members_;
     Box bounds_;
     double voxel_size_ = kInfinity;
     double offset_ = 0.0;
@@ -293,11 +332,11 @@ Placement Placement::of(const glm::dvec3& scale, const glm::dvec3& degrees, cons
 
 bool Placement::isIdentity() const { return *this == Placement{}; }
 
-std::shared_ptr<const Intersector> makeSceneIntersector(std::vector<SceneObject> objects) {
+std::shared_ptr<const Intersector> makeSceneIntersector(std::vector<SceneObject> objects, std::size_t many) {
     if (objects.empty()) throw UsageError("the scene has no objects; name at least one");
     if (objects.size() == 1 && objects.front().placement.isIdentity() && isFinite(objects.front().shape->bounds()))
         return objects.front().shape;
-    return std::make_shared<SceneIntersector>(objects);
+    return std::make_shared<SceneIntersector>(objects, many);
 }
 
 }  // namespace stratum::march

@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -29,10 +30,17 @@ struct SceneObject {
     Placement placement;
 };
 
-/// All objects as one; Hit::object is the index into `objects`. Rays are mapped into each object's own space, normals
-/// back by the inverse transpose, distances are those of world space. The cost of a ray grows with the number of
-/// objects whose box it meets. A single object that stands where its file has it is returned as it is: nothing is added
-/// to it. Throws UsageError if there are no objects, none of them has finite bounds, or a placement can't be inverted.
-std::shared_ptr<const Intersector> makeSceneIntersector(std::vector<SceneObject> objects);
+/// From so many objects on, a BoxTree finds those whose box a ray meets; fewer are asked one by one
+/// (docs/benchmarks.md, "Pictures").
+inline constexpr std::size_t kManyObjects = 8;
+
+/// All objects as one; Hit::object is the index into `objects`, the least one where several are met at the same t. Rays
+/// are mapped into each object's own space, normals back by the inverse transpose, distances are those of world space.
+/// The cost of a ray grows with the number of objects whose box it meets. A single object that stands where its file
+/// has it is returned as it is: nothing is added to it. Throws UsageError if there are no objects, none of them has
+/// finite bounds, or a placement can't be inverted.
+/// @param many  number of objects from which on there is a tree; the answers are the same with and without, to the bit
+std::shared_ptr<const Intersector> makeSceneIntersector(std::vector<SceneObject> objects,
+                                                        std::size_t many = kManyObjects);
 
 }  // namespace stratum::march

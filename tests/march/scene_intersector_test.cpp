@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "march/brick_intersector.h"
+#include "march/sdf_intersector.h"
 #include "random_rays.h"
 #include "rubble.h"
 
@@ -11,6 +12,7 @@
 #include <glm/matrix.hpp>
 
 #include <cmath>
+#include <set>
 
 namespace stratum::march {
 namespace {
@@ -104,6 +106,65 @@ TEST(SceneIntersector, StreamsGiveTheSameBits) {
         ++objects[hit.object];
     }
     for (const int count : objects) EXPECT_GT(count, 100);
+}
+
+/// `count` copies of two shapes: on a plate, some turned, some exactly in the same place, and a plane without an end.
+std::vector<SceneObject> crowd(int count) {
+    const auto shape = std::shared_ptr<const Intersector>(makeBrickIntersector(*test::rubble(0.2F, false)));
+    const auto other = ball(openvdb::Vec3f(0.05F, 0, 0), 1);
+    std::vector<SceneObject> objects;
+    for (int n = 0; n < count; ++n) {
+        const glm::dvec3 place(3.0 * (n % 8 - 4), 3.0 * (n / 8 - 4), 0.2 * (n % 3));
+        const auto& which = n % 3 == 0 ? shape : other;
+        if (n % 5 == 4)
+            objects.push_back(objects[static_cast<std::size_t>(n / 2)]);
+        else
+            objects.push_back(
+                {which, Placement::of(glm::dvec3(n % 4 == 0 ? 0.7 : 1.0),
+                                      n % 4 == 1 ? glm::dvec3(10.0 * n, 20, 30) : glm::dvec3(0.0), place)});
+    }
+    const SdfPtr floor = sdfPlane({0, 0, 1}, -3.0);
+    objects[3] = {std::shared_ptr<const Intersector>(makeSdfIntersector(floor, 1e-4)), {}};
+    return objects;
+}
+
+TEST(SceneIntersector, TheTreeOfManyObjectsGivesTheBitsOfTheLoop) {
+    for (const int count : {8, 70}) {
+        const std::vector<SceneObject> objects = crowd(count);
+        const auto treed = makeSceneIntersector(objects, 0);
+        const auto plain = makeSceneIntersector(objects, objects.size() + 1);
+        EXPECT_GT(treed->bytes(), plain->bytes());
+        const auto tree = treed->makeTracer();
+        const auto loop = plain->makeTracer();
+        const std::vector<Ray> rays = test::randomRays(4000, 12.0, 0.2, 9);
+        std::vector<Hit> hits(rays.size());
+        std::vector<Hit> loop_hits(rays.size());
+        std::vector<std::uint8_t> blocked(rays.size());
+        std::vector<std::uint8_t> loop_blocked(rays.size());
+        tree->intersectStream(rays, hits);
+        loop->intersectStream(rays, loop_hits);
+        tree->occludedStream(rays, blocked);
+        loop->occludedStream(rays, loop_blocked);
+        std::set<std::uint32_t> seen;
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            Hit hit;
+            Hit loop_hit;
+            const bool found = loop->intersect(rays[n], loop_hit);
+            ASSERT_EQ(tree->intersect(rays[n], hit), found) << n;
+            ASSERT_EQ(tree->occluded(rays[n]), loop->occluded(rays[n])) << n;
+            ASSERT_EQ(blocked[n], loop_blocked[n]) << n;
+            ASSERT_EQ(hits[n].t, loop_hits[n].t) << n;
+            if (!found) continue;
+            for (const Hit& other : {hit, hits[n]}) {
+                ASSERT_EQ(other.t, loop_hit.t) << n;
+                ASSERT_EQ(other.position, loop_hit.position) << n;
+                ASSERT_EQ(other.normal, loop_hit.normal) << n;
+                ASSERT_EQ(other.object, loop_hit.object) << n;
+            }
+            seen.insert(hit.object);
+        }
+        EXPECT_GT(seen.size(), static_cast<std::size_t>(count) / 2);
+    }
 }
 
 TEST(SceneIntersector, PlacedObjectsHaveWorldUnits) {
