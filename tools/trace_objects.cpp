@@ -37,6 +37,8 @@ std::string unitOf(const openvdb::FloatGrid& grid) {
     return unit ? unit->value() : "world units";
 }
 
+double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
+
 // Which axis the file says points up; files of other programs don't say.
 std::string upOf(const openvdb::FloatGrid& grid) {
     const auto up = grid.getMetadata<openvdb::StringMetadata>("up");
@@ -111,7 +113,9 @@ std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& i
 
 /// What is made of one grid of one file, or of one shape.
 struct Shape {
-    bool y_up = false;  // the file's own word
+    // By the file's own word.
+    bool y_up = false;
+    double mm_per_unit = 1.0;
     IntersectorPtr intersector;
     std::map<std::string, march::AttributeSummary> summaries;
     Json report;
@@ -176,6 +180,7 @@ private:
         shape.line = fmt::format("{}: {} active voxels of {:g} {}", object.vdb, humanCount(static_cast<double>(active)),
                                  head.voxelSize()[0], unitOf(head));
         shape.y_up = upOf(head) == "y";
+        shape.mm_per_unit = millimetresIn(unitOf(head));
         warnOfThinBand(object.vdb, head);
         march::Annotation annotation;
         for (const std::string& name : attributes_) {
@@ -283,6 +288,7 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
         const Shape& shape = reader.shapeOf(objects[n]);
         const bool y_up = objects[n].up.empty() ? shape.y_up : objects[n].up == "y";
         scene.push_back({shape.intersector, y_up ? upright(objects[n].placement) : objects[n].placement});
+        if (n == 0) result.mm_per_unit = shape.mm_per_unit;
         result.reports.push_back(shape.report);
         if (std::find(result.lines.begin(), result.lines.end(), shape.line) == result.lines.end())
             result.lines.push_back(shape.line);

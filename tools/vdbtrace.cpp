@@ -43,7 +43,8 @@ Examples:
 struct Options {
     tools::CommonOptions common;
     std::vector<std::string> inputs;
-    std::string output, grid, file_up, march = "auto", size, view, crop, write_brdf, aov, normals, brick_cache;
+    std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
+    std::string brick_cache;
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
@@ -182,6 +183,10 @@ void addOptions(CLI::App& app, Options& o) {
         ->type_name("FILE")
         ->group(light);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
+    app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
+        ->check(CLI::IsMember({"paper", "pei", "grid"}))
+        ->type_name("NAME")
+        ->group(light);
 
     const char* tracing = "Tracing";
     app.add_option(
@@ -266,6 +271,7 @@ void applyText(Options& o) {
         if (o.focus.size() == 3) o.scene.camera.focus_point = toVector(o.focus);
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
+    if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);
     o.scene.camera.all_around = o.turntable > 1;
     o.render.validate();
     o.scene.camera.validate();
@@ -452,6 +458,7 @@ void run(Options& o, int argc, char** argv) {
         tools::Stopwatch watch;
         if (!scene) {
             shade::SceneOptions seen = o.scene;
+            seen.mm_per_unit = objects.mm_per_unit;
             // What is not seen costs nothing.
             if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";
             scene = shade::makeScene(seen, *objects.intersector, o.render.width, o.render.height);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "march/intersector.h"
+#include "shade/bed_texture.h"
 #include "shade/color.h"
 
 #include <glm/vec2.hpp>
@@ -20,13 +21,13 @@ struct Backdrop {
     Color radiance(const glm::vec3& direction) const;
 };
 
-/// An infinite horizontal sheet of matt paper. Seen from above only: from below it isn't there.
+/// An infinite horizontal sheet. Seen from above only: from below it isn't there.
 ///
-/// Light sees an endless Lambert plane. The camera sees it fade into the backdrop with distance, so that paper and
+/// Light sees an endless plane. The camera sees it fade into the backdrop with distance, so that sheet and
 /// backdrop are one sweep without a horizon.
 struct Bed {
-    double z = 0.0;           ///< world units
-    Color albedo{0.56f};      ///< of the paper, in [0, 1]
+    double z = 0.0;  ///< world units
+    BedTexture texture{BedSurface::paper};
     glm::dvec2 centre{0.0};   ///< world units: the fade is round about this point
     double fade_begin = 1.0;  ///< world units from the centre: nothing faded yet
     double fade_end = 2.0;    ///< world units from the centre: all faded; > fade_begin

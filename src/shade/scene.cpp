@@ -87,6 +87,7 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
     placement.exposure = options.env_exposure;
     Bed bed;
     if (options.bed) {
+        bed.texture = BedTexture(options.bed_surface, options.mm_per_unit);
         bed.z = restingHeight(print);
         placement.bed = scene.camera.eye().z > bed.z;
     }
@@ -102,7 +103,7 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
     }
     // The paper's own colour a little darker, as the light of a real lamp falls off behind the subject.
     if (options.backdrop && (scene.bed || !scene.environment->visible())) {
-        const Color paper = paperRadiance(scene, bed.albedo, {bed.centre.x, bed.centre.y, bed.z});
+        const Color paper = paperRadiance(scene, bed.texture.mean(), {bed.centre.x, bed.centre.y, bed.z});
         scene.backdrop = Backdrop{paper * 0.72f, paper * 0.35f};
     }
     return scene;

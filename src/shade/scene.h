@@ -29,7 +29,9 @@ struct SceneOptions {
     double env_exposure = 0.0;        ///< --env-exposure, stops
     std::vector<std::string> lights;  ///< --light, see parseLight and parseAmbient; they add to the environment
     bool bed = true;                  ///< a sweep under the print
-    bool backdrop = true;             ///< false: nothing behind the print, alpha 0 there
+    BedSurface bed_surface = BedSurface::paper;  ///< --bed-surface
+    double mm_per_unit = 1.0;                    ///< millimetres a world unit: beds have grains and lines of a size
+    bool backdrop = true;                        ///< false: nothing behind the print, alpha 0 there
     CameraOptions camera;
 };
 

@@ -135,6 +135,9 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     top.read("material", file.scene.brdf);
     file.scene.brdf = beside(folder, file.scene.brdf);
     top.read("bed", file.scene.bed);
+    std::string surface;
+    top.read("bed_surface", surface);
+    if (!surface.empty()) file.scene.bed_surface = parseBedSurface(surface);
     if (auto camera = top.section("camera")) readCamera(std::move(*camera), file.scene.camera, file.notes);
     if (const Json* environment = top.find("environment")) {
         JsonSection section(*environment, "environment", name);

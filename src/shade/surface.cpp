@@ -9,10 +9,7 @@
 namespace stratum::shade {
 
 Surfaces::Surfaces(const SceneDescription& scene, const march::Intersector& print)
-    : scene_(scene),
-      offset_(print.surfaceOffset()),
-      only_(scene.material),
-      paper_(scene.bed ? scene.bed->albedo : Color(0.0f)) {}
+    : scene_(scene), offset_(print.surfaceOffset()), only_(scene.material) {}
 
 SurfacePoint Surfaces::onPrint(const march::Ray& ray, const march::Hit& hit, march::Tracer& tracer) const {
     SurfacePoint point;
@@ -46,8 +43,13 @@ SurfacePoint Surfaces::onBed(const march::Ray& ray, double t) const {
     point.position = ray.origin + t * ray.direction;
     point.position.z = scene_.bed->z;
     point.t = t;
-    point.brdf = &paper_;
-    point.albedo = scene_.bed->albedo;
+    const glm::dvec2 place(point.position.x, point.position.y);
+    const BedTexture::Finish& finish = scene_.bed->texture.at(place);
+    point.brdf = finish.brdf.get();
+    point.albedo = finish.albedo;
+    const glm::dvec3 bump = scene_.bed->texture.normal(place);
+    // As on the print: what looks away from the viewer would show nothing.
+    if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
     point.bed = true;
     return point;
 }

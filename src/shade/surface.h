@@ -3,7 +3,6 @@
 
 #include "march/intersector.h"
 #include "shade/brdf.h"
-#include "shade/lambert.h"
 #include "shade/scene.h"
 
 #include <glm/vec3.hpp>
@@ -54,7 +53,6 @@ private:
     const SceneDescription& scene_;
     double offset_;        // world units
     ObjectMaterial only_;  // of objects that scene_.objects doesn't have
-    Lambert paper_;
 };
 
 }  // namespace stratum::shade

@@ -72,6 +72,13 @@ check(apart(standing, trace("mask_y.png", "tile_y.vdb", *mask)) < 0.01, "a y-up 
 check(apart(standing, trace("mask_z.png", "tile_y.vdb", *mask, "--file-up", "z")) > 0.01, "--file-up z lays it down")
 upright = scene("upright.json", objects=[{"vdb": "tile_y.vdb", "file_up": "z", "transform": {"rotate": [90, 0, 0]}}])
 check(apart(standing, trace("mask_t.png", upright, *mask)) < 0.01, "and a transform sets it upright again")
+# Beds have lines and grains of a size in mm, whatever the file's unit and whichever of its axes is up.
+on_grid = trace("grid.png", "tile.vdb", "--bed-surface", "grid")
+check(apart(on_grid, trace("pei.png", "tile.vdb", "--bed-surface", "pei")) > 0.1, "a grid and a bumpy sheet are two beds")
+check(call(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.1", "--unit", "m", "--up", "y", "--quiet", "-o",
+           path("tile_m.vdb")).returncode == 0, "a tile in metres whose up is y")
+in_metres = scene("metres.json", print="tile_m.vdb", bed_surface="grid")
+check(apart(on_grid, trace("grid_m.png", in_metres)) < 0.02, "the same grid under a y-up file in metres")
 trace("upright.exr", upright, "--integrator", "depth")
 stats = path("stats.json")
 done = call(VDBTRACE, upright, *SMALL, "-o", path("u.png"), "--stats", stats)

@@ -60,7 +60,7 @@ TEST(Path, DirectionalLightOnPaper) {
     scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0.6f, 0.8f), Color(2.0f)));
     scene.backdrop.reset();
     const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 3, 16);
-    EXPECT_NEAR(c.r, scene.bed->albedo.r * 2.0f * 0.8f / 3.14159265f, 1e-5f);
+    EXPECT_NEAR(c.r, scene.bed->texture.mean().r * 2.0f * 0.8f / 3.14159265f, 1e-5f);
 }
 
 TEST(Path, ShadowOfADirectionalLight) {
@@ -143,7 +143,7 @@ TEST(Path, AmbientLightReachesEverywhere) {
     auto scene = test::plainScene(none, "lambert:1,1,1", "constant:0,0,0", true);
     scene.ambient = Color(0.5f);
     scene.backdrop.reset();
-    EXPECT_NEAR(mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 1, 64).r, 0.5f * scene.bed->albedo.r, 1e-5f);
+    EXPECT_NEAR(mean(none, scene, towards({0, 0, 5}, {0, 0.1, 0}), 1, 64).r, 0.5f * scene.bed->texture.mean().r, 1e-5f);
 }
 
 TEST(Path, EnvironmentSamplingIsUnbiased) {
@@ -174,7 +174,7 @@ TEST(Path, BedUnderAnOpenSkyHasItsAlbedo) {
     const auto none = test::nothing();
     const auto scene = test::plainScene(none, "lambert:1,1,1", "constant:1,1,1", true);
     const Color c = mean(none, scene, towards({0, 0, 5}, {0, 0.1, -1}), 3, 256);
-    EXPECT_NEAR(c.r, scene.bed->albedo.r, 0.002f);
+    EXPECT_NEAR(c.r, scene.bed->texture.mean().r, 0.002f);
 }
 
 TEST(Path, NonsenseNormalsStayFinite) {

@@ -66,7 +66,7 @@ TEST(Phong, ShadowsAreHard) {
     const auto ball = test::sphere({0, 0, 3}, 1.0);
     auto scene = sceneOf(ball);
     scene.bed = shade::Bed{};
-    scene.bed->albedo = Color(1.0f);
+    scene.bed->texture = shade::BedTexture(Color(1.0f));
     scene.bed->fade_begin = 1e6;
     scene.bed->fade_end = 2e6;
     scene.lights.push_back(std::make_shared<shade::DirectionalLight>(glm::vec3(0, 0, 1), Color(1.0f)));

@@ -17,7 +17,7 @@ TEST(SceneFile, ReadsEveryKey) {
       "print": "part.vdb", "grid": "surface", "output": "out.exr",
       "size": [320, 240], "crop": [1, 2, 3, 4], "spp": 8, "seed": 7, "noise": 0.1, "time": 30, "checkpoint": "part.state",
       "denoise": true, "exposure": -1.5, "file_up": "y",
-      "aov": "normal,depth", "material": "lambert:1,1,1", "bed": false,
+      "aov": "normal,depth", "material": "lambert:1,1,1", "bed": false, "bed_surface": "pei",
       "camera": {"view": "top", "eye": [1, 2, 3], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov": 40},
       "environment": {"map": "map.hdr", "rotation": 90, "exposure": 2},
       "lights": ["ambient:1,1,1", "point:0,0,1,1,1,1"],
@@ -41,6 +41,7 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(file.render.aovs.size(), 2u);
     EXPECT_EQ(file.scene.brdf, "lambert:1,1,1");
     EXPECT_FALSE(file.scene.bed);
+    EXPECT_EQ(file.scene.bed_surface, shade::BedSurface::pei);
     EXPECT_EQ(file.scene.camera.view, shade::View::top);
     EXPECT_EQ(file.scene.camera.eye, glm::dvec3(1, 2, 3));
     EXPECT_EQ(file.scene.camera.fov, 40.0);
