@@ -10,10 +10,23 @@
 
 namespace stratum::tools {
 
-void addPrintOptions(CLI::App& app, PrintOptions& options) {
+void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
     const char* lattice = "Lattice";
+    const auto take_size = [&options, pictures](const std::string& text) {
+        options.voxel_auto = pictures && text == "auto";
+        options.lattice.voxel_size.reset();
+        if (options.voxel_auto) return;
+        double value = 0;
+        if (!CLI::detail::lexical_cast(text, value)) throw CLI::ConversionError(text, "--voxel-size");
+        options.lattice.voxel_size = value;
+    };
     auto* size =
-        app.add_option("--voxel-size", options.lattice.voxel_size, "Edge of a voxel")->type_name("MM")->group(lattice);
+        app.add_option_function<std::string>(
+               "--voxel-size", take_size,
+               pictures ? "Edge of a voxel; auto: half of what a pixel spans where the print is nearest to the camera"
+                        : "Edge of a voxel")
+            ->type_name(pictures ? "MM|auto" : "MM")
+            ->group(lattice);
     app.add_option("--voxels-per-layer", options.lattice.voxels_per_layer, "Voxels in a layer height (1 to 64)")
         ->type_name("N")
         ->excludes(size)
@@ -96,8 +109,16 @@ std::string describeSelection(const PrintOptions& options) {
 
 voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
-                             voxelize::Interior interior) {
+                             voxelize::Interior interior, double pixel) {
     voxelize::LatticeRequest request = options.lattice;
+    if (options.voxel_auto) {
+        request.voxels_per_layer = 1;
+        const double layer = voxelize::chooseLattice(toolpath, selection, bounds, request).layer_height;
+        request.voxels_per_layer = voxelize::voxelsPerLayerForPixel(layer, pixel);
+        voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
+        lattice.reason += fmt::format("; a pixel spans {:.3g} mm or more", pixel);
+        return lattice;
+    }
     if (!options.tolerance && options.memory_budget.empty())
         return voxelize::chooseLattice(toolpath, selection, bounds, request);
     request.voxels_per_layer = 1;

@@ -22,12 +22,13 @@ struct PrintOptions {
     voxelize::LatticeRequest lattice;
     std::optional<double> tolerance;  ///< mm
     std::string memory_budget;
+    bool voxel_auto = false;  ///< --voxel-size auto, of tools that make pictures
     std::string layers, features;
     std::vector<std::string> objects;  ///< names or numbers
 };
 
-/// Adds them in the groups "Lattice", "What to convert" and "Reading".
-void addPrintOptions(CLI::App& app, PrintOptions& options);
+/// Adds them in the groups "Lattice", "What to convert" and "Reading". With `pictures`, --voxel-size may be auto.
+void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures = false);
 
 /// What --layers, --features and --object keep of a print. Throws UsageError or InputError.
 voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath);
@@ -35,10 +36,11 @@ voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpa
 /// The selection in words, "layers 1:20; features -skirt"; empty if all is kept.
 std::string describeSelection(const PrintOptions& options);
 
-/// The lattice: --tolerance and --memory-budget become voxels a layer; everything else is the lattice's own choice.
-/// Throws UsageError.
+/// The lattice: --tolerance and --memory-budget become voxels a layer, and so does `pixel`, the least that a pixel
+/// spans (mm), if the voxel size is to follow from the picture; everything else is the lattice's own choice. Throws
+/// UsageError.
 voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
-                             voxelize::Interior interior);
+                             voxelize::Interior interior, double pixel = 0);
 
 }  // namespace stratum::tools

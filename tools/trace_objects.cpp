@@ -1,5 +1,6 @@
 #include "trace_objects.h"
 
+#include "brick_picture.h"
 #include "command_line.h"
 
 #include "io/error.h"
@@ -236,6 +237,9 @@ private:
                 march::bricksOf(*plain)->update(field->printUntil(moments[n]));
             };
         }
+        result_.writeBrickPicture = [plain](const std::string& path) {
+            tools::writeBrickPicture(path, *march::bricksOf(std::as_const(*plain)));
+        };
         result_.on_demand = reportOf(print, plain, seconds, options_.brick_cache, result_.on_demand);
         return shape;
     }

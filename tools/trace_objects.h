@@ -41,6 +41,8 @@ struct TraceObjects {
     std::function<void(std::size_t)> showMoment;
     /// Of each print that is sampled where rays come: what that took, to be asked when they have come.
     std::function<nlohmann::ordered_json()> on_demand;
+    /// Of the last print, when rays have come; see writeBrickPicture().
+    std::function<void(const std::string&)> writeBrickPicture;
     std::vector<std::string> lines;  ///< of each, for people
     double mm_per_unit = 1.0;        ///< of world space, as the first object's file says
     double load_seconds = 0.0, build_seconds = 0.0;

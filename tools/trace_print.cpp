@@ -6,6 +6,7 @@
 #include "gcode/reader.h"
 #include "io/error.h"
 #include "voxelize/selection.h"
+#include "voxelize/voxel_choice.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,8 @@
 
 namespace stratum::tools {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // Those of the selection that are printed by then.
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
@@ -43,6 +46,30 @@ std::vector<std::uint32_t> momentsOf(int series, const gcode::Toolpath& toolpath
 }
 
 }  // namespace
+
+void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
+    app.add_option(
+           "--brick-cache", options.brick_cache,
+           "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and "
+           "the picture stays the same. Of each print, and of each large level set (default: no bound)")
+        ->type_name("SIZE")
+        ->group("Tracing");
+    app.add_option("--brick-picture", options.brick_picture,
+                   "brick: also write which of a print's bricks rays came to, from the front and from above")
+        ->type_name("FILE.png")
+        ->group("Tracing");
+    addPrintOptions(app, options.print, true);
+    app.add_option("--printed", options.printed,
+                   "G-code: what is printed by then: 25%, layer:40, or time:90 (minutes of extruding)")
+        ->type_name("WHEN")
+        ->group("What to convert");
+    app.add_option("--progress-series", options.series,
+                   "G-code: N numbered pictures of a print that grows by equal volumes, one camera for all")
+        ->check(CLI::Range(1, 100000))
+        ->excludes("--printed")
+        ->type_name("N")
+        ->group("What to convert");
+}
 
 bool isVdbFile(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -73,8 +100,10 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     result.parse_seconds = watch.lap();
     std::vector<std::uint32_t> selection = voxelize::selectBeads(*toolpath, selectionOf(options.print, *toolpath));
     if (!options.printed.empty()) cut(selection, options.printed, *toolpath);
-    const voxelize::Lattice lattice = latticeFor(options.print, *toolpath, selection,
-                                                 voxelize::boundsOf(*toolpath, selection), voxelize::Interior::keep);
+    const voxelize::Bounds bounds = voxelize::boundsOf(*toolpath, selection);
+    const double pixel = options.print.voxel_auto ? options.smallest_pixel(bounds) : 0.0;
+    const voxelize::Lattice lattice =
+        latticeFor(options.print, *toolpath, selection, bounds, voxelize::Interior::keep, pixel);
     constexpr double kLeastHalfWidth = 2;
     if (lattice.half_width < kLeastHalfWidth)
         throw UsageError(fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",
@@ -92,6 +121,12 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
                      {"choice", lattice.reason}};
     const std::string chosen = describeSelection(options.print);
     if (!chosen.empty()) result.report["selection"] = chosen;
+    if (options.print.voxel_auto)
+        result.report["voxel_auto"] = {
+            {"smallest_pixel_mm", pixel},
+            {"largest_error_mm", voxelize::kLargestErrorVoxels * lattice.voxel_size},
+            {"largest_error_pixels",
+             pixel > 0 ? Json(voxelize::kLargestErrorVoxels * lattice.voxel_size / pixel) : Json(nullptr)}};
     if (!options.printed.empty()) result.report["printed"] = options.printed;
     result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", path, selection.size(), toolpath->beads.size(),
                               lattice.voxel_size, lattice.reason);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,10 +18,17 @@ namespace stratum::tools {
 /// How to take a print.
 struct TracePrintOptions {
     PrintOptions print;
-    std::string printed;  ///< --printed: a cut as for --snapshots; empty: all of it
-    int series = 1;       ///< --progress-series: as many moments, the last one the end
+    std::string printed;        ///< --printed: a cut as for --snapshots; empty: all of it
+    int series = 1;             ///< --progress-series: as many moments, the last one the end
+    std::string brick_cache;    ///< --brick-cache, also of large level sets; empty: no bound
+    std::string brick_picture;  ///< --brick-picture: a file, or empty
     bool quiet = false;
+    /// The least that a pixel spans of what lies in a box, mm, for --voxel-size auto.
+    std::function<double(const voxelize::Bounds&)> smallest_pixel;
 };
+
+/// Adds those of a print: how to take it, what of it, and how to keep its bricks.
+void addTracePrintOptions(CLI::App& app, TracePrintOptions& options);
 
 struct TracedPrint {
     std::shared_ptr<ondemand::PrintField> field;

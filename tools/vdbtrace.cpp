@@ -7,6 +7,7 @@
 #include "shade/brdf_file.h"
 #include "shade/denoise.h"
 #include "shade/picture.h"
+#include "shade/pixel_size.h"
 #include "shade/render.h"
 #include "shade/scene_file.h"
 #include "voxelize/voxel_choice.h"
@@ -44,7 +45,7 @@ struct Options {
     tools::CommonOptions common;
     std::vector<std::string> inputs;
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
-    std::string brick_cache;
+    std::string brick_cache, brick_picture;
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
@@ -202,23 +203,7 @@ void addOptions(CLI::App& app, Options& o) {
             {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
         ->type_name("float|int16")
         ->group(tracing);
-    app.add_option(
-           "--brick-cache", o.brick_cache,
-           "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and "
-           "the picture stays the same. Of each print, and of each large level set (default: no bound)")
-        ->type_name("SIZE")
-        ->group(tracing);
-    tools::addPrintOptions(app, o.prints.print);
-    app.add_option("--printed", o.prints.printed,
-                   "G-code: what is printed by then: 25%, layer:40, or time:90 (minutes of extruding)")
-        ->type_name("WHEN")
-        ->group("What to convert");
-    app.add_option("--progress-series", o.prints.series,
-                   "G-code: N numbered pictures of a print that grows by equal volumes, one camera for all")
-        ->check(CLI::Range(1, 100000))
-        ->excludes("--printed")
-        ->type_name("N")
-        ->group("What to convert");
+    tools::addTracePrintOptions(app, o.prints);
     tools::addCommonOptions(
         app, o.common, {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
                         "--look-at", "--turntable", "--integrator", "--brdf",    "--color-by", "--env",     "--bed",
@@ -414,6 +399,8 @@ void run(Options& o, int argc, char** argv) {
     if (!o.render.checkpoint.empty() &&
         (o.prints.series > 1 || o.inputs.size() * static_cast<std::size_t>(o.turntable) > 1))
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
+    if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
+        throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
     if (o.denoise) shade::addDenoisingGuides(o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
@@ -425,10 +412,10 @@ void run(Options& o, int argc, char** argv) {
                                 .labels = shade::labelsOf(o.render.aovs),
                                 .prints = o.prints};
     reading.prints.quiet = o.common.quiet;
-    if (!o.brick_cache.empty()) {
+    if (!o.prints.brick_cache.empty()) {
         if (o.march != "auto" && o.march != "brick")
             throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
-        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
+        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.prints.brick_cache), 1e18));
     }
     if (const std::string& name = o.render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
         const shade::Label label = shade::parseLabel(name);
@@ -437,6 +424,13 @@ void run(Options& o, int argc, char** argv) {
     }
     const auto turns = static_cast<std::size_t>(o.turntable);
     std::optional<shade::SceneDescription> scene;
+    reading.prints.smallest_pixel = [&](const voxelize::Bounds& print) {
+        if (!o.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
+        const march::Box box{{print.min[0], print.min[1], print.min[2]}, {print.max[0], print.max[1], print.max[2]}};
+        const shade::Camera camera =
+            scene ? scene->camera : shade::Camera::make(o.scene.camera, box, o.render.width, o.render.height);
+        return shade::smallestPixel(camera, box, o.turntable);
+    };
     glm::dvec3 middle(0.0);
     Json reports = Json::array();
     // From the last, which is the whole print and gives the camera, the bed and the light to all.
@@ -454,6 +448,8 @@ void run(Options& o, int argc, char** argv) {
         if (o.prints.series > 1 && !objects.showMoment)
             throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
         const std::size_t count = o.inputs.size() * objects.moments * turns;
+        if (!o.prints.brick_picture.empty() && !objects.writeBrickPicture)
+            throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
         for (const std::string& line : objects.lines) tools::say(o.common, line);
         tools::Stopwatch watch;
         if (!scene) {
@@ -491,6 +487,7 @@ void run(Options& o, int argc, char** argv) {
                 watch.lap();
             }
         }
+        if (!o.prints.brick_picture.empty() && n == 0) objects.writeBrickPicture(o.prints.brick_picture);
     }
     tools::writeStats(o.common, reports.size() == 1 ? reports.front() : reports);
 }

@@ -9,6 +9,7 @@
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,7 @@ constexpr int kMostWithinBudget = 16;
 constexpr double kBytesOfTree = 2.2e6;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
 constexpr double kFloodFactor = 1.35;
+constexpr double kVoxelsPerPixel = 2;
 // Voxels a layer of the culled build that finer ones are scaled from.
 constexpr int kScaledFrom = 2;
 
@@ -39,6 +41,11 @@ int voxelsPerLayerForTolerance(double layer_height, double tolerance) {
                         tolerance, count, layer_height, kMostVoxelsPerLayer,
                         kLargestErrorVoxels * layer_height / kMostVoxelsPerLayer));
     return std::max(1, static_cast<int>(count));
+}
+
+int voxelsPerLayerForPixel(double layer_height, double pixel) {
+    const double count = std::ceil(kVoxelsPerPixel * layer_height / pixel - 1e-9);
+    return static_cast<int>(std::clamp<double>(count, kFewestForPixels, kMostForPixels));
 }
 
 double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,

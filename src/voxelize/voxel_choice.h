@@ -19,6 +19,13 @@ constexpr double kLargestErrorVoxels = 0.5;
 /// The fewest voxels a layer that keep that error below `tolerance` (mm). Throws UsageError if 64 are too few.
 int voxelsPerLayerForTolerance(double layer_height, double tolerance);
 
+/// The fewest voxels a layer, from kFewestForPixels to kMostForPixels, of which one is no longer than half of `pixel`
+/// (mm; 0: the most). The largest error is a quarter of a pixel then, where the most are enough; see docs/level_set.md
+/// for what that makes of pictures.
+int voxelsPerLayerForPixel(double layer_height, double pixel);
+constexpr int kFewestForPixels = 2;  ///< one can't tell a layer's round side from a flat one
+constexpr int kMostForPixels = 16;
+
 /// Bytes of a grid and of what it takes to build it. `keep`: counted from the z extents of the beads of every leaf
 /// column, a few per cent too many. `cull`: a culled build at no more than two voxels a layer, scaled
 /// like a surface.

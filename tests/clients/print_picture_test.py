@@ -109,6 +109,35 @@ check(cache["limit_bytes"] == 150000 and 90000 < cache["peak_bytes"] <= 150000, 
 check(cache["made"] > took["bricks_made"] and cache["evicted"] >= cache["made"] - cache["bricks"] and cache["hits"] > 0,
       f"--stats counts what came and went: {cache}")
 
+# --- voxels that follow from the picture ----------------------------------------------------------------------------------
+def automatic(label, *options):
+    """A picture with --voxel-size auto and what --stats says of its voxels."""
+    done = call(VDBTRACE, "part", "-o", path("auto.exr"), *SMALL, "--spp", "1", "--voxel-size", "auto", "--stats", "-", *options)
+    check(done.returncode == 0, f"{label}: exit {done.returncode}: {done.stderr.strip()}")
+    with open(path("auto.exr"), "rb") as file:
+        return file.read(), json.loads(done.stdout)["input"]
+
+
+LAYER = 0.3  # mm
+CLOSE = ["--eye", "100,30,40", "--look-at", "100,100,2"]
+AFAR = ["--eye", "100,-900,300", "--look-at", "100,100,5"]
+for label, options in (("from afar", AFAR), ("by itself", []), ("close by", CLOSE)):
+    auto, found = automatic(label, *options)
+    pixel, voxel = found["voxel_auto"]["smallest_pixel_mm"], found["voxel_size_mm"]
+    each = round(LAYER / voxel)
+    check(2 <= each <= 16 and (voxel <= pixel / 2 or each == 16), f"{label}: voxels of {voxel} mm for pixels of {pixel} mm")
+    check(each == 2 or LAYER / (each - 1) > pixel / 2, f"{label}: no finer than it must be")
+    check(found["voxel_auto"]["largest_error_mm"] == voxel / 2, f"{label}: --stats bounds the error")
+    check(picture("part", "more.exr", "--spp", "1", "--voxels-per-layer", str(each), *options) == auto,
+          f"{label}: the picture of {each} voxels a layer")
+_, found = automatic("the camera in a bead", "--eye", "100,100,1.1", "--look-at", "101,100,1.1", "--integrator", "depth")
+check(found["voxel_auto"]["smallest_pixel_mm"] == 0 and round(LAYER / found["voxel_size_mm"]) == 16, "within: the finest voxels")
+
+# --- the bricks that rays came to -----------------------------------------------------------------------------------------
+check(picture("part", "more.exr", "--spp", "2", "--brick-picture", path("bricks.png")) == one, "a picture of bricks beside it")
+with open(path("bricks.png"), "rb") as file:
+    check(file.read(8) == b"\x89PNG\r\n\x1a\n", "is a PNG")
+
 # --- a print that grows: the same as each moment alone, under a camera that doesn't depend on it ---------------------------
 VIEW = ["--eye", "150,-160,120", "--look-at", "100,100,5", "--no-bed", "--spp", "1", *TWO]
 done = call(VDBTRACE, "part", "-o", path("film.png"), *SMALL, *VIEW, "--progress-series", "4", "--stats", "-",
@@ -132,10 +161,16 @@ for options, status, text in ((["--printed", "sometimes"], 2, "every:N"), (["--p
                               (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel"),
                               (["--brick-cache", "90kB"], 2, "give 93312 bytes"), (["--brick-cache", "much"], 2, "size"),
                               (["--brick-cache", "1MB", "--march", "vdb"], 2, "no bricks"),
+                              (["--brick-picture", "bricks.exr"], 2, ".png"), (["--voxel-size", "small"], 2, "voxel-size"),
+                              (["--voxel-size", "auto", "--voxels-per-layer", "2"], 2, "voxel"),
                               (["--printed", "layer:100000"], 2, "layer"), (["--printed", "250%"], 2, "%"), (["--printed", "layer:0"], 2, "nothing|expected one")):
     done = call(VDBTRACE, "part", "-o", path("refused.png"), *SMALL, *options)
     check(done.returncode == status and any(part in done.stderr for part in text.split("|")),
           f"{' '.join(options)}: exit {done.returncode}: {done.stderr.strip()}")
+done = call(VDBTRACE, "scene.json", "-o", path("refused.png"), *SMALL, "--voxel-size", "auto")
+check(done.returncode == 2 and "stands alone" in done.stderr, f"auto in a scene: {done.stderr.strip()}")
+done = call(GCODE2VDB, path("part"), "-o", path("refused.vdb"), "--quiet", "--voxel-size", "auto")
+check(done.returncode == 2 and "voxel-size" in done.stderr, f"auto without a picture: {done.stderr.strip()}")
 check(not os.path.exists(path("refused.png")), "refusals leave no file behind")
 with open(path("prose"), "w", encoding="utf-8") as file:
     file.write("Dear printer, please print a boat.\n")

@@ -113,6 +113,11 @@ TEST(VoxelChoice, ToleranceGivesTheCoarsestThatKeepsIt) {
     EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.049), 3);
     EXPECT_THROW(voxelsPerLayerForTolerance(0.2, 1e-6), UsageError);
     EXPECT_THROW(voxelsPerLayerForTolerance(0.2, -1), UsageError);
+    EXPECT_EQ(voxelsPerLayerForPixel(0.2, 5), kFewestForPixels);
+    EXPECT_EQ(voxelsPerLayerForPixel(0.2, 0.1), 4);
+    EXPECT_EQ(voxelsPerLayerForPixel(0.2, 0.099), 5);
+    EXPECT_EQ(voxelsPerLayerForPixel(0.2, 1e-9), kMostForPixels);
+    EXPECT_EQ(voxelsPerLayerForPixel(0.2, 0), kMostForPixels);
 }
 
 TEST(VoxelChoice, SizesAreReadAsPeopleWriteThem) {
