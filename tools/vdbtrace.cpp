@@ -20,9 +20,9 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -43,9 +43,8 @@ Examples:
 
 struct Options {
     tools::CommonOptions common;
-    std::vector<std::string> inputs;
+    std::vector<std::string> inputs, notes;
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
-    std::string brick_cache, brick_picture;
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
@@ -53,7 +52,6 @@ struct Options {
     march::BrickValues values = march::BrickValues::Int16;
     tools::TracePrintOptions prints;
     std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
-    std::vector<std::string> notes;
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;
@@ -270,26 +268,26 @@ void readScene(Options& o, int argc, char** argv) {
     if (o.inputs.size() > 1)
         throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets", o.inputs.front()));
     const shade::SceneFile file = shade::readSceneFile(path);
-    const auto over = std::make_unique<Options>();
-    over->scene = file.scene;
-    over->render = file.render;
-    over->tone = file.tone;
-    over->spp_given = file.spp_given;
-    over->denoise = file.denoise;
-    over->file_up = file.file_up;
+    Options over;
+    over.scene = file.scene;
+    over.render = file.render;
+    over.tone = file.tone;
+    over.spp_given = file.spp_given;
+    over.denoise = file.denoise;
+    over.file_up = file.file_up;
     CLI::App app;
-    addOptions(app, *over);
+    addOptions(app, over);
     app.parse(argc, argv);
     // With objects only its name is used.
-    over->inputs = {file.objects.empty() ? file.print : path.string()};
-    over->objects = file.objects;
-    over->notes = file.notes;
-    if (over->grid.empty()) over->grid = file.grid;
-    if (!over->objects.empty() && !over->grid.empty())
+    over.inputs = {file.objects.empty() ? file.print : path.string()};
+    over.objects = file.objects;
+    over.notes = file.notes;
+    if (over.grid.empty()) over.grid = file.grid;
+    if (!over.objects.empty() && !over.grid.empty())
         throw UsageError("--grid: the scene has objects; each names its own");
-    if (over->output.empty())
-        over->output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
-    o = *over;
+    if (over.output.empty())
+        over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
+    o = std::move(over);
 }
 
 // The picture's name with a number, if there are several.
