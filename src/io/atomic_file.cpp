@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 
 namespace stratum {
@@ -54,51 +56,113 @@ extern "C" void removeAndDie(int signal) {
     ::raise(signal);
 }
 
+std::filesystem::path folderOf(const std::filesystem::path& destination) {
+    const std::filesystem::path folder = destination.parent_path();
+    return folder.empty() ? "." : folder;
+}
+
+bool isNumber(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// Removes what killed runs with this destination have left: nobody holds its lock.
+void sweep(const std::filesystem::path& destination) {
+    const std::string begin = fmt::format(".{}.", destination.filename().string());
+    constexpr std::string_view kEnd = ".part";
+    std::error_code error;
+    for (std::filesystem::directory_iterator i(folderOf(destination), error), end; !error && i != end;
+         i.increment(error)) {
+        const std::string name = i->path().filename().string();
+        if (name.size() <= begin.size() + kEnd.size() || !name.starts_with(begin) || !name.ends_with(kEnd)) continue;
+        if (!isNumber(std::string_view(name).substr(begin.size(), name.size() - begin.size() - kEnd.size()))) continue;
+        const int fd = ::open(i->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd < 0) continue;
+        struct stat status {};
+        if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode) && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            ::unlink(i->path().c_str());
+        ::close(fd);
+    }
+}
+
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path destination) : destination_(std::move(destination)) {
-    std::filesystem::path directory = destination_.parent_path();
-    if (directory.empty()) directory = ".";
+AtomicFile::AtomicFile(std::filesystem::path destination, Making making) : destination_(std::move(destination)) {
+    const std::filesystem::path folder = folderOf(destination_);
     std::error_code ignored;
-    if (!std::filesystem::is_directory(directory, ignored))
+    if (!std::filesystem::is_directory(folder, ignored))
         throw OutputError(
-            fmt::format("{}: the folder {} does not exist; make it first", destination_.string(), directory.string()));
+            fmt::format("{}: the folder {} does not exist; make it first", destination_.string(), folder.string()));
     if (std::filesystem::is_directory(destination_, ignored))
         throw OutputError(fmt::format("{}: is a folder; give the name of a file", destination_.string()));
-    temporary_ = directory / fmt::format(".{}.{}.part", destination_.filename().string(), ::getpid());
-    slot_ = claim(temporary_.string());
-    // The mode a plain open would have given: the umask applies.
-    const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) {
-        const int error = errno;
-        release(slot_);
-        throw OutputError(fmt::format("{}: can't be written ({}); choose another place or mend the permissions",
-                                      destination_.string(), std::strerror(error)));
+    sweep(destination_);
+    part_ = folder / fmt::format(".{}.{}.part", destination_.filename().string(), ::getpid());
+    if (making == Making::named || !openUnnamed()) openNamed();
+}
+
+// The mode of both is what a plain open would have given: the umask applies.
+bool AtomicFile::openUnnamed() {
+    fd_ = ::open(folderOf(destination_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (fd_ < 0) return false;
+    temporary_ = fmt::format("/proc/self/fd/{}", fd_);
+    // Without /proc it would have no name to be opened or linked by.
+    if (::access(temporary_.c_str(), W_OK) != 0) {
+        close();
+        return false;
     }
-    ::close(fd);
+    (void)::flock(fd_, LOCK_EX | LOCK_NB);
+    return true;
+}
+
+void AtomicFile::openNamed() {
+    temporary_ = part_;
+    slot_ = claim(part_.string());
+    for (;;) {
+        fd_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+        if (fd_ < 0) {
+            const int error = errno;
+            release(slot_);
+            throw OutputError(fmt::format("{}: can't be written ({}); choose another place or mend the permissions",
+                                          destination_.string(), std::strerror(error)));
+        }
+        (void)::flock(fd_, LOCK_EX | LOCK_NB);
+        struct stat status {};
+        // Before the lock was there, another run may have taken the file for one that was left.
+        if (::fstat(fd_, &status) != 0 || status.st_nlink > 0) return;
+        close();
+    }
+}
+
+void AtomicFile::close() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
 }
 
 AtomicFile::~AtomicFile() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    if (slot_ >= 0 || temporary_ == part_) ::unlink(part_.c_str());
     release(slot_);
+    close();
 }
 
 void AtomicFile::commit() {
-    const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC);
-    const bool flushed = fd >= 0 && ::fsync(fd) == 0;
-    const int error = errno;
-    if (fd >= 0) ::close(fd);
-    if (!flushed && error == ENOENT)
-        throw OutputError(fmt::format("{}: its folder vanished while it was written; make it again and start anew",
-                                      destination_.string()));
-    if (!flushed)
+    if (::fsync(fd_) != 0)
         throw OutputError(fmt::format("{}: could not be flushed to the disk ({}); is the disk full?",
-                                      destination_.string(), std::strerror(error)));
-    if (std::rename(temporary_.c_str(), destination_.c_str()) != 0)
+                                      destination_.string(), std::strerror(errno)));
+    if (temporary_ != part_) {
+        slot_ = claim(part_.string());
+        ::unlink(part_.c_str());
+    }
+    if ((temporary_ != part_ &&
+         ::linkat(AT_FDCWD, temporary_.c_str(), AT_FDCWD, part_.c_str(), AT_SYMLINK_FOLLOW) != 0) ||
+        std::rename(part_.c_str(), destination_.c_str()) != 0) {
+        if (errno == ENOENT)
+            throw OutputError(fmt::format("{}: its folder vanished while it was written; make it again and start anew",
+                                          destination_.string()));
         throw OutputError(fmt::format("{}: can't be replaced ({})", destination_.string(), std::strerror(errno)));
-    temporary_.clear();
+    }
+    part_.clear();
     release(slot_);
     slot_ = -1;
+    close();
 }
 
 void AtomicFile::removeOnSignals() {

@@ -27,10 +27,20 @@ bool isExr(const std::filesystem::path& path) {
 PictureFile::PictureFile(const std::filesystem::path& path) : exr_(isExr(path)), file_(path) {}
 
 void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone) {
-    if (exr_)
-        writeExr(file_.temporary(), film, metadata);
-    else
-        writePng(file_.temporary(), film.width(), film.height(), toDisplay(film, tone), metadata);
+    const std::string temporary = file_.temporary().string();
+    try {
+        if (exr_)
+            writeExr(temporary, film, metadata);
+        else
+            writePng(temporary, film.width(), film.height(), toDisplay(film, tone), metadata);
+    } catch (const OutputError& error) {
+        // Nobody else knows that name.
+        std::string text = error.what();
+        const std::string name = file_.destination().string();
+        for (std::size_t at = 0; (at = text.find(temporary, at)) != std::string::npos; at += name.size())
+            text.replace(at, temporary.size(), name);
+        throw OutputError(text);
+    }
     file_.commit();
 }
 

@@ -47,6 +47,21 @@ def unfinished(folder):
     return [name for name in os.listdir(folder) if name.endswith(".part")]
 
 
+def writing(pid, folder):
+    """Whether a process or its child has a file without a name in that folder: is at work, and has not put it in place."""
+    try:
+        with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as file:
+            pids = [pid, *map(int, file.read().split())]
+        for each in pids:
+            for fd in os.listdir(f"/proc/{each}/fd"):
+                target = os.readlink(f"/proc/{each}/fd/{fd}")
+                if target.startswith(os.path.realpath(folder)) and target.endswith("(deleted)"):
+                    return True
+    except OSError:
+        pass  # it has just ended
+    return bool(unfinished(folder))
+
+
 def fails(done, *fragments):
     check(done.returncode == 1, f"  ends with 1: {done.returncode} {done.stderr.strip()}")
     for fragment in fragments:
@@ -72,8 +87,8 @@ for extension in ("vdb", "stl"):
         kept += found == OLD
         new += same(found, whole)
     check(kept + new == TRIALS // 2, f"kill -9 on .{extension}: {TRIALS // 2} trials, {kept} old files, {new} new ones, 0 half")
-    for name in unfinished(FOLDER):
-        os.remove(os.path.join(FOLDER, name))
+    subprocess.run(conversion(out), check=True, **QUIET)
+    check(not unfinished(FOLDER), "  and after the next run nothing unfinished")
 
 # --- a checkpointed render, killed and taken up again -------------------------------------------------------------------
 vdb = os.path.join(FOLDER, "print.vdb")
@@ -91,8 +106,7 @@ for _ in range(max(3, TRIALS // 10)):
     process.wait()
 subprocess.run(resumed, check=True, **QUIET)
 check(read(os.path.join(FOLDER, "whole.exr")) == read(os.path.join(FOLDER, "resumed.exr")), "a killed render resumes to the same bytes")
-for name in unfinished(FOLDER):
-    os.remove(os.path.join(FOLDER, name))
+check(not unfinished(FOLDER), "  nothing unfinished")
 
 # --- signals ---------------------------------------------------------------------------------------------------------
 out = os.path.join(FOLDER, "print.vdb")
@@ -101,7 +115,7 @@ slow = [GCODE2VDB, gcode("hull.gcode"), "-o", out, "--voxel-size", "0.04"]
 # The whole group gets the signal, as from a terminal; the shell stays to tell how its child ended.
 shell = ["bash", "-c", 'trap : INT; "$@"; exit $?', "bash", *slow]
 process = subprocess.Popen(shell, start_new_session=True, **QUIET)
-while not unfinished(FOLDER) and process.poll() is None:
+while not writing(process.pid, FOLDER) and process.poll() is None:
     time.sleep(0.01)
 os.killpg(process.pid, signal.SIGINT)
 check(process.wait() == 130, f"SIGINT: a shell sees {process.returncode}")
@@ -140,7 +154,7 @@ gone = os.path.join(FOLDER, "gone")
 os.mkdir(gone)
 process = subprocess.Popen([GCODE2VDB, gcode("hull.gcode"), "-o", os.path.join(gone, "x.vdb"), "--voxel-size", "0.08"],
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-while not unfinished(gone) and process.poll() is None:
+while not writing(process.pid, gone) and process.poll() is None:
     time.sleep(0.01)
 shutil.rmtree(gone)
 _, text = process.communicate()

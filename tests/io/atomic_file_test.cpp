@@ -3,7 +3,9 @@
 #include "io/error.h"
 #include "scratch_folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,22 +26,92 @@ std::size_t filesIn(const std::filesystem::path& folder) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-TEST(AtomicFile, CommitReplacesAndLeavesNothingBeside) {
+class EachMaking : public testing::TestWithParam<AtomicFile::Making> {};
+INSTANTIATE_TEST_SUITE_P(AtomicFile, EachMaking,
+                         testing::Values(AtomicFile::Making::unnamed, AtomicFile::Making::named));
+
+TEST_P(EachMaking, CommitReplacesAndLeavesNothingBeside) {
     const test::ScratchFolder folder;
     std::ofstream(folder / "out") << "old";
-    AtomicFile file(folder / "out");
-    std::ofstream(file.temporary()) << "new";
-    EXPECT_EQ(slurp(folder / "out"), "old");
-    file.commit();
+    {
+        AtomicFile file(folder / "out", GetParam());
+        std::ofstream(file.temporary()) << "new";
+        EXPECT_EQ(slurp(folder / "out"), "old");
+        file.commit();
+    }
     EXPECT_EQ(slurp(folder / "out"), "new");
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
-TEST(AtomicFile, WithoutCommitTheOldFileStays) {
+TEST_P(EachMaking, ModesAreThoseOfAnyNewFile) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "plain") << "x";
+    AtomicFile file(folder / "out", GetParam());
+    file.commit();
+    EXPECT_EQ(std::filesystem::status(folder / "out").permissions(),
+              std::filesystem::status(folder / "plain").permissions());
+}
+
+TEST_P(EachMaking, TwoAtOnceTheLastOneStays) {
+    const test::ScratchFolder folder;
+    AtomicFile first(folder / "out", GetParam());
+    std::ofstream(first.temporary()) << "first";
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        AtomicFile second(folder / "out", GetParam());
+        std::ofstream(second.temporary()) << "second";
+        second.commit();
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(slurp(folder / "out"), "second");
+    first.commit();
+    EXPECT_EQ(slurp(folder / "out"), "first");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST_P(EachMaking, AKilledRunLeavesNothingThatTheNextOneKeeps) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        const AtomicFile file(folder / "out", GetParam());
+        std::ofstream(file.temporary()) << "half";
+        ::raise(SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(slurp(folder / "out"), "old");
+    if (GetParam() == AtomicFile::Making::named) {
+        EXPECT_EQ(filesIn(folder.path()), 2U);
+    }
+    // Of its own file and others', the next run removes what nobody holds.
+    std::ofstream(folder / ".other.123.part") << "of another output";
+    std::ofstream(folder / ".out.mine.part") << "of somebody else";
+    { const AtomicFile next(folder / "out", GetParam()); }
+    EXPECT_EQ(filesIn(folder.path()), 3U);
+    EXPECT_EQ(slurp(folder / "out"), "old");
+}
+
+TEST(AtomicFile, WhatARunHoldsStays) {
+    const test::ScratchFolder folder;
+    const int held = ::open((folder / ".out.1.part").c_str(), O_RDWR | O_CREAT, 0666);
+    ASSERT_EQ(::flock(held, LOCK_EX), 0);
+    std::ofstream(folder / ".out.2.part") << "left";
+    { const AtomicFile file(folder / "out"); }
+    EXPECT_TRUE(std::filesystem::exists(folder / ".out.1.part"));
+    EXPECT_FALSE(std::filesystem::exists(folder / ".out.2.part"));
+    ::close(held);
+}
+
+TEST_P(EachMaking, WithoutCommitTheOldFileStays) {
     const test::ScratchFolder folder;
     std::ofstream(folder / "out") << "old";
     {
-        const AtomicFile file(folder / "out");
+        const AtomicFile file(folder / "out", GetParam());
         std::ofstream(file.temporary()) << "half";
     }
     EXPECT_EQ(slurp(folder / "out"), "old");
@@ -52,13 +124,13 @@ TEST(AtomicFile, RefusesBeforeTheWork) {
     EXPECT_THROW(AtomicFile{folder.path()}, OutputError);
 }
 
-TEST(AtomicFile, ASignalRemovesTheTemporary) {
+TEST_P(EachMaking, ASignalRemovesTheTemporary) {
     const test::ScratchFolder folder;
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
         AtomicFile::removeOnSignals();
-        const AtomicFile file(folder / "out");
+        const AtomicFile file(folder / "out", GetParam());
         ::raise(SIGTERM);
         ::_exit(0);
     }
