@@ -1,6 +1,8 @@
 #include "march/attribute_grid.h"
 
 #include "io/error.h"
+#include "io/mapped_file.h"
+#include "march/vdb_check.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -90,11 +92,21 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
                                               const openvdb::FloatGrid& surface) {
     openvdb::GridBase::Ptr grid;
     std::string seen;
+    const MappedFile mapped(path);
+    checkVdb(mapped.bytes(), VdbDepth::heads, "", path.string());
     try {
         openvdb::io::File file(path.string());
         file.open(/*delayLoad=*/false);
         for (auto it = file.beginName(); it != file.endName(); ++it) seen += (seen.empty() ? "" : ", ") + it.gridName();
-        if (file.hasGrid(name)) grid = file.readGrid(name);
+        if (file.hasGrid(name)) {
+            grid = file.readGridMetadata(name);
+            if (visit(*grid, [](const auto&) {})) {
+                checkVdb(mapped.bytes(), VdbDepth::leaves, name, path.string());
+                grid = file.readGrid(name);
+            }
+        }
+    } catch (const InputError&) {
+        throw;
     } catch (const std::exception& error) {
         throw InputError(
             fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", path.string(), error.what()));

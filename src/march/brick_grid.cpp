@@ -299,7 +299,8 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool 
     std::array<int, 3> macros{};
     const openvdb::Coord origin = box.min() & ~(kMacroEdge - 1);
     for (int axis = 0; axis < 3; ++axis)
-        macros[static_cast<std::size_t>(axis)] = (box.max()[axis] - origin[axis]) / kMacroEdge + 1;
+        macros[static_cast<std::size_t>(axis)] =
+            static_cast<int>((std::int64_t{box.max()[axis]} - origin[axis]) / kMacroEdge + 1);
     setBox(origin, macros, count);
     const auto within = [](int cell) { return cell / kBrickEdge & 3; };
     for (std::size_t n = 0; n < count; ++n) {
@@ -329,15 +330,18 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     origin_ = origin;
     macros_ = macros;
     double cells = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        size_[axis] = macros[axis] * kMacroEdge;
-        cells *= macros[axis];
-    }
-    if (cells > 2147483648.0 || leaves >= BrickSlots::kNoSamples)
+    for (const int macro : macros) cells *= macro;
+    // Two leaves at the ends of space must not cost what lies between: prints have one or two macro cells a leaf, or
+    // much less.
+    const double most = std::min(2147483648.0, 16777216.0 + 4096.0 * static_cast<double>(leaves));
+    constexpr int kLongest = (1 << 19) - 1;  // macro cells: places of leaves are kept in 21 bits an axis
+    if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves >= BrickSlots::kNoSamples)
         throw InputError(fmt::format(
             "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
             "or use --march vdb",
-            size_[0], size_[1], size_[2], leaves));
+            std::int64_t{macros[0]} * kMacroEdge, std::int64_t{macros[1]} * kMacroEdge,
+            std::int64_t{macros[2]} * kMacroEdge, leaves));
+    for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = macros[axis] * kMacroEdge;
     macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
 }
 

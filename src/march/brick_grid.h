@@ -70,8 +70,8 @@ public:
     static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
     /// Lays out every brick, in parallel. The source is not needed afterwards.
-    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, and, with the
-    /// place, for samples that are no finite numbers.
+    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, or 2^24 and 4096
+    /// for each leaf, or 2^19 along an axis; and, with the place, for samples that are no finite numbers.
     BrickGrid(const LeafSource& source, BrickValues values);
     BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
     /// Lays bricks out when require() asks for them, which then throws as above. No more than `cache_bytes` of samples

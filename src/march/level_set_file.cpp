@@ -1,7 +1,9 @@
 #include "march/level_set_file.h"
 
 #include "io/error.h"
+#include "io/mapped_file.h"
 #include "march/grid_axes.h"
+#include "march/vdb_check.h"
 
 #include <fmt/format.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -18,7 +20,8 @@ namespace stratum::march {
 namespace {
 
 constexpr double kLeastHalfWidth = 2;
-constexpr double kMostShear = 1e-5;  // what a transform from 32-bit floats may have by rounding
+constexpr double kMostReturn = 0.01;  // voxels that a point may be off after there and back; a far origin rounds
+constexpr double kMostShear = 1e-5;   // what a transform from 32-bit floats may have by rounding
 
 // Which grid of a file is meant.
 struct Choice {
@@ -68,18 +71,22 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     return {wanted, head};
 }
 
-// Calls `read` with the opened file and the grid that is meant.
+// Calls `read` with the opened file and the grid that is meant, which was checked to that depth.
 template <typename Read>
-auto withGrid(const std::filesystem::path& path, const std::string& name, const Read& read) {
+auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDepth depth, const Read& read) {
     const std::string where = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
         throw InputError(fmt::format("{}: is not a file; check the name", where));
+    const MappedFile mapped(path);
+    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
     try {
         openvdb::io::File file(where);
         // Without OpenVDB's delayed loading: it would copy the file, and build the whole tree all the same.
         file.open(/*delayLoad=*/false);
-        return read(file, chooseGrid(file, name));
+        const Choice choice = chooseGrid(file, name);
+        checkVdb(mapped.bytes(), depth, choice.name, where);
+        return read(file, choice);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -91,7 +98,7 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
 }  // namespace
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice) {
+    auto grid = withGrid(path, name, VdbDepth::leaves, [](openvdb::io::File& file, const Choice& choice) {
         return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(choice.name));
     });
     requireTraceable(*grid, path.string());
@@ -99,7 +106,7 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
 }
 
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice) {
+    auto file = withGrid(path, name, VdbDepth::nodes, [&path](openvdb::io::File&, const Choice& choice) {
         return LeafFile::open(path, choice.name, *choice.head);
     });
     if (file) requireTraceable(file->head(), file->leafCount(), path.string());
@@ -127,6 +134,12 @@ void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const 
     // Written so that no number is refused, too.
     if (!(axes.shortest() > 0 && std::isfinite(axes.longest())))
         throw InputError(fmt::format("{}: the voxels of {} have no size; mend its transform", where, grid.getName()));
+    // A file has its transform and the inverse of it.
+    const openvdb::math::MapBase& map = *grid.transform().baseMap();
+    for (const openvdb::Vec3d& p : {openvdb::Vec3d(0, 0, 0), openvdb::Vec3d(100, -200, 300)})
+        if (!((map.applyInverseMap(map.applyMap(p)) - p).length() <= kMostReturn))
+            throw InputError(fmt::format("{}: the transform of {} leads elsewhere than its inverse comes from; mend it",
+                                         where, grid.getName()));
     if (!(axes.shear() <= kMostShear))
         throw InputError(
             fmt::format("{}: the voxels of {} are sheared: their edges are {:.4g} degrees from perpendicular; resample "

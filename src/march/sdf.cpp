@@ -18,14 +18,19 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Box kEndless{glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
 
+// Far from where squares overflow or vanish, and farther from anything that somebody wants to see.
+constexpr double kMost = 1e60;
+
 void requireSize(double value, const char* what) {
-    if (!(value > 0 && std::isfinite(value)))
-        throw UsageError(fmt::format("{} is {}; it must be a finite number above 0", what, value));
+    if (!(value >= 1 / kMost && value <= kMost))
+        throw UsageError(
+            fmt::format("{} is {}; it must be a number above 0, from {:g} to {:g}", what, value, 1 / kMost, kMost));
 }
 
 void requirePlace(const glm::dvec3& p, const char* what) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        throw UsageError(fmt::format("{} must be finite numbers", what));
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(p[axis]) <= kMost))
+            throw UsageError(fmt::format("{} must be numbers of at most {:g}", what, kMost));
 }
 
 void requireParts(const std::vector<SdfPtr>& parts, const char* what) {
@@ -133,8 +138,9 @@ public:
     Box bounds() const override {
         Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
         for (const SdfPtr& part : parts_) {
-            box.min = glm::min(box.min, part->bounds().min);
-            box.max = glm::max(box.max, part->bounds().max);
+            const Box own = part->bounds();
+            box.min = glm::min(box.min, own.min);
+            box.max = glm::max(box.max, own.max);
         }
         return box;
     }
@@ -156,8 +162,9 @@ public:
         Box box = parts_.front()->bounds();
         if (sign_ < 0) return box;
         for (const SdfPtr& part : parts_) {
-            box.min = glm::max(box.min, part->bounds().min);
-            box.max = glm::min(box.max, part->bounds().max);
+            const Box own = part->bounds();
+            box.min = glm::max(box.min, own.min);
+            box.max = glm::min(box.max, own.max);
         }
         // Parts that don't meet leave nothing: a point.
         box.max = glm::max(box.min, box.max);
@@ -267,7 +274,8 @@ SdfPtr sdfCylinder(const glm::dvec3& center, double radius, double half_height, 
 SdfPtr sdfPlane(const glm::dvec3& normal, double offset) {
     requirePlace(normal, "a plane's normal");
     requireSize(glm::length(normal), "the length of a plane's normal");
-    if (!std::isfinite(offset)) throw UsageError("a plane's offset must be a finite number");
+    if (!(std::abs(offset) <= kMost))
+        throw UsageError(fmt::format("a plane's offset must be a number of at most {:g}", kMost));
     return std::make_shared<Plane>(glm::normalize(normal), offset);
 }
 

@@ -28,7 +28,7 @@ public:
 
 using SdfPtr = std::shared_ptr<const Sdf>;
 
-/// All throw UsageError for sizes that are not positive, or not finite, and for operations on nothing.
+/// All throw UsageError for sizes that are not from 1e-60 to 1e60, places beyond that, and operations on nothing.
 SdfPtr sdfSphere(const glm::dvec3& center, double radius);
 SdfPtr sdfBox(const glm::dvec3& center, const glm::dvec3& half_extents);
 /// A ring about `axis` (0 x, 1 y, 2 z): `radius` to the middle of the tube, whose own radius is `tube`.

@@ -83,6 +83,7 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
 
     const double unit = degrees ? kPiD / 180.0 : 1.0;
     std::map<std::tuple<long, long, long>, Color> readings;
+    std::map<long, Color> at_pole;  // by incidence: there one reading serves all azimuths
     std::map<long, double> incidences, azimuths, polars;
     const long turn = keyOf(2.0 * kPiD);
     for (const std::vector<double>& row : rows) {
@@ -101,6 +102,7 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
         azimuths.emplace(keyOf(azimuth), azimuth);
         polars.emplace(keyOf(polar), std::min(polar, 0.5 * kPiD));
         readings.insert_or_assign({keyOf(incidence), keyOf(azimuth), keyOf(polar)}, colour);
+        if (keyOf(polar) == 0) at_pole.emplace(keyOf(incidence), colour);
     }
     BrdfScan scan;
     for (const std::string& comment : text.comments()) scan.notes.push_back(comment);
@@ -110,18 +112,16 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
     for (const auto& i : incidences) {
         for (const auto& a : azimuths) {
             for (const auto& p : polars) {
-                auto found = readings.find({i.first, a.first, p.first});
-                // At the pole one reading serves all azimuths.
-                if (found == readings.end() && p.first == 0)
-                    found = std::find_if(readings.begin(), readings.end(), [&](const auto& r) {
-                        return std::get<0>(r.first) == i.first && std::get<2>(r.first) == 0;
-                    });
-                if (found == readings.end())
-                    text.fail(
-                        fmt::format("no reading at theta_i {:g}, phi_s - phi_i {:g}, theta_s {:g} degrees; they "
-                                    "must form a grid",
-                                    i.second * 180.0 / kPiD, a.second * 180.0 / kPiD, p.second * 180.0 / kPiD));
-                scan.values.push_back(found->second);
+                const auto found = readings.find({i.first, a.first, p.first});
+                const auto pole = p.first == 0 ? at_pole.find(i.first) : at_pole.end();
+                if (found != readings.end() || pole != at_pole.end()) {
+                    scan.values.push_back(found != readings.end() ? found->second : pole->second);
+                    continue;
+                }
+                text.fail(
+                    fmt::format("no reading at theta_i {:g}, phi_s - phi_i {:g}, theta_s {:g} degrees; they must form "
+                                "a grid",
+                                i.second * 180.0 / kPiD, a.second * 180.0 / kPiD, p.second * 180.0 / kPiD));
             }
         }
     }

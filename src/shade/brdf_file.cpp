@@ -57,7 +57,7 @@ BrdfScan scanOfTable(const HalfDiffTable& table, std::vector<double> incidences)
                     std::move(incidences), evenAngles(0.0, std::numbers::pi, 37), evenAngles(0.0, 89.0 * kRadians, 90));
 }
 
-std::shared_ptr<const TableBrdf> fromScan(const BrdfScan& raw, std::string kind) {
+std::shared_ptr<const TableBrdf> fromScan(const BrdfScan& raw, const std::string& kind) {
     const BrdfScan scan = foldScan(raw);
     const ScanInterpolant whole(scan);
     std::vector<std::string> notes = scan.notes;
@@ -72,31 +72,34 @@ std::shared_ptr<const TableBrdf> fromScan(const BrdfScan& raw, std::string kind)
 
 }  // namespace
 
-std::shared_ptr<const TableBrdf> readBrdfFile(const std::filesystem::path& path) {
+MeasuredMaterial readMeasuredMaterial(const std::filesystem::path& path) {
     const MappedFile file(path);
     const std::string name = path.string();
     std::string_view bytes = file.bytes();
-    if (isExr(bytes)) return fromScan(readBrdfExr(path), "EXR texture");
+    if (isExr(bytes)) return {"EXR texture", readBrdfExr(path)};
     std::string unpacked;
     if (bytes.starts_with("\x1f\x8b")) {
         unpacked = gunzip(path);
         bytes = unpacked;
     }
-    if (isMerl(bytes)) {
-        HalfDiffTable table = readMerl(bytes, name);
-        const auto lobes =
-            fitLobes(scanOfTable(table, {0.0, 20 * kRadians, 40 * kRadians, 60 * kRadians, 75 * kRadians}));
-        return std::make_shared<TableBrdf>(std::move(table), lobes, std::vector<std::string>{"MERL table"});
-    }
+    if (isMerl(bytes)) return {"MERL table", readMerl(bytes, name)};
     if (bytes.size() > kMostText)
         throw InputError(fmt::format("{}: has {} bytes; no BRDF has more than {}", name, bytes.size(), kMostText));
-    if (isZemax(bytes)) return fromScan(readZemax(bytes, name), "Zemax");
-    if (isMiniDiff(bytes)) return fromScan(readMiniDiff(bytes, name), "Mini-Diff");
-    if (isAstm(bytes)) return fromScan(readAstm(bytes, name), "ASTM E1392");
+    if (isZemax(bytes)) return {"Zemax", readZemax(bytes, name)};
+    if (isMiniDiff(bytes)) return {"Mini-Diff", readMiniDiff(bytes, name)};
+    if (isAstm(bytes)) return {"ASTM E1392", readAstm(bytes, name)};
     throw InputError(
         fmt::format("{}: is no BRDF that can be read; expected Mini-Diff (LightTools), Zemax or ASTM E1392 "
                     "text, a MERL .binary or an EXR texture",
                     name));
+}
+
+std::shared_ptr<const TableBrdf> readBrdfFile(const std::filesystem::path& path) {
+    MeasuredMaterial measured = readMeasuredMaterial(path);
+    if (const auto* scan = std::get_if<BrdfScan>(&measured.data)) return fromScan(*scan, measured.kind);
+    auto& table = std::get<HalfDiffTable>(measured.data);
+    const auto lobes = fitLobes(scanOfTable(table, {0.0, 20 * kRadians, 40 * kRadians, 60 * kRadians, 75 * kRadians}));
+    return std::make_shared<TableBrdf>(std::move(table), lobes, std::vector<std::string>{measured.kind});
 }
 
 void writeBrdfFile(const std::filesystem::path& path, const Brdf& brdf) {

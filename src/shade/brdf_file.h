@@ -1,12 +1,25 @@
 // A measured material from any of the files that such things come in.
 #pragma once
 
+#include "shade/brdf_scan.h"
+#include "shade/half_diff_table.h"
 #include "shade/table_brdf.h"
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <variant>
 
 namespace stratum::shade {
+
+/// What a file holds, before a whole BRDF is made of it.
+struct MeasuredMaterial {
+    std::string kind;  ///< of file
+    std::variant<BrdfScan, HalfDiffTable> data;
+};
+
+/// The reading half of readBrdfFile(). Throws InputError.
+MeasuredMaterial readMeasuredMaterial(const std::filesystem::path& path);
 
 /// Reads Mini-Diff (LightTools), Zemax or ASTM E1392 text, also gzip-compressed, a MERL .binary or an EXR texture, told
 /// apart by content, and makes a BRDF of it: scans by ScanInterpolant, baked to a HalfDiffTable; MERL tables as they

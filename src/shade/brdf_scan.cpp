@@ -48,6 +48,9 @@ void BrdfScan::check(std::string_view name) const {
     if (incidences.empty() || azimuths.empty() || polars.size() < 2)
         throw InputError(fmt::format("{}: {} incidences x {} azimuths x {} polar angles are too few for a BRDF", name,
                                      incidences.size(), azimuths.size(), polars.size()));
+    if (incidences.size() > kMostIncidences)
+        throw InputError(fmt::format("{}: {} angles of incidence; at most {} can be read", name, incidences.size(),
+                                     kMostIncidences));
     checkAscending(incidences, 0.0, 89.0 / kDegrees, "angle of incidence", name);
     checkAscending(azimuths, 0.0, 2.0 * kPiD, "azimuth", name);
     checkAscending(polars, 0.0, 0.5 * kPiD, "polar angle", name);
@@ -157,13 +160,17 @@ BrdfScan turnScan(const BrdfScan& scan, double mirror) {
 }
 
 Color scanAlbedo(const BrdfScan& scan, std::size_t incidence) {
-    const BrdfScan folded = foldScan(scan);
+    BrdfScan one{{scan.incidences[incidence]}, scan.azimuths, scan.polars, {}, {}};
+    const std::size_t count = scan.azimuths.size() * scan.polars.size();
+    const auto first = scan.values.begin() + static_cast<std::ptrdiff_t>(incidence * count);
+    one.values.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    const BrdfScan folded = foldScan(one);
     const std::vector<double> around = trapezoid(folded.azimuths);
     const std::vector<double> down = trapezoid(folded.polars);
     glm::dvec3 sum(0.0);
     for (std::size_t a = 0; a < folded.azimuths.size(); ++a)
         for (std::size_t p = 0; p < folded.polars.size(); ++p)
-            sum += glm::dvec3(folded.values[folded.index(incidence, a, p)]) *
+            sum += glm::dvec3(folded.values[folded.index(0, a, p)]) *
                    (2.0 * around[a] * down[p] * std::sin(folded.polars[p]) * std::cos(folded.polars[p]));
     return Color(sum);
 }

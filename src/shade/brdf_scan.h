@@ -13,6 +13,9 @@
 
 namespace stratum::shade {
 
+/// No instrument turns its lamp in finer steps than degrees; what is made of a scan takes time for each.
+inline constexpr std::size_t kMostIncidences = 180;
+
 /// A BRDF in 1/sr, sampled on incidences x azimuths x polars. Angles in radians, each list strictly ascending.
 /// Azimuth is the detector's, measured from that of the light: 0 is back towards the light, pi the mirror side.
 struct BrdfScan {
@@ -25,7 +28,8 @@ struct BrdfScan {
     std::size_t index(std::size_t incidence, std::size_t azimuth, std::size_t polar) const {
         return (incidence * azimuths.size() + azimuth) * polars.size() + polar;
     }
-    /// Throws InputError that names the file unless there are enough angles in order and all values are numbers.
+    /// Throws InputError that names the file unless there are enough angles in order, not more than kMostIncidences,
+    /// and all values are numbers.
     void check(std::string_view name) const;
 };
 

@@ -1,6 +1,8 @@
 #include "shade/exr_reader.h"
 
 #include "io/error.h"
+#include "io/mapped_file.h"
+#include "shade/exr_header.h"
 
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
@@ -67,6 +69,7 @@ ExrImage read(const std::filesystem::path& path, std::size_t most) {
 bool isExr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
 ExrImage readExr(const std::filesystem::path& path, std::size_t most) {
+    checkExrHeader(MappedFile(path).bytes(), most, path.string());
     try {
         return read(path, most);
     } catch (const InputError&) {

@@ -18,7 +18,8 @@
 namespace stratum::shade {
 namespace {
 
-/// Feeds the decoder and notices when it asks for more than there is: it would go on with zeros.
+/// Feeds the decoder and notices when it asks for more than there is. It would go on with zeros, and never stop: a run
+/// of none is a step to it. So it gets the longest runs from there, which soon are too long for a row.
 struct Feed {
     std::string_view bytes;
     std::size_t position = 0;
@@ -27,7 +28,11 @@ struct Feed {
     static int read(void* user, char* data, int size) {
         auto& feed = *static_cast<Feed*>(user);
         const std::size_t count = std::min(static_cast<std::size_t>(size), feed.bytes.size() - feed.position);
-        if (count == 0) feed.starved = true;
+        if (count == 0 && size > 0) {
+            feed.starved = true;
+            std::memset(data, 0xff, static_cast<std::size_t>(size));
+            return size;
+        }
         std::memcpy(data, feed.bytes.data() + feed.position, count);
         feed.position += count;
         return static_cast<int>(count);
@@ -76,6 +81,16 @@ Header readHeader(std::string_view bytes, std::string_view name) {
     return header;
 }
 
+/// What so many texels take at least, packed as well as run lengths can.
+std::size_t leastBytes(int width, int height) {
+    constexpr std::size_t kLongestRun = 127;
+    const auto columns = static_cast<std::size_t>(width);
+    const auto rows = static_cast<std::size_t>(height);
+    // Rows that are too short or too long for run lengths are written out.
+    if (width < 8 || width >= 32768) return 4 * columns * rows;
+    return rows * (4 + 4 * 2 * ((columns + kLongestRun - 1) / kLongestRun));
+}
+
 }  // namespace
 
 bool isHdr(std::string_view bytes) { return bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE"); }
@@ -95,13 +110,16 @@ LightMap readHdr(std::string_view bytes, std::string_view name) {
         static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height) > kMostMapTexels)
         throw InputError(fmt::format("{}: {} x {} texels; at most {} can be read. Scale it down", name, map.width,
                                      map.height, kMostMapTexels));
+    if (bytes.size() < leastBytes(map.width, map.height))
+        throw InputError(fmt::format("{}: {} x {} texels can't come from {} bytes; copy or download it again", name,
+                                     map.width, map.height, bytes.size()));
     feed = Feed{bytes};
     const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
         stbi_loadf_from_callbacks(&callbacks, &feed, &map.width, &map.height, &channels, 3), &stbi_image_free);
-    if (!pixels) throw InputError(fmt::format("{}: can't be decoded ({})", name, stbi_failure_reason()));
     if (feed.starved)
         throw InputError(fmt::format("{}: ends in the middle of its {} x {} texels; copy or download it again", name,
                                      map.width, map.height));
+    if (!pixels) throw InputError(fmt::format("{}: can't be decoded ({})", name, stbi_failure_reason()));
     const auto scale = static_cast<float>(1.0 / header.exposure);
     const std::size_t count = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
     map.texels.resize(count);

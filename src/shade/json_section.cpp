@@ -87,10 +87,12 @@ std::optional<JsonSection> JsonSection::section(const char* key) {
 void JsonSection::finish() const {
     for (const auto& item : json_.items()) {
         if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+        // The beginning is enough to tell: a key may be as long as the file.
+        const std::string key = item.key().substr(0, 64);
         const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-            return editDistance(a, item.key()) < editDistance(b, item.key());
+            return editDistance(a, key) < editDistance(b, key);
         });
-        throw InputError(fmt::format("{}: {}: unknown key; did you mean '{}'?", file_, place(item.key()), *nearest));
+        throw InputError(fmt::format("{}: {}: unknown key; did you mean '{}'?", file_, place(key), *nearest));
     }
 }
 

@@ -17,8 +17,14 @@ using Json = nlohmann::json;
 using march::SdfPtr;
 
 constexpr int kDeepest = 64;  // shapes within shapes
+// Repetitions within repetitions: each asks its part eight times for a distance.
+constexpr int kMostRepetitions = 4;
 
-SdfPtr read(const Json& json, const std::string& path, const std::string& file, int depth);
+struct Depth {
+    int shapes = 0, repetitions = 0;
+};
+
+SdfPtr read(const Json& json, const std::string& path, const std::string& file, Depth depth);
 
 /// Required keys.
 double need(JsonSection& s, const char* key) {
@@ -47,13 +53,14 @@ int axis(JsonSection& s) {
     return name[0] - 'x';
 }
 
-SdfPtr readOf(JsonSection& s, int depth) {
+SdfPtr readOf(JsonSection& s, Depth depth) {
     const Json* of = s.find("of");
     if (!of) s.fail("of", "the shape, { ... }");
-    return read(*of, s.place("of"), s.file(), depth + 1);
+    ++depth.shapes;
+    return read(*of, s.place("of"), s.file(), depth);
 }
 
-SdfPtr readShape(const std::string& kind, JsonSection& s, int depth) {
+SdfPtr readShape(const std::string& kind, JsonSection& s, Depth depth) {
     if (kind == "sphere") return march::sdfSphere(center(s), need(s, "radius"));
     if (kind == "box") return march::sdfBox(center(s), needVector(s, "half_extents"));
     if (kind == "torus") return march::sdfTorus(center(s), need(s, "radius"), need(s, "tube"), axis(s));
@@ -74,13 +81,16 @@ SdfPtr readShape(const std::string& kind, JsonSection& s, int depth) {
     const glm::dvec3 period = needVector(s, "period");
     int count = -1;
     s.readInteger("count", count);
+    if (++depth.repetitions > kMostRepetitions)
+        s.fail("", fmt::format("no more than {} repetitions within each other", kMostRepetitions));
     return march::sdfRepetition(readOf(s, depth), period, count);
 }
 
-SdfPtr read(const Json& json, const std::string& path, const std::string& file, int depth) {
+SdfPtr read(const Json& json, const std::string& path, const std::string& file, Depth depth) {
     JsonSection section(json, path, file);
     if (json.size() != 1) section.fail("", "one shape or operation, { \"sphere\": { ... } }");
-    if (depth > kDeepest) section.fail("", fmt::format("no more than {} shapes within each other", kDeepest));
+    if (depth.shapes > kDeepest) section.fail("", fmt::format("no more than {} shapes within each other", kDeepest));
+    const Depth within{depth.shapes + 1, depth.repetitions};
     try {
         for (const char* kind : {"union", "intersection", "subtraction"}) {
             const Json* list = section.find(kind);
@@ -88,7 +98,7 @@ SdfPtr read(const Json& json, const std::string& path, const std::string& file, 
             if (!list->is_array() || list->empty()) section.fail(kind, "a list of shapes, [ {...}, ... ]");
             std::vector<SdfPtr> parts;
             for (const Json& part : *list)
-                parts.push_back(read(part, fmt::format("{}[{}]", section.place(kind), parts.size()), file, depth + 1));
+                parts.push_back(read(part, fmt::format("{}[{}]", section.place(kind), parts.size()), file, within));
             if (*kind == 'u') return march::sdfUnion(std::move(parts));
             return *kind == 'i' ? march::sdfIntersection(std::move(parts)) : march::sdfSubtraction(std::move(parts));
         }
@@ -109,7 +119,7 @@ SdfPtr read(const Json& json, const std::string& path, const std::string& file, 
 }  // namespace
 
 march::SdfPtr readSdf(const nlohmann::json& json, const std::string& path, const std::string& file) {
-    return read(json, path, file, 0);
+    return read(json, path, file, {});
 }
 
 }  // namespace stratum::shade
