@@ -38,7 +38,8 @@ for tool in TOOLS:
         _, _, usage = os.wait4(process.pid, 0)
         seconds.append(usage.ru_utime + usage.ru_stime)
     # Processor time: the same as wall time on a machine with nothing else to do, and other tests run beside this one.
-    check(min(seconds) < 0.05, f"  in {min(seconds) * 1e3:.0f} ms")
+    # A third of this is what a quiet machine takes; more than this, and something is done that nobody asked for.
+    check(min(seconds) < 0.1, f"  in {min(seconds) * 1e3:.0f} ms")
 
     brief = run(program, "-h")
     everything = run(program, "--help-all")
