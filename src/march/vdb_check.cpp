@@ -230,8 +230,8 @@ private:
     /// io::readCompressedValues().
     void checkValues(std::uint64_t active, std::uint64_t count, std::uint64_t mask_bytes) {
         constexpr int kLast = 6;  // all values are there
-        const int kind = cursor_.read<std::int8_t>();
-        if (kind < 0 || kind > kLast) cursor_.fail("values of an unknown kind");
+        const auto kind = static_cast<int>(cursor_.read<std::uint8_t>());
+        if (kind > kLast) cursor_.fail("values of an unknown kind");
         const std::uint64_t inactive = kind == 5 ? 2 : kind == 2 || kind == 4 ? 1 : 0;
         (void)cursor_.take(inactive * kind_.whole + (kind >= 3 && kind <= 5 ? mask_bytes : 0));
         const bool some = (grid_.compression & kActiveOnly) != 0 && kind != kLast;
@@ -306,7 +306,8 @@ void checkVdb(std::string_view bytes, VdbDepth depth, const std::string& name, c
     const auto count = cursor.read<std::int32_t>();
     if (count < 0) cursor.fail("less than no grids");
     std::vector<Grid> grids;
-    for (std::int32_t n = 0; n < count; ++n) grids.push_back(readDescriptor(cursor));
+    // No room is made for them beforehand: the count is not believed until they are there.
+    while (grids.size() < static_cast<std::size_t>(count)) grids.push_back(readDescriptor(cursor));
     for (Grid& grid : grids) {
         cursor.moveTo(grid.place);
         grid.compression = cursor.read<std::uint32_t>();

@@ -323,6 +323,7 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
     for (const SeedPrintResult& r : results)
         if (fs::exists(r.picture)) page.picture(r.picture, r.name);
     std::vector<std::string> names;
+    names.reserve(kinds.size());
     for (const Representation& kind : kinds) names.push_back(kind.name);
     addSeedPrints(page, results, names, report);
     report.rows += table.rows().size();
