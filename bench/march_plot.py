@@ -35,7 +35,7 @@ for axis, argument in zip(axes[0], inputs):
     axis.set_xscale("log")
     axis.set_xticks([25, 50, 100, 200, 400], ["25", "50", "100", "200", "400"])
     axis.set_xticks([], minor=True)
-    axis.set_xlim(22, 420)
+    axis.set_xlim(22, 700)
     axis.set_yscale("log")
     axis.set_xlabel("ns a primary ray, 2 threads")
     axis.set_title(f"{title}\n{report['active_voxels'] / 1e6:.0f} M active voxels", fontsize=10)
