@@ -88,7 +88,9 @@ std::size_t leastBytes(int width, int height) {
     const auto rows = static_cast<std::size_t>(height);
     // Rows that are too short or too long for run lengths are written out.
     if (width < 8 || width >= 32768) return 4 * columns * rows;
-    return rows * (4 + std::size_t{4 * 2} * ((columns + kLongestRun - 1) / kLongestRun));
+    // A mark a row, and a run of two bytes a channel.
+    constexpr std::size_t kRunOfAll = 8;
+    return rows * (4 + kRunOfAll * ((columns + kLongestRun - 1) / kLongestRun));
 }
 
 }  // namespace
