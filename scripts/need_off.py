@@ -5,7 +5,8 @@
 
 Renders the least picture there is under valgrind's callgrind, which counts instructions: the figures are the same every
 time. Of the program's own instructions (the loader's and the C library's start are left out) those inside the functions
-of a capability are summed, with all that they call: an upper bound, for what one of them calls is counted twice. Functions that were merged into their callers can't be told apart.
+of a capability are summed, with all that they call: an upper bound, for what one of them calls is counted twice.
+Functions that were merged into their callers can't be told apart.
 """
 import csv
 import pathlib

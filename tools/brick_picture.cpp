@@ -59,10 +59,10 @@ void writeBrickPicture(const std::string& path, const march::BrickGrid& bricks) 
             }
         }
     }
-    AtomicFile file(path);
-    shade::writePng(file.temporary(), static_cast<int>(columns * scale), static_cast<int>(rows * scale), rgb,
-                    {{"Software", "vdbtrace " STRATUM_VERSION}});
-    file.commit();
+    AtomicFile(path).write([&](const std::filesystem::path& to) {
+        shade::writePng(to, static_cast<int>(columns * scale), static_cast<int>(rows * scale), rgb,
+                        {{"Software", "vdbtrace " STRATUM_VERSION}});
+    });
 }
 
 }  // namespace stratum::tools

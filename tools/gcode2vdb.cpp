@@ -69,8 +69,6 @@ struct Options {
     voxelize::FileOptions file;
 };
 
-const std::map<std::string, double> kUnits{{"mm", 1.0}, {"cm", 0.1}, {"m", 0.001}};
-
 void addOptions(CLI::App& app, Options& o) {
     app.add_option("IN", o.inputs,
                    "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
@@ -159,7 +157,7 @@ void addOptions(CLI::App& app, Options& o) {
 
 voxelize::Placement placementFor(const Options& o, const voxelize::Bounds& bounds) {
     voxelize::Placement placement;
-    placement.unit = kUnits.at(o.unit);
+    placement.unit = 1 / tools::millimetresIn(o.unit);
     if (o.origin == "bed") return placement;
     for (int axis = 0; axis < 2; ++axis)
         placement.offset[axis] = o.origin == "center" ? -bounds.centre(axis) : -bounds.min[axis];
@@ -308,7 +306,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             voxelize::writeVdb(grids, job.path, o.file);
             if (o.usda) {
                 const fs::path scene = fs::path(job.path).replace_extension(".usda");
-                voxelize::writeUsda(grids, job.path, scene, {0.001 / kUnits.at(o.unit), o.up == "y"});
+                voxelize::writeUsda(grids, job.path, scene, {0.001 * tools::millimetresIn(o.unit), o.up == "y"});
             }
         }
         write_seconds += watch.lap();

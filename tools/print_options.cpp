@@ -10,6 +10,8 @@
 
 namespace stratum::tools {
 
+double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
+
 void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
     const char* lattice = "Lattice";
     const auto take_size = [&options, pictures](const std::string& text) {

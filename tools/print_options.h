@@ -27,6 +27,10 @@ struct PrintOptions {
     std::vector<std::string> objects;  ///< names or numbers
 };
 
+/// Millimetres in a world unit by its name in files and on command lines, mm, cm or m; 1 for others, whose makers don't
+/// say.
+double millimetresIn(const std::string& unit);
+
 /// Adds them in the groups "Lattice", "What to convert" and "Reading". With `pictures`, --voxel-size may be auto.
 void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures = false);
 

@@ -38,8 +38,6 @@ std::string unitOf(const openvdb::FloatGrid& grid) {
     return unit ? unit->value() : "world units";
 }
 
-double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
-
 // Which axis the file says points up; files of other programs don't say.
 std::string upOf(const openvdb::FloatGrid& grid) {
     const auto up = grid.getMetadata<openvdb::StringMetadata>("up");

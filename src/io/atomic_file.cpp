@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -163,6 +164,20 @@ void AtomicFile::commit() {
     release(slot_);
     slot_ = -1;
     close();
+}
+
+void AtomicFile::write(const std::function<void(const std::filesystem::path&)>& writer) {
+    try {
+        writer(temporary_);
+    } catch (const OutputError& error) {
+        std::string text = error.what();
+        const std::string from = temporary_.string();
+        const std::string to = destination_.string();
+        for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+            text.replace(at, from.size(), to);
+        throw OutputError(text);
+    }
+    commit();
 }
 
 void AtomicFile::removeOnSignals() {

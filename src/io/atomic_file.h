@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 namespace stratum {
 
@@ -31,6 +32,9 @@ public:
 
     /// Flushes the file to the disk and puts it in its place. Throws OutputError.
     void commit();
+    /// For writers that know no other name than the one they are given: calls writer(temporary()), tells the
+    /// OutputError that it throws of the destination instead, and commits.
+    void write(const std::function<void(const std::filesystem::path&)>& writer);
 
     /// Makes SIGINT, SIGTERM, SIGHUP, SIGPIPE and those of exceeded limits remove what is under way before the
     /// process ends by that signal; a shell then sees 128 plus its number, 130 for SIGINT.

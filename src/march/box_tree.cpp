@@ -7,16 +7,16 @@
 namespace stratum::march {
 namespace {
 
+// Halves first: the sum of two large numbers may be none.
+glm::dvec3 centreOf(const Box& box) { return 0.5 * box.min + 0.5 * box.max; }
+
+}  // namespace
+
 bool hasEnd(const Box& box) {
     for (int axis = 0; axis < 3; ++axis)
         if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) return false;
     return true;
 }
-
-// Halves first: the sum of two large numbers may be none.
-glm::dvec3 centreOf(const Box& box) { return 0.5 * box.min + 0.5 * box.max; }
-
-}  // namespace
 
 BoxTree::BoxTree(std::span<const Box> boxes) {
     std::vector<std::uint32_t> ended;

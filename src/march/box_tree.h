@@ -15,6 +15,9 @@
 
 namespace stratum::march {
 
+/// Whether the box ends on every side.
+bool hasEnd(const Box& box);
+
 /// One ray against boxes: slabs, with the divisions done once (Kay and Kajiya, SIGGRAPH 1986).
 class BoxTest {
 public:

@@ -1,5 +1,6 @@
 #include "march/leaf_file.h"
 
+#include "io/byte_cursor.h"
 #include "io/error.h"
 
 #include <blosc.h>
@@ -131,42 +132,23 @@ public:
 
 }  // namespace
 
-// Reads bytes in order, and never past the end.
-class LeafFile::Cursor {
+class LeafFile::Cursor : public ByteCursor<Cursor> {
 public:
-    Cursor(const LeafFile& file, std::uint64_t place)
-        : file_(file), bytes_(file.file_.bytes()), place_(static_cast<std::size_t>(place)) {
+    Cursor(const LeafFile& file, std::uint64_t place) : ByteCursor(file.file_.bytes()), file_(file) {
+        place_ = static_cast<std::size_t>(place);
         if (place > bytes_.size()) fail();
     }
 
-    std::uint64_t place() const { return place_; }
-    const char* take(std::uint64_t length) {
-        if (length > bytes_.size() - place_) fail();
-        const char* at = bytes_.data() + place_;
-        place_ += static_cast<std::size_t>(length);
-        return at;
-    }
-    template <typename T>
-    T read() {
-        T value;
-        std::memcpy(&value, take(sizeof value), sizeof value);
-        return value;
-    }
-    template <typename T>
-    void read(T* out, std::size_t count) {
-        std::memcpy(out, take(count * sizeof(T)), count * sizeof(T));
-    }
     [[noreturn]] void fail() const {
         throw InputError(
             fmt::format("{}: is not a readable .vdb file (the grid {} is damaged about byte {}); is it cut "
                         "short?",
                         file_.file_.path().string(), file_.head_ ? file_.name() : "", place_));
     }
+    [[noreturn]] void endsEarly() const { fail(); }
 
 private:
     const LeafFile& file_;
-    std::string_view bytes_;
-    std::size_t place_;
 };
 
 struct LeafFile::Node {
@@ -289,7 +271,7 @@ void LeafFile::readValues(Cursor& cursor, const std::uint64_t* active, std::size
         if (packed != -length) cursor.fail();
         cursor.read(values, stored);
     } else {
-        const char* from = cursor.take(static_cast<std::uint64_t>(packed));
+        const char* from = cursor.take(static_cast<std::uint64_t>(packed)).data();
         std::size_t validated = 0;
         if (blosc_cbuffer_validate(from, static_cast<std::size_t>(packed), &validated) != 0 ||
             validated != static_cast<std::size_t>(length) ||

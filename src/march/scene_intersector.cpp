@@ -20,15 +20,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool isFinite(const Box& box) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) return false;
-    return true;
-}
-
 Box boxOf(const SceneObject& object) {
     const Box own = object.shape->bounds();
-    if (!isFinite(own)) return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
+    if (!hasEnd(own)) return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
@@ -260,7 +254,7 @@ public:
                 square += length * length;
             }
             if (member.turned) member.most_stretch = std::sqrt(square);
-            if (isFinite(member.box)) {
+            if (hasEnd(member.box)) {
                 bounds_.min = glm::min(bounds_.min, member.box.min);
                 bounds_.max = glm::max(bounds_.max, member.box.max);
             }
@@ -334,7 +328,7 @@ bool Placement::isIdentity() const { return *this == Placement{}; }
 
 std::shared_ptr<const Intersector> makeSceneIntersector(std::vector<SceneObject> objects, std::size_t many) {
     if (objects.empty()) throw UsageError("the scene has no objects; name at least one");
-    if (objects.size() == 1 && objects.front().placement.isIdentity() && isFinite(objects.front().shape->bounds()))
+    if (objects.size() == 1 && objects.front().placement.isIdentity() && hasEnd(objects.front().shape->bounds()))
         return objects.front().shape;
     return std::make_shared<SceneIntersector>(objects, many);
 }

@@ -1,5 +1,6 @@
 #include "march/vdb_check.h"
 
+#include "io/byte_cursor.h"
 #include "io/error.h"
 
 #include <blosc.h>
@@ -25,37 +26,23 @@ constexpr std::uint32_t kOldest = 222, kNewest = 224;  // formats; 222 is of 201
 constexpr std::uint32_t kZip = 1, kActiveOnly = 2, kBlosc = 4;
 constexpr std::int32_t kFarthest = 1 << 30;  // voxels: farther ones have neighbours that no int can count
 
-class Cursor {
+class Cursor : public ByteCursor<Cursor> {
 public:
-    Cursor(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
+    Cursor(std::string_view bytes, const std::string& where) : ByteCursor(bytes), where_(where) {}
 
     [[noreturn]] void fail(std::string_view why) const {
         throw InputError(
             fmt::format("{}: is not a readable .vdb file ({} about byte {}); is it cut short?", where_, why, place_));
     }
-    std::uint64_t place() const { return place_; }
+    [[noreturn]] void endsEarly() const { fail("it ends early"); }
     void moveTo(std::int64_t place) {
         if (place < 0 || static_cast<std::uint64_t>(place) > bytes_.size()) fail("a place beyond its end");
         place_ = static_cast<std::size_t>(place);
     }
-    std::string_view take(std::uint64_t count) {
-        if (count > bytes_.size() - place_) fail("it ends early");
-        const std::string_view taken = bytes_.substr(place_, static_cast<std::size_t>(count));
-        place_ += static_cast<std::size_t>(count);
-        return taken;
-    }
-    template <typename T>
-    T read() {
-        T value;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
     std::string text() { return std::string(take(read<std::uint32_t>())); }
 
 private:
-    std::string_view bytes_;
     const std::string& where_;
-    std::size_t place_ = 0;
 };
 
 /// What is known of a grid before its tree.

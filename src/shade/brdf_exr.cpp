@@ -219,15 +219,16 @@ void writeBrdfExr(const std::filesystem::path& path, const BrdfScan& scan) {
                       Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&texels[0][c]), sizeof(Color),
                                  sizeof(Color) * static_cast<std::size_t>(kWidth)));
     }
-    AtomicFile file(path);
-    try {
-        Imf::OutputFile out(file.temporary().c_str(), header, 0);
-        out.setFrameBuffer(buffer);
-        out.writePixels(height);
-    } catch (const std::exception& error) {
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
-    }
-    file.commit();
+    AtomicFile(path).write([&](const std::filesystem::path& to) {
+        try {
+            Imf::OutputFile out(to.c_str(), header, 0);
+            out.setFrameBuffer(buffer);
+            out.writePixels(height);
+        } catch (const std::exception& error) {
+            throw OutputError(
+                fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+        }
+    });
 }
 
 }  // namespace stratum::shade

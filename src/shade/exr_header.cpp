@@ -1,5 +1,6 @@
 #include "shade/exr_header.h"
 
+#include "io/byte_cursor.h"
 #include "io/error.h"
 
 #include <fmt/format.h>
@@ -24,38 +25,24 @@ constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;     // bytes that anybo
 constexpr std::uint64_t kMostChannels = 1024;
 constexpr int kMostParts = 256;
 
-// Reads bytes in order, and never past the end.
-class Cursor {
+class Cursor : public ByteCursor<Cursor> {
 public:
-    Cursor(std::string_view bytes, std::string_view name) : bytes_(bytes), name_(name) {}
+    Cursor(std::string_view bytes, std::string_view name) : ByteCursor(bytes), name_(name) {}
 
     [[noreturn]] void fail(std::string_view why) const {
         throw InputError(
             fmt::format("{}: can't be read as OpenEXR ({} about byte {}); copy or save it again", name_, why, place_));
     }
-    std::string_view take(std::size_t count) {
-        if (count > bytes_.size() - place_) fail("the header ends early");
-        const std::string_view taken = bytes_.substr(place_, count);
-        place_ += count;
-        return taken;
-    }
-    template <typename T>
-    T read() {
-        T value;
-        std::memcpy(&value, take(sizeof value).data(), sizeof value);
-        return value;
-    }
+    [[noreturn]] void endsEarly() const { fail("the header ends early"); }
     /// Up to a zero, which is taken too.
     std::string_view text(std::size_t most) {
         const std::size_t length = bytes_.substr(place_, most + 1).find('\0');
         if (length == std::string_view::npos) fail("a name does not end");
         return take(length + 1).substr(0, length);
     }
-    bool done() const { return place_ == bytes_.size(); }
 
 private:
-    std::string_view bytes_, name_;
-    std::size_t place_ = 0;
+    std::string_view name_;
 };
 
 struct Part {

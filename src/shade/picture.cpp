@@ -27,21 +27,12 @@ bool isExr(const std::filesystem::path& path) {
 PictureFile::PictureFile(const std::filesystem::path& path) : exr_(isExr(path)), file_(path) {}
 
 void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone) {
-    const std::string temporary = file_.temporary().string();
-    try {
+    file_.write([&](const std::filesystem::path& to) {
         if (exr_)
-            writeExr(temporary, film, metadata);
+            writeExr(to, film, metadata);
         else
-            writePng(temporary, film.width(), film.height(), toDisplay(film, tone), metadata);
-    } catch (const OutputError& error) {
-        // Nobody else knows that name.
-        std::string text = error.what();
-        const std::string name = file_.destination().string();
-        for (std::size_t at = 0; (at = text.find(temporary, at)) != std::string::npos; at += name.size())
-            text.replace(at, temporary.size(), name);
-        throw OutputError(text);
-    }
-    file_.commit();
+            writePng(to, film.width(), film.height(), toDisplay(film, tone), metadata);
+    });
 }
 
 }  // namespace stratum::shade

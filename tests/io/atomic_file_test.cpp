@@ -118,6 +118,24 @@ TEST_P(EachMaking, WithoutCommitTheOldFileStays) {
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
+TEST_P(EachMaking, WritersFailInTheDestinationsName) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    const std::string out = (folder / "out").string();
+    try {
+        AtomicFile(out, GetParam()).write([](const std::filesystem::path& to) {
+            throw OutputError(to.string() + ": full; mend " + to.string());
+        });
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const OutputError& error) {
+        EXPECT_EQ(error.what(), out + ": full; mend " + out);
+    }
+    EXPECT_EQ(slurp(folder / "out"), "old");
+    AtomicFile(out, GetParam()).write([](const std::filesystem::path& to) { std::ofstream(to) << "new"; });
+    EXPECT_EQ(slurp(folder / "out"), "new");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
 TEST(AtomicFile, RefusesBeforeTheWork) {
     EXPECT_THROW(AtomicFile("/nonexistent/folder/out.vdb"), OutputError);
     const test::ScratchFolder folder;

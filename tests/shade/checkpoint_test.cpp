@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -86,11 +87,10 @@ TEST(Checkpoint, DISABLED_RendersUntilItIsKilled) {
     rendered(smallOptions(file));
 }
 
-/// Files in a folder beside the checkpoint "c": one is being written.
-int others(const fs::path& folder) {
-    int count = 0;
-    for (const auto& entry : fs::directory_iterator(folder)) count += entry.path().filename() != "c";
-    return count;
+/// Which file has the name: every checkpoint is a new one, put in the place of the last. 0: there is none.
+ino_t fileAt(const fs::path& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
 TEST(Checkpoint, AKilledProcessLosesNothingThatWasWritten) {
@@ -98,11 +98,11 @@ TEST(Checkpoint, AKilledProcessLosesNothingThatWasWritten) {
     const fs::path file = scratch / "c";
     ::setenv("STRATUM_TEST_CHECKPOINT", file.c_str(), 1);
     std::mt19937 random(3);
+    const auto whole = rendered(smallOptions({}));
     int killed = 0;
-    int writing = 0;
-    // A busy machine may be late with every kill: then more of them.
-    for (int run = 0; run < 6 || (writing == 0 && run < 60); ++run) {
-        const int before = others(scratch.path());
+    // A busy machine may be late with a kill, and find the render at its end: then more of them.
+    for (int run = 0; killed < 6 && run < 60; ++run) {
+        const ino_t before = fileAt(file);
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);
         if (child == 0) {  // a process of its own: threads don't survive a fork
@@ -114,19 +114,22 @@ TEST(Checkpoint, AKilledProcessLosesNothingThatWasWritten) {
         }
         int status = 0;
         pid_t ended = 0;
-        // Odd runs are killed as soon as a file is being written, the others some time after that.
-        while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 && others(scratch.path()) == before) ::usleep(20);
+        // Killed when there is a new checkpoint, or some time after that: while the next one is written.
+        while ((ended = ::waitpid(child, &status, WNOHANG)) == 0 && fileAt(file) == before) ::usleep(20);
         if (run % 2 == 0) ::usleep(static_cast<useconds_t>(random() % 3000));
         if (ended == 0) {
             ::kill(child, SIGKILL);
             ASSERT_EQ(::waitpid(child, &status, 0), child);
         }
         killed += WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
-        writing += others(scratch.path()) > before;
+        ASSERT_NE(fileAt(file), 0u);
+        if (WIFEXITED(status)) {  // it had the time to end
+            EXPECT_TRUE(sameBytes(whole, rendered(smallOptions(file))));
+            fs::remove(file);
+        }
     }
     EXPECT_GE(killed, 3);
-    EXPECT_GE(writing, 1);  // a half-written file was left behind, and does no harm
-    EXPECT_TRUE(sameBytes(rendered(smallOptions({})), rendered(smallOptions(file))));
+    EXPECT_TRUE(sameBytes(whole, rendered(smallOptions(file))));
     ::unsetenv("STRATUM_TEST_CHECKPOINT");
 }
 

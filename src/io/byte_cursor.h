@@ -1,0 +1,42 @@
+// Reads what is in memory, in order and never past its end: the walk that readers of untrusted formats share.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace stratum {
+
+/// The base of a format's cursor. `Format` derives from it and has `[[noreturn]] void endsEarly() const`, which throws
+/// in the format's own words. Numbers are read as the machine holds them.
+template <typename Format>
+class ByteCursor {
+public:
+    explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
+
+    std::uint64_t place() const { return place_; }
+    bool done() const { return place_ == bytes_.size(); }
+    std::string_view take(std::uint64_t count) {
+        if (count > bytes_.size() - place_) static_cast<const Format&>(*this).endsEarly();
+        const std::string_view taken = bytes_.substr(place_, static_cast<std::size_t>(count));
+        place_ += static_cast<std::size_t>(count);
+        return taken;
+    }
+    template <typename T>
+    T read() {
+        T value;
+        read(&value, 1);
+        return value;
+    }
+    template <typename T>
+    void read(T* out, std::size_t count) {
+        std::memcpy(out, take(count * sizeof(T)).data(), count * sizeof(T));
+    }
+
+protected:
+    std::string_view bytes_;
+    std::size_t place_ = 0;  // at most bytes_.size()
+};
+
+}  // namespace stratum
