@@ -95,6 +95,13 @@ private:
         return s + step + kNudge;
     }
 
+    bool isNearBox(const glm::dvec3& p) const {
+        constexpr int kNear = 2;  // voxels
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(p[axis] >= box_.min()[axis] - kNear && p[axis] <= box_.max()[axis] + kNear)) return false;
+        return true;
+    }
+
     // s in voxels from the ray's origin.
     bool nearest(const Ray& ray, double& hit) {
         const openvdb::Vec3d o = map_.applyInverseMap(openvdb::Vec3d(ray.origin.x, ray.origin.y, ray.origin.z));
@@ -102,10 +109,10 @@ private:
             map_.applyInverseJacobian(openvdb::Vec3d(ray.direction.x, ray.direction.y, ray.direction.z));
         origin_ = {o[0], o[1], o[2]};
         direction_ = voxel_ * glm::dvec3(d[0], d[1], d[2]);
-        if (!std::isfinite(direction_.x + direction_.y + direction_.z)) return false;
         double s = ray.t_min / voxel_;
         double end = ray.t_max / voxel_;
         for (int axis = 0; axis < 3; ++axis) {
+            if (!std::isfinite(origin_[axis]) || !std::isfinite(direction_[axis])) return false;
             const double low = box_.min()[axis] - 1;
             const double high = box_.max()[axis] + 1;
             if (direction_[axis] == 0) {
@@ -123,6 +130,8 @@ private:
         origin_ += start * direction_;
         end -= start;
         s = 0;
+        // So far away that rounding moves it by voxels: where it would meet the box, nobody knows.
+        if (!isNearBox(origin_) || !isNearBox(origin_ + end * direction_)) return false;
         if (!march(end, s)) return false;
         hit = start + s;
         place_ = s;

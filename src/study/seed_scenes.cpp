@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 const Row kColumns{"scene", "sha256",        "size",        "representation", "frame", "primitives",
                    "bytes", "build_seconds", "cpu_seconds", "wall_seconds",   "rays",  "off_share"};
 constexpr std::size_t kKeys = 5;
-constexpr std::size_t kName = 3, kPrimitives = 5, kBytes = 6, kBuild = 7, kCpu = 8, kRays = 10, kOff = 11;
+constexpr std::size_t kPrimitives = 5, kBytes = 6, kBuild = 7, kCpu = 8, kRays = 10, kOff = 11;
 
 constexpr double kVoxel = 0.02;    // scene units; a pixel is 0.01 wide at a distance of 10
 constexpr double kVisible = 0.02;  // of the scale from black to white, in a channel

@@ -56,6 +56,9 @@ TEST(SphereIntersector, FarAndDegenerateRaysEnd) {
         EXPECT_FALSE(tracer->occluded({{5, 0.3, away}, {0, 0, -1}}));
         EXPECT_TRUE(tracer->occluded({{1e-3, 0, away}, glm::normalize(glm::dvec3(0, 0, -1))}));
     }
+    // Ten voxels are less than the rounding of such a place.
+    EXPECT_FALSE(
+        tracer->occluded({{1e40, 1e40, 1e40}, {-std::sqrt(1.0 / 3), -std::sqrt(1.0 / 3), -std::sqrt(1.0 / 3)}}));
     EXPECT_FALSE(tracer->occluded({{std::nan(""), 0, 9}, {0, 0, -1}}));
     EXPECT_FALSE(tracer->occluded({{0, 0, 9}, {0, std::nan(""), -1}}));
 }
