@@ -5,29 +5,19 @@
 #include <algorithm>
 
 namespace stratum::shade {
-namespace {
 
-SphereDistribution tableOf(const Environment& environment) {
-    // A share of plain cosine, so that a lamp that slips between the table's probes is drawn, if rarely.
-    constexpr double kShare = 0.05;
-    const double mean = static_cast<double>(luminance(irradianceFromAbove(environment)) * kInvPi);
-    const auto weight = [&](const glm::dvec3& d) {
-        return std::max(d.z, 0.0) *
-               ((1.0 - kShare) * static_cast<double>(luminance(environment.radiance(glm::vec3(d)))) + kShare * mean);
-    };
-    return {weight, 256, 128};
+void BedLight::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n]);
 }
 
-}  // namespace
+void BedLight::towardStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = toward(directions[n]);
+}
 
-TabulatedBedLight::TabulatedBedLight(const Environment& environment)
-    : environment_(environment), table_(tableOf(environment)) {}
+EnvironmentSample CosineBedLight::sample(int, const glm::vec2& u) const { return toward(toCosineHemisphere(u)); }
 
-EnvironmentSample TabulatedBedLight::sample(int, const glm::vec2& u) const {
-    EnvironmentSample result;
-    result.direction = table_.sample(u, result.pdf);
-    if (result.pdf > 0.0f) result.radiance = environment_.radiance(result.direction);
-    return result;
+EnvironmentSample CosineBedLight::toward(const glm::vec3& direction) const {
+    return {direction, environment_.radiance(direction), std::max(direction.z, 0.0f) * kInvPi};
 }
 
 }  // namespace stratum::shade

@@ -1,8 +1,9 @@
 // The environment as the bed receives it.
 #pragma once
 
-#include "shade/distribution.h"
 #include "shade/environment.h"
+
+#include <span>
 
 namespace stratum::shade {
 
@@ -17,20 +18,22 @@ public:
     /// @param strategy  in [0, strategies())
     /// @param u         uniform in [0, 1)^2
     virtual EnvironmentSample sample(int strategy, const glm::vec2& u) const = 0;
-    /// Sum of the strategies' densities per steradian.
-    virtual float pdf(const glm::vec3& direction) const = 0;
+    /// Radiance of the environment, and the sum of the strategies' densities per steradian.
+    virtual EnvironmentSample toward(const glm::vec3& direction) const = 0;
+    /// sample() of many draws, and toward(); faster. All spans are of one length.
+    virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<EnvironmentSample> samples) const;
+    virtual void towardStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const;
 };
 
-/// For light without small details: by a table of probes.
-class TabulatedBedLight final : public BedLight {
+/// For light that is much the same from everywhere: by the cosine alone.
+class CosineBedLight final : public BedLight {
 public:
-    explicit TabulatedBedLight(const Environment& environment);
+    explicit CosineBedLight(const Environment& environment) : environment_(environment) {}
     EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
-    float pdf(const glm::vec3& direction) const override { return table_.pdf(direction); }
+    EnvironmentSample toward(const glm::vec3& direction) const override;
 
 private:
     const Environment& environment_;
-    SphereDistribution table_;
 };
 
 }  // namespace stratum::shade

@@ -35,6 +35,35 @@ public:
     glm::dvec2 sample(int bin, const glm::dvec2& u, double& pdf) const;
     double pdf(int bin, const glm::dvec2& point) const;
 
+    /// The tables themselves, for those who read many places at once; the private part tells what they hold.
+    struct View {
+        int columns, rows;
+        unsigned shift;
+        std::size_t block_columns, block_rows, bins;
+        const float* weights;
+        const double* sines;
+        const float *rows_in_block, *cells_in_block;
+        const double* block_weights;
+        const double* row_sums;
+        const float *block_sums, *row_scales;
+    };
+    View view() const {
+        return {columns_,
+                rows_,
+                shift_,
+                block_columns_,
+                block_rows_,
+                bins_,
+                weights_.data(),
+                sines_.data(),
+                rows_in_block_.data(),
+                cells_in_block_.data(),
+                block_weights_.data(),
+                row_sums_.data(),
+                block_sums_.data(),
+                row_scales_.data()};
+    }
+
 private:
     /// Weights at the corners of a cell between texel centres. Row 0 lies above the first row of centres.
     struct Corners {

@@ -40,7 +40,17 @@ std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlaceme
 
 }  // namespace
 
-std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<TabulatedBedLight>(*this); }
+std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<CosineBedLight>(*this); }
+
+void Environment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                               std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n], normals[n]);
+}
+
+void Environment::towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                               std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = toward(directions[n], normals[n]);
+}
 
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement) {
     if (!(placement.exposure >= -30.0 && placement.exposure <= 30.0))
@@ -61,7 +71,7 @@ std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const 
         requireValues(preset, 0, kOption, "studio");
         EnvironmentPlacement turned = placement;
         turned.azimuth += placement.rotation;
-        return std::make_shared<StudioEnvironment>(turned);
+        return makeStudio(turned);
     }
     requireValues(preset, 3, kOption, "constant:R,G,B");
     for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include <memory>
+#include <span>
 #include <string_view>
 
 namespace stratum::shade {
@@ -43,6 +44,11 @@ public:
     virtual EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const {
         return {direction, radiance(direction), pdf(direction, normal)};
     }
+    /// sample() for many surfaces, and toward(); faster. All spans are of one length.
+    virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                              std::span<EnvironmentSample> samples) const;
+    virtual void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                              std::span<EnvironmentSample> samples) const;
     /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
     virtual bool visible() const { return true; }
     /// What a horizontal matt surface draws by. The environment must outlive it.

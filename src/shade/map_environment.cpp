@@ -1,6 +1,7 @@
 #include "shade/map_environment.h"
 
 #include "shade/bed_light.h"
+#include "shade/map_stream.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,10 +122,14 @@ public:
     EnvironmentSample sample(int strategy, const glm::vec2& u) const override {
         return environment_.draw(tables_, strategy, u, kUp);
     }
-    float pdf(const glm::vec3& direction) const override {
-        double sine = 0.0;
-        const glm::dvec2 place = environment_.place(direction, sine);
-        return environment_.density(tables_, place, sine, kUp);
+    EnvironmentSample toward(const glm::vec3& direction) const override {
+        return environment_.lookInto(tables_, direction, kUp);
+    }
+    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<EnvironmentSample> samples) const override {
+        drawFromMap({environment_.map_, environment_.rotation_, tables_}, strategy, u, {}, samples);
+    }
+    void towardStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const override {
+        lookIntoMap({environment_.map_, environment_.rotation_, tables_}, directions, {}, samples);
     }
 
 private:
@@ -133,8 +138,11 @@ private:
     MapEnvironment::Tables tables_;
 };
 
-MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale)
-    : map_(scaled(std::move(map), scale)), rotation_(rotation), tables_(compensatedTables(map_, rotation_)) {}
+MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale, bool visible)
+    : map_(scaled(std::move(map), scale)),
+      rotation_(rotation),
+      visible_(visible),
+      tables_(compensatedTables(map_, rotation_)) {}
 
 glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const {
     const double x = direction.x;
@@ -202,10 +210,25 @@ float MapEnvironment::pdf(const glm::vec3& direction, const glm::vec3& normal) c
     return density(tables_, p, sine, normal);
 }
 
-EnvironmentSample MapEnvironment::toward(const glm::vec3& direction, const glm::vec3& normal) const {
+EnvironmentSample MapEnvironment::lookInto(const Tables& tables, const glm::vec3& direction,
+                                           const glm::vec3& normal) const {
     double sine = 0.0;
     const glm::dvec2 p = place(direction, sine);
-    return {direction, lookUp(p), density(tables_, p, sine, normal)};
+    return {direction, lookUp(p), density(tables, p, sine, normal)};
+}
+
+EnvironmentSample MapEnvironment::toward(const glm::vec3& direction, const glm::vec3& normal) const {
+    return lookInto(tables_, direction, normal);
+}
+
+void MapEnvironment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                                  std::span<EnvironmentSample> samples) const {
+    drawFromMap({map_, rotation_, tables_}, strategy, u, normals, samples);
+}
+
+void MapEnvironment::towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                                  std::span<EnvironmentSample> samples) const {
+    lookIntoMap({map_, rotation_, tables_}, directions, normals, samples);
 }
 
 std::unique_ptr<const BedLight> MapEnvironment::makeBedLight() const { return std::make_unique<MapBedLight>(*this); }

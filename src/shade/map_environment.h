@@ -19,12 +19,18 @@ class MapEnvironment final : public Environment {
 public:
     /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
     /// @param scale     of radiance, > 0
-    MapEnvironment(LightMap map, double rotation, float scale);
+    /// @param visible   see Environment::visible
+    MapEnvironment(LightMap map, double rotation, float scale, bool visible = true);
     Color radiance(const glm::vec3& direction) const override;
     int strategies() const override { return static_cast<int>(tables_.size()); }
     EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
     float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
     EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
+    bool visible() const override { return visible_; }
+    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override;
+    void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override;
     std::unique_ptr<const BedLight> makeBedLight() const override;
 
 private:
@@ -33,12 +39,14 @@ private:
     glm::dvec2 place(const glm::vec3& direction, double& sine) const;
     Color lookUp(const glm::dvec2& place) const;
     using Tables = std::vector<BilinearDistribution>;  // one a strategy
+    EnvironmentSample lookInto(const Tables& tables, const glm::vec3& direction, const glm::vec3& normal) const;
     EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u, const glm::vec3& normal) const;
     /// Per steradian.
     float density(const Tables& tables, const glm::dvec2& place, double sine, const glm::vec3& normal) const;
 
     LightMap map_;
     double rotation_;
+    bool visible_;
     Tables tables_;
 };
 

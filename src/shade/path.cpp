@@ -2,6 +2,7 @@
 
 #include "shade/sampling.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,13 @@ namespace {
 /// as the cosine is; with 0 the shadow of a sun would be lit by the few samples that miss the sun.
 constexpr float kBedShare = 0.25f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Sets the members of the groups: numbers of what stands on the print, and on the bed.
+template <typename Groups, typename Things, typename IsBed>
+void gatherGroups(Groups& groups, const Things& things, const IsBed& isBed) {
+    for (auto& group : groups) group.members.clear();
+    for (std::size_t n = 0; n < things.size(); ++n) groups[isBed(things[n]) ? 1 : 0].members.push_back(n);
+}
 
 }  // namespace
 
@@ -40,15 +48,27 @@ void PathIntegrator::Feelers::add(const march::Ray& ray, const Color& value, std
     pixel.push_back(to);
 }
 
+void PathIntegrator::Feelers::clear() {
+    rays.clear();
+    light.clear();
+    pixel.clear();
+}
+
+void PathIntegrator::Looks::resize(std::size_t count) {
+    normals.resize(count);
+    samples.resize(count);
+}
+
 /// One sample of each lamp.
-void PathIntegrator::feelLights(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
-                                Feelers& feelers) const {
+void PathIntegrator::feelLights(const Stand& stand, Sampler& sampler, Feelers& feelers) const {
+    const Path& path = *stand.path;
     const SurfacePoint& point = path.point;
+    const glm::vec3& wo = stand.wo;
     for (const auto& light : scene_.lights) {
         const glm::vec2 draw = light->hasExtent() ? sampler.next2D() : glm::vec2(0.0f);
         const std::optional<LightSample> sample = light->sample(point.position, draw);
         if (!sample) continue;
-        const glm::vec3 wi = frame.toLocal(sample->direction);
+        const glm::vec3 wi = stand.frame.toLocal(sample->direction);
         Color value = path.throughput * point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * sample->light;
         if (sample->pdf > 0.0f) value *= powerHeuristic(sample->pdf, point.brdf->pdf(wo, wi)) / sample->pdf;
         if (!(maxComponent(value) > 0.0f)) continue;
@@ -68,43 +88,73 @@ Color PathIntegrator::fromLamps(const march::Ray& ray, double t, float pdf) cons
 }
 
 /// A sample of the environment by each of its strategies. On the print the BRDF's sample complements them.
-void PathIntegrator::feelEnvironment(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
-                                     Feelers& feelers) const {
-    const SurfacePoint& point = path.point;
-    const int strategies = point.bed ? bed_light_->strategies() : scene_.environment->strategies();
+void PathIntegrator::feelEnvironment(const Group& group, std::span<const Stand> stands, std::span<Sampler> samplers,
+                                     Feelers& feelers, Looks& looks) const {
+    const std::size_t count = group.members.size();
+    if (count == 0) return;  // there may be no bed
+    const int strategies = group.bed ? bed_light_->strategies() : scene_.environment->strategies();
+    looks.resize(count);
+    looks.u.resize(count);
     for (int strategy = 0; strategy < strategies; ++strategy) {
-        const glm::vec2 draw = sampler.next2D();
-        const EnvironmentSample light =
-            point.bed ? bed_light_->sample(strategy, draw) : scene_.environment->sample(strategy, draw, frame.z);
-        const glm::vec3 wi = frame.toLocal(light.direction);
-        if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
-        const float other = (point.bed ? kBedShare : 1.0f) * point.brdf->pdf(wo, wi);
-        const float weight = balanceHeuristic(light.pdf, other);
-        const Color value = path.throughput * point.brdf->eval(wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
-        if (maxComponent(value) > 0.0f) feelers.add(surfaces_.leave(point, light.direction), value, path.pixel);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Stand& stand = stands[group.members[k]];
+            looks.u[k] = samplers[stand.path->pixel].next2D();
+            looks.normals[k] = stand.frame.z;
+        }
+        if (group.bed)
+            bed_light_->sampleStream(strategy, looks.u, looks.samples);
+        else
+            scene_.environment->sampleStream(strategy, looks.u, looks.normals, looks.samples);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Stand& stand = stands[group.members[k]];
+            const EnvironmentSample& light = looks.samples[k];
+            const SurfacePoint& point = stand.path->point;
+            const glm::vec3 wi = stand.frame.toLocal(light.direction);
+            if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
+            const float other = (group.bed ? kBedShare : 1.0f) * point.brdf->pdf(stand.wo, wi);
+            const float weight = balanceHeuristic(light.pdf, other);
+            const Color value =
+                stand.path->throughput * point.brdf->eval(stand.wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
+            if (maxComponent(value) > 0.0f)
+                feelers.add(surfaces_.leave(point, light.direction), value, stand.path->pixel);
+        }
     }
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Path& path, const Frame& frame, const glm::vec3& wo,
-                                                              Sampler& sampler) const {
-    const Environment& environment = *scene_.environment;
-    const SurfacePoint& point = path.point;
+std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Stand& stand, Sampler& sampler) const {
+    Path& path = *stand.path;
     const float lobe_draw = sampler.next1D();
     const glm::vec2 brdf_draw = sampler.next2D();
-    const std::optional<BrdfSample> next = point.brdf->sample(wo, lobe_draw, brdf_draw);
+    const std::optional<BrdfSample> next = path.point.brdf->sample(stand.wo, lobe_draw, brdf_draw);
     if (!next) return std::nullopt;
     path.throughput *= next->f * (next->wi.z / next->pdf);
     if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
-    const glm::vec3 way = frame.toWorld(next->wi);
-    Bounce bounce{surfaces_.leave(point, way), next->pdf, Color(0.0f)};
+    const glm::vec3 way = stand.frame.toWorld(next->wi);
+    Bounce bounce{&stand, surfaces_.leave(path.point, way), way, next->pdf, Color(0.0f)};
     bounce.escaped = fromLamps(bounce.ray, kFar, next->pdf);
-    if (point.bed) {
-        bounce.escaped += environment.radiance(way) * balanceHeuristic(kBedShare * next->pdf, bed_light_->pdf(way));
-    } else {
-        const EnvironmentSample there = environment.toward(way, frame.z);
-        bounce.escaped += there.radiance * balanceHeuristic(next->pdf, there.pdf);
-    }
     return bounce;
+}
+
+/// What the environment adds to the bounces of a group that escape.
+void PathIntegrator::lookWhereTheyGo(const Group& group, std::span<Bounce> bounces, Looks& looks) const {
+    const std::size_t count = group.members.size();
+    if (count == 0) return;
+    looks.resize(count);
+    looks.ways.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Bounce& bounce = bounces[group.members[k]];
+        looks.ways[k] = bounce.way;
+        looks.normals[k] = bounce.from->frame.z;
+    }
+    if (group.bed)
+        bed_light_->towardStream(looks.ways, looks.samples);
+    else
+        scene_.environment->towardStream(looks.ways, looks.normals, looks.samples);
+    for (std::size_t k = 0; k < count; ++k) {
+        Bounce& bounce = bounces[group.members[k]];
+        const float own = (group.bed ? kBedShare : 1.0f) * bounce.pdf;
+        bounce.escaped += looks.samples[k].radiance * balanceHeuristic(own, looks.samples[k].pdf);
+    }
 }
 
 void PathIntegrator::gather(const Feelers& feelers, march::Tracer& tracer, std::span<Color> sums) const {
@@ -119,59 +169,75 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
                                 std::span<Pixel> pixels) const {
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Path> paths;
+    paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
         if (std::isfinite(points[n].t) && surfaces_.fade(points[n]) < 1.0f)
             paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
 
+    Feelers feelers;
+    // Those of the last step that nothing but the print can stop: an answer of yes or no will do.
+    Feelers endings;
+    Looks looks;
+    std::array<Group, 2> groups{Group{false, {}}, Group{true, {}}};
+    std::vector<Stand> stands;
+    std::vector<Bounce> bounces;
+    std::vector<march::Ray> ways;
+    std::vector<SurfacePoint> meetings;
+    std::vector<Path> going;
     for (int step = 1; step <= bounces_ && !paths.empty(); ++step) {
         const bool last = step == bounces_;
-        Feelers feelers;
-        // Those of the last step that nothing but the print can stop: an answer of yes or no will do.
-        Feelers endings;
-        std::vector<Path> going;
-        std::vector<Bounce> bounces;
+        feelers.clear();
+        endings.clear();
+        stands.clear();
+        bounces.clear();
+        stands.reserve(paths.size());
         for (Path& path : paths) {
-            Sampler& sampler = samplers[path.pixel];
             const Frame frame{glm::vec3(path.point.normal)};
-            const glm::vec3 wo = frame.toLocal(glm::vec3(-path.direction));
-            // The draws of a step are always the same ones, so that each keeps its stratification.
-            feelEnvironment(path, frame, wo, sampler, feelers);
-            feelLights(path, frame, wo, sampler, feelers);
-            const std::optional<Bounce> bounce = scatter(path, frame, wo, sampler);
-            if (!bounce) continue;
-            sums[path.pixel] += path.throughput * scene_.ambient;
-            if (!last || !lamps_.empty()) {
-                if (last && !(maxComponent(bounce->escaped) > 0.0f)) continue;
-                going.push_back(path);
-                bounces.push_back(*bounce);
-            } else if (maxComponent(bounce->escaped) > 0.0f) {
-                endings.add(bounce->ray, path.throughput * bounce->escaped, path.pixel);
-            }
+            stands.push_back({&path, frame, frame.toLocal(glm::vec3(-path.direction))});
         }
+        // The draws of a step are always the same ones, so that each keeps its stratification.
+        gatherGroups(groups, stands, [](const Stand& stand) { return stand.path->point.bed; });
+        for (const Group& group : groups) feelEnvironment(group, stands, samplers, feelers, looks);
+        for (Stand& stand : stands) {
+            Sampler& sampler = samplers[stand.path->pixel];
+            feelLights(stand, sampler, feelers);
+            const std::optional<Bounce> bounce = scatter(stand, sampler);
+            if (!bounce) continue;
+            sums[stand.path->pixel] += stand.path->throughput * scene_.ambient;
+            bounces.push_back(*bounce);
+        }
+        gatherGroups(groups, bounces, [](const Bounce& bounce) { return bounce.from->path->point.bed; });
+        for (const Group& group : groups) lookWhereTheyGo(group, bounces, looks);
+        if (last) std::erase_if(bounces, [](const Bounce& b) { return !(maxComponent(b.escaped) > 0.0f); });
+        const bool only_escape = last && lamps_.empty();
+        if (only_escape)
+            for (const Bounce& bounce : bounces) {
+                const Path& path = *bounce.from->path;
+                endings.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
+            }
         counts.shadow += feelers.rays.size();
-        counts.bounce += endings.rays.size() + bounces.size();
+        counts.bounce += bounces.size();
         gather(feelers, tracer, sums);
         gather(endings, tracer, sums);
+        if (only_escape) break;
 
-        std::vector<march::Ray> ways;
-        ways.reserve(bounces.size());
+        ways.clear();
         for (const Bounce& bounce : bounces) ways.push_back(bounce.ray);
-        std::vector<SurfacePoint> met(ways.size());
-        surfaces_.nearest(ways, tracer, met);
-        paths.clear();
+        meetings.resize(ways.size());
+        surfaces_.nearest(ways, tracer, meetings);
+        going.clear();
         for (std::size_t k = 0; k < bounces.size(); ++k) {
-            Path& path = going[k];
+            const Path& path = *bounces[k].from->path;
             Color& sum = sums[path.pixel];
-            if (!std::isfinite(met[k].t)) {
+            if (!std::isfinite(meetings[k].t)) {
                 sum += path.throughput * bounces[k].escaped;
                 continue;
             }
             // Lamps stand in nobody's way, so that one may lie before the surface.
-            sum += path.throughput * fromLamps(bounces[k].ray, met[k].t, bounces[k].pdf);
-            path.point = met[k];
-            path.direction = bounces[k].ray.direction;
-            if (!last) paths.push_back(path);
+            sum += path.throughput * fromLamps(bounces[k].ray, meetings[k].t, bounces[k].pdf);
+            if (!last) going.push_back({meetings[k], bounces[k].ray.direction, path.throughput, path.pixel});
         }
+        paths.swap(going);
     }
 
     for (std::size_t n = 0; n < rays.size(); ++n) {

@@ -41,20 +41,41 @@ private:
         std::vector<Color> light;  // premultiplied by the throughput
         std::vector<std::size_t> pixel;
         void add(const march::Ray& ray, const Color& value, std::size_t to);
+        void clear();
+    };
+    /// A path in the frame of the surface that it stands on.
+    struct Stand {
+        Path* path;
+        Frame frame;
+        glm::vec3 wo;  // local, back along the path
     };
     /// A ray drawn from the BRDF, and what it brings home if it meets nothing.
     struct Bounce {
+        const Stand* from;
         march::Ray ray;
+        glm::vec3 way;  // its direction
         float pdf;
         Color escaped;
     };
+    /// What is lit in one way: by BedLight, or by the environment.
+    struct Group {
+        bool bed;
+        std::vector<std::size_t> members;
+    };
+    /// Samples of light for a group.
+    struct Looks {
+        std::vector<glm::vec2> u;
+        std::vector<glm::vec3> ways, normals;
+        std::vector<EnvironmentSample> samples;
+        void resize(std::size_t count);
+    };
 
-    void feelEnvironment(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
-                         Feelers& feelers) const;
-    void feelLights(const Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler,
-                    Feelers& feelers) const;
+    void feelEnvironment(const Group& group, std::span<const Stand> stands, std::span<Sampler> samplers,
+                         Feelers& feelers, Looks& looks) const;
+    void feelLights(const Stand& stand, Sampler& sampler, Feelers& feelers) const;
     /// Scatters a path: nothing if it ends. Changes its throughput.
-    std::optional<Bounce> scatter(Path& path, const Frame& frame, const glm::vec3& wo, Sampler& sampler) const;
+    std::optional<Bounce> scatter(Stand& stand, Sampler& sampler) const;
+    void lookWhereTheyGo(const Group& group, std::span<Bounce> bounces, Looks& looks) const;
     /// What the lamps with extent add to a ray drawn from the BRDF that goes on freely up to t.
     Color fromLamps(const march::Ray& ray, double t, float pdf) const;
     void gather(const Feelers& feelers, march::Tracer& tracer, std::span<Color> sums) const;

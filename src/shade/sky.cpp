@@ -99,6 +99,14 @@ public:
     EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override {
         return map_.toward(direction, normal);
     }
+    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override {
+        map_.sampleStream(strategy, u, normals, samples);
+    }
+    void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override {
+        map_.towardStream(directions, normals, samples);
+    }
     std::unique_ptr<const BedLight> makeBedLight() const override { return map_.makeBedLight(); }
     std::shared_ptr<const Light> sun() const override { return sun_; }
 
@@ -130,7 +138,7 @@ std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
     const glm::dvec3 total = irradiance + sun * model.sun.z;
     const Color ground(total * kGround / kPiD);
     for (std::size_t i = map.texels.size() / 2; i < map.texels.size(); ++i) map.texels[i] = ground;
-    const float scale = StudioEnvironment::kLevel * kPi / luminance(Color(total));
+    const float scale = kStudioLevel * kPi / luminance(Color(total));
     return std::make_shared<SkyEnvironment>(
         std::move(map), scale,
         std::make_shared<SunLight>(glm::vec3(model.sun), Color(sun) * scale, SunLight::kRealDiameter));

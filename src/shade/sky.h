@@ -12,7 +12,7 @@ struct SkyOptions {
 };
 
 /// The blue of the sky and dim ground; the sun is a light of its own, half a degree wide (sun()). Scaled so that a
-/// white sheet that looks up has the radiance StudioEnvironment::kLevel, sun included.
+/// white sheet that looks up has the radiance kStudioLevel, sun included.
 /// Source: A. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999 (sky and the
 /// sun's colour by Rayleigh scattering and haze); direct to diffuse ratio by the clear-day formula of the IES Lighting
 /// Handbook, E = 127.5 klx exp(-0.21 / sin h).

@@ -1,11 +1,13 @@
 #include "shade/studio.h"
 
+#include "shade/map_environment.h"
 #include "shade/sampling.h"
 
 #include <glm/geometric.hpp>
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace stratum::shade {
 namespace {
@@ -65,38 +67,29 @@ Color unscaled(const glm::vec3& d, bool bed) {
     return sum;
 }
 
-constexpr int kColumns = 256;
-constexpr int kRows = 128;  // even: a row ends at the horizon, where the light does
+// The narrowest edge of a lamp is some 8 degrees wide: six texels.
+constexpr int kHeight = 128;
 
 }  // namespace
 
-StudioEnvironment::StudioEnvironment(const EnvironmentPlacement& placement)
-    : cosine_(static_cast<float>(std::cos(placement.azimuth))),
-      sine_(static_cast<float>(std::sin(placement.azimuth))),
-      bed_(placement.bed),
-      table_([this](const glm::dvec3& d) { return static_cast<double>(luminance(unscaled(glm::vec3(d), bed_))); },
-             kColumns, kRows) {
-    scale_ = kLevel * kPi / luminance(irradianceFromAbove(*this));
-}
-
-glm::vec3 StudioEnvironment::toStudio(const glm::vec3& world) const {
-    return {cosine_ * world.x + sine_ * world.y, cosine_ * world.y - sine_ * world.x, world.z};
-}
-
-Color StudioEnvironment::radiance(const glm::vec3& direction) const {
-    return unscaled(toStudio(direction), bed_) * scale_;
-}
-
-EnvironmentSample StudioEnvironment::sample(int, const glm::vec2& u, const glm::vec3&) const {
-    EnvironmentSample result;
-    const glm::vec3 d = table_.sample(u, result.pdf);
-    result.radiance = unscaled(d, bed_) * scale_;
-    result.direction = {cosine_ * d.x - sine_ * d.y, cosine_ * d.y + sine_ * d.x, d.z};
-    return result;
-}
-
-float StudioEnvironment::pdf(const glm::vec3& direction, const glm::vec3&) const {
-    return table_.pdf(toStudio(direction));
+std::shared_ptr<const Environment> makeStudio(const EnvironmentPlacement& placement) {
+    constexpr double kPiD = std::numbers::pi;
+    LightMap map{2 * kHeight, kHeight, {}};
+    map.texels.reserve(std::size_t{2} * kHeight * kHeight);
+    glm::dvec3 irradiance(0.0);
+    for (int y = 0; y < map.height; ++y) {
+        const double theta = kPiD * (y + 0.5) / map.height;
+        for (int x = 0; x < map.width; ++x) {
+            const double phi = kPiD - 2.0 * kPiD * (x + 0.5) / map.width;
+            const glm::vec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+            map.texels.push_back(unscaled(d, placement.bed));
+            if (d.z > 0.0f)
+                irradiance += glm::dvec3(map.texels.back()) *
+                              (std::sin(theta) * std::cos(theta) * kPiD / map.height * 2.0 * kPiD / map.width);
+        }
+    }
+    const float scale = kStudioLevel * kPi / luminance(Color(irradiance));
+    return std::make_shared<MapEnvironment>(std::move(map), placement.azimuth, scale, false);
 }
 
 }  // namespace stratum::shade

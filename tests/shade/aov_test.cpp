@@ -96,7 +96,7 @@ TEST(Aov, NoiseStopsWhereItIsAskedTo) {
     EXPECT_LE(error(coarse), 0.08);
     EXPECT_LE(error(fine), 0.02);
     EXPECT_LT(coarse.mean_spp, fine.mean_spp);
-    EXPECT_GE(coarse.mean_spp, 16.0);
+    EXPECT_GE(coarse.mean_spp, 4.0);
     EXPECT_LE(fine.mean_spp, 512.0);
     options.noise = 2.0;
     EXPECT_THROW(rendered(options), UsageError);

@@ -18,7 +18,7 @@ TEST(Sky, LightsASheetToTheStudiosLevel) {
         for (const double turbidity : {2.0, 6.0}) {
             const auto sky = shade::makeSky({elevation, 1.0, turbidity});
             const Color e = shade::irradianceFromAbove(*sky) + shade::irradianceFrom(*sky->sun(), glm::dvec3(0.0));
-            EXPECT_NEAR(shade::luminance(e) * shade::kInvPi, shade::StudioEnvironment::kLevel, 0.02f) << elevation;
+            EXPECT_NEAR(shade::luminance(e) * shade::kInvPi, shade::kStudioLevel, 0.02f) << elevation;
         }
     }
 }
