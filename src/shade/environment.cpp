@@ -42,6 +42,10 @@ std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlaceme
 
 std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<CosineBedLight>(*this); }
 
+void Environment::radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) radiances[n] = radiance(directions[n]);
+}
+
 void Environment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                                std::span<EnvironmentSample> samples) const {
     for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n], normals[n]);

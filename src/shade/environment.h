@@ -44,7 +44,8 @@ public:
     virtual EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const {
         return {direction, radiance(direction), pdf(direction, normal)};
     }
-    /// sample() for many surfaces, and toward(); faster. All spans are of one length.
+    /// radiance() of many directions, sample() for many surfaces, and toward(); faster. All spans are of one length.
+    virtual void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const;
     virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                               std::span<EnvironmentSample> samples) const;
     virtual void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,

@@ -221,6 +221,10 @@ EnvironmentSample MapEnvironment::toward(const glm::vec3& direction, const glm::
     return lookInto(tables_, direction, normal);
 }
 
+void MapEnvironment::radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const {
+    seeMap({map_, rotation_, tables_}, directions, radiances);
+}
+
 void MapEnvironment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                                   std::span<EnvironmentSample> samples) const {
     drawFromMap({map_, rotation_, tables_}, strategy, u, normals, samples);

@@ -27,6 +27,7 @@ public:
     float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
     EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
     bool visible() const override { return visible_; }
+    void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override;
     void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                       std::span<EnvironmentSample> samples) const override;
     void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,

@@ -342,6 +342,14 @@ void setBins(std::span<const glm::vec3> normals, std::size_t first, std::size_t 
     for (std::size_t n = 0; n < count; ++n) b.bin[n] = NormalBins::of(normals[first + n]);
 }
 
+void setDirections(std::span<const glm::vec3> directions, std::size_t first, std::size_t count, MapBatch& b) {
+    for (std::size_t n = 0; n < count; ++n) {
+        b.dx[n] = static_cast<double>(directions[first + n].x);
+        b.dy[n] = static_cast<double>(directions[first + n].y);
+        b.dz[n] = static_cast<double>(directions[first + n].z);
+    }
+}
+
 void get(const MapBatch& b, std::size_t first, std::size_t count, std::span<EnvironmentSample> samples) {
     for (std::size_t n = 0; n < count; ++n) {
         EnvironmentSample& sample = samples[first + n];
@@ -386,17 +394,24 @@ void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions,
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);
         setBins(normals, first, count, batch);
-        for (std::size_t n = 0; n < count; ++n) {
-            batch.dx[n] = static_cast<double>(directions[first + n].x);
-            batch.dy[n] = static_cast<double>(directions[first + n].y);
-            batch.dz[n] = static_cast<double>(directions[first + n].z);
-            batch.density[n] = 0.0;
-        }
+        setDirections(directions, first, count, batch);
+        batch.density.fill(0.0);
         HWY_DYNAMIC_DISPATCH(Places)(placed.rotation, batch);
         for (const BilinearDistribution& table : placed.tables) HWY_DYNAMIC_DISPATCH(AddDensity)(table.view(), batch);
         HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);
         get(batch, first, count, samples);
         for (std::size_t n = 0; n < count; ++n) samples[first + n].direction = directions[first + n];
+    }
+}
+
+void seeMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances) {
+    MapBatch batch{};
+    for (std::size_t first = 0; first < directions.size(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, directions.size() - first);
+        setDirections(directions, first, count, batch);
+        HWY_DYNAMIC_DISPATCH(Places)(placed.rotation, batch);
+        HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);
+        for (std::size_t n = 0; n < count; ++n) radiances[first + n] = {batch.r[n], batch.g[n], batch.b[n]};
     }
 }
 

@@ -38,4 +38,9 @@ void drawFromMap(const PlacedMap& placed, int strategy, std::span<const glm::vec
 void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
                  std::span<EnvironmentSample> samples);
 
+/// What MapEnvironment::radiance gives, for each direction.
+/// @param directions  unit
+/// @param radiances   as many as directions
+void seeMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);
+
 }  // namespace stratum::shade

@@ -167,12 +167,13 @@ void PathIntegrator::gather(const Feelers& feelers, march::Tracer& tracer, std::
 void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
                                 std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
                                 std::span<Pixel> pixels) const {
+    // How much of the backdrop is seen in a place.
+    const auto fadeOf = [this](const SurfacePoint& p) { return std::isfinite(p.t) ? surfaces_.fade(p) : 1.0f; };
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Path> paths;
     paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (std::isfinite(points[n].t) && surfaces_.fade(points[n]) < 1.0f)
-            paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
+        if (fadeOf(points[n]) < 1.0f) paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
 
     Feelers feelers;
     // Those of the last step that nothing but the print can stop: an answer of yes or no will do.
@@ -240,12 +241,16 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
         paths.swap(going);
     }
 
-    for (std::size_t n = 0; n < rays.size(); ++n) {
-        const bool met = std::isfinite(points[n].t);
-        const float fade = met ? surfaces_.fade(points[n]) : 1.0f;
-        Color behind(0.0f);
-        const bool backdrop = fade > 0.0f && surfaces_.backdrop(rays[n], behind);
-        pixels[n] = met || backdrop ? Pixel{(1.0f - fade) * sums[n] + fade * behind, 1.0f} : Pixel{};
+    ways.clear();
+    for (std::size_t n = 0; n < rays.size(); ++n)
+        if (fadeOf(points[n]) > 0.0f) ways.push_back(rays[n]);
+    std::vector<Color> behind(ways.size(), Color(0.0f));
+    const bool backdrop = surfaces_.backdrop(ways, behind);
+    for (std::size_t n = 0, faded = 0; n < rays.size(); ++n) {
+        const float fade = fadeOf(points[n]);
+        Color color = (1.0f - fade) * sums[n];
+        if (fade > 0.0f) color += fade * behind[faded++];
+        pixels[n] = std::isfinite(points[n].t) || backdrop ? Pixel{color, 1.0f} : Pixel{};
     }
 }
 

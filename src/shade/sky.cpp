@@ -99,6 +99,9 @@ public:
     EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override {
         return map_.toward(direction, normal);
     }
+    void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override {
+        map_.radianceStream(directions, radiances);
+    }
     void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                       std::span<EnvironmentSample> samples) const override {
         map_.sampleStream(strategy, u, normals, samples);

@@ -122,12 +122,20 @@ float Surfaces::fade(const SurfacePoint& point) const {
 }
 
 bool Surfaces::backdrop(const march::Ray& ray, Color& radiance) const {
-    if (scene_.backdrop)
-        radiance = scene_.backdrop->radiance(glm::vec3(ray.direction));
-    else if (scene_.environment->visible())
-        radiance = scene_.environment->radiance(glm::vec3(ray.direction));
-    else
-        return false;
+    return backdrop(std::span(&ray, 1), std::span(&radiance, 1));
+}
+
+bool Surfaces::backdrop(std::span<const march::Ray> rays, std::span<Color> radiances) const {
+    if (scene_.backdrop) {
+        for (std::size_t n = 0; n < rays.size(); ++n)
+            radiances[n] = scene_.backdrop->radiance(glm::vec3(rays[n].direction));
+        return true;
+    }
+    if (!scene_.environment->visible()) return false;
+    std::vector<glm::vec3> ways;
+    ways.reserve(rays.size());
+    for (const march::Ray& ray : rays) ways.emplace_back(ray.direction);
+    scene_.environment->radianceStream(ways, radiances);
     return true;
 }
 

@@ -45,6 +45,8 @@ public:
     float fade(const SurfacePoint& point) const;
     /// What the camera sees where there is nothing.
     bool backdrop(const march::Ray& ray, Color& radiance) const;
+    /// The same for many rays; false if there is nothing behind any of them. `radiances` is as long as `rays`.
+    bool backdrop(std::span<const march::Ray> rays, std::span<Color> radiances) const;
 
 private:
     SurfacePoint onPrint(const march::Ray& ray, const march::Hit& hit, march::Tracer& tracer) const;

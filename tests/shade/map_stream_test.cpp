@@ -96,6 +96,9 @@ protected:
                 expectSame(there[n], environment.toward(ways[n], draws.normals[n]));
                 if (HasFatalFailure()) FAIL() << "toward, " << n;
             }
+            std::vector<Color> seen(count);
+            environment.radianceStream(ways, seen);
+            for (std::size_t n = 0; n < count; ++n) ASSERT_EQ(seen[n], there[n].radiance) << n;
             for (int strategy = 0; strategy < bed->strategies(); ++strategy) {
                 bed->sampleStream(strategy, draws.u, samples);
                 for (std::size_t n = 0; n < count; ++n) {
