@@ -122,11 +122,14 @@ HWY_INLINE VD scale(const BilinearDistribution::View& t, VD bin, VD block_row, V
     const VF here = gatherFloats(t.block_sums, hn::Add(sums, block_column));
     const VD share =
         hn::IfThenElse(hn::Eq(block_column, zero), hn::PromoteTo(D(), here), hn::PromoteTo(D(), hn::Sub(here, before)));
+    const M some = hn::And(hn::Gt(row_scale, zero), hn::Gt(share, zero));
+    // Of a table of lamps most blocks are empty.
+    if (hn::AllFalse(D(), some)) return zero;
     const VD block = gather(t.block_weights, hn::Add(hn::Mul(block_row, whole(t.block_columns)), block_column));
     VD result = hn::Div(hn::Mul(row_scale, share), block);
     result = hn::Mul(result, gather(t.sines, row));
     result = hn::Mul(hn::Mul(result, set(t.columns)), set(t.rows));
-    return hn::IfThenElseZero(hn::And(hn::Gt(row_scale, zero), hn::Gt(share, zero)), result);
+    return hn::IfThenElseZero(some, result);
 }
 
 HWY_INLINE VD binOf(const BilinearDistribution::View& t, const MapBatch& b, std::size_t n) {
@@ -204,6 +207,7 @@ void AddDensity(const BilinearDistribution::View& t, MapBatch& b) {
         const VD row = hn::Min(hn::Floor(sy), set(t.rows));
         const VD density =
             scale(t, binOf(t, b, n), hn::Floor(hn::Mul(row, per_side)), hn::Floor(hn::Mul(column, per_side)), row);
+        if (hn::AllFalse(d, hn::Gt(density, zero))) continue;
         const VD x = hn::Min(hn::Sub(sx, column), set(1.0));
         const VD y = hn::Min(hn::Sub(sy, row), set(1.0));
         const VD sum = hn::Add(hn::Load(d, &b.density[n]), hn::Mul(corners(t, column, row).at(x, y), density));
