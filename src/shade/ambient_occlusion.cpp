@@ -1,6 +1,7 @@
 #include "shade/ambient_occlusion.h"
 
 #include "shade/frame.h"
+#include "shade/sampler_stream.h"
 #include "shade/sampling.h"
 
 #include <cmath>
@@ -11,11 +12,10 @@ namespace stratum::shade {
 AmbientOcclusion::AmbientOcclusion(const SceneDescription& scene, const march::Intersector& print, double distance)
     : Integrator(scene, print), opaque_(scene.backdrop.has_value()), distance_(distance) {}
 
-std::optional<march::Ray> AmbientOcclusion::feeler(const SurfacePoint* first, Sampler& sampler) const {
-    if (first == nullptr) return std::nullopt;
-    const glm::vec3 wi = toCosineHemisphere(sampler.next2D());
-    if (!(wi.z > 0.0f) || surfaces_.fade(*first) >= 1.0f) return std::nullopt;
-    march::Ray way = surfaces_.leave(*first, Frame{glm::vec3(first->normal)}.toWorld(wi));
+std::optional<march::Ray> AmbientOcclusion::feeler(const SurfacePoint& first, const glm::vec2& u) const {
+    const glm::vec3 wi = toCosineHemisphere(u);
+    if (!(wi.z > 0.0f) || surfaces_.fade(first) >= 1.0f) return std::nullopt;
+    march::Ray way = surfaces_.leave(first, Frame{glm::vec3(first.normal)}.toWorld(wi));
     way.t_max = distance_;
     return way;
 }
@@ -25,7 +25,8 @@ Pixel AmbientOcclusion::unoccluded(const SurfacePoint* first) const {
 }
 
 Pixel AmbientOcclusion::seen(const march::Ray&, const SurfacePoint* first, TraceContext& context) const {
-    const auto way = feeler(first, context.sampler);
+    if (first == nullptr) return unoccluded(first);
+    const auto way = feeler(*first, context.sampler.next2D());
     if (!way) return unoccluded(first);
     ++context.rays.shadow;
     return {Color(surfaces_.occluded(*way, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
@@ -34,14 +35,23 @@ Pixel AmbientOcclusion::seen(const march::Ray&, const SurfacePoint* first, Trace
 void AmbientOcclusion::seenStream(std::span<const march::Ray> rays, std::span<const SurfacePoint> points,
                                   std::span<Sampler> samplers, march::Tracer& tracer, RayCounts& counts,
                                   std::span<Pixel> pixels) const {
+    std::vector<std::size_t> met;
+    met.reserve(rays.size());
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        const bool meets = std::isfinite(points[n].t);
+        pixels[n] = unoccluded(meets ? &points[n] : nullptr);
+        if (meets) met.push_back(n);
+    }
+    std::vector<glm::vec2> draws(met.size());
+    next2DStream(samplers, met, draws);
     std::vector<march::Ray> ways;
     std::vector<std::size_t> owners;
-    for (std::size_t n = 0; n < rays.size(); ++n) {
-        const SurfacePoint* first = std::isfinite(points[n].t) ? &points[n] : nullptr;
-        pixels[n] = unoccluded(first);
-        if (const auto way = feeler(first, samplers[n])) {
+    ways.reserve(met.size());
+    owners.reserve(met.size());
+    for (std::size_t k = 0; k < met.size(); ++k) {
+        if (const auto way = feeler(points[met[k]], draws[k])) {
             ways.push_back(*way);
-            owners.push_back(n);
+            owners.push_back(met[k]);
         }
     }
     counts.shadow += ways.size();

@@ -23,7 +23,7 @@ protected:
 
 private:
     /// The ray that asks whether something covers `first`; none if the answer is known without.
-    std::optional<march::Ray> feeler(const SurfacePoint* first, Sampler& sampler) const;
+    std::optional<march::Ray> feeler(const SurfacePoint& first, const glm::vec2& u) const;
     Pixel unoccluded(const SurfacePoint* first) const;
 
     bool opaque_;  // whether there is a backdrop; it is 1

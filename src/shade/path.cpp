@@ -1,5 +1,6 @@
 #include "shade/path.h"
 
+#include "shade/sampler_stream.h"
 #include "shade/sampling.h"
 
 #include <array>
@@ -95,12 +96,14 @@ void PathIntegrator::feelEnvironment(const Group& group, std::span<const Stand> 
     const int strategies = group.bed ? bed_light_->strategies() : scene_.environment->strategies();
     looks.resize(count);
     looks.u.resize(count);
+    looks.pixels.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Stand& stand = stands[group.members[k]];
+        looks.pixels[k] = stand.path->pixel;
+        looks.normals[k] = stand.frame.z;
+    }
     for (int strategy = 0; strategy < strategies; ++strategy) {
-        for (std::size_t k = 0; k < count; ++k) {
-            const Stand& stand = stands[group.members[k]];
-            looks.u[k] = samplers[stand.path->pixel].next2D();
-            looks.normals[k] = stand.frame.z;
-        }
+        next2DStream(samplers, looks.pixels, looks.u);
         if (group.bed)
             bed_light_->sampleStream(strategy, looks.u, looks.samples);
         else
@@ -121,10 +124,9 @@ void PathIntegrator::feelEnvironment(const Group& group, std::span<const Stand> 
     }
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Stand& stand, Sampler& sampler) const {
+std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Stand& stand, float lobe_draw,
+                                                              const glm::vec2& brdf_draw) const {
     Path& path = *stand.path;
-    const float lobe_draw = sampler.next1D();
-    const glm::vec2 brdf_draw = sampler.next2D();
     const std::optional<BrdfSample> next = path.point.brdf->sample(stand.wo, lobe_draw, brdf_draw);
     if (!next) return std::nullopt;
     path.throughput *= next->f * (next->wi.z / next->pdf);
@@ -181,6 +183,8 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
     Looks looks;
     std::array<Group, 2> groups{Group{false, {}}, Group{true, {}}};
     std::vector<Stand> stands;
+    std::vector<glm::vec2> lobe_draws;
+    std::vector<glm::vec2> brdf_draws;
     std::vector<Bounce> bounces;
     std::vector<march::Ray> ways;
     std::vector<SurfacePoint> meetings;
@@ -199,10 +203,18 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
         // The draws of a step are always the same ones, so that each keeps its stratification.
         gatherGroups(groups, stands, [](const Stand& stand) { return stand.path->point.bed; });
         for (const Group& group : groups) feelEnvironment(group, stands, samplers, feelers, looks);
-        for (Stand& stand : stands) {
-            Sampler& sampler = samplers[stand.path->pixel];
-            feelLights(stand, sampler, feelers);
-            const std::optional<Bounce> bounce = scatter(stand, sampler);
+        looks.pixels.clear();
+        for (const Stand& stand : stands) {
+            feelLights(stand, samplers[stand.path->pixel], feelers);
+            looks.pixels.push_back(stand.path->pixel);
+        }
+        lobe_draws.resize(stands.size());
+        brdf_draws.resize(stands.size());
+        next2DStream(samplers, looks.pixels, lobe_draws);
+        next2DStream(samplers, looks.pixels, brdf_draws);
+        for (std::size_t n = 0; n < stands.size(); ++n) {
+            Stand& stand = stands[n];
+            const std::optional<Bounce> bounce = scatter(stand, lobe_draws[n].x, brdf_draws[n]);
             if (!bounce) continue;
             sums[stand.path->pixel] += stand.path->throughput * scene_.ambient;
             bounces.push_back(*bounce);

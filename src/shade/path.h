@@ -64,6 +64,7 @@ private:
     };
     /// Samples of light for a group.
     struct Looks {
+        std::vector<std::size_t> pixels;  // whose samplers draw
         std::vector<glm::vec2> u;
         std::vector<glm::vec3> ways, normals;
         std::vector<EnvironmentSample> samples;
@@ -74,7 +75,7 @@ private:
                          Feelers& feelers, Looks& looks) const;
     void feelLights(const Stand& stand, Sampler& sampler, Feelers& feelers) const;
     /// Scatters a path: nothing if it ends. Changes its throughput.
-    std::optional<Bounce> scatter(Stand& stand, Sampler& sampler) const;
+    std::optional<Bounce> scatter(Stand& stand, float lobe_draw, const glm::vec2& brdf_draw) const;
     void lookWhereTheyGo(const Group& group, std::span<Bounce> bounces, Looks& looks) const;
     /// What the lamps with extent add to a ray drawn from the BRDF that goes on freely up to t.
     Color fromLamps(const march::Ray& ray, double t, float pdf) const;

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "shade/sobol_lanes-inl.h"
+
 #ifndef STRATUM_PRIMARY_RAYS_TYPES
 #define STRATUM_PRIMARY_RAYS_TYPES
 namespace stratum::shade {
@@ -35,53 +37,12 @@ struct alignas(64) Directions {
 
 HWY_BEFORE_NAMESPACE();
 namespace stratum::shade {
-namespace {
 namespace HWY_NAMESPACE {
+namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using U = hn::CappedTag<std::uint32_t, 16>;
 using D = hn::CappedTag<double, 8>;
-using VU = hn::Vec<U>;
 using VD = hn::Vec<D>;
-
-HWY_INLINE VU set(std::uint32_t v) { return hn::Set(U(), v); }
-
-template <int kBits>
-HWY_INLINE VU swapBits(VU v, std::uint32_t low) {
-    return hn::Or(hn::And(hn::ShiftRight<kBits>(v), set(low)), hn::ShiftLeft<kBits>(hn::And(v, set(low))));
-}
-HWY_INLINE VU reverseBits(VU v) {
-    v = hn::Or(hn::ShiftRight<16>(v), hn::ShiftLeft<16>(v));
-    v = swapBits<8>(v, 0x00ff00ffu);
-    v = swapBits<4>(v, 0x0f0f0f0fu);
-    v = swapBits<2>(v, 0x33333333u);
-    return swapBits<1>(v, 0x55555555u);
-}
-// sobol::hash and the middle of sobol::owenScramble, between its two reversals.
-HWY_INLINE VU hash(VU v) {
-    v = hn::Mul(hn::Xor(v, hn::ShiftRight<16>(v)), set(0x7feb352du));
-    v = hn::Mul(hn::Xor(v, hn::ShiftRight<15>(v)), set(0x846ca68bu));
-    return hn::Xor(v, hn::ShiftRight<16>(v));
-}
-HWY_INLINE VU hash(VU a, std::uint32_t b) {
-    const VU mixed = hn::Add(hn::Add(set(sobol::hash(b) + 0x9e3779b9u), hn::ShiftLeft<6>(a)), hn::ShiftRight<2>(a));
-    return hash(hn::Xor(a, mixed));
-}
-HWY_INLINE VU scrambleReversed(VU v, VU seed) {
-    v = hn::Xor(v, hn::Mul(v, set(0x3d20adeau)));
-    v = hn::Add(v, seed);
-    v = hn::Mul(v, hn::Or(hn::ShiftRight<16>(seed), set(1u)));
-    v = hn::Xor(v, hn::Mul(v, set(0x05526c56u)));
-    return hn::Xor(v, hn::Mul(v, set(0x53a22864u)));
-}
-// sobol::dimension1 before its reversal.
-HWY_INLINE VU pascal(VU v) {
-    v = hn::Xor(v, hn::ShiftRight<16>(v));
-    v = hn::Xor(v, hn::ShiftRight<8>(hn::And(v, set(0xff00ff00u))));
-    v = hn::Xor(v, hn::ShiftRight<4>(hn::And(v, set(0xf0f0f0f0u))));
-    v = hn::Xor(v, hn::ShiftRight<2>(hn::And(v, set(0xccccccccu))));
-    return hn::Xor(v, hn::ShiftRight<1>(hn::And(v, set(0xaaaaaaaau))));
-}
 
 // PixelFilter::offset of u, of which `bits` are the first 32 bits. A float holds 24 of them: 10 name the table's
 // interval and 14 the place in it, so that all is exact up to the interpolation.
@@ -104,12 +65,9 @@ void AddOffsets(const FirstDraws& draws, const double* HWY_RESTRICT table, Place
     const D d;
     alignas(64) Batch<std::uint32_t> x, y;
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(u)) {
-        const VU key = hash(hn::Load(u, &draws.block[n]), 0u);
-        // What owenScramble turns around at its end is turned back by dimension0, and dimension1 of it and the next
-        // scramble's beginning cancel likewise.
-        const VU reversed = reverseBits(scrambleReversed(reverseBits(hn::Load(u, &draws.index[n])), key));
-        hn::Store(reverseBits(scrambleReversed(reversed, hash(key, 1u))), u, &x[n]);
-        hn::Store(reverseBits(scrambleReversed(pascal(reversed), hash(key, 2u))), u, &y[n]);
+        const Draw2D drawn = draw2D(hn::Load(u, &draws.block[n]), hn::Load(u, &draws.index[n]), set(0u));
+        hn::Store(drawn.x, u, &x[n]);
+        hn::Store(drawn.y, u, &y[n]);
     }
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
         hn::Store(hn::Add(hn::Load(d, &places.x[n]), quantile(table, &x[n])), d, &places.x[n]);
@@ -141,8 +99,8 @@ void Pinhole(const Camera& camera, const Places& places, Directions& out) {
     }
 }
 
-}  // namespace HWY_NAMESPACE
 }  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace stratum::shade
 HWY_AFTER_NAMESPACE();
 

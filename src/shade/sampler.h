@@ -87,9 +87,10 @@ public:
 
     /// Leaves out a draw, of one dimension or of two.
     void skip() { ++draw_; }
-    /// What the draws are made of: those of one block differ by index alone, those of one index by block.
+    /// What the next draw is made of: those of one block differ by index alone, those of one index by block.
     std::uint32_t block() const { return block_; }
     std::uint32_t index() const { return index_; }
+    std::uint32_t draw() const { return draw_; }
 
     /// Begins the next sample of the same pixel.
     void startNext() {
