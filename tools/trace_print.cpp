@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 // Those of the selection that are printed by then.
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
-    const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath);
+    const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath, "--printed");
     if (cuts.size() != 1)
         throw UsageError(fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40 or time:90", printed));
     const auto last = std::lower_bound(selection.begin(), selection.end(), cuts.front().bead_count);

@@ -137,14 +137,14 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
     return beads;
 }
 
-std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath) {
+std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {
     std::vector<Snapshot> snapshots;
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
-                fmt::format("--snapshots {}: expected N% (0 to 100), layer:N, every:N or time:MINUTES, separated by "
+                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N or time:MINUTES, separated by "
                             "commas; the print has layers 1 to {}",
-                            part, toolpath.layer_count));
+                            option, part, toolpath.layer_count));
         };
         if (part.ends_with('%')) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));

@@ -45,7 +45,8 @@ struct Snapshot {
 
 /// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40), "every:10" (after each 10 layers)
 /// and "time:90" (what 90 minutes of extruding at the speeds asked for have laid down; travel is not counted). In print
-/// order, without doubles. Throws UsageError.
-std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath);
+/// order, without doubles. Throws UsageError, which names the option that the text is of.
+std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath,
+                                     std::string_view option = "--snapshots");
 
 }  // namespace stratum::voxelize
