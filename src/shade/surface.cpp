@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace stratum::shade {
@@ -71,10 +72,15 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<march::Hit> hits;
     hits.resize(rays.size());
+    static thread_local std::vector<std::optional<double>> beds;
+    beds.assign(rays.size(), std::nullopt);
     if (scene_.bed) {
         static thread_local std::vector<march::Ray> limited;
         limited.assign(rays.begin(), rays.end());
-        for (march::Ray& ray : limited) ray.t_max = scene_.bed->intersect(ray).value_or(ray.t_max);
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            beds[n] = scene_.bed->intersect(rays[n]);
+            if (beds[n]) limited[n].t_max = *beds[n];
+        }
         tracer.intersectStream(limited, hits);
     } else {
         tracer.intersectStream(rays, hits);
@@ -82,8 +88,8 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
             points[n] = onPrint(rays[n], hits[n], tracer);
-        else if (const auto bed = scene_.bed ? scene_.bed->intersect(rays[n]) : std::nullopt)
-            points[n] = onBed(rays[n], *bed);
+        else if (beds[n])
+            points[n] = onBed(rays[n], *beds[n]);
         else
             points[n].t = std::numeric_limits<double>::infinity();
     }
