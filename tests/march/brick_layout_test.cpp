@@ -1,7 +1,8 @@
 #include "march/brick_layout.h"
 
+#include "on_each_target.h"
+
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <limits>
@@ -11,18 +12,9 @@
 namespace stratum::march {
 namespace {
 
-class BrickLayout : public testing::TestWithParam<std::int64_t> {
-protected:
-    void SetUp() override {
-        if ((hwy::SupportedTargets() & GetParam()) == 0)
-            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
-        hwy::SetSupportedTargetsForTest(GetParam());
-    }
-    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-};
+class BrickLayout : public test::OnEachTarget {};
 
-INSTANTIATE_TEST_SUITE_P(Targets, BrickLayout, testing::Values(HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(Targets, BrickLayout, test::allTargets(), test::targetName);
 
 TEST_P(BrickLayout, RoundsToTheNearestQuantumAndKeepsSigns) {
     std::mt19937 random(3);

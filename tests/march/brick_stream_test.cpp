@@ -1,6 +1,7 @@
 #include "march/brick_stream.h"
 
 #include "march/brick_intersector.h"
+#include "on_each_target.h"
 #include "random_rays.h"
 #include "rubble.h"
 
@@ -17,18 +18,12 @@ namespace stratum::march {
 namespace {
 
 // Each vector target that this machine has, and the scalar loop that takes their place elsewhere.
-class BrickStream : public testing::TestWithParam<std::int64_t> {
+class BrickStream : public test::OnEachTarget {
 protected:
-    void SetUp() override {
-        if ((hwy::SupportedTargets() & GetParam()) == 0) GTEST_SKIP() << "this machine has no " << name();
-        hwy::SetSupportedTargetsForTest(GetParam());
-    }
-    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
     static const char* name() { return hwy::TargetName(GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Targets, BrickStream, testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(Targets, BrickStream, test::allTargets(), test::targetName);
 
 bool sameBits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool sameBits(const glm::dvec3& a, const glm::dvec3& b) {

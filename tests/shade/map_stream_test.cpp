@@ -1,5 +1,6 @@
 #include "shade/map_stream.h"
 
+#include "on_each_target.h"
 #include "shade/bed_light.h"
 #include "shade/map_environment.h"
 #include "shade/sampling.h"
@@ -54,15 +55,8 @@ Draws manyDraws(std::size_t count) {
     return draws;
 }
 
-class MapStream : public testing::TestWithParam<std::int64_t> {
+class MapStream : public test::OnEachTarget {
 protected:
-    void SetUp() override {
-        if ((hwy::SupportedTargets() & GetParam()) == 0)
-            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
-        hwy::SetSupportedTargetsForTest(GetParam());
-    }
-    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-
     static void expectSame(const EnvironmentSample& a, const EnvironmentSample& b) {
         if (b.pdf == 0.0f) {
             ASSERT_EQ(a.pdf, 0.0f);
@@ -115,8 +109,7 @@ protected:
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Targets, MapStream, testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(Targets, MapStream, test::allTargets(), test::targetName);
 
 TEST_P(MapStream, IsOneByOneForManyMaps) {
     // Blocks of one cell and of many, cut ones at the ends.

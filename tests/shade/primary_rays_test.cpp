@@ -1,7 +1,8 @@
 #include "shade/primary_rays.h"
 
+#include "on_each_target.h"
+
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstring>
 #include <string>
@@ -13,15 +14,8 @@ namespace {
 using shade::Camera;
 using shade::Sampler;
 
-class PrimaryRays : public testing::TestWithParam<std::int64_t> {
+class PrimaryRays : public test::OnEachTarget {
 protected:
-    void SetUp() override {
-        if ((hwy::SupportedTargets() & GetParam()) == 0)
-            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
-        hwy::SetSupportedTargetsForTest(GetParam());
-    }
-    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-
     /// Rays in numbers that fill batches and that don't, over pixels of several blocks, against one ray at a time.
     static void expectOneByOne(const Camera& camera) {
         const shade::PixelFilter filter;
@@ -52,8 +46,7 @@ protected:
     const Camera pinhole_{{31.0, -270.5, 99.25}, {-3.0, 4.0, 12.5}, {0.0, 0.0, 1.0}, 28.0, 1920, 1080};
 };
 
-INSTANTIATE_TEST_SUITE_P(Targets, PrimaryRays, testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(Targets, PrimaryRays, test::allTargets(), test::targetName);
 
 TEST_P(PrimaryRays, AreTheBitsOfOneByOne) { expectOneByOne(pinhole_); }
 

@@ -1,7 +1,8 @@
 #include "shade/sampler_stream.h"
 
+#include "on_each_target.h"
+
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <string>
 #include <vector>
@@ -11,18 +12,9 @@ namespace {
 
 using shade::Sampler;
 
-class SamplerStream : public testing::TestWithParam<std::int64_t> {
-protected:
-    void SetUp() override {
-        if ((hwy::SupportedTargets() & GetParam()) == 0)
-            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
-        hwy::SetSupportedTargetsForTest(GetParam());
-    }
-    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
-};
+class SamplerStream : public test::OnEachTarget {};
 
-INSTANTIATE_TEST_SUITE_P(Targets, SamplerStream, testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+INSTANTIATE_TEST_SUITE_P(Targets, SamplerStream, test::allTargets(), test::targetName);
 
 TEST_P(SamplerStream, DrawsWhatEachWouldDraw) {
     for (const std::size_t count : {1u, 63u, 64u, 1000u}) {

@@ -1,0 +1,29 @@
+// Tests of code in vectors: once for each instruction set that Highway may choose.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstdint>
+#include <string>
+
+namespace stratum::test {
+
+/// The parameter is a target of Highway; where the machine lacks it the test is skipped by name.
+class OnEachTarget : public testing::TestWithParam<std::int64_t> {
+protected:
+    void SetUp() override {
+        if ((hwy::SupportedTargets() & GetParam()) == 0)
+            GTEST_SKIP() << "this machine has no " << hwy::TargetName(GetParam());
+        hwy::SetSupportedTargetsForTest(GetParam());
+    }
+    void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+inline auto allTargets() { return testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128); }
+
+inline std::string targetName(const testing::TestParamInfo<std::int64_t>& target) {
+    return hwy::TargetName(target.param);
+}
+
+}  // namespace stratum::test
