@@ -1,5 +1,4 @@
 // Materials in the plane of incidence, as CSV: what bench/lobes.py draws for docs/shading.md.
-#include "io/error.h"
 #include "shade/brdf.h"
 #include "shade/brdf_file.h"
 

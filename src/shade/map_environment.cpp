@@ -138,10 +138,12 @@ private:
     MapEnvironment::Tables tables_;
 };
 
-MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale, bool visible)
+MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale, bool visible,
+                               std::shared_ptr<const Light> sun)
     : map_(scaled(std::move(map), scale)),
       rotation_(rotation),
       visible_(visible),
+      sun_(std::move(sun)),
       tables_(compensatedTables(map_, rotation_)) {}
 
 glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const {

@@ -20,13 +20,16 @@ public:
     /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
     /// @param scale     of radiance, > 0
     /// @param visible   see Environment::visible
-    MapEnvironment(LightMap map, double rotation, float scale, bool visible = true);
+    /// @param sun       see Environment::sun
+    MapEnvironment(LightMap map, double rotation, float scale, bool visible = true,
+                   std::shared_ptr<const Light> sun = nullptr);
     Color radiance(const glm::vec3& direction) const override;
     int strategies() const override { return static_cast<int>(tables_.size()); }
     EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
     float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
     EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
     bool visible() const override { return visible_; }
+    std::shared_ptr<const Light> sun() const override { return sun_; }
     void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override;
     void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                       std::span<EnvironmentSample> samples) const override;
@@ -48,6 +51,7 @@ private:
     LightMap map_;
     double rotation_;
     bool visible_;
+    std::shared_ptr<const Light> sun_;
     Tables tables_;
 };
 

@@ -21,7 +21,7 @@ struct PlacedMap {
 };
 
 /// A large map misses the caches with nearly every sample; in vectors many misses are under way together. Angles are by
-/// polynomials, exact to 2e-8 of a turn; all else has the bits of the scalar functions on every processor.
+/// polynomials, exact to 3e-8 radians; all else has the bits of the scalar functions on every processor.
 ///
 /// What MapEnvironment::sample gives, for each draw.
 /// @param strategy  of the tables

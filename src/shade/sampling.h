@@ -21,7 +21,7 @@ inline glm::vec2 toDisc(const glm::vec2& u) {
     if (a == 0.0f && b == 0.0f) return {0.0f, 0.0f};
     const bool wide = std::abs(a) > std::abs(b);
     const float r = wide ? a : b;
-    // At most an eighth of a turn: Taylor's series are exact to 4e-9 there, below a float's rounding.
+    // At most an eighth of a turn: Taylor's series are exact to 3e-8 there, a float's rounding.
     const float phi = 0.25f * kPi * (wide ? b / a : a / b);
     const float p2 = phi * phi;
     const float c = 1.0f - p2 * (1.0f / 2 - p2 * (1.0f / 24 - p2 * (1.0f / 720 - p2 * (1.0f / 40320))));

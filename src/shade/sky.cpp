@@ -1,6 +1,5 @@
 #include "shade/sky.h"
 
-#include "shade/bed_light.h"
 #include "shade/directional.h"
 #include "shade/map_environment.h"
 #include "shade/sampling.h"
@@ -83,41 +82,6 @@ struct Model {
     }
 };
 
-/// The map and, beside it, the sun.
-class SkyEnvironment final : public Environment {
-public:
-    SkyEnvironment(LightMap map, float scale, std::shared_ptr<const Light> sun)
-        : map_(std::move(map), 0.0, scale), sun_(std::move(sun)) {}
-    Color radiance(const glm::vec3& direction) const override { return map_.radiance(direction); }
-    int strategies() const override { return map_.strategies(); }
-    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override {
-        return map_.sample(strategy, u, normal);
-    }
-    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override {
-        return map_.pdf(direction, normal);
-    }
-    EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override {
-        return map_.toward(direction, normal);
-    }
-    void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override {
-        map_.radianceStream(directions, radiances);
-    }
-    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
-                      std::span<EnvironmentSample> samples) const override {
-        map_.sampleStream(strategy, u, normals, samples);
-    }
-    void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                      std::span<EnvironmentSample> samples) const override {
-        map_.towardStream(directions, normals, samples);
-    }
-    std::unique_ptr<const BedLight> makeBedLight() const override { return map_.makeBedLight(); }
-    std::shared_ptr<const Light> sun() const override { return sun_; }
-
-private:
-    MapEnvironment map_;
-    std::shared_ptr<const Light> sun_;
-};
-
 }  // namespace
 
 std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
@@ -142,8 +106,8 @@ std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
     const Color ground(total * kGround / kPiD);
     for (std::size_t i = map.texels.size() / 2; i < map.texels.size(); ++i) map.texels[i] = ground;
     const float scale = kStudioLevel * kPi / luminance(Color(total));
-    return std::make_shared<SkyEnvironment>(
-        std::move(map), scale,
+    return std::make_shared<MapEnvironment>(
+        std::move(map), 0.0, scale, true,
         std::make_shared<SunLight>(glm::vec3(model.sun), Color(sun) * scale, SunLight::kRealDiameter));
 }
 

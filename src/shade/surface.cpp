@@ -73,8 +73,8 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     static thread_local std::vector<march::Hit> hits;
     hits.resize(rays.size());
     static thread_local std::vector<std::optional<double>> beds;
-    beds.assign(rays.size(), std::nullopt);
     if (scene_.bed) {
+        beds.resize(rays.size());
         static thread_local std::vector<march::Ray> limited;
         limited.assign(rays.begin(), rays.end());
         for (std::size_t n = 0; n < rays.size(); ++n) {
@@ -88,7 +88,7 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
             points[n] = onPrint(rays[n], hits[n], tracer);
-        else if (beds[n])
+        else if (scene_.bed && beds[n])
             points[n] = onBed(rays[n], *beds[n]);
         else
             points[n].t = std::numeric_limits<double>::infinity();

@@ -89,14 +89,14 @@ TEST(Aov, NoiseStopsWhereItIsAskedTo) {
         return std::sqrt(sum / double(film.pixels().size()));
     };
     options.aovs = {Aov::variance};
-    options.noise = 0.08;
+    options.noise = 0.04;
     const auto coarse = rendered(options);
     options.noise = 0.02;
     const auto fine = rendered(options);
-    EXPECT_LE(error(coarse), 0.08);
+    EXPECT_LE(error(coarse), 0.04);
     EXPECT_LE(error(fine), 0.02);
     EXPECT_LT(coarse.mean_spp, fine.mean_spp);
-    EXPECT_GE(coarse.mean_spp, 4.0);
+    EXPECT_GE(coarse.mean_spp, 16.0);
     EXPECT_LE(fine.mean_spp, 512.0);
     options.noise = 2.0;
     EXPECT_THROW(rendered(options), UsageError);

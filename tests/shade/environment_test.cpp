@@ -95,6 +95,19 @@ TEST_P(Environments, BedLightSamplesItsDensity) {
               4.0);
 }
 
+TEST_P(Environments, BedLightIsPositiveWhereLightIs) {
+    const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
+    const auto light = env->makeBedLight();
+    overSphere(
+        [&](const glm::vec3& d) {
+            if (d.z > 0.0f && shade::maxComponent(env->radiance(d)) > 0.0f) {
+                EXPECT_GT(light->toward(d).pdf, 0.0f);
+            }
+            return 0.0;
+        },
+        256);
+}
+
 /// With one sample by the light and one by a matt surface, as PathIntegrator joins them.
 TEST_P(Environments, LightsAMattSurfaceTogetherWithItsCosine) {
     const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
