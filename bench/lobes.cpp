@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
             if (is_file) {
                 const shade::MeasuredMaterial measured = shade::readMeasuredMaterial(material);
                 if (const auto* scan = std::get_if<shade::BrdfScan>(&measured.data))
-                    printReadings(name, shade::foldScan(shade::turnScan(*scan, shade::findMirrorAzimuth(*scan))));
+                    printReadings(name, shade::foldScan(*scan));
             }
             printTable(name, *shade::makeBrdf(material));
         }
