@@ -31,6 +31,7 @@ public:
         std::uint64_t key = 0;  // see keyOf()
         bool uniform = false;   // background, all of it
         LeafSamples<T> samples;
+        CapSamples<T> above;  // of a field
     };
     static std::uint64_t keyOf(int x, int y, int z) {
         const auto part = [](int c) { return static_cast<std::uint64_t>(c) + 1; };
@@ -138,15 +139,31 @@ private:
     BrickParts<T> partsOf(int x, int y, int z, LeafCache<T>& cache) const {
         BrickParts<T> parts;
         for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
-            const int px = x + static_cast<int>(part >> 2);
-            const int py = y + static_cast<int>(part >> 1 & 1);
-            const int pz = z + static_cast<int>(part & 1);
-            parts.leaf[part] = field_ ? madeAt(px, py, pz, cache) : leafAt(px, py, pz, cache);
-            if (parts.leaf[part] != nullptr) continue;
-            const float tile = field_ ? field_->background() : source_->tile(coordOf(px, py, pz));
-            parts.tile[part] = march::convert(tile, scale_, T{});
+            const int px = x + static_cast<int>(part >> 1);
+            const int py = y + static_cast<int>(part & 1);
+            if (field_) {
+                const auto* made = madeAt(px, py, z, cache);
+                if (made != nullptr) {
+                    parts.leaf[part] = &made->samples;
+                    parts.cap[part] = Cap<T>(made->above);
+                } else {
+                    parts.tile[part] = parts.cap_tile[part] = march::convert(field_->background(), scale_, T{});
+                }
+                continue;
+            }
+            parts.leaf[part] = leafAt(px, py, z, cache);
+            if (parts.leaf[part] == nullptr) parts.tile[part] = tileAt(px, py, z, T{});
+            if (const auto* next = leafAt(px, py, z + 1, cache))
+                parts.cap[part] = Cap<T>(*next);
+            else
+                parts.cap_tile[part] = tileAt(px, py, z + 1, T{});
         }
         return parts;
+    }
+
+    template <typename T>
+    T tileAt(int x, int y, int z, T type) const {
+        return march::convert(source_->tile(coordOf(x, y, z)), scale_, type);
     }
 
     openvdb::Coord coordOf(int x, int y, int z) const {
@@ -172,23 +189,25 @@ private:
 
     // Of the field, null where all is background.
     template <typename T>
-    const LeafSamples<T>* madeAt(int x, int y, int z, LeafCache<T>& cache) const {
+    const typename LeafCache<T>::Entry* madeAt(int x, int y, int z, LeafCache<T>& cache) const {
         auto& entry = cache.at(x, y, z);
         const std::uint64_t key = cache.keyOf(x, y, z);
         if (entry.key != key) {
             entry.key = 0;  // in case that making throws
-            alignas(64) float scratch[LeafSource::kLeafSamples];
+            FieldSamples made;
             const openvdb::Coord at = coordOf(x, y, z);
-            const float* made = field_->samples(at, scratch);
-            entry.uniform = made == nullptr;
-            if (made != nullptr) keep(made, field_->name(), at, entry.samples);
+            entry.uniform = !field_->samples(at, made);
+            if (!entry.uniform) {
+                keep(made.leaf.data(), field_->name(), at, entry.samples);
+                keep(made.above.data(), field_->name(), at, entry.above);
+            }
             entry.key = key;
         }
-        return entry.uniform ? nullptr : &entry.samples;
+        return entry.uniform ? nullptr : &entry;
     }
 
-    template <typename T>
-    void keep(const float* samples, const std::string& name, const openvdb::Coord& at, LeafSamples<T>& out) const {
+    template <typename Samples>
+    void keep(const float* samples, const std::string& name, const openvdb::Coord& at, Samples& out) const {
         if (march::convert(samples, scale_, out)) return;
         throw InputError(
             fmt::format("the level set {} has a voxel that is not a finite number, among the 8 x 8 x 8 voxels from "

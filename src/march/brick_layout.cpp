@@ -85,6 +85,32 @@ bool convert(const float* samples, float scale, LeafSamples<std::int16_t>& out) 
     return HWY_DYNAMIC_DISPATCH(convertQuanta)(samples, scale, out);
 }
 
+namespace {
+
+template <typename T>
+bool convertCap(const float* samples, float scale, CapSamples<T>& out) {
+    constexpr std::size_t kRow = LeafSource::kLeafEdge;
+    bool finite = true;
+    for (std::size_t x = 0; x < kRow; ++x) {
+        std::uint64_t inside = 0;
+        for (std::size_t y = 0; y < kRow; ++y) {
+            const float v = samples[x * kRow + y];
+            finite = finite && std::isfinite(v);
+            out.value[x * kRow + y] = convert(v, scale, T{});
+            inside |= static_cast<std::uint64_t>(v < 0) << (8 * y);
+        }
+        out.inside[x] = inside;
+    }
+    return finite;
+}
+
+}  // namespace
+
+bool convert(const float* samples, float scale, CapSamples<float>& out) { return convertCap(samples, scale, out); }
+bool convert(const float* samples, float scale, CapSamples<std::int16_t>& out) {
+    return convertCap(samples, scale, out);
+}
+
 float convert(float sample, float, float) { return sample; }
 
 std::int16_t convert(float sample, float scale, std::int16_t) {
@@ -99,17 +125,21 @@ CellBits surfaceOf(const BrickParts<T>& parts) {
         if (parts.leaf[part] != nullptr) return parts.leaf[part]->inside[x];
         return parts.tile[part] < 0 ? ~std::uint64_t{0} : std::uint64_t{0};
     };
+    const auto above = [&parts](std::size_t part, std::size_t x) {
+        if (parts.cap[part].inside != nullptr) return parts.cap[part].inside[x];
+        return parts.cap_tile[part] < 0 ? ~std::uint64_t{0} : std::uint64_t{0};
+    };
     // Of the cells between two slabs of samples, at their lower and upper x: whether any, and whether all, of the four
     // corners there are inside.
     std::array<std::uint64_t, kSamples> any{};
     std::array<std::uint64_t, kSamples> all{};
     for (std::size_t x = 0; x < kSamples; ++x) {
-        const std::size_t far = x == kEdge ? 4 : 0;
+        const std::size_t far = x == kEdge ? 2 : 0;
         const std::size_t from = x == kEdge ? 0 : x;
         const std::uint64_t here = slab(far, from);
-        const std::uint64_t at_z = slab(far | 1, from);
-        const std::uint64_t at_y = slab(far | 2, from);
-        const std::uint64_t at_yz = slab(far | 3, from);
+        const std::uint64_t at_z = above(far, from);
+        const std::uint64_t at_y = slab(far | 1, from);
+        const std::uint64_t at_yz = above(far | 1, from);
         const auto alongZ = [](std::uint64_t rows, std::uint64_t next) {
             return (rows >> 1 & ~(kColumn << 7)) | (next & kColumn) << 7;
         };
@@ -138,15 +168,16 @@ template <typename T>
 void layOut(const BrickParts<T>& parts, T* out) {
     for (std::size_t x = 0; x < kSamples; ++x)
         for (std::size_t y = 0; y < kSamples; ++y) {
-            const std::size_t part = (x == kEdge ? 4U : 0U) | (y == kEdge ? 2U : 0U);
-            const std::size_t row = (x % kEdge * kEdge + y % kEdge) * kEdge;
+            const std::size_t part = (x == kEdge ? 2U : 0U) | (y == kEdge ? 1U : 0U);
+            const std::size_t column = x % kEdge * kEdge + y % kEdge;
+            const std::size_t row = column * kEdge;
             // Lengths known to the compiler: a call to copy a row costs more than the copy.
             if (const LeafSamples<T>* leaf = parts.leaf[part]; leaf != nullptr)
                 std::copy_n(leaf->value.data() + row, kEdge, out);
             else
                 std::fill_n(out, kEdge, parts.tile[part]);
-            const LeafSamples<T>* next = parts.leaf[part | 1];
-            out[kEdge] = next != nullptr ? next->value[row] : parts.tile[part | 1];
+            const Cap<T>& cap = parts.cap[part];
+            out[kEdge] = cap.value != nullptr ? cap.value[column * cap.stride] : parts.cap_tile[part];
             out += kSamples;
         }
 }

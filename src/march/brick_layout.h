@@ -26,21 +26,46 @@ struct LeafSamples {
     std::array<std::uint64_t, 8> inside;
 };
 
+/// The same of the plane of 8^2 samples above a leaf: x slowest; bit 8 y of word x.
+template <typename T>
+struct CapSamples {
+    std::array<T, LeafSource::kCapSamples> value;
+    std::array<std::uint64_t, 8> inside;
+};
+
 /// Converts 512 samples in world units. `scale` is in quanta a world unit; floats are kept and it is ignored. Nearest
 /// quantum, but samples below zero stay below zero; what is beyond the band is put at its edge. Returns false if one is
 /// no finite number.
 bool convert(const float* samples, float scale, LeafSamples<float>& out);
 bool convert(const float* samples, float scale, LeafSamples<std::int16_t>& out);
+/// The same of 64.
+bool convert(const float* samples, float scale, CapSamples<float>& out);
+bool convert(const float* samples, float scale, CapSamples<std::int16_t>& out);
 /// One sample.
 float convert(float sample, float scale, float);
 std::int16_t convert(float sample, float scale, std::int16_t);
 
-/// What a brick's 9^3 samples are taken from: the leaf itself, which there is, and its neighbours at +x, +y and +z,
-/// index x << 2 | y << 1 | z. Where there is none, all samples are `tile`.
+/// The plane of samples above a leaf, in the next leaf or by itself.
+template <typename T>
+struct Cap {
+    const T* value = nullptr;
+    std::size_t stride = 1;                 ///< from one (x, y) to the next, y fastest
+    const std::uint64_t* inside = nullptr;  ///< 8 words; only bits 8 y count
+
+    Cap() = default;
+    explicit Cap(const LeafSamples<T>& next)
+        : value(next.value.data()), stride(LeafSource::kLeafEdge), inside(next.inside.data()) {}
+    explicit Cap(const CapSamples<T>& cap) : value(cap.value.data()), inside(cap.inside.data()) {}
+};
+
+/// What a brick's 9^3 samples are taken from: the leaf itself and its neighbours at +x and +y, index x << 1 | y, and
+/// what is above each. Where there is none, all samples are the tile.
 template <typename T>
 struct BrickParts {
-    std::array<const LeafSamples<T>*, 8> leaf{};
-    std::array<T, 8> tile{};
+    std::array<const LeafSamples<T>*, 4> leaf{};
+    std::array<T, 4> tile{};
+    std::array<Cap<T>, 4> cap{};
+    std::array<T, 4> cap_tile{};
 };
 
 /// A bit for each of 8^3 cells: Mask64 of each 4^3 of them, x slowest.

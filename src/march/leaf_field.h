@@ -1,6 +1,8 @@
 // The seam between a level set that nobody has sampled yet and its bricks: samples are made where rays come.
 #pragma once
 
+#include "march/leaf_source.h"
+
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -18,6 +20,13 @@ struct BrickMap {
     std::vector<std::uint64_t> masks;  ///< of each, a Mask64 of its bricks; x slowest, z fastest
 };
 
+/// Samples in world units: of a leaf, x slowest, z fastest, and of the plane above it, x slowest. The bricks below a
+/// leaf need no more of it than that plane, and where samples are made it costs an eighth of the leaf.
+struct FieldSamples {
+    alignas(64) std::array<float, LeafSource::kLeafSamples> leaf;
+    alignas(64) std::array<float, LeafSource::kCapSamples> above;
+};
+
 /// A level set that can be sampled anywhere, a leaf of 8^3 at a time, and knows roughly where its surface is. Immutable
 /// while rays are traced, and safe to ask from several threads.
 class LeafField {
@@ -31,9 +40,9 @@ public:
         (void)macro;
         return true;
     }
-    /// The samples of the leaf from this index-space coordinate (multiples of 8) in world units, x slowest, z fastest,
-    /// written to `scratch`, which has room for 512. Null if all of them are `background()`.
-    virtual const float* samples(const openvdb::Coord& origin, float* scratch) const = 0;
+    /// The samples of the leaf from this index-space coordinate (multiples of 8). False if all of them are
+    /// `background()`; then they are not written.
+    virtual bool samples(const openvdb::Coord& origin, FieldSamples& out) const = 0;
     /// What is beyond the narrow band outside, world units.
     virtual float background() const = 0;
     virtual const openvdb::math::Transform& transform() const = 0;

@@ -15,6 +15,7 @@ class LeafSource {
 public:
     static constexpr int kLeafEdge = 8;
     static constexpr std::size_t kLeafSamples = 512;
+    static constexpr std::size_t kCapSamples = 64;  ///< of one plane
 
     virtual ~LeafSource() = default;
     virtual std::size_t leafCount() const = 0;

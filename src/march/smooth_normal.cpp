@@ -27,9 +27,9 @@ private:
 };
 
 // Keeps the leaves lately asked for: a megabyte, once a hit asks.
-class FieldSamples final : public SampleReader {
+class FieldReader final : public SampleReader {
 public:
-    explicit FieldSamples(const LeafField& field) : field_(field) {}
+    explicit FieldReader(const LeafField& field) : field_(field) {}
     float at(const openvdb::Coord& place) override {
         if (leaves_.empty()) leaves_.resize(std::size_t{kSide} * kSide * kSide);
         const openvdb::Coord origin = place & ~(kEdge - 1);
@@ -37,12 +37,12 @@ public:
         Leaf& leaf = leaves_[(part(0) * kSide + part(1)) * kSide + part(2)];
         if (leaf.origin != origin) {
             leaf.origin = openvdb::Coord::max();  // in case that making throws
-            leaf.samples = field_.samples(origin, leaf.scratch.data());
+            leaf.uniform = !field_.samples(origin, leaf.samples);
             leaf.origin = origin;
         }
-        if (leaf.samples == nullptr) return field_.background();
+        if (leaf.uniform) return field_.background();
         const openvdb::Coord in = place - origin;
-        return leaf.samples[(in[0] * kEdge + in[1]) * kEdge + in[2]];
+        return leaf.samples.leaf[static_cast<std::size_t>((in[0] * kEdge + in[1]) * kEdge + in[2])];
     }
 
 private:
@@ -50,8 +50,8 @@ private:
     static constexpr unsigned kSide = 8;
     struct Leaf {
         openvdb::Coord origin = openvdb::Coord::max();
-        const float* samples = nullptr;  // in scratch, or elsewhere; null: background
-        std::array<float, std::size_t{kEdge} * kEdge * kEdge> scratch;
+        bool uniform = false;  // background, all of it
+        FieldSamples samples;
     };
     const LeafField& field_;
     std::vector<Leaf> leaves_;
@@ -66,7 +66,7 @@ SmoothNormal::SmoothNormal(const openvdb::FloatGrid& grid)
     : SmoothNormal(grid.transform(), std::make_unique<GridSamples>(grid)) {}
 
 SmoothNormal::SmoothNormal(const LeafField& field)
-    : SmoothNormal(field.transform(), std::make_unique<FieldSamples>(field)) {}
+    : SmoothNormal(field.transform(), std::make_unique<FieldReader>(field)) {}
 
 double SmoothNormal::field(const glm::dvec3& p) {
     const openvdb::Coord cell = openvdb::Coord::floor(openvdb::Vec3d(p.x, p.y, p.z));

@@ -86,7 +86,8 @@ private:
         leaf.active = {};
         if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
             std::array<float, voxelize::Leaf::SIZE> values;
-            voxelize::storeLeaf(maker_.column().planes(), field_.background(), values.data(), leaf.active.data());
+            voxelize::storeLeaf(maker_.column().planes(), values.data());
+            voxelize::maskWithin(values.data(), field_.background(), leaf.active.data());
             maker_.column().owners(leaf.bead);
             for (std::uint32_t& rank : leaf.bead)
                 if (rank != kEnd) rank = field_.layout().stack.beads[rank];

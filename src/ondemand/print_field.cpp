@@ -52,14 +52,16 @@ PrintField::PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::spa
 
 PrintField::~PrintField() = default;
 
-const float* PrintField::samples(const openvdb::Coord& origin, float* scratch) const {
+bool PrintField::samples(const openvdb::Coord& origin, march::FieldSamples& out) const {
     Worker& worker = threads_->workers.local();
     ++worker.made;
-    const voxelize::LeafContent content = worker.maker.make(origin, end_);
-    if (content == voxelize::LeafContent::outside) return nullptr;
-    std::uint64_t mask[voxelize::Leaf::NodeMaskType::WORD_COUNT];
-    voxelize::storeLeaf(worker.maker.column().planes(), background_, scratch, mask);
-    return scratch;
+    const voxelize::LeafContent content = worker.maker.make(origin, end_, voxelize::kMostPlanes);
+    if (content == voxelize::LeafContent::outside) return false;
+    const voxelize::LeafPlanes& planes = worker.maker.column().planes();
+    voxelize::storeLeaf(planes, out.leaf.data());
+    static_assert(voxelize::kColumnSamples == march::LeafSource::kCapSamples);
+    std::copy_n(planes.plane[voxelize::kLeafPlanes].v, voxelize::kColumnSamples, out.above.data());
+    return true;
 }
 
 std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {

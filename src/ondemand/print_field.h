@@ -43,7 +43,7 @@ public:
 
     const march::BrickMap& bricks() const override { return map_.bricks; }
     bool shows(std::size_t macro) const override { return map_.first_bead[macro] < end_; }
-    const float* samples(const openvdb::Coord& origin, float* scratch) const override;
+    bool samples(const openvdb::Coord& origin, march::FieldSamples& out) const override;
     float background() const override { return background_; }
     const openvdb::math::Transform& transform() const override { return *transform_; }
     openvdb::CoordBBox activeBox() const override { return active_; }

@@ -55,13 +55,13 @@ std::size_t PrintLayout::bytes() const {
            stack.layers.capacity() * sizeof(voxelize::Layer) + stack.welds.capacity() * sizeof(voxelize::Weld);
 }
 
-voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_t end) {
+voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_t end, std::size_t planes) {
     const auto column = layout_.columnOf(origin[0], origin[1]);
     if (!column) return voxelize::LeafContent::outside;
     const voxelize::LayerStack& stack = layout_.stack;
     const auto height = [this](int k) { return layout_.lattice.origin_z + k * layout_.lattice.voxel_size; };
     const double z_min = height(origin[2]);
-    const double z_max = height(origin[2] + kLeafDim - 1);
+    const double z_max = height(origin[2] + static_cast<int>(planes) - 1);
     // Ranks ascend with the layers' planes: what matters to this leaf is one run of them. A column is opened for that
     // alone, not for its hundreds of layers.
     const auto below = [](const voxelize::Layer& layer, double z) { return layer.centre_z < z; };
@@ -88,7 +88,7 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     }
     if (ranks.empty()) return voxelize::LeafContent::outside;
     column_.open(origin[0], origin[1], ranks, end);
-    return column_.evaluate(origin[2] >> 3);
+    return column_.evaluate(origin[2] >> 3, planes);
 }
 
 }  // namespace stratum::ondemand

@@ -46,8 +46,10 @@ public:
     explicit LeafMaker(const PrintLayout& layout, bool owners = false)
         : layout_(layout), column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit, owners) {}
 
-    /// The leaf from this index-space coordinate, of the beads below index `end`. The values are column().planes().
-    voxelize::LeafContent make(const openvdb::Coord& origin, std::uint32_t end);
+    /// The leaf from this index-space coordinate, and perhaps the plane above it, of the beads below index `end`. The
+    /// values are column().planes().
+    voxelize::LeafContent make(const openvdb::Coord& origin, std::uint32_t end,
+                               std::size_t planes = voxelize::kLeafPlanes);
     const voxelize::LeafColumn& column() const { return column_; }
 
 private:

@@ -39,26 +39,32 @@ double restingHeight(const march::Intersector& print) {
     constexpr std::size_t kSide = 128;
     const march::Box box = print.bounds();
     const glm::dvec3 size = box.max - box.min;
-    std::array<double, kSide> lowest_of{};
-    parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {
-        const auto tracer = print.makeTracer();
-        std::array<march::Ray, kSide> rays;
-        std::array<march::Hit, kSide> hits;
-        for (std::size_t i = first; i != last; ++i) {
-            for (std::size_t j = 0; j < kSide; ++j) {
-                rays[j].origin = {box.min.x + size.x * (static_cast<double>(i) + 0.5) / kSide,
-                                  box.min.y + size.y * (static_cast<double>(j) + 0.5) / kSide,
-                                  box.min.z - std::max(size.z, print.voxelSize())};
-                rays[j].direction = {0.0, 0.0, 1.0};
+    const double below = std::max(size.z, print.voxelSize());
+    // No higher than it takes: what is looked at may not be there yet, and one that stands on the bed is met at once.
+    for (double reach = 8 * print.voxelSize();; reach *= 4) {
+        const bool whole = !(reach < size.z);
+        std::array<double, kSide> lowest_of{};
+        parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {
+            const auto tracer = print.makeTracer();
+            std::array<march::Ray, kSide> rays;
+            std::array<march::Hit, kSide> hits;
+            for (std::size_t i = first; i != last; ++i) {
+                for (std::size_t j = 0; j < kSide; ++j) {
+                    rays[j].origin = {box.min.x + size.x * (static_cast<double>(i) + 0.5) / kSide,
+                                      box.min.y + size.y * (static_cast<double>(j) + 0.5) / kSide, box.min.z - below};
+                    rays[j].direction = {0.0, 0.0, 1.0};
+                    rays[j].t_max = whole ? std::numeric_limits<double>::infinity() : below + reach;
+                }
+                tracer->intersectStream(rays, hits);
+                lowest_of[i] = std::numeric_limits<double>::infinity();
+                for (const march::Hit& hit : hits)
+                    if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
             }
-            tracer->intersectStream(rays, hits);
-            lowest_of[i] = std::numeric_limits<double>::infinity();
-            for (const march::Hit& hit : hits)
-                if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
-        }
-    });
-    const double lowest = *std::min_element(lowest_of.begin(), lowest_of.end());
-    return std::isfinite(lowest) ? std::clamp(lowest, box.min.z, box.max.z) : box.min.z;
+        });
+        const double lowest = *std::min_element(lowest_of.begin(), lowest_of.end());
+        if (std::isfinite(lowest)) return std::clamp(lowest, box.min.z, box.max.z);
+        if (whole) return box.min.z;
+    }
 }
 
 SceneDescription makeScene(const SceneOptions& options, const march::Intersector& print, int width, int height) {

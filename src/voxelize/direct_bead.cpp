@@ -49,17 +49,17 @@ LocalRod localRod(const gcode::Bead& bead, const BeadField& field, double drop, 
 
 }  // namespace
 
-void LeafColumn::expandDirect(const DirectBead& direct, int k0) {
+void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanField> planes) {
     const gcode::Bead& bead = toolpath_.beads[stack_.beads[direct.rank]];
     const BeadField field(toolpath_, bead);
     const double drop = sectionOf(toolpath_, bead).drop;
     // Heights count from the middle of the leaf.
     const double z_middle = sampleZ(k0) + 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
     const auto forEachPlane = [&](auto visit) {
-        for (int z = 0; z < kLeafDim; ++z) {
-            const double height = sampleZ(k0 + z);
+        for (std::size_t z = 0; z < planes.size(); ++z) {
+            const double height = sampleZ(k0 + static_cast<int>(z));
             if (height < direct.z_min || height > direct.z_max) continue;
-            visit(static_cast<float>((height - z_middle) * scale_), phi_.plane[static_cast<std::size_t>(z)]);
+            visit(static_cast<float>((height - z_middle) * scale_), planes[z]);
         }
     };
     if (field.rod()) {

@@ -222,8 +222,8 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
 
 void LeafColumn::gatherTerms(int k0) {
     terms_.clear();
-    for (int z = 0; z < kLeafDim; ++z) {
-        const double height = sampleZ(k0 + z);
+    for (std::size_t z = 0; z < terms_.planes; ++z) {
+        const double height = sampleZ(k0 + static_cast<int>(z));
         for (const double radius : radii_) {
             const double reach = radius + band_;
             const auto first = static_cast<std::uint32_t>(terms_.terms.size());
@@ -248,19 +248,24 @@ void LeafColumn::gatherTerms(int k0) {
     }
 }
 
-LeafContent LeafColumn::evaluate(int leaf_k) {
+LeafContent LeafColumn::evaluate(int leaf_k, std::size_t planes) {
     leaf_k_ = leaf_k;
     const int k0 = leaf_k * kLeafDim;
     const double z_min = sampleZ(k0);
-    const double z_max = sampleZ(k0 + kLeafDim - 1);
+    const double z_max = sampleZ(k0 + static_cast<int>(planes) - 1);
+    terms_.planes = planes;
     moveWindow(z_min, z_max);
     const auto background = static_cast<float>(band_ * scale_);
     gatherTerms(k0);
     expandLayers(terms_, background, phi_);
     while (first_direct_ < direct_.size() && direct_[first_direct_].z_max < z_min) ++first_direct_;
-    for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n)
-        if (direct_[n].z_max >= z_min) expandDirect(direct_[n], k0);
-    return clampLeaf(phi_, background);
+    for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n) {
+        if (direct_[n].z_max < z_min) continue;
+        expandDirect(direct_[n], k0, std::span(phi_.plane).first(kLeafPlanes));
+        // As the leaf above has it, to the bit: relative to that one's middle.
+        if (planes > kLeafPlanes) expandDirect(direct_[n], k0 + kLeafDim, std::span(phi_.plane).subspan(kLeafPlanes));
+    }
+    return clampLeaf(phi_, planes, background);
 }
 
 Leaf* LeafColumn::makeLeaf() const {
@@ -270,7 +275,8 @@ Leaf* LeafColumn::makeLeaf() const {
     auto* leaf = new Leaf(openvdb::PartialCreate(), origin, background, false);
     leaf->allocate();
     std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];
-    storeLeaf(phi_, background, leaf->buffer().data(), mask);
+    storeLeaf(phi_, leaf->buffer().data());
+    maskWithin(leaf->buffer().data(), background, mask);
     for (openvdb::Index w = 0; w < Leaf::NodeMaskType::WORD_COUNT; ++w)
         leaf->getValueMask().getWord<openvdb::Index64>(w) = mask[w];
     return leaf;

@@ -41,8 +41,9 @@ public:
     /// An upper bound on the leaves of a column, from z extents alone; does not open it.
     std::size_t countLeaves(std::span<const std::uint32_t> ranks);
 
-    /// Evaluates a leaf of the open column. `leaf_k` must ascend from call to call until the next open().
-    LeafContent evaluate(int leaf_k);
+    /// Evaluates a leaf of the open column, `planes` of it: its own eight, or also the one above. `leaf_k` must ascend
+    /// from call to call until the next open().
+    LeafContent evaluate(int leaf_k, std::size_t planes = kLeafPlanes);
 
     /// A new leaf with what evaluate() has just found to be surface.
     Leaf* makeLeaf() const;
@@ -82,7 +83,8 @@ private:
     void loadLayer(const ColumnLayer& source);
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
-    void expandDirect(const DirectBead& direct, int k0);
+    /// Into the planes from k0, the first of a leaf.
+    void expandDirect(const DirectBead& direct, int k0, std::span<PlanField> planes);
 
     const gcode::Toolpath& toolpath_;
     const LayerStack& stack_;

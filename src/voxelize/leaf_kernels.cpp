@@ -137,7 +137,7 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     const PlaneTerm* const terms = leaf.terms.data();
     std::uint32_t group = 0;
     std::uint32_t weld = 0;
-    for (std::size_t z = 0; z < kLeafPlanes; ++z) {
+    for (std::size_t z = 0; z < leaf.planes; ++z) {
         const std::uint32_t group_end = leaf.group_end[z];
         const std::uint32_t weld_end = leaf.weld_end[z];
         forEachVector([&](std::size_t c) HWY_ATTR {
@@ -202,19 +202,21 @@ void ExpandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& 
     });
 }
 
-LeafContent ClampLeaf(LeafPlanes& phi, float background) {
+LeafContent ClampLeaf(LeafPlanes& phi, std::size_t planes, float background) {
     const F f;
     const VF low = hn::Set(f, -background);
     const VF high = hn::Set(f, background);
     VF least = high;
     VF most = low;
-    for (PlanField& plane : phi.plane)
+    for (std::size_t z = 0; z < planes; ++z) {
+        PlanField& plane = phi.plane[z];
         forEachVector([&](std::size_t c) HWY_ATTR {
             const VF value = hn::Min(hn::Max(hn::Load(f, plane.v + c), low), high);
             least = hn::Min(least, value);
             most = hn::Max(most, value);
             hn::Store(value, f, plane.v + c);
         });
+    }
     if (hn::GetLane(hn::MinOfLanes(f, least)) >= background) return LeafContent::outside;
     if (hn::GetLane(hn::MaxOfLanes(f, most)) <= -background) return LeafContent::inside;
     return LeafContent::surface;
@@ -237,7 +239,7 @@ HWY_INLINE void maskOf(const Test& test, std::uint64_t* HWY_RESTRICT mask) {
     }
 }
 
-void StoreLeaf(const LeafPlanes& phi, float background, float* HWY_RESTRICT values, std::uint64_t* HWY_RESTRICT mask) {
+void StoreLeaf(const LeafPlanes& phi, float* HWY_RESTRICT values) {
 #if HWY_TARGET == HWY_SCALAR
     for (std::size_t z = 0; z < kLeafPlanes; ++z)
         for (std::size_t c = 0; c < kColumnSamples; ++c) values[c * kLeafPlanes + z] = phi.plane[z].v[c];
@@ -261,6 +263,9 @@ void StoreLeaf(const LeafPlanes& phi, float background, float* HWY_RESTRICT valu
             hn::StoreU(hn::InterleaveUpper(f4, b, e), f4, out + 3 * kLeafPlanes);
         }
 #endif
+}
+
+void MaskWithin(const float* HWY_RESTRICT values, float background, std::uint64_t* HWY_RESTRICT mask) {
     const F f;
     const VF high = hn::Set(f, background);
     maskOf([&](std::size_t n) HWY_ATTR { return hn::Lt(hn::Abs(hn::LoadU(f, values + n)), high); }, mask);
@@ -290,6 +295,7 @@ HWY_EXPORT(ExpandSloped);
 HWY_EXPORT(ExpandRod);
 HWY_EXPORT(ClampLeaf);
 HWY_EXPORT(StoreLeaf);
+HWY_EXPORT(MaskWithin);
 HWY_EXPORT(MaskFrom);
 HWY_EXPORT(KernelTarget);
 
@@ -327,9 +333,12 @@ void expandSloped(const PlanField& sides2, const PlanField& centre_z, const Slop
 void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandRod)(grid, rod, z, phi);
 }
-LeafContent clampLeaf(LeafPlanes& phi, float background) { return HWY_DYNAMIC_DISPATCH(ClampLeaf)(phi, background); }
-void storeLeaf(const LeafPlanes& phi, float background, float* values, std::uint64_t* mask) {
-    HWY_DYNAMIC_DISPATCH(StoreLeaf)(phi, background, values, mask);
+LeafContent clampLeaf(LeafPlanes& phi, std::size_t planes, float background) {
+    return HWY_DYNAMIC_DISPATCH(ClampLeaf)(phi, planes, background);
+}
+void storeLeaf(const LeafPlanes& phi, float* values) { HWY_DYNAMIC_DISPATCH(StoreLeaf)(phi, values); }
+void maskWithin(const float* values, float background, std::uint64_t* mask) {
+    HWY_DYNAMIC_DISPATCH(MaskWithin)(values, background, mask);
 }
 void maskFrom(const float* values, float least, std::uint64_t* mask) {
     HWY_DYNAMIC_DISPATCH(MaskFrom)(values, least, mask);

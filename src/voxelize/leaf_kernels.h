@@ -4,7 +4,8 @@
 // 754 rounds exactly (no fused multiply-add, no estimate), so all instruction sets give the same bytes.
 //
 // A column has 64 samples, x * 8 + y as in a leaf; q is a sample relative to the middle of the column. A leaf is kept
-// as eight planes of 64, plane by plane in z, until it is stored. World units throughout.
+// as eight planes of 64, plane by plane in z, until it is stored; who needs it evaluates the plane above it as well.
+// World units throughout.
 #pragma once
 
 #include "voxelize/local_path.h"
@@ -18,15 +19,16 @@ namespace stratum::voxelize {
 
 constexpr std::size_t kColumnSamples = 64;
 constexpr std::size_t kLeafPlanes = 8;
+constexpr std::size_t kMostPlanes = kLeafPlanes + 1;
 
 /// 64 values of a column.
 struct alignas(64) PlanField {
     float v[kColumnSamples];
 };
 
-/// 512 values of a leaf, plane by plane.
+/// 512 values of a leaf, plane by plane, and perhaps the plane above it.
 struct alignas(64) LeafPlanes {
-    PlanField plane[kLeafPlanes];
+    PlanField plane[kMostPlanes];
 };
 
 /// 64 bead ranks.
@@ -69,11 +71,12 @@ struct PlaneWeldTerm {
 };
 /// What layers give to a leaf. Plane z has groups group_end[z - 1]..group_end[z] - 1 and welds likewise, from 0.
 struct LeafTerms {
+    std::size_t planes = kLeafPlanes;  ///< or kMostPlanes
     std::vector<PlaneTerm> terms;
     std::vector<PlaneTerms> groups;
     std::vector<PlaneWeldTerm> welds;
-    std::uint32_t group_end[kLeafPlanes] = {};
-    std::uint32_t weld_end[kLeafPlanes] = {};
+    std::uint32_t group_end[kMostPlanes] = {};
+    std::uint32_t weld_end[kMostPlanes] = {};
 
     void clear() {
         terms.clear();
@@ -106,10 +109,14 @@ void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& 
 /// What a finished leaf holds.
 enum class LeafContent : std::uint8_t { outside, inside, surface };
 
-/// Clamps to +-background and says what the leaf holds. Surface: some value is strictly within the background.
-LeafContent clampLeaf(LeafPlanes& phi, float background);
-/// Writes planes in leaf order (z fastest) and the mask of values strictly within the background, 8 words.
-void storeLeaf(const LeafPlanes& phi, float background, float* values, std::uint64_t* mask);
+/// Clamps so many planes to +-background and says what they hold. Surface: some value is strictly within the
+/// background.
+LeafContent clampLeaf(LeafPlanes& phi, std::size_t planes, float background);
+/// Writes the leaf's planes in leaf order (z fastest).
+void storeLeaf(const LeafPlanes& phi, float* values);
+
+/// The 8 words of the mask of values strictly within the background, in leaf order.
+void maskWithin(const float* values, float background, std::uint64_t* mask);
 
 /// The 8 words of the mask of values of `least` or more, in leaf order.
 void maskFrom(const float* values, float least, std::uint64_t* mask);

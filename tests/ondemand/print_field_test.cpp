@@ -56,12 +56,21 @@ void expectSameSamples(const PrintField& field, const openvdb::FloatGrid& grid) 
     std::atomic<std::size_t> made{0};
     parallelFor(planes, 1, [&](std::size_t first, std::size_t last) {
         const auto accessor = grid.getConstAccessor();
-        std::vector<float> scratch(512);
+        const auto made_here = std::make_unique<march::FieldSamples>();
         for (std::size_t plane = first; plane != last; ++plane)
             for (int j = leaves.min()[1]; j <= leaves.max()[1]; j += 8)
                 for (int k = leaves.min()[2]; k <= leaves.max()[2]; k += 8) {
                     const openvdb::Coord at(leaves.min()[0] + 8 * static_cast<int>(plane), j, k);
-                    const float* samples = field.samples(at, scratch.data());
+                    const bool any = field.samples(at, *made_here);
+                    const float* samples = any ? made_here->leaf.data() : nullptr;
+                    // The plane above: the first one of the next leaf.
+                    for (int x = 0; x < 8; ++x)
+                        for (int y = 0; y < 8; ++y) {
+                            const float there = accessor.getValue(at.offsetBy(x, y, 8));
+                            const float told =
+                                any ? made_here->above[static_cast<std::size_t>(8 * x + y)] : field.background();
+                            wrong += there == told ? 0 : 1;
+                        }
                     const auto* leaf = grid.tree().probeConstLeaf(at);
                     if (leaf == nullptr) {
                         // A tile, of one value.

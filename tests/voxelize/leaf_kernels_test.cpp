@@ -157,8 +157,9 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
             slopedLine(grid, lines[0], 0.05f, 0.3f, sides, centre);
             expandSloped(sides, centre, {0.9f, 0.004f, 0.1f}, dz, r.planes.plane[z]);
         }
-        EXPECT_EQ(clampLeaf(r.planes, 0.3f), LeafContent::surface);
-        storeLeaf(r.planes, 0.3f, r.values, r.mask);
+        EXPECT_EQ(clampLeaf(r.planes, kLeafPlanes, 0.3f), LeafContent::surface);
+        storeLeaf(r.planes, r.values);
+        maskWithin(r.values, 0.3f, r.mask);
         maskFrom(r.values, 0.05f, r.above);
         names += std::string(kernelTarget()) + " ";
         results.push_back(r);
