@@ -31,27 +31,42 @@ HWY_INLINE void store(hn::Vec<Floats> v, float scale, std::int16_t* out) {
     hn::StoreU(hn::DemoteTo(narrow, kept), narrow, out);
 }
 
+// 64 samples. `inside` gets a bit for each that is below zero. False if one is no finite number.
 template <typename T>
-bool convertAll(const float* samples, float scale, LeafSamples<T>& out) {
-    constexpr std::size_t kEdge = LeafSource::kLeafEdge;
+HWY_INLINE bool convertSlab(const float* samples, float scale, T* out, std::uint64_t& inside) {
     const Floats d;
-    const std::size_t lanes = hn::Lanes(d);
     const auto largest = hn::Set(d, std::numeric_limits<float>::max());
     auto finite = hn::Eq(largest, largest);
-    for (std::size_t x = 0; x < kEdge; ++x) {
-        std::uint64_t inside = 0;
-        for (std::size_t n = 0; n < kEdge * kEdge; n += lanes) {
-            const std::size_t at = x * kEdge * kEdge + n;
-            const auto v = hn::LoadU(d, samples + at);
-            finite = hn::And(finite, hn::Le(hn::Abs(v), largest));
-            store(v, scale, out.value.data() + at);
-            alignas(8) std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Lt(v, hn::Zero(d)), bits);
-            inside |= static_cast<std::uint64_t>(bits[0]) << n;
-        }
-        out.inside[x] = inside;
+    inside = 0;
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
+        const auto v = hn::LoadU(d, samples + n);
+        finite = hn::And(finite, hn::Le(hn::Abs(v), largest));
+        store(v, scale, out + n);
+        alignas(8) std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Lt(v, hn::Zero(d)), bits);
+        inside |= static_cast<std::uint64_t>(bits[0]) << n;
     }
     return hn::AllTrue(d, finite);
+}
+
+template <typename T>
+bool convertAll(const float* samples, float scale, LeafSamples<T>& out) {
+    bool finite = true;
+    for (std::size_t x = 0; x < out.inside.size(); ++x)
+        finite &= convertSlab(samples + 64 * x, scale, out.value.data() + 64 * x, out.inside[x]);
+    return finite;
+}
+
+template <typename T>
+bool convertCap(const float* samples, float scale, CapSamples<T>& out) {
+    std::uint64_t inside = 0;
+    const bool finite = convertSlab(samples, scale, out.value.data(), inside);
+    // The eight bits of an x, spread to the lowest of eight bytes: first into the byte of their number.
+    for (std::size_t x = 0; x < out.inside.size(); ++x) {
+        const std::uint64_t spread = (inside >> (8 * x) & 0xff) * 0x0101010101010101 & 0x8040201008040201;
+        out.inside[x] = (spread + 0x7f7f7f7f7f7f7f7f) >> 7 & 0x0101010101010101;
+    }
+    return finite;
 }
 
 bool convertFloats(const float* samples, float scale, LeafSamples<float>& out) {
@@ -59,6 +74,12 @@ bool convertFloats(const float* samples, float scale, LeafSamples<float>& out) {
 }
 bool convertQuanta(const float* samples, float scale, LeafSamples<std::int16_t>& out) {
     return convertAll(samples, scale, out);
+}
+bool convertFloatCap(const float* samples, float scale, CapSamples<float>& out) {
+    return convertCap(samples, scale, out);
+}
+bool convertQuantaCap(const float* samples, float scale, CapSamples<std::int16_t>& out) {
+    return convertCap(samples, scale, out);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -77,6 +98,8 @@ constexpr std::uint64_t kColumn = 0x0101010101010101;  // z = 0 of all y
 
 HWY_EXPORT(convertFloats);
 HWY_EXPORT(convertQuanta);
+HWY_EXPORT(convertFloatCap);
+HWY_EXPORT(convertQuantaCap);
 
 bool convert(const float* samples, float scale, LeafSamples<float>& out) {
     return HWY_DYNAMIC_DISPATCH(convertFloats)(samples, scale, out);
@@ -85,30 +108,11 @@ bool convert(const float* samples, float scale, LeafSamples<std::int16_t>& out) 
     return HWY_DYNAMIC_DISPATCH(convertQuanta)(samples, scale, out);
 }
 
-namespace {
-
-template <typename T>
-bool convertCap(const float* samples, float scale, CapSamples<T>& out) {
-    constexpr std::size_t kRow = LeafSource::kLeafEdge;
-    bool finite = true;
-    for (std::size_t x = 0; x < kRow; ++x) {
-        std::uint64_t inside = 0;
-        for (std::size_t y = 0; y < kRow; ++y) {
-            const float v = samples[x * kRow + y];
-            finite = finite && std::isfinite(v);
-            out.value[x * kRow + y] = convert(v, scale, T{});
-            inside |= static_cast<std::uint64_t>(v < 0) << (8 * y);
-        }
-        out.inside[x] = inside;
-    }
-    return finite;
+bool convert(const float* samples, float scale, CapSamples<float>& out) {
+    return HWY_DYNAMIC_DISPATCH(convertFloatCap)(samples, scale, out);
 }
-
-}  // namespace
-
-bool convert(const float* samples, float scale, CapSamples<float>& out) { return convertCap(samples, scale, out); }
 bool convert(const float* samples, float scale, CapSamples<std::int16_t>& out) {
-    return convertCap(samples, scale, out);
+    return HWY_DYNAMIC_DISPATCH(convertQuantaCap)(samples, scale, out);
 }
 
 float convert(float sample, float, float) { return sample; }

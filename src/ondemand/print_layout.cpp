@@ -19,6 +19,29 @@ double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& latti
     return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
 }
 
+// std::lower_bound of a column's ranks, beginning where it would be if they were spread evenly over all: the list is
+// rarely in a cache, and halving it would touch it all over.
+std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t rank, std::size_t of_all) {
+    const std::size_t size = ranks.size();
+    const auto guess =
+        std::min(size - 1, static_cast<std::size_t>(static_cast<double>(size) * rank / static_cast<double>(of_all)));
+    // What is before `low` is below, what is from `high` on is not.
+    std::size_t low = 0;
+    std::size_t high = size;
+    std::size_t step = 8;
+    if (ranks[guess] < rank) {
+        for (low = guess + 1; step < size - low && ranks[low + step] < rank; step *= 2) low += step + 1;
+        high = std::min(size, low + step);
+    } else {
+        for (high = guess; step < high && ranks[high - step] >= rank; step *= 2) high -= step;
+        low = high - std::min(high, step);
+    }
+    const auto begin = ranks.begin();
+    return static_cast<std::size_t>(
+        std::lower_bound(begin + static_cast<std::ptrdiff_t>(low), begin + static_cast<std::ptrdiff_t>(high), rank) -
+        begin);
+}
+
 }  // namespace
 
 PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, std::span<const std::uint32_t> selection,
@@ -65,22 +88,19 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     // Ranks ascend with the layers' planes: what matters to this leaf is one run of them. A column is opened for that
     // alone, not for its hundreds of layers.
     const auto below = [](const voxelize::Layer& layer, double z) { return layer.centre_z < z; };
-    const auto first =
-        std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below) - stack.layers.begin();
-    const auto last =
-        std::lower_bound(stack.layers.begin(), stack.layers.end(), z_max + layout_.reach, below) - stack.layers.begin();
+    const auto first = std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below);
+    auto last = first;
+    while (last != stack.layers.end() && last->centre_z < z_max + layout_.reach) ++last;
     const std::span<const std::uint32_t> all = layout_.bins[*column];
     const std::uint32_t end_rank = stack.first_direct;
-    const auto rankOf = [&](std::ptrdiff_t layer) {
-        return layer < std::ssize(stack.layers) ? stack.layers[static_cast<std::size_t>(layer)].first : end_rank;
-    };
-    const auto from = std::lower_bound(all.begin(), all.end(), rankOf(first));
-    const auto to = std::lower_bound(from, all.end(), rankOf(last));
-    const auto direct = std::lower_bound(to, all.end(), end_rank);
+    const auto rankOf = [&](auto layer) { return layer != stack.layers.end() ? layer->first : end_rank; };
+    const auto from = all.begin() + static_cast<std::ptrdiff_t>(firstNotBelow(all, rankOf(first), stack.beads.size()));
+    auto to = from;
+    while (to != all.end() && *to < rankOf(last)) ++to;
     std::span<const std::uint32_t> ranks(from, to);
-    if (direct != all.end()) {
+    if (end_rank < stack.beads.size() && all.back() >= end_rank) {
         ranks_.assign(from, to);
-        for (auto rank = direct; rank != all.end(); ++rank) {
+        for (auto rank = std::lower_bound(to, all.end(), end_rank); rank != all.end(); ++rank) {
             const PrintLayout::Extent& extent = layout_.direct[*rank - end_rank];
             if (extent.z_min <= z_max && extent.z_max >= z_min) ranks_.push_back(*rank);
         }

@@ -86,9 +86,13 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     window_.clear();
     welds_.clear();
     radii_.clear();
+    // A few beads are soon wanted, and lie apart in memory.
+    constexpr std::size_t kFew = 128;
+    const bool few = ranks.size() <= kFew;
     for (std::uint32_t e = 0; e < ranks.size(); ++e) {
         const std::uint32_t rank = ranks[e];
         if (stack_.beads[rank] >= end) continue;
+        if (few) __builtin_prefetch(&toolpath_.beads[stack_.beads[rank]]);
         if (rank >= stack_.first_direct) {
             const Bounds box = BeadField(toolpath_, toolpath_.beads[stack_.beads[rank]]).bounds();
             direct_.push_back({box.min[2] - band_, box.max[2] + band_, rank});

@@ -39,7 +39,9 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                 const gcode::Bead& bead = beadAt(rank);
                 const double limit = footprints.limit(bead);
                 const double across = 2 * limit / edge + 1;
-                double length = std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0);
+                const double dx = bead.x1 - bead.x0;
+                const double dy = bead.y1 - bead.y0;
+                double length = std::sqrt(dx * dx + dy * dy);
                 if (bead.arc >= 0) length = PlanPath(toolpath, bead).length();
                 part_bounds[p] += (length / edge + across) * across;
                 part_ranges[p].include(footprints.range(bead, limit));

@@ -39,6 +39,13 @@ TEST_P(BrickLayout, RoundsToTheNearestQuantumAndKeepsSigns) {
     ASSERT_TRUE(convert(samples.data(), 1, *floats));
     EXPECT_TRUE(std::equal(samples.begin(), samples.end(), floats->value.begin()));
     EXPECT_EQ(floats->inside, out->inside);
+    CapSamples<std::int16_t> cap;
+    ASSERT_TRUE(convert(samples.data(), scale, cap));
+    for (std::size_t n = 0; n < LeafSource::kCapSamples; ++n) {
+        ASSERT_EQ(cap.value[n], out->value[n]);
+        ASSERT_EQ((cap.inside[n / 8] >> (8 * (n % 8)) & 1) != 0, samples[n] < 0);
+    }
+    for (const std::uint64_t word : cap.inside) EXPECT_EQ(word & ~std::uint64_t{0x0101010101010101}, 0U);
 }
 
 TEST_P(BrickLayout, TellsSamplesThatAreNoNumbers) {
@@ -51,6 +58,8 @@ TEST_P(BrickLayout, TellsSamplesThatAreNoNumbers) {
             samples[place] = bad;
             EXPECT_FALSE(convert(samples.data(), 1, *quanta));
             EXPECT_FALSE(convert(samples.data(), 1, *floats));
+            CapSamples<std::int16_t> cap;
+            EXPECT_EQ(convert(samples.data(), 1, cap), place >= LeafSource::kCapSamples);
             samples[place] = 0.1F;
         }
     EXPECT_TRUE(convert(samples.data(), 1, *quanta));
