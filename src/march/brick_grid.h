@@ -13,9 +13,9 @@
 
 #include "march/brick_layout.h"
 #include "march/brick_slots.h"
-#include "march/huge_array.h"
 #include "march/leaf_field.h"
 #include "march/leaf_source.h"
+#include "parallel/huge_array.h"
 
 #include <openvdb/openvdb.h>
 #include <glm/vec3.hpp>

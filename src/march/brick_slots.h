@@ -9,7 +9,7 @@
 // finishes what it has begun to read, and then calls makeRoom(). Without a bound none of this costs anything.
 #pragma once
 
-#include "march/huge_array.h"
+#include "parallel/huge_array.h"
 
 #include <oneapi/tbb/rw_mutex.h>
 

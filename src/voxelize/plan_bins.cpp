@@ -94,7 +94,7 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
         }
         offsets_[c + 1] = offsets_[c] + sum;
     }
-    ranks_.resize(offsets_.back());
+    ranks_ = HugeArray<std::uint32_t>(offsets_.back());
     parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p != end; ++p) {
             std::uint32_t* places = next.data() + p * count;

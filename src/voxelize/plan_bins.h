@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath.h"
+#include "parallel/huge_array.h"
 #include "voxelize/lattice.h"
 #include "voxelize/layer_stack.h"
 
@@ -37,14 +38,14 @@ public:
     std::size_t columnsJ() const { return columns_j_; }
     std::size_t entryCount() const { return ranks_.size(); }
     std::size_t bytes() const {
-        return offsets_.capacity() * sizeof(std::size_t) + ranks_.capacity() * sizeof(std::uint32_t);
+        return offsets_.capacity() * sizeof(std::size_t) + ranks_.size() * sizeof(std::uint32_t);
     }
 
 private:
     int first_i_ = 0, first_j_ = 0;  // in columns
     std::size_t columns_i_ = 0, columns_j_ = 0;
     std::vector<std::size_t> offsets_;
-    std::vector<std::uint32_t> ranks_;
+    HugeArray<std::uint32_t> ranks_;
 };
 
 }  // namespace stratum::voxelize

@@ -11,7 +11,7 @@
 #include <new>
 #include <type_traits>
 
-namespace stratum::march {
+namespace stratum {
 
 /// A fixed number of T, all bits zero, aligned to a cache line or better. One more than asked for is there, so that
 /// vector code may read a little past the end, and index 0 always.
@@ -64,4 +64,4 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace stratum::march
+}  // namespace stratum
