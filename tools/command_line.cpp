@@ -54,7 +54,7 @@ void addVersion(CLI::App& app) {
 }
 
 void useHugePages(char** argv) {
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(STRATUM_SANITIZED)
     if (std::getenv("GLIBC_TUNABLES") != nullptr) return;
     // By its own path: through /proc the process would be listed as "exe".
     std::error_code failed;

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(STRATUM_THREAD_SANITIZER)
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -22,7 +22,7 @@ namespace stratum {
 /// and is passed on. Results must not depend on the parts: items are independent.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(STRATUM_THREAD_SANITIZER)
     // Debian's TBB is not built for ThreadSanitizer, which then sees races between everything before, in and after a
     // loop. Plain threads show it the true order, so that what it reports is ours.
     std::atomic<std::size_t> next{0};
