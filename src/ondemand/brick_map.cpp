@@ -53,10 +53,9 @@ public:
             const double radius = layer.radius * (1 + 2 * voxelize::kWeldGap);
             addRun(runOf(layer.centre_z - radius, layer.centre_z + radius), layer.first, layer.last);
         }
-        for (std::size_t n = 0; n < layout_.direct.size(); ++n) {
-            const auto rank = static_cast<std::uint32_t>(stack.first_direct + n);
-            const double band = layout_.lattice.background();
-            addRun(runOf(layout_.direct[n].z_min + band, layout_.direct[n].z_max - band), rank, rank + 1);
+        for (std::uint32_t rank = stack.first_direct; rank < stack.beads.size(); ++rank) {
+            const voxelize::Extent& extent = stack.extentOf(rank);
+            addRun(runOf(extent.z_min, extent.z_max), rank, rank + 1);
         }
     }
 

@@ -81,9 +81,9 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
         double z_min = 0;
         double z_max = 0;
         if (rank >= stack.first_direct) {
-            const PrintLayout::Extent& extent = layout_.direct[rank - stack.first_direct];
-            z_min = extent.z_min;
-            z_max = extent.z_max;
+            const voxelize::Extent& extent = stack.extentOf(rank);
+            z_min = extent.z_min - lattice.background();
+            z_max = extent.z_max + lattice.background();
         } else {
             // A bead can weld what lies below it: as far as LeafColumn::touched() says.
             const voxelize::Layer& layer = stack.layers[stack.layer[rank]];

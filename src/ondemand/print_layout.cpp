@@ -1,6 +1,5 @@
 #include "ondemand/print_layout.h"
 
-#include "voxelize/bead_field.h"
 #include "voxelize/estimate.h"
 
 #include <algorithm>
@@ -51,13 +50,7 @@ PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, st
       unit(the_unit),
       stack(voxelize::stackLayers(*toolpath, selection)),
       bins(*toolpath, stack, lattice, voxelize::availableMemory() / 4),
-      reach(reachOf(stack, lattice)) {
-    direct.reserve(stack.direct().size());
-    for (const std::uint32_t bead : stack.direct()) {
-        const voxelize::Bounds box = voxelize::BeadField(*toolpath, toolpath->beads[bead]).bounds();
-        direct.push_back({box.min[2] - lattice.background(), box.max[2] + lattice.background()});
-    }
-}
+      reach(reachOf(stack, lattice)) {}
 
 std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {
     if (bins.size() == 0) return std::nullopt;
@@ -73,7 +66,7 @@ std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {
 }
 
 std::size_t PrintLayout::bytes() const {
-    return bins.bytes() + direct.capacity() * sizeof(Extent) +
+    return bins.bytes() + stack.extents.capacity() * sizeof(voxelize::Extent) +
            (stack.beads.capacity() + stack.layer.capacity()) * sizeof(std::uint32_t) +
            stack.layers.capacity() * sizeof(voxelize::Layer) + stack.welds.capacity() * sizeof(voxelize::Weld);
 }
@@ -99,10 +92,11 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     while (to != all.end() && *to < rankOf(last)) ++to;
     std::span<const std::uint32_t> ranks(from, to);
     if (end_rank < stack.beads.size() && all.back() >= end_rank) {
+        const double band = layout_.lattice.background();
         ranks_.assign(from, to);
         for (auto rank = std::lower_bound(to, all.end(), end_rank); rank != all.end(); ++rank) {
-            const PrintLayout::Extent& extent = layout_.direct[*rank - end_rank];
-            if (extent.z_min <= z_max && extent.z_max >= z_min) ranks_.push_back(*rank);
+            const voxelize::Extent& extent = stack.extentOf(*rank);
+            if (extent.z_min - band <= z_max && extent.z_max + band >= z_min) ranks_.push_back(*rank);
         }
         ranks = ranks_;
     }

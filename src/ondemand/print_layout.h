@@ -33,10 +33,6 @@ struct PrintLayout {
     const voxelize::LayerStack stack;
     const voxelize::PlanBins bins;
     const double reach;  ///< mm from a layer's centre plane within which it matters to a leaf, of the thickest layer
-    struct Extent {
-        double z_min, z_max;  // mm, with the band
-    };
-    std::vector<Extent> direct;  ///< of the beads from stack.first_direct on
 };
 
 /// Evaluates leaves one at a time, wherever they are. One a thread.

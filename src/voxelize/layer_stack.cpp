@@ -92,6 +92,11 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
         group_of.push_back(last_group);
     }
     rankBeads(selection, group_of, groups, stack);
+    stack.extents.reserve(stack.direct().size());
+    for (const std::uint32_t bead : stack.direct()) {
+        const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();
+        stack.extents.push_back({box.min[2], box.max[2]});
+    }
     findWelds(stack);
     return stack;
 }

@@ -29,6 +29,11 @@ struct Weld {
 /// Planes closer than this fraction of the thinner layer's height touch (slicers print Z with three decimals).
 constexpr double kWeldGap = 0.02;
 
+/// From the lowest to the highest point of a bead's solid, mm.
+struct Extent {
+    double z_min = 0, z_max = 0;
+};
+
 /// The selected beads, ranked by layer. A bead's rank is its place in this order; bins and columns name beads by it.
 struct LayerStack {
     std::vector<Layer> layers;         ///< ascending centre_z, then radius
@@ -36,11 +41,14 @@ struct LayerStack {
     std::vector<std::uint32_t> beads;  ///< by rank: index into Toolpath::beads. Layers first, then direct beads
     std::vector<std::uint32_t> layer;  ///< by rank: index into layers; layers.size() for a direct bead
     std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
+    std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
 
     std::span<const std::uint32_t> beadsOf(const Layer& l) const {
         return std::span(beads).subspan(l.first, l.last - l.first);
     }
     std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
+    /// Of a direct bead.
+    const Extent& extentOf(std::uint32_t rank) const { return extents[rank - first_direct]; }
 };
 
 /// Groups the beads of `selection` (indices into toolpath.beads, ascending). Single-threaded.

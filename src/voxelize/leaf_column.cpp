@@ -1,7 +1,5 @@
 #include "voxelize/leaf_column.h"
 
-#include "voxelize/bead_field.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -56,8 +54,8 @@ std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
     std::uint32_t previous = std::numeric_limits<std::uint32_t>::max();
     for (const std::uint32_t rank : ranks) {
         if (rank >= stack_.first_direct) {
-            const Bounds box = BeadField(toolpath_, toolpath_.beads[stack_.beads[rank]]).bounds();
-            ranges_.push_back(leafRange(box.min[2], box.max[2]));
+            const Extent& extent = stack_.extentOf(rank);
+            ranges_.push_back(leafRange(extent.z_min, extent.z_max));
         } else if (stack_.layer[rank] != previous) {
             previous = stack_.layer[rank];
             const Layer& l = stack_.layers[previous];
@@ -94,8 +92,8 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
         if (stack_.beads[rank] >= end) continue;
         if (few) __builtin_prefetch(&toolpath_.beads[stack_.beads[rank]]);
         if (rank >= stack_.first_direct) {
-            const Bounds box = BeadField(toolpath_, toolpath_.beads[stack_.beads[rank]]).bounds();
-            direct_.push_back({box.min[2] - band_, box.max[2] + band_, rank});
+            const Extent& extent = stack_.extentOf(rank);
+            direct_.push_back({extent.z_min - band_, extent.z_max + band_, rank});
         } else if (column_layers_.empty() || column_layers_.back().layer != stack_.layer[rank]) {
             column_layers_.push_back({stack_.layer[rank], e, e + 1, false});
         } else {
