@@ -29,6 +29,8 @@ for given in "$@"; do [[ -f $given ]] && files+=("$given"); done
 "$study" geometry "$print" --layers 1:20 --points "$points" -o "$folder" "${quick[@]}"
 "$study" render "$print" -o "$folder" "${quick[@]}"
 "$study" stability -o "$folder" "${quick[@]}"
+# What capabilities cost while they are off: skipped, and said so, where there is no valgrind.
+python3 scripts/need_off.py "$bin" "$print" "$folder/need_off.csv"
 "$study" need "$print" -o "$folder" "${quick[@]}"
 "$seeds" seeds "${@:-$print}" --scenes data/scenes/roukema_*.json ${STRATUM_ENV:+--env "$STRATUM_ENV"} -o "$folder" "${quick[@]}"
 if [[ $folder == docs/studies ]]; then python3 scripts/readme_tables.py docs/studies README.md; fi
