@@ -42,10 +42,10 @@ std::vector<Representation> representations() {
 // Of one print a class only: more of the same.
 std::vector<Representation> finerPrisms() { return {{"6-gons, 8:1", 0, 6, 8}, {"10-gons, 8:1", 0, 10, 8}}; }
 
-std::vector<Representation> splits() {
+std::vector<Representation> splits(bool quick) {
     std::vector<Representation> all;
     for (const int corners : {0, 4})
-        for (const double split : {2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 0.0})
+        for (const double split : quick ? std::vector{8.0, 0.0} : std::vector{2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 0.0})
             all.push_back({fmt::format("{}, {}", corners == 0 ? "beads" : "4-gons",
                                        split > 0 ? fmt::format("{:g}:1", split) : "whole"),
                            0, corners, split});
@@ -197,7 +197,7 @@ void studySeedPrints(const SeedsOptions& options, const SeedPeers& peers, const 
     Measurements measurements(peers, common);
     if (!peers.beads) report.findings.emplace_back("beads and prisms (Embree) are left out: bench_vdbstudy has them");
     const std::vector<Representation> kinds = representations();
-    const std::vector<Representation> ways = splits();
+    const std::vector<Representation> ways = splits(common.quick);
     const fs::path pictures = common.folder / "references";
     fs::create_directories(pictures);
     double done = 0;
