@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-# Capability -> the functions that nothing else needs.
+# Capability -> the functions that nothing else needs. Classes end with "::" where others take them as arguments.
 CAPABILITIES = {
     "attributes": r"AttributeGrid|attribute_grid|summarize\(|AnnotatedTracer|Annotated",
     "smooth normals": r"SmoothNormal",
@@ -24,7 +24,7 @@ CAPABILITIES = {
     "environment tables": r"SphereDistribution|MapEnvironment|BilinearDistribution|StudioEnvironment|SkyEnvironment",
     "bed": r"BedLight|restingHeight|irradianceFromAbove|Surfaces::onBed",
     "lamps": r"RectangleLight|PointLight|DirectionalLight",
-    "layers (AOVs)": r"AovRecorder|makeLayers",
+    "layers (AOVs)": r"AovRecorder::|makeLayers\(",
     "denoiser": r"denoise",
     "checkpoints": r"Checkpoint",
     "several objects": r"SceneTracer|MultiTracer|PlacedTracer",
@@ -60,11 +60,20 @@ def functions(out, inclusive):
     return found
 
 
+def require_functions(program):
+    """A pattern that matches nothing of the program would prove nothing."""
+    names = subprocess.run(["nm", "--demangle", program], check=True, capture_output=True, text=True).stdout
+    for capability, pattern in CAPABILITIES.items():
+        if not re.search(pattern, names):
+            sys.exit(f"need_off: {program} has no function of {capability!r}; mend its pattern {pattern}")
+
+
 def main():
     binaries, print_file, csv_path = map(pathlib.Path, sys.argv[1:4])
     if not shutil.which("valgrind"):
         print("need_off: skipped, there is no valgrind", file=sys.stderr)
         return
+    require_functions(binaries / "vdbtrace")
     with tempfile.TemporaryDirectory() as folder:
         out = profile(binaries.resolve(), print_file.resolve(), pathlib.Path(folder))
         own = functions(out, False)

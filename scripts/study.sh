@@ -3,7 +3,8 @@
 # for the studies of memory and of beads beside level sets may follow, or folders of them for the latter alone:
 # scripts/study.sh [--quick] [FOLDER [PRINT.gcode|FOLDER...]]
 # Peers (Embree) take part where bench_vdbstudy is built (-DSTRATUM_BENCH=ON), light is that of $STRATUM_ENV if that names
-# a map. The tables of README.md are written anew when the studies go to docs/studies.
+# a map; $STRATUM_SEEDS may hold more options of that study, such as "--spp 4 --frames 3 --threads 1". The tables of
+# README.md are written anew when the studies go to docs/studies.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=()
@@ -29,6 +30,9 @@ for given in "$@"; do [[ -f $given ]] && files+=("$given"); done
 "$study" geometry "$print" --layers 1:20 --points "$points" -o "$folder" "${quick[@]}"
 "$study" render "$print" -o "$folder" "${quick[@]}"
 "$study" stability -o "$folder" "${quick[@]}"
+# What capabilities cost while they are off: skipped, and said so, where there is no valgrind.
+python3 scripts/need_off.py "$bin" "$print" "$folder/need_off.csv"
 "$study" need "$print" -o "$folder" "${quick[@]}"
-"$seeds" seeds "${@:-$print}" --scenes data/scenes/roukema_*.json ${STRATUM_ENV:+--env "$STRATUM_ENV"} -o "$folder" "${quick[@]}"
+# shellcheck disable=SC2086  # options, word by word
+"$seeds" seeds "${@:-$print}" --scenes data/scenes/roukema_*.json ${STRATUM_ENV:+--env "$STRATUM_ENV"} ${STRATUM_SEEDS:-} -o "$folder" "${quick[@]}"
 if [[ $folder == docs/studies ]]; then python3 scripts/readme_tables.py docs/studies README.md; fi

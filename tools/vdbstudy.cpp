@@ -112,7 +112,12 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
     seeds->add_option("--scenes", o.seeds.scenes, "Scenes of spheres, boxes and cylinders")->type_name("SCENE.json");
     seeds->add_option("--env", o.seeds.environment, "Light of the prints, as vdbtrace takes it (default studio)")
         ->type_name("SPEC|FILE");
-    seeds->add_option("--spp", o.seeds.spp, "Samples a pixel of the prints (default 32)")
+    seeds->add_option("--integrators", o.seeds.integrators, "Of the prints: path, ao (default both)")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"path", "ao"}))
+        ->type_name("NAME,...");
+    seeds->add_option("--spp", o.seeds.spp, "Samples a pixel of the path-traced prints (default 32)")
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
     seeds->add_option("--frames", o.seeds.frames, "Of each scene (default 10)")

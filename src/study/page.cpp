@@ -19,9 +19,9 @@ namespace {
 
 constexpr const char* kStyle = R"(
 body{font:15px/1.45 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}
-table{border-collapse:collapse;font-size:13px;margin:1em 0}
+table{border-collapse:collapse;font-size:13px;margin:1em 0;display:block;overflow-x:auto}
 th,td{border:1px solid #ccc;padding:2px 8px;text-align:left}td.n{text-align:right;font-variant-numeric:tabular-nums}
-th{background:#f2f2f2}tr.marked td{background:#ffd9d0}img,svg{max-width:100%;height:auto}footer{color:#666;font-size:13px})";
+th{background:#f2f2f2}tr.marked td{background:#ffd9d0}img,svg{max-width:100%;height:auto}figure{display:inline-block;margin:0 1em 1em 0}footer{color:#666;font-size:13px})";
 
 bool isNumber(const std::string& text) {
     if (text.empty()) return false;
@@ -106,8 +106,9 @@ void Page::table(const Row& columns, const std::vector<Row>& rows, std::string_v
 void Page::plot(const Plot& plot) { body_ += "<p>" + drawSvg(plot) + "</p>\n"; }
 
 void Page::picture(const std::filesystem::path& png, std::string_view caption) {
-    body_ += fmt::format("<p><img alt='{0}' src='data:image/png;base64,{1}'><br>{0}</p>\n", escapeMarkup(caption),
-                         base64(MappedFile(png).bytes()));
+    body_ +=
+        fmt::format("<figure><img alt='{0}' src='data:image/png;base64,{1}'><figcaption>{0}</figcaption></figure>\n",
+                    escapeMarkup(caption), base64(MappedFile(png).bytes()));
 }
 
 std::string Page::html() const {

@@ -16,9 +16,11 @@ namespace stratum::study {
 enum SeedPrintColumn : std::size_t {
     kPrint,
     kHash,
+    kIntegrator,
     kLight,
     kSize,
     kSpp,
+    kThreads,
     kKind,
     kExtruded,
     kEnclosed,
@@ -29,9 +31,11 @@ enum SeedPrintColumn : std::size_t {
     kConvert,
     kBuild,
     kRender,
+    kFirstLook,  ///< convert, build and a picture of one sample a pixel, in a process of their own
     kConvertWall,
     kBuildWall,
     kRenderWall,
+    kFirstLookWall,
     kRays,
     kNoise,
     kBias,
@@ -45,7 +49,13 @@ inline constexpr int kSeedSamples = 32;  ///< a pixel: what totals are told for
 /// A cell as a number; NaN if it is empty.
 double seedValue(const Row& row, SeedPrintColumn column);
 
-/// All rows of one print.
+/// What pictures are made by.
+struct SeedIntegrator {
+    std::string name;  ///< as shade::IntegratorOptions has it
+    std::string what;  ///< in words
+};
+
+/// All rows of one print and integrator.
 struct SeedPrintResult {
     std::string name;
     std::vector<Row> rows;          ///< one a representation
@@ -55,8 +65,9 @@ struct SeedPrintResult {
 
     /// Null where there is none.
     const Row* find(const std::string& kind) const;
-    /// The fastest in all of the level sets, or of the peers: of those that are exact enough for the picture, if any.
-    const Row* best(bool level_sets) const;
+    /// The one of the least CPU time, of the level sets or of the peers: of those that are exact enough for a picture
+    /// of `spp` samples (1: a first look, or kSeedSamples), if any. Null where no time was measured.
+    const Row* best(bool level_sets, int spp) const;
 };
 
 /// Small, middle or large.
@@ -64,7 +75,7 @@ const char* seedClassOf(double cm3);
 
 /// Plots, the verdict on level sets against the best peer, and everything measured. `kinds`: representations in the
 /// order of the legend.
-void addSeedPrints(Page& page, const std::vector<SeedPrintResult>& results, const std::vector<std::string>& kinds,
-                   StudyReport& report);
+void addSeedPrints(Page& page, const SeedIntegrator& integrator, const std::vector<SeedPrintResult>& results,
+                   const std::vector<std::string>& kinds, StudyReport& report);
 
 }  // namespace stratum::study

@@ -9,6 +9,7 @@
 #include "study/mesh_intersector.h"
 #include "study/print.h"
 #include "study/seeds.h"
+#include "study/thumbnail.h"
 #include "study/times.h"
 
 #include "io/error.h"
@@ -36,6 +37,7 @@ constexpr double kVoxel = 0.02;    // scene units; a pixel is 0.01 wide at a dis
 constexpr double kVisible = 0.02;  // of the scale from black to white, in a channel
 constexpr double kSlow = 20;       // CPU seconds a frame
 constexpr int kSlowFrames = 2;
+constexpr int kThumbnail = 4;  // pixels of a picture to one of the page, each way
 constexpr const char* kExact = "SDF, by formula";
 constexpr const char* kLevelSet = "level set, brick";
 
@@ -176,6 +178,7 @@ SceneResult measureScene(const std::string& path, const SeedPeers& peers, int fr
     const int height = file.render.height;
     SceneResult result;
     result.name = fs::path(path).stem().string();
+    result.picture = common.folder / "references" / (result.name + "_small.png");
     const Row head{fs::path(path).filename().string(), shortHash(path), fmt::format("{}x{}", width, height)};
     struct Ready {
         Traced traced;
@@ -191,7 +194,7 @@ SceneResult measureScene(const std::string& path, const SeedPeers& peers, int fr
         const auto scene = describe(file, *traced.intersector, width, height);
         const shade::Film film = shade::render(*traced.intersector, scene, file.render).film;
         fs::create_directories(common.folder / "references");
-        shade::PictureFile(common.folder / "references" / (result.name + ".png")).write(film, {});
+        shade::PictureFile(result.picture).write(thumbnail(film, kThumbnail), {});
         exact = displayed(film);
         return *exact;
     };
@@ -238,7 +241,6 @@ SceneResult measureScene(const std::string& path, const SeedPeers& peers, int fr
         }
         if (!found.empty()) result.all.emplace_back(all[n], summaryOf(found));
     }
-    result.picture = common.folder / "references" / (result.name + ".png");
     if (!fs::exists(result.picture)) exactPicture();
     return result;
 }

@@ -15,11 +15,12 @@
 namespace stratum::study {
 
 struct SeedsOptions {
-    std::vector<std::string> scenes;  ///< scene files of spheres, boxes and cylinders
-    std::vector<std::string> prints;  ///< G-code files, or folders of them
-    std::string environment;          ///< of the prints' pictures, see shade::makeEnvironment; empty: studio
-    int spp = 0;                      ///< of the prints' pictures; 0: 32, or 4 if quick. Totals are told for 32
-    int frames = 0;                   ///< of each scene; 0: 10, or 2 if quick
+    std::vector<std::string> scenes;       ///< scene files of spheres, boxes and cylinders
+    std::vector<std::string> prints;       ///< G-code files, or folders of them
+    std::string environment;               ///< of the prints' pictures, see shade::makeEnvironment; empty: studio
+    std::vector<std::string> integrators;  ///< of the prints' pictures: path, ao; empty: both
+    int spp = 0;     ///< of the prints' path-traced pictures; 0: 32, or 4 if quick. Totals are told for 32
+    int frames = 0;  ///< of each scene; 0: 10, or 2 if quick
 };
 
 /// seeds_scenes.csv, seeds_prints.csv and seeds.html. Peers that this program has not are named in the findings, and

@@ -4,6 +4,7 @@
 #include "io/error.h"
 #include "scratch_folder.h"
 #include "study/mesh_intersector.h"
+#include "study/seed_print_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -67,15 +68,85 @@ TEST(Seeds, MeasuresAFolderOfPrints) {
     common.quick = true;
     SeedsOptions options;
     options.prints = {prints.path().string()};
+    common.threads = 2;
+    options.integrators = {"ao"};  // path tracing tabulates its material for each row
     const StudyReport report = studySeeds(options, {}, common);
-    EXPECT_EQ(report.rows, 4U);  // two voxels a layer, and four, kept and on demand
-    const auto rows = rowsOf(folder.path() / "seeds_prints.csv", 5);
-    const Row row = rows.at("level set");
-    EXPECT_NEAR(std::stod(row.at(7)), 0.71, 0.05);  // cm3 enclosed
-    EXPECT_GT(std::stod(row.at(14)), 0);
-    EXPECT_EQ(row.at(18), rows.at("level set on demand").at(18)) << "rays of the same picture";
+    EXPECT_EQ(report.rows, 4U);  // two voxels a layer, and four, whole and on demand
+    const auto rows = rowsOf(folder.path() / "seeds_prints.csv", kKind);
+    const Row& whole = rows.at("level set");
+    const Row& on_demand = rows.at("level set on demand");
+    EXPECT_NEAR(seedValue(whole, kEnclosed), 0.71, 0.05);
+    EXPECT_EQ(whole[kRays], on_demand[kRays]) << "rays of the same picture";
+    for (const Row& row : {whole, on_demand}) {
+        EXPECT_GT(seedValue(row, kRender), 0);
+        EXPECT_GT(seedValue(row, kFirstLook), seedValue(row, kRender) / 4) << "one sample of four, and more";
+        EXPECT_EQ(row[kThreads], "2");
+        EXPECT_EQ(row[kIntegrator], "ao");
+        EXPECT_EQ(row[kLight], "none");
+    }
+    // One primary ray a sample and at most one more.
+    EXPECT_LE(seedValue(whole, kRays), 2 * 64 * 48 * 4);
     EXPECT_TRUE(std::filesystem::exists(report.html));
     EXPECT_EQ(studySeeds(options, {}, common).resumed, 4U);
+    options.integrators = {"normal"};
+    EXPECT_THROW(studySeeds(options, {}, common), UsageError);
+}
+
+// Rows as they might have been measured: a level set that takes long to make and is quick to look at, and a peer.
+Row measured(const char* kind, double convert, double render, double look, double noise, double bias) {
+    Row row(kSeries + 1);
+    row[kKind] = kind;
+    row[kSpp] = "32";
+    row[kRead] = "0.5";
+    row[kPrimitives] = row[kBytes] = row[kPeak] = row[kRays] = row[kExtruded] = "1";
+    const auto set = [&row](double value, SeedPrintColumn cpu, SeedPrintColumn wall) {
+        row[cpu] = row[wall] = std::to_string(value);
+    };
+    set(convert, kConvert, kConvertWall);
+    set(0, kBuild, kBuildWall);
+    set(render, kRender, kRenderWall);
+    set(look, kFirstLook, kFirstLookWall);
+    row[kNoise] = std::to_string(noise);
+    row[kBias] = std::to_string(bias);
+    return row;
+}
+
+TEST(Seeds, TellsWhereALevelSetIsAhead) {
+    SeedPrintResult print;
+    print.name = "block";
+    print.enclosed = 99.6;  // a model of 100 that was sliced
+    // From 3.2 + n / 10 to 1 + n / 2: 2.2 seconds of making, paid back at 0.4 a sample, so ahead from 5.5 samples on.
+    print.rows = {measured("level set", 3.2, 3.2, 3.3, 0.01, 0.001), measured("beads, 8:1", 1, 16, 1.5, 0.01, 0),
+                  measured("4-gons, 8:1", 0.5, 8, 0.75, 0.01, 0.1)};
+    EXPECT_EQ((*print.best(false, 32))[kKind], "beads, 8:1") << "the prisms' bias is above their noise";
+    EXPECT_EQ((*print.best(false, 1))[kKind], "4-gons, 8:1") << "of one sample it is not";
+    StudyReport report;
+    Page page("", {});
+    addSeedPrints(page, {"ao", "ambient occlusion"}, {print}, {"level set"}, report);
+    const std::string html = page.html();
+    ASSERT_EQ(report.findings.size(), 2U);
+    EXPECT_NE(report.findings[0].find("below noise: 1 of 1"), std::string::npos) << report.findings[0];
+    EXPECT_NE(report.findings[1].find("best peer: 0 of 1"), std::string::npos) << report.findings[1];
+    EXPECT_NE(html.find("2.66"), std::string::npos) << "(1 + 16) / (3.2 + 3.2)";
+    EXPECT_NE(html.find("from 6 spp"), std::string::npos);
+    EXPECT_NE(html.find("0.23"), std::string::npos) << "0.75 / 3.3";
+    EXPECT_NE(html.find("slower"), std::string::npos);
+}
+
+TEST(Seeds, SaysNothingOfWhatWasNotMeasured) {
+    SeedPrintResult print;
+    print.enclosed = 250;
+    print.rows = {measured("level set", 1, 3.2, 0, 0.01, 0), measured("beads, 8:1", 1, 16, 0, 0.01, 0)};
+    for (Row& row : print.rows) row[kFirstLook] = row[kFirstLookWall] = "";
+    EXPECT_EQ(print.best(true, 1), nullptr);
+    StudyReport report;
+    Page page("", {});
+    addSeedPrints(page, {"path", "path tracing"}, {print}, {"level set"}, report);
+    EXPECT_EQ(report.findings.size(), 1U);
+    print.enclosed = 98;
+    report.findings.clear();
+    addSeedPrints(page, {"path", "path tracing"}, {print}, {"level set"}, report);
+    EXPECT_TRUE(report.findings.empty()) << "the aims are for large prints";
 }
 
 TEST(Seeds, SaysWhatItNeeds) {
