@@ -403,6 +403,7 @@ void BrickGrid::measureEmptySpace() {
     for (MacroCell& macro : macro_cells_) macro.empty_radius = macro.bricks != 0 ? 0 : kFar;
     const auto relax = [&](int x, int y, int z, int sign) {
         MacroCell& macro = macro_cells_[macroIndex(x, y, z)];
+        if (macro.empty_radius == 0) return;
         for (int n = 1; n <= 13; ++n) {
             // The 13 neighbours that precede in raster order, or their mirror images.
             const int code = 13 - n;
