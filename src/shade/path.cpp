@@ -139,7 +139,6 @@ std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Stand& stand, floa
     if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
     const glm::vec3 way = stand.frame.toWorld(next->wi);
     Bounce bounce{&stand, surfaces_.leave(path.point, way), way, next->pdf, Color(0.0f)};
-    bounce.ray.wide = next->pdf < kWide;
     bounce.escaped = fromLamps(bounce.ray, kFar, next->pdf);
     return bounce;
 }
@@ -233,7 +232,11 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
         if (only_escape)
             for (const Bounce& bounce : bounces) {
                 const Path& path = *bounce.from->path;
-                endings.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
+                // Those that a path goes on from are not wide: where one meets a coarse surface may lie in the fine
+                // solid.
+                march::Ray ray = bounce.ray;
+                ray.wide = bounce.pdf < kWide;
+                endings.add(ray, path.throughput * bounce.escaped, path.pixel);
             }
         counts.shadow += feelers.rays.size();
         counts.bounce += bounces.size();
