@@ -8,12 +8,14 @@
 #include "march/attribute_grid.h"
 #include "march/brick_grid.h"
 #include "march/brick_intersector.h"
+#include "march/detail_intersector.h"
 #include "march/grid_axes.h"
 #include "march/level_set_file.h"
 #include "march/sdf_grid.h"
 #include "march/sdf_intersector.h"
 #include "march/sphere_intersector.h"
 #include "march/vdb_intersector.h"
+#include "march/wide_intersector.h"
 #include "ondemand/print_attributes.h"
 
 #include <fmt/format.h>
@@ -81,31 +83,66 @@ Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, st
     return report;
 }
 
-// What the bricks of a print took, after those of `before`.
-std::function<Json()> reportOf(const TracedPrint& print, const IntersectorPtr& intersector, double seconds,
-                               std::size_t cache_bytes, std::function<Json()> before) {
-    return [field = print.field, intersector, parse = print.parse_seconds, seconds, cache_bytes,
-            before = std::move(before)] {
+/// A print at one voxel size, ready for rays.
+struct LateBricks {
+    std::shared_ptr<ondemand::PrintField> field;
+    std::shared_ptr<march::Intersector> rays;
+
+    march::BrickGrid& grid() const { return *march::bricksOf(*rays); }
+};
+
+Json reportOf(const LateBricks& level, std::size_t cache_bytes) {
+    const march::BrickGrid& bricks = level.grid();
+    Json report{{"voxel_size_mm", level.field->layout().lattice.voxel_size},
+                {"bricks_listed", bricks.listedCount()},
+                {"bricks_made", bricks.brickCount()},
+                {"leaves_made", level.field->leavesMade()},
+                {"print_bytes", level.field->bytes()},
+                {"brick_bytes", bricks.bytes()}};
+    if (cache_bytes != march::BrickGrid::kNoBound)
+        report["brick_cache"] = reportOf(bricks.cache(), bricks, cache_bytes);
+    return report;
+}
+
+// What the bricks of a print took, after those of `before`: of each level, and all together.
+std::function<Json()> reportOf(std::vector<LateBricks> levels, double parse, double seconds, std::size_t cache_bytes,
+                               std::function<Json()> before) {
+    return [levels = std::move(levels), parse, seconds, cache_bytes, before = std::move(before)] {
         Json all = before ? before() : Json::array();
-        const ondemand::PrintFieldTimes& times = field->times();
-        const march::BrickGrid& bricks = *march::bricksOf(*intersector);
-        all.push_back(
-            {{"print", field->name()},
-             {"seconds",
-              {{"parse", parse},
-               {"bins", times.bins},
-               {"box", times.box},
-               {"map", times.map},
-               {"list", seconds - parse - times.bins - times.box - times.map},
-               {"bricks_all_threads", bricks.layoutSeconds()}}},
-             {"bricks_listed", bricks.listedCount()},
-             {"bricks_made", bricks.brickCount()},
-             {"leaves_made", field->leavesMade()},
-             {"printed_beads", std::min<std::size_t>(field->printed(), field->layout().toolpath->beads.size())},
-             {"print_bytes", field->bytes()},
-             {"brick_bytes", bricks.bytes()}});
-        if (cache_bytes != march::BrickGrid::kNoBound)
-            all.back()["brick_cache"] = reportOf(bricks.cache(), bricks, cache_bytes);
+        ondemand::PrintFieldTimes times;
+        double bricks_seconds = 0;
+        Json reports = Json::array();
+        for (const LateBricks& level : levels) {
+            times.bins += level.field->times().bins;
+            times.box += level.field->times().box;
+            times.map += level.field->times().map;
+            bricks_seconds += level.grid().layoutSeconds();
+            reports.push_back(reportOf(level, cache_bytes));
+        }
+        const auto sum = [&reports](const char* what) {
+            std::size_t result = 0;
+            for (const Json& report : reports) result += report[what].get<std::size_t>();
+            return result;
+        };
+        const ondemand::PrintField& field = *levels.front().field;
+        all.push_back({{"print", field.name()},
+                       {"seconds",
+                        {{"parse", parse},
+                         {"bins", times.bins},
+                         {"box", times.box},
+                         {"map", times.map},
+                         {"list", seconds - parse - times.bins - times.box - times.map},
+                         {"bricks_all_threads", bricks_seconds}}},
+                       {"bricks_listed", sum("bricks_listed")},
+                       {"bricks_made", sum("bricks_made")},
+                       {"leaves_made", sum("leaves_made")},
+                       {"printed_beads", std::min<std::size_t>(field.printed(), field.layout().toolpath->beads.size())},
+                       {"print_bytes", sum("print_bytes")},
+                       {"brick_bytes", sum("brick_bytes")}});
+        if (levels.size() > 1)
+            all.back()["levels"] = reports;
+        else if (reports.front().contains("brick_cache"))
+            all.back()["brick_cache"] = reports.front()["brick_cache"];
         return all;
     };
 }
@@ -212,34 +249,59 @@ private:
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;
-        const std::shared_ptr<march::Intersector> plain = march::makeBrickIntersector(
-            std::shared_ptr<const march::LeafField>(print.field), options_.values, options_.brick_cache);
-        march::Annotation annotation;
-        for (const std::string& name : attributes_) {
-            std::shared_ptr<const march::AttributeSource> source;
-            if (wanted(object, name)) {
-                const voxelize::Attribute attribute = ondemand::attributeNamed(name);
-                source = ondemand::makePrintAttribute(print.field, attribute);
-                shape.summaries[name] = ondemand::summarize(*print.field, attribute, print.selection);
-            }
-            annotation.attributes.push_back(std::move(source));
-        }
-        if (options_.smooth_normals) annotation.smooth_field = print.field;
-        shape.intersector = march::annotate(plain, std::move(annotation));
+        for (const std::string& name : attributes_)
+            if (wanted(object, name))
+                shape.summaries[name] =
+                    ondemand::summarize(*print.levels.back().field, ondemand::attributeNamed(name), print.selection);
+        // Each has its share of what they may take together.
+        std::size_t cache = options_.brick_cache;
+        if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size() + print.wide.size();
+        std::vector<LateBricks> bricks;
+        shape.intersector = raysOf(object, print.levels, print.eye, cache, bricks);
+        if (!print.wide.empty())
+            shape.intersector = march::makeWideIntersector(
+                shape.intersector, raysOf(object, print.wide, print.eye, cache, bricks), print.wide_from);
         const double seconds = watch_.lap();
         result_.load_seconds += print.parse_seconds;
         result_.build_seconds += seconds - print.parse_seconds;
         if (print.moments.size() > 1) {
             result_.moments = print.moments.size();
-            result_.showMoment = [field = print.field, plain, moments = print.moments](std::size_t n) {
-                march::bricksOf(*plain)->update(field->printUntil(moments[n]));
+            result_.showMoment = [bricks, moments = print.moments](std::size_t n) {
+                for (const LateBricks& level : bricks) level.grid().update(level.field->printUntil(moments[n]));
             };
         }
-        result_.writeBrickPicture = [plain](const std::string& path) {
-            tools::writeBrickPicture(path, *march::bricksOf(std::as_const(*plain)));
+        result_.writeBrickPicture = [bricks](const std::string& path) {
+            for (std::size_t n = 0; n < bricks.size(); ++n)
+                tools::writeBrickPicture(bricks.size() == 1 ? path : ofLevel(path, n), bricks[n].grid());
         };
-        result_.on_demand = reportOf(print, plain, seconds, options_.brick_cache, result_.on_demand);
+        result_.on_demand = reportOf(bricks, print.parse_seconds, seconds, cache, result_.on_demand);
         return shape;
+    }
+
+    // All levels of a print as one; what is behind each is added to `bricks`.
+    IntersectorPtr raysOf(const shade::ObjectOptions& object, const std::vector<TracedLevel>& levels,
+                          const glm::dvec3& eye, std::size_t cache, std::vector<LateBricks>& bricks) const {
+        std::vector<march::DetailLevel> shapes;
+        for (const TracedLevel& level : levels) {
+            std::shared_ptr<march::Intersector> plain = march::makeBrickIntersector(
+                std::shared_ptr<const march::LeafField>(level.field), options_.values, cache);
+            march::Annotation annotation;
+            for (const std::string& name : attributes_)
+                annotation.attributes.push_back(
+                    wanted(object, name) ? ondemand::makePrintAttribute(level.field, ondemand::attributeNamed(name))
+                                         : nullptr);
+            if (options_.smooth_normals) annotation.smooth_field = level.field;
+            shapes.push_back({march::annotate(plain, std::move(annotation)), level.from});
+            bricks.push_back({level.field, std::move(plain)});
+        }
+        return march::makeDetailIntersector(std::move(shapes), eye);
+    }
+
+    // The picture's name with the level's number, the finest first.
+    static std::string ofLevel(const std::string& path, std::size_t level) {
+        const std::filesystem::path name(path);
+        return (name.parent_path() / fmt::format("{}_{}{}", name.stem().string(), level, name.extension().string()))
+            .string();
     }
 
     // Another object of the same file may want it, too: then it is read for both.

@@ -5,6 +5,7 @@
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "io/error.h"
+#include "ondemand/detail_levels.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxel_choice.h"
 
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <string_view>
 #include <utility>
@@ -45,6 +47,80 @@ std::vector<std::uint32_t> momentsOf(int series, const gcode::Toolpath& toolpath
     return moments;
 }
 
+/// What all fields of one print are made from.
+struct Source {
+    const TracePrintOptions& options;
+    const std::shared_ptr<const gcode::Toolpath>& toolpath;
+    const std::vector<std::uint32_t>& selection;
+    const voxelize::Bounds& bounds;
+    const std::string& path;
+};
+
+// Far from an eye that is close to the print it is seen small: what voxels it takes there. The first level has the
+// lattice that is given.
+std::vector<voxelize::Lattice> latticesOf(const Source& source, const voxelize::Lattice& finest,
+                                          const std::vector<ondemand::VoxelLevel>& levels) {
+    std::vector<voxelize::Lattice> lattices{finest};
+    voxelize::LatticeRequest request = source.options.print.lattice;
+    for (std::size_t n = 1; n < levels.size(); ++n) {
+        request.voxels_per_layer = levels[n].voxels_per_layer;
+        lattices.push_back(voxelize::chooseLattice(*source.toolpath, source.selection, source.bounds, request));
+    }
+    return lattices;
+}
+
+// Each of the beads that its lattice can show: those that reach its shell, with the band around it and what samples'
+// neighbours need. Levels that no bead comes to are left out.
+std::vector<TracedLevel> fieldsOf(const Source& source, const std::vector<voxelize::Lattice>& lattices,
+                                  const std::vector<ondemand::VoxelLevel>& levels, const glm::dvec3& eye) {
+    std::vector<TracedLevel> fields;
+    double from = 0;
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        constexpr double kMarginVoxels = 2;
+        const voxelize::Lattice& lattice = lattices[n];
+        const bool last = n + 1 == levels.size();
+        std::vector<std::uint32_t> near;
+        if (!last) {
+            const double to = levels[n + 1].from + lattice.background() + kMarginVoxels * lattice.voxel_size;
+            near = ondemand::beadsWithin(*source.toolpath, source.selection, eye, to);
+            if (near.empty()) continue;
+        }
+        fields.push_back({std::make_shared<ondemand::PrintField>(source.toolpath, last ? source.selection : near,
+                                                                 lattice, voxelize::Placement(), source.path),
+                          from});
+        if (!last) from = levels[n + 1].from;
+    }
+    return fields;
+}
+
+// Those of wide rays: of the same places.
+std::vector<voxelize::Lattice> coarser(const Source& source, const std::vector<voxelize::Lattice>& lattices) {
+    std::vector<voxelize::Lattice> result;
+    voxelize::LatticeRequest request = source.options.print.lattice;
+    request.voxels_per_layer.reset();
+    for (const voxelize::Lattice& lattice : lattices) {
+        request.voxel_size = source.options.secondary_voxel * lattice.voxel_size;
+        result.push_back(voxelize::chooseLattice(*source.toolpath, source.selection, source.bounds, request));
+    }
+    return result;
+}
+
+Json reportOf(const std::vector<TracedLevel>& levels, double per_distance) {
+    Json report = Json::array();
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        const voxelize::Lattice& lattice = levels[n].field->layout().lattice;
+        const double error = voxelize::kLargestErrorVoxels * lattice.voxel_size;
+        const double pixel = levels[n].from * per_distance;
+        report.push_back({{"voxel_size_mm", lattice.voxel_size},
+                          {"from_mm", levels[n].from},
+                          {"to_mm", n + 1 < levels.size() ? Json(levels[n + 1].from) : Json(nullptr)},
+                          {"beads", levels[n].field->layout().stack.beads.size()},
+                          {"largest_error_mm", error},
+                          {"largest_error_pixels", pixel > 0 ? Json(error / pixel) : Json(nullptr)}});
+    }
+    return report;
+}
+
 }  // namespace
 
 void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
@@ -57,6 +133,12 @@ void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
     app.add_option("--brick-picture", options.brick_picture,
                    "brick: also write which of a print's bricks rays came to, from the front and from above")
         ->type_name("FILE.png")
+        ->group("Tracing");
+    app.add_option("--secondary-voxel", options.secondary_voxel,
+                   "G-code: diffuse light and ambient occlusion are blocked by voxels N times as large, 8 of those and "
+                   "more away: fewer bricks, seldom faster (default 1)")
+        ->check(CLI::Range(1, 8))
+        ->type_name("N")
         ->group("Tracing");
     addPrintOptions(app, options.print, true);
     app.add_option("--printed", options.printed,
@@ -101,14 +183,28 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     std::vector<std::uint32_t> selection = voxelize::selectBeads(*toolpath, selectionOf(options.print, *toolpath));
     if (!options.printed.empty()) cut(selection, options.printed, *toolpath);
     const voxelize::Bounds bounds = voxelize::boundsOf(*toolpath, selection);
-    const double pixel = options.print.voxel_auto ? options.smallest_pixel(bounds) : 0.0;
+    const shade::PixelSpread pixels = options.print.voxel_auto ? options.pixel_spread(bounds) : shade::PixelSpread();
+    const double pixel = pixels.smallest;
     const voxelize::Lattice lattice =
         latticeFor(options.print, *toolpath, selection, bounds, voxelize::Interior::keep, pixel);
     constexpr double kLeastHalfWidth = 2;
     if (lattice.half_width < kLeastHalfWidth)
         throw UsageError(fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",
                                      lattice.half_width, kLeastHalfWidth));
-    result.field = std::make_shared<ondemand::PrintField>(toolpath, selection, lattice, voxelize::Placement(), path);
+    const Source source{options, toolpath, selection, bounds, path};
+    const std::vector<ondemand::VoxelLevel> levels = ondemand::chooseLevels(
+        lattice.layer_height, static_cast<int>(std::lround(lattice.layer_height / lattice.voxel_size)), pixel,
+        {pixels.per_distance, pixels.farthest});
+    const std::vector<voxelize::Lattice> lattices = latticesOf(source, lattice, levels);
+    result.eye = pixels.eye;
+    result.levels = fieldsOf(source, lattices, levels, result.eye);
+    if (options.secondary_voxel > 1) {
+        // Nearer than that the grooves between layers shade each other.
+        constexpr double kExactVoxels = 8;
+        const std::vector<voxelize::Lattice> coarse = coarser(source, lattices);
+        result.wide = fieldsOf(source, coarse, levels, result.eye);
+        result.wide_from = kExactVoxels * coarse.back().voxel_size;
+    }
     result.report = {{"path", path},
                      {"bytes", bytes},
                      {"format", toolpath->format},
@@ -127,9 +223,15 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
             {"largest_error_mm", voxelize::kLargestErrorVoxels * lattice.voxel_size},
             {"largest_error_pixels",
              pixel > 0 ? Json(voxelize::kLargestErrorVoxels * lattice.voxel_size / pixel) : Json(nullptr)}};
+    if (result.levels.size() > 1) result.report["voxel_auto"]["levels"] = reportOf(result.levels, pixels.per_distance);
+    if (!result.wide.empty())
+        result.report["secondary"] = {{"from_mm", result.wide_from}, {"levels", reportOf(result.wide, 0)}};
     if (!options.printed.empty()) result.report["printed"] = options.printed;
     result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", path, selection.size(), toolpath->beads.size(),
                               lattice.voxel_size, lattice.reason);
+    for (std::size_t n = 1; n < result.levels.size(); ++n)
+        result.line += fmt::format("; {:g} mm from {:.3g} mm away", result.levels[n].field->layout().lattice.voxel_size,
+                                   result.levels[n].from);
     result.selection = std::move(selection);
     result.moments = momentsOf(options.series, *toolpath);
     return result;

@@ -4,6 +4,7 @@
 #include "print_options.h"
 
 #include "ondemand/print_field.h"
+#include "shade/pixel_size.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,16 +23,26 @@ struct TracePrintOptions {
     int series = 1;             ///< --progress-series: as many moments, the last one the end
     std::string brick_cache;    ///< --brick-cache, also of large level sets; empty: no bound
     std::string brick_picture;  ///< --brick-picture: a file, or empty
+    int secondary_voxel = 1;    ///< --secondary-voxel: voxels of wide rays, in those of others; 1: the same
     bool quiet = false;
-    /// The least that a pixel spans of what lies in a box, mm, for --voxel-size auto.
-    std::function<double(const voxelize::Bounds&)> smallest_pixel;
+    /// What a pixel spans of what lies in a box, mm, for --voxel-size auto.
+    std::function<shade::PixelSpread(const voxelize::Bounds&)> pixel_spread;
 };
 
 /// Adds those of a print: how to take it, what of it, and how to keep its bricks.
 void addTracePrintOptions(CLI::App& app, TracePrintOptions& options);
 
-struct TracedPrint {
+/// The print at one voxel size.
+struct TracedLevel {
     std::shared_ptr<ondemand::PrintField> field;
+    double from = 0;  ///< mm from TracedPrint::eye, as far as the next level's
+};
+
+struct TracedPrint {
+    std::vector<TracedLevel> levels;       ///< from the nearest and finest outwards; the last one is of all beads
+    std::vector<TracedLevel> wide;         ///< the same for --secondary-voxel, or empty
+    double wide_from = 0;                  ///< mm from a wide ray's origin from which on it meets those
+    glm::dvec3 eye{0.0};                   ///< if there are several levels
     std::vector<std::uint32_t> moments;    ///< of the series: what lies before these beads is printed; the last is all
     std::vector<std::uint32_t> selection;  ///< its beads
     nlohmann::ordered_json report;         ///< for --stats

@@ -422,12 +422,12 @@ void run(Options& o, int argc, char** argv) {
     }
     const auto turns = static_cast<std::size_t>(o.turntable);
     std::optional<shade::SceneDescription> scene;
-    reading.prints.smallest_pixel = [&](const voxelize::Bounds& print) {
+    reading.prints.pixel_spread = [&](const voxelize::Bounds& print) {
         if (!o.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
         const march::Box box{{print.min[0], print.min[1], print.min[2]}, {print.max[0], print.max[1], print.max[2]}};
         const shade::Camera camera =
             scene ? scene->camera : shade::Camera::make(o.scene.camera, box, o.render.width, o.render.height);
-        return shade::smallestPixel(camera, box, o.turntable);
+        return shade::pixelSpread(camera, box, o.turntable);
     };
     glm::dvec3 middle(0.0);
     Json reports = Json::array();

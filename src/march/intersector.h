@@ -23,6 +23,8 @@ struct Ray {
     glm::dvec3 direction{0.0, 0.0, 1.0};
     double t_min = 0.0;
     double t_max = std::numeric_limits<double>::infinity();
+    /// One of many that together feel a wide lobe: far from its origin coarser geometry will do (wide_intersector.h).
+    bool wide = false;
 };
 
 /// Where a ray meets the surface from outside or inside.
@@ -31,6 +33,7 @@ struct Hit {
     glm::dvec3 position{0.0};  ///< world space
     glm::dvec3 normal{0.0};    ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
     std::uint32_t object = 0;  ///< which of a scene's objects; see scene_intersector.h
+    std::uint32_t part = 0;    ///< of an intersector that is made of others, which of them; see piecewise_tracer.h
 };
 
 /// Axis-aligned box in world space.

@@ -129,8 +129,9 @@ private:
         const auto count = std::min<std::size_t>(left, kLanes);
         const VI lane = hn::Iota(DI(), 0);
         const VI last = whole(static_cast<std::int64_t>(count) - 1);
-        static_assert(sizeof(Ray) == 8 * sizeof(double));
-        const VI row = hn::ShiftLeft<3>(hn::IfThenElse(hn::Gt(lane, last), last, lane));
+        static_assert(sizeof(Ray) == 9 * sizeof(double));
+        const VI ray = hn::IfThenElse(hn::Gt(lane, last), last, lane);
+        const VI row = hn::ShiftLeft<3>(ray) + ray;
         const double* base = &rays_[next_].origin.x;
         for (std::size_t n = next_ + kLanes; n < std::min(next_ + 2 * kLanes, rays_.size()); ++n)
             hwy::Prefetch(&rays_[n]);

@@ -17,6 +17,7 @@ std::optional<march::Ray> AmbientOcclusion::feeler(const SurfacePoint& first, co
     if (!(wi.z > 0.0f) || surfaces_.fade(first) >= 1.0f) return std::nullopt;
     march::Ray way = surfaces_.leave(first, Frame{glm::vec3(first.normal)}.toWorld(wi));
     way.t_max = distance_;
+    way.wide = true;
     return way;
 }
 

@@ -14,6 +14,9 @@ namespace {
 /// What a cosine sample of the bed counts in its weight against one of BedLight. With 1 the open bed would be as noisy
 /// as the cosine is; with 0 the shadow of a sun would be lit by the few samples that miss the sun.
 constexpr float kBedShare = 0.25f;
+/// Rays less likely than this, a steradian, stand for a lobe that is wide: a cosine's are 1 / pi at most, and a
+/// highlight with so faint a peak is as dull.
+constexpr float kWide = 1.0f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Sets the members of the groups: numbers of what stands on the print, and on the bed.
@@ -118,8 +121,11 @@ void PathIntegrator::feelEnvironment(const Group& group, std::span<const Stand> 
             const float weight = balanceHeuristic(light.pdf, other);
             const Color value =
                 stand.path->throughput * point.brdf->eval(stand.wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
-            if (maxComponent(value) > 0.0f)
-                feelers.add(surfaces_.leave(point, light.direction), value, stand.path->pixel);
+            if (!(maxComponent(value) > 0.0f)) continue;
+            march::Ray ray = surfaces_.leave(point, light.direction);
+            // Where most of the light comes from a small part of the sky, shadows have edges.
+            ray.wide = std::max(light.pdf, other) < kWide;
+            feelers.add(ray, value, stand.path->pixel);
         }
     }
 }
@@ -226,7 +232,11 @@ void PathIntegrator::seenStream(std::span<const march::Ray> rays, std::span<cons
         if (only_escape)
             for (const Bounce& bounce : bounces) {
                 const Path& path = *bounce.from->path;
-                endings.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
+                // Those that a path goes on from are not wide: where one meets a coarse surface may lie in the fine
+                // solid.
+                march::Ray ray = bounce.ray;
+                ray.wide = bounce.pdf < kWide;
+                endings.add(ray, path.throughput * bounce.escaped, path.pixel);
             }
         counts.shadow += feelers.rays.size();
         counts.bounce += bounces.size();

@@ -1,4 +1,4 @@
-// How much of a thing one pixel shows, at least.
+// How much of a thing one pixel shows, at least: over a whole box, and by distance.
 #pragma once
 
 #include "march/intersector.h"
@@ -11,5 +11,15 @@ namespace stratum::shade {
 /// on the plane at the depth of that place; a lens is taken for a pinhole.
 /// @param turns  for a turntable of so many pictures, in any of them
 double smallestPixel(const Camera& camera, const march::Box& box, int turns = 1);
+
+/// How that length grows with the distance from the eye.
+struct PixelSpread {
+    double smallest = 0;  ///< smallestPixel(), world units
+    glm::dvec3 eye{0.0};  ///< world space
+    double per_distance =
+        0;                ///< at a distance d from the eye a pixel spans d times that or more, wherever in the frame
+    double farthest = 0;  ///< distance from the eye to the box's far end; 0 if there is more than one eye
+};
+PixelSpread pixelSpread(const Camera& camera, const march::Box& box, int turns = 1);
 
 }  // namespace stratum::shade

@@ -24,7 +24,6 @@ constexpr int kMostWithinBudget = 16;
 constexpr double kBytesOfTree = 2.2e6;
 // Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
 constexpr double kFloodFactor = 1.35;
-constexpr double kVoxelsPerPixel = 2;
 // Voxels a layer of the culled build that finer ones are scaled from.
 constexpr int kScaledFrom = 2;
 

@@ -25,6 +25,7 @@ int voxelsPerLayerForTolerance(double layer_height, double tolerance);
 int voxelsPerLayerForPixel(double layer_height, double pixel);
 constexpr int kFewestForPixels = 2;  ///< one can't tell a layer's round side from a flat one
 constexpr int kMostForPixels = 16;
+constexpr double kVoxelsPerPixel = 2;
 
 /// Bytes of a grid and of what it takes to build it. `keep`: counted from the z extents of the beads of every leaf
 /// column, a few per cent too many. `cull`: a culled build at no more than two voxels a layer, scaled

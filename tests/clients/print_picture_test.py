@@ -128,10 +128,53 @@ for label, options in (("from afar", AFAR), ("by itself", []), ("close by", CLOS
     check(2 <= each <= 16 and (voxel <= pixel / 2 or each == 16), f"{label}: voxels of {voxel} mm for pixels of {pixel} mm")
     check(each == 2 or LAYER / (each - 1) > pixel / 2, f"{label}: no finer than it must be")
     check(found["voxel_auto"]["largest_error_mm"] == voxel / 2, f"{label}: --stats bounds the error")
-    check(picture("part", "more.exr", "--spp", "1", "--voxels-per-layer", str(each), *options) == auto,
-          f"{label}: the picture of {each} voxels a layer")
+    check(("levels" in found["voxel_auto"]) == (label == "close by"), f"{label}: voxels of several sizes only there")
+    if "levels" not in found["voxel_auto"]:
+        check(picture("part", "more.exr", "--spp", "1", "--voxels-per-layer", str(each), *options) == auto,
+              f"{label}: the picture of {each} voxels a layer")
 _, found = automatic("the camera in a bead", "--eye", "100,100,1.1", "--look-at", "101,100,1.1", "--integrator", "depth")
 check(found["voxel_auto"]["smallest_pixel_mm"] == 0 and round(LAYER / found["voxel_size_mm"]) == 16, "within: the finest voxels")
+
+# --- voxels of several sizes in one picture -------------------------------------------------------------------------------
+AUTO = [*CLOSE, "--voxel-size", "auto", "--spp", "1"]
+_, found = automatic("levels", *CLOSE)
+levels = found["voxel_auto"]["levels"]
+check(levels[0]["from_mm"] == 0 and levels[-1]["to_mm"] is None, f"from the eye to the far end: {levels}")
+for near, far in zip(levels, levels[1:]):
+    check(near["to_mm"] == far["from_mm"] > near["from_mm"], "one begins where another ends")
+    check(far["voxel_size_mm"] >= 1.5 * near["voxel_size_mm"] and far["beads"] >= near["beads"], "outwards, coarser")
+    check(far["largest_error_pixels"] <= 0.2500001, f"within a quarter of a pixel: {far}")
+several = picture("part", "levels.exr", *AUTO)
+for more in (["--threads", "1"], ["--threads", "8"], ["--brick-cache", "600kB"], ["--brick-cache", "600kB", "--threads", "8"],
+             ["--brick-picture", path("sizes.png")]):
+    check(picture("part", "more.exr", *AUTO, *more) == several, f"levels, {' '.join(more)}: the same bytes")
+check(all(os.path.exists(path(f"sizes_{n}.png")) for n in range(len(levels))), "a picture of the bricks of each")
+for more in (["--color-by", "feature"], ["--aov", "layer,feature"], ["--normals", "smooth"]):
+    check(picture("part", "more.exr", *AUTO, *more) not in (None, several), f"levels with {' '.join(more)}")
+done = call(VDBTRACE, "part", "-o", path("film.exr"), *SMALL, *AUTO, "--no-bed", "--progress-series", "3", "--stats", "-")
+check(done.returncode == 0, f"levels, a series: {done.stderr.strip()}")
+took = json.loads(done.stdout)[0]["on_demand"][0]
+check(len(took["levels"]) == len(levels) and sum(x["bricks_made"] for x in took["levels"]) == took["bricks_made"] > 0,
+      "--stats counts the bricks of each")
+with open(path("film_002.exr"), "rb") as file:
+    check(file.read() == picture("part", "more.exr", *AUTO, "--no-bed"), "levels: the last of a series is the whole print")
+_, found = automatic("a turntable", *CLOSE, "--crop", "0,0,9,9")
+done = call(VDBTRACE, "part", "-o", path("turn.png"), *SMALL, *AUTO, "--crop", "0,0,9,9", "--turntable", "2", "--stats", "-")
+check(done.returncode == 0 and "levels" not in json.loads(done.stdout)[0]["input"]["voxel_auto"], "a turntable has one size")
+
+# --- coarse voxels for diffuse light, far from where it arrives -----------------------------------------------------------
+exact = picture("part", "exact.exr", "--integrator", "ao", "--spp", "4", *TWO)
+check(picture("part", "more.exr", "--integrator", "ao", "--spp", "4", *TWO, "--secondary-voxel", "1") == exact, "off by default")
+wide = ["--integrator", "ao", "--spp", "4", *TWO, "--secondary-voxel", "2"]
+coarse = picture("part", "coarse.exr", *wide)
+check(coarse not in (None, exact), "other voxels, another picture")
+for threads in ("1", "8"):
+    check(picture("part", "more.exr", *wide, "--threads", threads) == coarse, f"coarse light, {threads} threads: the same bytes")
+for name in ("normal", "depth"):
+    direct = ["--integrator", name, "--spp", "1", *TWO]
+    check(picture("part", "more.exr", *direct, "--secondary-voxel", "2") == picture("part", "less.exr", *direct),
+          f"{name}: what the camera sees is the same")
+check(picture("part", "more.exr", *AUTO, "--secondary-voxel", "2") not in (None, several), "with voxels of several sizes")
 
 # --- the bricks that rays came to -----------------------------------------------------------------------------------------
 check(picture("part", "more.exr", "--spp", "2", "--brick-picture", path("bricks.png")) == one, "a picture of bricks beside it")

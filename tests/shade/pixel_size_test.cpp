@@ -1,6 +1,7 @@
 #include "shade/pixel_size.h"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,32 @@ TEST(PixelSize, IsNeverMoreThanAPointShows) {
         }
     }
     EXPECT_GT(seen, 1000);
+}
+
+// By distance as well, wherever in the frame; and that is what corners of the frame see, not a bound far below it.
+TEST(PixelSize, GrowsWithTheDistance) {
+    const Camera camera({3, -100, 7}, {10, 20, -5}, {0, 0, 1}, 60, 320, 240);
+    const march::Box box{{-10, -20, -30}, {40, 50, 60}};
+    const PixelSpread spread = pixelSpread(camera, box);
+    EXPECT_EQ(spread.eye, camera.eye());
+    EXPECT_EQ(spread.smallest, smallestPixel(camera, box));
+    double farthest = 0;
+    for (int corner = 0; corner < 8; ++corner)
+        farthest = std::max(farthest, glm::length(glm::dvec3((corner & 1) != 0 ? 40 : -10, (corner & 2) != 0 ? 50 : -20,
+                                                             (corner & 4) != 0 ? 60 : -30) -
+                                                  camera.eye()));
+    EXPECT_DOUBLE_EQ(spread.farthest, farthest);
+    double tightest = 1e300;
+    for (double x = 0; x <= 320; x += 20)
+        for (double y = 0; y <= 240; y += 20) {
+            const double distance = 40 + x;
+            const glm::dvec3 p = camera.eye() + distance * camera.ray({x, y}).direction;
+            const double pixel = glm::dot(p - camera.eye(), camera.forward()) * camera.pixelSize();
+            EXPECT_LE(spread.per_distance * distance, pixel * (1 + 1e-12));
+            tightest = std::min(tightest, pixel / (spread.per_distance * distance));
+        }
+    EXPECT_NEAR(tightest, 1, 1e-9);
+    EXPECT_EQ(pixelSpread(camera, box, 4).farthest, 0.0);
 }
 
 }  // namespace
