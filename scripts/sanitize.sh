@@ -13,4 +13,4 @@ ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.sup
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target test_voxelize test_shade test_march test_ondemand
 # Brute force over all beads takes minutes here and shares nothing between threads that other tests do not.
-ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Exterior|Render|BrickGrid|PrintField|PrintAttribute" -E "AgreesWithBruteForce" -LE "client|slow|study"
+ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Exterior|Render|BrickGrid|PrintField|PrintAttribute|Detail" -E "AgreesWithBruteForce" -LE "client|slow|study"
