@@ -72,6 +72,8 @@ void Surfaces::nearest(std::span<const march::Ray> rays, march::Tracer& tracer, 
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<march::Hit> hits;
     hits.resize(rays.size());
+    // Of an earlier scene, perhaps; who has but one object, or no parts, says nothing of them.
+    for (march::Hit& hit : hits) hit.object = hit.part = 0;
     static thread_local std::vector<std::optional<double>> beds;
     if (scene_.bed) {
         beds.resize(rays.size());

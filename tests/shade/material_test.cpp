@@ -168,6 +168,22 @@ TEST(Material, SurfacesTakeItByObjectAndAttribute) {
     EXPECT_LE(glm::dot(point.normal, glm::dvec3(-1, 0, 0)), 0);
 }
 
+TEST(Material, StreamsForgetTheObjectsOfEarlierScenes) {
+    const TwoTools two;  // its hits are of object 1
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    shade::SceneOptions options;
+    options.bed = false;
+    auto scene = shade::makeScene(options, ball, 8, 8);
+    scene.objects.emplace_back(shade::makeBrdf("lambert:0,0,1"));
+    scene.objects.emplace_back(shade::makeBrdf("lambert:0,1,0"));
+    const std::vector<march::Ray> rays(4, {{5, 0, 0.5}, {-1, 0, 0}});
+    std::vector<shade::SurfacePoint> points(rays.size());
+    shade::Surfaces(scene, two).nearest(rays, *two.makeTracer(), points);
+    EXPECT_NEAR(points.back().albedo.g, 1, 1e-5f);
+    shade::Surfaces(scene, ball).nearest(rays, *ball.makeTracer(), points);
+    for (const shade::SurfacePoint& point : points) EXPECT_NEAR(point.albedo.b, 1, 1e-5f);
+}
+
 TEST(Material, LabelsAreNumbersAndNeverMix) {
     const TwoTools print;
     shade::SceneOptions options;
