@@ -24,17 +24,24 @@ Ray backFrom(double begin, const Ray& ray) {
     return back;
 }
 
-// What the way back has met, if it shows that the ray met a wall where the piece begins: there this part has the ray
-// inside, and the part before has it outside, so it must have come in, and `back` is where. The answer is that place,
-// not the one on the wall: it lies on this part's surface and outside of the part before, so that rays that leave it
-// are free, while a point on the wall lies below the surface that goes on behind it. A ray that began inside has met no
-// wall, it just is not out yet.
-bool meetsWall(const Ray& ray, double begin, const Hit& back, Hit& hit) {
-    if (!std::isfinite(back.t) || leaves(ray, back)) return false;
-    hit = back;
+// From where a piece begins to where the part before it would next be met: out of the solid, if that part has the ray
+// inside there. Only the sign counts, so what that part knows of the places beyond does not matter.
+Ray aheadFrom(double begin, const Ray& ray) {
+    Ray ahead = ray;
+    ahead.t_min = begin;
+    ahead.t_max = kInfinity;
+    return ahead;
+}
+
+// Where the ray met a wall at the beginning of a piece: this part has it inside there, and the part before outside, so
+// for this part it has come in, and `back` is where. The answer is that place, not the one on the wall: it lies on this
+// part's surface and outside of the part before, so that rays that leave it are free, while a point on the wall lies
+// below the surface that goes on behind it.
+Hit wallHit(const Ray& ray, double begin, const Hit& back) {
+    Hit hit = back;
     hit.t = begin - back.t;
     hit.position = ray.origin + hit.t * ray.direction;
-    return true;
+    return hit;
 }
 
 }  // namespace
@@ -80,8 +87,13 @@ bool PiecewiseTracer::intersect(const Ray& ray, Hit& hit) {
         bool done = any;
         if (wantsLookBack(ray, way, any ? &found : nullptr)) {
             Hit back;
+            Hit ahead;
             const double begin = way.begin(ray);
-            if (tracer.intersect(backFrom(begin, ray), back) && meetsWall(ray, begin, back, found)) done = true;
+            if (tracer.intersect(backFrom(begin, ray), back) && !leaves(ray, back) &&
+                !(tracers_[way.before()]->intersect(aheadFrom(begin, ray), ahead) && leaves(ray, ahead))) {
+                found = wallHit(ray, begin, back);
+                done = true;
+            }
         }
         if (done) {
             hit = marked(found, way.part());
@@ -132,10 +144,27 @@ void PiecewiseTracer::lookBack(std::size_t part, std::span<const Ray> rays) {
     if (back_.empty()) return;
     back_hits_.assign(back_.size(), Hit{});
     tracers_[part]->intersectStream(back_, back_hits_);
-    for (std::size_t b = 0; b < back_.size(); ++b) {
-        const std::uint32_t k = back_places_[b];
-        const std::uint32_t n = places_[k];
-        meetsWall(rays[n], ways_[n].begin(rays[n]), back_hits_[b], own_hits_[k]);
+    // Those that came in may have begun inside for the part before.
+    const auto rayOf = [&](std::size_t b) { return places_[back_places_[b]]; };
+    for (std::size_t before = 0; before < tracers_.size(); ++before) {
+        ahead_.clear();
+        ahead_places_.clear();
+        for (std::size_t b = 0; b < back_.size(); ++b) {
+            const std::uint32_t n = rayOf(b);
+            if (ways_[n].before() != before || !std::isfinite(back_hits_[b].t) || leaves(rays[n], back_hits_[b]))
+                continue;
+            ahead_places_.push_back(static_cast<std::uint32_t>(b));
+            ahead_.push_back(aheadFrom(ways_[n].begin(rays[n]), rays[n]));
+        }
+        if (ahead_.empty()) continue;
+        ahead_hits_.assign(ahead_.size(), Hit{});
+        tracers_[before]->intersectStream(ahead_, ahead_hits_);
+        for (std::size_t a = 0; a < ahead_.size(); ++a) {
+            const std::uint32_t b = ahead_places_[a];
+            const std::uint32_t n = rayOf(b);
+            if (std::isfinite(ahead_hits_[a].t) && leaves(rays[n], ahead_hits_[a])) continue;
+            own_hits_[back_places_[b]] = wallHit(rays[n], ways_[n].begin(rays[n]), back_hits_[b]);
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //
 // The surfaces of two parts differ by up to half a voxel of each, so where one part hands a ray on to the next, the ray
 // may be outside for the one and inside for the other. The shape is then closed by a wall between both, and a ray that
-// meets the wall has met the shape: nothing leaks. See meetsWall().
+// meets the wall from outside has met the shape: nothing leaks. A ray that begins in the solid may come out through a
+// wall unnoticed.
 #pragma once
 
 #include "march/intersector.h"
@@ -56,6 +57,8 @@ private:
         std::uint32_t at = 0;  // the piece whose turn it is
 
         std::uint8_t part() const { return pieces.parts[at]; }
+        /// Not of the first piece.
+        std::uint8_t before() const { return pieces.parts[at - 1]; }
         bool last() const { return at + 1 == pieces.count; }
         double begin(const Ray& ray) const { return at == 0 ? ray.t_min : pieces.ends[at - 1]; }
         Ray piece(const Ray& ray) const;
@@ -74,9 +77,9 @@ private:
     std::vector<Way> ways_;
     std::vector<std::uint32_t> waiting_;  // rays without an answer, ascending
     // Of a part's turn: its rays and their numbers.
-    std::vector<std::uint32_t> places_, back_places_;
-    std::vector<Ray> own_, back_;
-    std::vector<Hit> own_hits_, back_hits_;
+    std::vector<std::uint32_t> places_, back_places_, ahead_places_;
+    std::vector<Ray> own_, back_, ahead_;
+    std::vector<Hit> own_hits_, back_hits_, ahead_hits_;
     std::vector<std::uint8_t> own_blocked_;
 };
 
