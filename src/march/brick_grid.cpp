@@ -61,6 +61,7 @@ public:
           scale_(static_cast<float>(1 / quantumOf(source.background(), grid.values_))) {}
     Layouter(const BrickGrid& grid, std::shared_ptr<const LeafField> field)
         : grid_(grid),
+          source_(nullptr),
           field_(std::move(field)),
           scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))) {}
 
@@ -217,7 +218,7 @@ private:
 
     const BrickGrid& grid_;
     // One of both is there.
-    const LeafSource* const source_ = nullptr;
+    const LeafSource* const source_;
     const std::shared_ptr<const LeafSource> owned_;
     const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
     const std::shared_ptr<const LeafField> field_;

@@ -42,7 +42,8 @@ public:
         }
         if (leaf.uniform) return field_.background();
         const openvdb::Coord in = place - origin;
-        return leaf.samples.leaf[static_cast<std::size_t>((in[0] * kEdge + in[1]) * kEdge + in[2])];
+        const auto n = static_cast<unsigned>((in[0] * kEdge + in[1]) * kEdge + in[2]);
+        return leaf.samples.leaf[n];
     }
 
 private:
