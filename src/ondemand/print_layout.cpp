@@ -25,14 +25,14 @@ std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t ra
     const auto guess =
         std::min(size - 1, static_cast<std::size_t>(static_cast<double>(size) * rank / static_cast<double>(of_all)));
     // What is before `low` is below, what is from `high` on is not.
-    std::size_t low = 0;
-    std::size_t high = size;
+    std::size_t low = guess + 1;
+    std::size_t high = guess;
     std::size_t step = 8;
     if (ranks[guess] < rank) {
-        for (low = guess + 1; step < size - low && ranks[low + step] < rank; step *= 2) low += step + 1;
+        for (; step < size - low && ranks[low + step] < rank; step *= 2) low += step + 1;
         high = std::min(size, low + step);
     } else {
-        for (high = guess; step < high && ranks[high - step] >= rank; step *= 2) high -= step;
+        for (; step < high && ranks[high - step] >= rank; step *= 2) high -= step;
         low = high - std::min(high, step);
     }
     const auto begin = ranks.begin();
