@@ -41,7 +41,8 @@ double restingHeight(const march::Intersector& print) {
     const glm::dvec3 size = box.max - box.min;
     const double below = std::max(size.z, print.voxelSize());
     // No higher than it takes: what is looked at may not be there yet, and one that stands on the bed is met at once.
-    for (double reach = 8 * print.voxelSize();; reach *= 4) {
+    // In few steps, also of a print whose voxel is tiny or none (shapes by formula, triangles).
+    for (double reach = std::max(8 * print.voxelSize(), size.z / 256);; reach *= 4) {
         const bool whole = !(reach < size.z);
         std::array<double, kSide> lowest_of{};
         parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 namespace stratum {
 namespace {
 
@@ -18,6 +20,25 @@ TEST(MakeScene, PutsTheBedUnderTheSurfaceNotUnderItsBand) {
     EXPECT_NEAR(scene.bed->z, 0.0, 1e-3);
     EXPECT_TRUE(scene.backdrop);
     EXPECT_EQ(shade::restingHeight(test::nothing(2.0)), -2.0);
+}
+
+// A ball without voxels, far above the floor of its box; counts the rays that it is asked.
+TEST(MakeScene, FindsTheBedInFewStepsWithoutVoxels) {
+    class NoVoxels final : public test::FunctionIntersector {
+    public:
+        using FunctionIntersector::FunctionIntersector;
+        double voxelSize() const override { return 0.0; }
+    };
+    std::atomic<int> asked{0};
+    const auto ball = test::sphere({0, 0, 5}, 5.0);
+    const NoVoxels high({{-5, -5, -300}, {5, 5, 10}}, 1e-6, [&](const march::Ray& ray, march::Hit& hit) {
+        ++asked;
+        return ball.makeTracer()->intersect(ray, hit);
+    });
+    EXPECT_NEAR(shade::restingHeight(high), 0.0, 1e-3);
+    EXPECT_LE(asked.load(), 5 * 128 * 128);
+    const NoVoxels empty({{-5, -5, 0}, {5, 5, 0}}, 1e-6, [](const march::Ray&, march::Hit&) { return false; });
+    EXPECT_EQ(shade::restingHeight(empty), 0.0);
 }
 
 TEST(MakeScene, NoBedFromBelowOrOnDemand) {
