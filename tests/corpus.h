@@ -9,7 +9,8 @@
 
 namespace stratum::test {
 
-inline std::filesystem::path sourceDir() { return STRATUM_SOURCE_DIR; }
+/// The root of this checkout.
+std::filesystem::path sourceDir();
 
 /// The project's own small inputs; always there.
 inline std::filesystem::path dataDir() { return sourceDir() / "data"; }

@@ -1,0 +1,103 @@
+#include "trace_frame.h"
+
+#include "shade/denoise.h"
+#include "shade/picture.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace stratum::tools {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string numbered(const std::string& output, std::size_t number, std::size_t count) {
+    if (count == 1) return output;
+    const fs::path path(output);
+    const int digits = std::max(3, static_cast<int>(std::to_string(count - 1).size()));
+    return (path.parent_path() /
+            fmt::format("{}_{:0{}}{}", path.stem().string(), number, digits, path.extension().string()))
+        .string();
+}
+
+Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& objects,
+                 const shade::SceneDescription& scene, int threads) {
+    Stopwatch watch;
+    shade::PictureFile picture(frame.output);
+    shade::RenderResult result;
+    {
+        ProgressBar bar("rendering", o.common.quiet);
+        shade::Progress progress;
+        if (const auto show = bar.callback())
+            progress = [show](std::uint64_t done, std::uint64_t all) {
+                show(static_cast<double>(done) / static_cast<double>(all));
+            };
+        result = shade::render(*objects.intersector, scene, o.render, progress);
+    }
+    const double render_seconds = watch.lap();
+    if (o.denoise) shade::denoise(result.film);
+    const double denoise_seconds = watch.lap();
+
+    shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
+                             {"Source", frame.source},
+                             {"Integrator", o.render.integrator.name},
+                             {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
+                             {"Seed", std::to_string(o.render.seed)},
+                             {"Brdf", o.scene.brdf},
+                             {"Environment", o.scene.env}};
+    if (!scene.material->notes().empty())
+        metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
+    if (o.denoise) metadata.insert({"Denoised", shade::kDenoiserLabel});
+    if (o.render.seconds > 0.0)
+        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
+    picture.write(result.film, metadata, o.tone);
+    if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
+    const double write_seconds = watch.lap();
+    const double total_seconds = frame.load_seconds + frame.build_seconds + render_seconds + write_seconds;
+
+    const shade::RayCounts& rays = result.rays;
+    const double mrays = static_cast<double>(rays.total()) / render_seconds * 1e-6;
+    say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", frame.output,
+                              o.render.width, o.render.height, result.mean_spp,
+                              humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
+    Json skipped = Json::array();
+    const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
+        skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
+    };
+    if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
+    if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
+    if (result.film.content() != shade::FilmContent::radiance)
+        skip("light and material", "the integrator does not shade", "shadow and bounce rays");
+    if (!scene.smooth_normals)
+        skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
+    return {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
+            {"output", frame.output},
+            {"image",
+             {{"width", o.render.width},
+              {"height", o.render.height},
+              {"spp", o.render.spp},
+              {"mean_spp", result.mean_spp}}},
+            {"rays",
+             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
+            {"march", objects.intersector->name()},
+            {"march_bytes", objects.intersector->bytes()},
+            {"on_demand", objects.on_demand ? objects.on_demand() : Json::array()},
+            {"integrator", o.render.integrator.name},
+            {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
+            {"notes", o.notes},
+            {"seconds",
+             {{"load", frame.load_seconds},
+              {"build", frame.build_seconds},
+              {"render", render_seconds},
+              {"denoise", denoise_seconds},
+              {"write", write_seconds},
+              {"total", total_seconds}}},
+            {"mrays_per_second", mrays},
+            {"peak_rss_bytes", peakRssBytes()},
+            {"threads", threads},
+            {"skipped", skipped}};
+}
+
+}  // namespace stratum::tools

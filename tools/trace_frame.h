@@ -1,0 +1,26 @@
+// One picture of vdbtrace, from a ready scene to its file and its report.
+#pragma once
+
+#include "trace_objects.h"
+#include "trace_options.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <string>
+
+namespace stratum::tools {
+
+/// The picture's name with a number, if there are several.
+std::string numbered(const std::string& output, std::size_t number, std::size_t count);
+
+struct Frame {
+    std::string source, output;
+    double load_seconds = 0.0, build_seconds = 0.0;
+};
+
+/// Renders and writes it. Returns its report. Throws OutputError and what render() throws.
+nlohmann::ordered_json renderFrame(const TraceCommand& command, const Frame& frame, const TraceObjects& objects,
+                                   const shade::SceneDescription& scene, int threads);
+
+}  // namespace stratum::tools

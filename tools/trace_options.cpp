@@ -1,0 +1,267 @@
+#include "trace_options.h"
+
+#include "io/error.h"
+#include "io/mapped_file.h"
+#include "shade/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace stratum::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples = R"(
+Examples:
+  vdbtrace part.vdb                                 part.png, 1280 x 960, studio light
+  vdbtrace part.gcode                               the same without a .vdb: voxels are made where rays come
+  vdbtrace part.gcode --printed 50% --voxel-size 0.05
+  vdbtrace part.vdb -o part.png --view front --spp 64
+  vdbtrace part.vdb -o part.exr --integrator ao     linear values, for compositing and measuring
+  vdbtrace part.vdb --brdf plastic:0.8,0.1,0.05,0.2 --env constant:1,1,1
+  vdbtrace part.vdb --eye 120,-200,90 --look-at 0,0,20 --fov 25)";
+
+// "a<separator>b..." as exactly N whole numbers.
+template <std::size_t N>
+std::array<int, N> parseIntegers(const std::string& text, char separator, const char* option, const char* expected) {
+    std::array<int, N> values{};
+    std::string_view rest = text;
+    for (std::size_t n = 0; n < N; ++n) {
+        const std::size_t end = n + 1 < N ? rest.find(separator) : rest.size();
+        const std::string_view part = rest.substr(0, std::min(end, rest.size()));
+        const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), values[n]);
+        if (end == std::string_view::npos || error != std::errc{} || stop != part.data() + part.size())
+            throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
+        if (n + 1 < N) rest.remove_prefix(end + 1);
+    }
+    return values;
+}
+
+std::optional<glm::dvec3> toVector(const std::vector<double>& values) {
+    if (values.empty()) return std::nullopt;
+    return glm::dvec3(values[0], values[1], values[2]);
+}
+
+}  // namespace
+
+void addTraceOptions(CLI::App& app, TraceCommand& o) {
+    app.add_option(
+           "IN", o.inputs,
+           "A level set, a print (G-code in any container), or a scene that names some; options override the scene. "
+           "Several level sets or prints make a series of pictures with the camera of the last")
+        ->required()
+        ->type_name("FILE.vdb|FILE.gcode|SCENE.json");
+    app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
+    app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
+
+    app.add_option("--file-up", o.file_up,
+                   "Which axis of the level set points up: z or y (default: what the file says, or z)")
+        ->check(CLI::IsMember({"z", "y"}))
+        ->type_name("AXIS");
+
+    const char* picture = "Picture";
+    app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
+    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16)")
+        ->each([&o](const std::string&) { o.spp_given = true; })
+        ->type_name("N")
+        ->group(picture);
+    app.add_option("--noise", o.render.noise,
+                   "Samples until the relative error is this, e.g. 0.05, but no more than --spp (then 4096 by default)")
+        ->type_name("T")
+        ->group(picture);
+    app.add_option("--time", o.render.seconds,
+                   "Samples until this time is over, the noisiest tiles first; another machine, another picture")
+        ->type_name("SECONDS")
+        ->group(picture);
+    app.add_option("--checkpoint", o.render.checkpoint,
+                   "Keeps what is finished in this file and goes on from there; the picture is the same")
+        ->type_name("FILE")
+        ->group(picture);
+    app.add_option("--aov", o.aov,
+                   "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
+                   "feature")
+        ->type_name("NAME,...")
+        ->group(picture);
+    app.add_flag("--denoise", o.denoise, "Takes noise out of the finished picture, guided by normals, depth and albedo")
+        ->group(picture);
+    app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
+    app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
+    app.add_option("--exposure", o.tone.exposure, "Stops, for .png")->type_name("EV")->group(picture);
+
+    const char* camera = "Camera";
+    app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)")
+        ->type_name("NAME")
+        ->group(camera);
+    const auto vector = [&](const char* name, std::vector<double>& value, const char* help) {
+        return app.add_option(name, value, help)->delimiter(',')->expected(3)->type_name("X,Y,Z")->group(camera);
+    };
+    auto* eye = vector("--eye", o.eye, "Where the camera stands, in the world units of the .vdb");
+    vector("--look-at", o.look_at, "What it looks at (default: the middle of the part)")->needs(eye);
+    vector("--up", o.up, "Which way is up (default 0,0,1)");
+    app.add_option("--f-number", o.scene.camera.f_number, "Depth of field of a camera with a picture 24 mm high")
+        ->type_name("N")
+        ->group(camera);
+    app.add_option("--aperture", o.scene.camera.aperture, "The same by the diameter of the lens, in world units")
+        ->type_name("LENGTH")
+        ->group(camera);
+    app.add_option("--focus", o.focus, "Distance that is sharp, or a point (default: the middle of the part)")
+        ->delimiter(',')
+        ->expected(1, 3)
+        ->type_name("LENGTH|X,Y,Z")
+        ->group(camera);
+    app.add_option("--turntable", o.turntable, "N numbered pictures from all around")
+        ->check(CLI::Range(1, 10000))
+        ->type_name("N")
+        ->group(camera);
+    app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
+
+    const char* light = "Light and material";
+    app.add_option("--integrator", o.render.integrator.name,
+                   "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, feature "
+                   "(default path)")
+        ->type_name("NAME")
+        ->group(light);
+    app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
+        ->type_name("N")
+        ->group(light);
+    app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
+        ->delimiter(',')
+        ->expected(5)
+        ->type_name("KA,KD,KS,SHININESS,KR")
+        ->group(light);
+    app.add_option("--environment-rows", o.render.integrator.environment_rows,
+                   "environment-sum: rows of its map, twice as many columns (default 32)")
+        ->type_name("N")
+        ->group(light);
+    app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
+        ->type_name("LENGTH")
+        ->group(light);
+    app.add_option(
+           "--brdf", o.scene.brdf,
+           "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
+           "EXR), or the name of one in data/brdf, e.g. pla-blue")
+        ->type_name("SPEC|FILE|NAME")
+        ->group(light);
+    app.add_option("--color-by", o.scene.color_by,
+                   "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, time, color")
+        ->type_name("NAME")
+        ->group(light);
+    app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
+        ->check(CLI::IsMember({"geometric", "smooth"}))
+        ->type_name("NAME")
+        ->group(light);
+    app.add_option(
+           "--env", o.scene.env,
+           "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map (default studio)")
+        ->type_name("SPEC|FILE")
+        ->group(light);
+    app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
+        ->type_name("DEG")
+        ->group(light);
+    app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps")->type_name("EV")->group(light);
+    app.add_option("--light", o.scene.lights,
+                   "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
+                   "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges, "
+                   "radiance), ambient:R,G,B; may be repeated")
+        ->type_name("SPEC")
+        ->group(light);
+    app.add_option("--write-brdf", o.write_brdf, "Also write the material as a MERL .binary or an .exr texture")
+        ->type_name("FILE")
+        ->group(light);
+    app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
+    app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
+        ->check(CLI::IsMember({"paper", "pei", "grid"}))
+        ->type_name("NAME")
+        ->group(light);
+
+    const char* tracing = "Tracing";
+    app.add_option(
+           "--march", o.march,
+           "brick (exact), sphere (sphere tracing), vdb (OpenVDB's own), or auto, which is brick (default auto)")
+        ->check(CLI::IsMember({"auto", "brick", "sphere", "vdb"}))
+        ->type_name("NAME")
+        ->group(tracing);
+    app.add_option("--brick-values", o.values,
+                   "brick: keep samples as float, or as int16, half of the memory, rounded to a 32767th of the narrow "
+                   "band's half-width (default int16)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, march::BrickValues>{
+            {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
+        ->type_name("float|int16")
+        ->group(tracing);
+    addTracePrintOptions(app, o.prints);
+    addCommonOptions(app, o.common,
+                     {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
+                      "--look-at", "--turntable", "--integrator", "--brdf",    "--color-by", "--env",     "--bed",
+                      "--threads", "--stats",     "--quiet",      "--version", "--help",     "--help-all"});
+    app.footer(kExamples);
+}
+
+void readScene(TraceCommand& o, int argc, char** argv) {
+    const fs::path path = o.inputs.front();
+    if (!shade::isSceneFile(MappedFile(path).bytes())) return;
+    if (o.inputs.size() > 1)
+        throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets", o.inputs.front()));
+    const shade::SceneFile file = shade::readSceneFile(path);
+    TraceCommand over;
+    over.scene = file.scene;
+    over.render = file.render;
+    over.tone = file.tone;
+    over.spp_given = file.spp_given;
+    over.denoise = file.denoise;
+    over.file_up = file.file_up;
+    CLI::App app;
+    addTraceOptions(app, over);
+    app.parse(argc, argv);
+    // With objects only its name is used.
+    over.inputs = {file.objects.empty() ? file.print : path.string()};
+    over.objects = file.objects;
+    over.notes = file.notes;
+    if (over.grid.empty()) over.grid = file.grid;
+    if (!over.objects.empty() && !over.grid.empty())
+        throw UsageError("--grid: the scene has objects; each names its own");
+    if (over.output.empty())
+        over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
+    o = std::move(over);
+}
+
+void applyText(TraceCommand& o) {
+    if (!o.size.empty()) {
+        const auto size = parseIntegers<2>(o.size, 'x', "--size", "WxH in pixels, e.g. 1280x960");
+        o.render.width = size[0];
+        o.render.height = size[1];
+    }
+    if (!o.crop.empty()) {
+        const auto c = parseIntegers<4>(o.crop, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
+        o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
+    }
+    if (!o.phong.empty()) o.render.integrator.phong = {o.phong[0], o.phong[1], o.phong[2], o.phong[3], o.phong[4]};
+    if (!o.aov.empty()) o.render.aovs = shade::parseAovs(o.aov);
+    if (!o.view.empty()) o.scene.camera.view = shade::parseView(o.view);
+    if (!o.eye.empty()) o.scene.camera.eye = toVector(o.eye);
+    if (!o.look_at.empty()) o.scene.camera.look_at = toVector(o.look_at);
+    if (!o.up.empty()) o.scene.camera.up = toVector(o.up);
+    if (o.focus.size() == 2) throw UsageError("--focus: a distance, or a point X,Y,Z");
+    if (!o.focus.empty()) {
+        o.scene.camera.focus_distance.reset();
+        o.scene.camera.focus_point.reset();
+        if (o.focus.size() == 1) o.scene.camera.focus_distance = o.focus[0];
+        if (o.focus.size() == 3) o.scene.camera.focus_point = toVector(o.focus);
+    }
+    if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
+    if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);
+    o.scene.camera.all_around = o.turntable > 1;
+    o.render.validate();
+    o.scene.camera.validate();
+    o.tone.validate();
+}
+
+}  // namespace stratum::tools

@@ -1,0 +1,47 @@
+// The command line of vdbtrace: what it may hold, and how a scene file stands behind it.
+#pragma once
+
+#include "command_line.h"
+#include "trace_print.h"
+
+#include "march/brick_layout.h"
+#include "shade/object_file.h"
+#include "shade/render.h"
+#include "shade/scene.h"
+#include "shade/tonemap.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace stratum::tools {
+
+/// As the command line and a scene file give it.
+struct TraceCommand {
+    CommonOptions common;
+    std::vector<std::string> inputs, notes;
+    std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
+    std::vector<double> eye, look_at, up, focus;
+    int turntable = 1;
+    std::vector<float> phong;
+    bool spp_given = false, denoise = false;
+    march::BrickValues values = march::BrickValues::Int16;
+    TracePrintOptions prints;
+    std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
+    shade::SceneOptions scene;
+    shade::RenderOptions render;
+    shade::ToneOptions tone;
+};
+
+/// Declares all options of vdbtrace, with its examples.
+void addTraceOptions(CLI::App& app, TraceCommand& command);
+
+/// If the input is a scene, its values become the defaults and the command line is read once more over them. Throws
+/// UsageError or InputError.
+void readScene(TraceCommand& command, int argc, char** argv);
+
+/// Parses the options that are kept as text, and checks all of them. Throws UsageError.
+void applyText(TraceCommand& command);
+
+}  // namespace stratum::tools
