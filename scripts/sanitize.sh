@@ -5,12 +5,12 @@ cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
 # Clang compiles these templates in 0.6 of the time, and its UndefinedBehaviorSanitizer knows more.
-install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 clang libclang-rt-dev llvm
-cmake --preset asan >/dev/null
-cmake --build --preset asan
+install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 clang libclang-rt-dev lld llvm
 # Freed blocks are kept for a while by the allocator; with large grids that alone would fill the memory.
-ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 ctest --test-dir build/asan --output-on-failure -j"$(nproc)" -LE "client|slow|study"
-cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target test_voxelize test_shade test_march test_ondemand
-# Brute force over all beads takes minutes here and shares nothing between threads that other tests do not.
-ctest --test-dir build/tsan --output-on-failure -j1 -R "Voxelizer|Exterior|Render|BrickGrid|PrintField|PrintAttribute|Detail" -E "AgreesWithBruteForce" -LE "client|slow|study"
+export ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
+for sanitizer in asan tsan; do
+    cmake --preset "$sanitizer" >/dev/null
+    cmake --build --preset "$sanitizer"
+    ctest --test-dir "build/$sanitizer" --output-on-failure -j"$(nproc)" -LE "client|slow|study"
+    python3 scripts/test_counts.py "build/$sanitizer"
+done

@@ -9,3 +9,4 @@ install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"
 cmake --preset release >/dev/null
 cmake --build --preset release
 ctest --test-dir build/release --output-on-failure -j"$(nproc)" "$@"
+python3 scripts/test_counts.py build/release
