@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Default pictures of twenty real files on one sheet: many slicers, colours, sizes. Each is "vdbtrace FILE" without an
+# option (one is half printed). Files of the corpus that are not there are left out and named.
+# scripts/contact_sheet.sh SHEET.png [FOLDER for the single pictures, 1280 x 960]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/packages.sh
+install_packages imagemagick
+sheet=${1:?which file to write}
+folder=${2:-$(mktemp -d)}
+mkdir -p "$folder"
+bin=${STRATUM_BIN:-build/release/bin}
+corpus=${STRATUM_CORPUS:-../shared/corpus}/gcode
+tiles=()
+# picture LABEL FILE [OPTION...]
+picture() {
+    local label=$1 file=$2
+    shift 2
+    if [[ ! -f "$file" ]]; then
+        echo "not there: $file"
+        return
+    fi
+    local name
+    name=$(printf '%s/%02d.png' "$folder" "$((${#tiles[@]} / 3))")
+    "$bin/vdbtrace" "$file" "$@" -o "$name"
+    tiles+=(-label "$label" "$name")
+}
+picture "PrusaSlicer, defaults" data/gcode/hull.gcode
+picture "FlashStudio, two colours" "$corpus/slicer-meta-flashstudio_2color.gcode.3mf"
+picture "OrcaSlicer, one of two colours" "$corpus/slicer-meta-orca_twocolors.gcode.3mf"
+picture "Orca-Flashforge" "$corpus/slicer-meta-orca_flashforge.gcode.3mf"
+picture "BambuStudio" "$corpus/slicercompare-bambu_plate_1.gcode"
+picture "PrusaSlicer, two tools, tower" data/gcode/two_tone_mmu.gcode
+picture "Cura, four tools" "$corpus/filaswitch-mc_testmodel1_Cura.gcode"
+picture "Simplify3D, four tools" "$corpus/filaswitch-mc_testmodel1_S3D.gcode"
+picture "PrusaSlicer, .bgcode" "$corpus/libbgcode-mini_cube_b.bgcode"
+picture "Slic3r" "$corpus/gcode-preview-benchy_slic3r.gcode"
+picture "Slic3r, half printed" "$corpus/gcode-preview-benchy_slic3r.gcode" --printed 50%
+picture "Pathio" "$corpus/RepRapFirmware-SD-benchy_pathio.gcode"
+picture "FullControl, non-planar vase" "$corpus/gcode-preview-ripple_vase.gcode"
+picture "PrusaSlicer, spiral vase, tall" "$corpus/vase_ps25.gcode"
+picture "Cura" "$corpus/preprocess_cancellation-cura.gcode"
+picture "ideaMaker" "$corpus/preprocess_cancellation-ideamaker.gcode"
+picture "PrusaSlicer, supports" data/gcode/knot.gcode
+picture "FlashPrint, .gx" "$corpus/slicer-meta-FlashPrint.gx"
+picture "PrusaSlicer, 1000 cm3" "$corpus/spot_1000cc_0.1mm_grid.gcode.gz"
+picture "by hand, one square" "$corpus/gcode-preview-square.gcode"
+montage "${tiles[@]}" -tile 4x -geometry 400x300+6+4 -pointsize 15 -background white "$sheet"
