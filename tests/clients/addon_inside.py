@@ -16,7 +16,7 @@ PLAIN = "-skirt,-brim,-custom"
 bpy.ops.preferences.addon_install(filepath=ZIP)
 bpy.ops.preferences.addon_enable(module="stratum_import")
 import stratum_import  # noqa: E402
-from stratum_import import conversion, materials, objects, settings  # noqa: E402
+from stratum_import import conversion, materials, objects, session, settings  # noqa: E402
 
 tempfile.tempdir = os.path.join(FOLDER, "temporary")
 os.mkdir(tempfile.tempdir)
@@ -200,6 +200,16 @@ result["heard"] = started.stage, started.progress, os.listdir(started._folder)
 process = started._process
 started.cancel()
 result["cancelled"] = process.returncode
+defaults = settings.ImportSettings()
+for name, kind in settings.ImportSettings.__annotations__.items():
+    setattr(defaults, name, kind.keywords.get("default", ""))
+clear()
+several = session.Session([TILE, TWO_TONE], defaults, sleeping)
+while several.status()[1] == 0 and several.step(0.01):
+    pass
+result["status"] = several.status()
+several.cancel()
+result["after_cancel"] = several.step(), len(several.shown), several.failures, len(bpy.data.objects)
 bpy.ops.preferences.addon_disable(module="stratum_import")
 result["disabled"] = not hasattr(bpy.types, "IMPORT_SCENE_OT_stratum_gcode")
 result["left"] = [name for name in os.listdir(tempfile.tempdir) if not name.startswith("stratum_vdb_")]

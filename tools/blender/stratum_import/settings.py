@@ -49,6 +49,7 @@ class ImportSettings:
     layers: StringProperty(name="Layers", description="A:B, counted from 1")
     features: StringProperty(name="Features", description="+NAME,... only these; -NAME,... all but these")
     objects: StringProperty(name="Objects", description="Names or numbers, separated by commas")
+    plate: IntProperty(name="Plate", description="Of a .gcode.3mf that has several; 0 is its only one", min=0, default=0)
     interior: EnumProperty(name="Interior", default="cull", items=(
         ("cull", "Outside only", "Leaves out what no outside point can reach"),
         ("keep", "All", "All inner surfaces")))
@@ -93,6 +94,8 @@ class ImportSettings:
                 options.append(f"--{name}={getattr(self, name)}")
         for name in filter(None, (part.strip() for part in self.objects.split(","))):
             options.append(f"--object={name}")
+        if self.plate:
+            options += ["--plate", str(self.plate)]
         return options
 
     def draw(self, context):
@@ -102,7 +105,7 @@ class ImportSettings:
         for title, names in (
                 ("Result", ("kind", "unit", "origin", "beside", "aim")),
                 ("Detail", ("faces", "voxel_size", "memory_budget", "adaptivity", "interior")),
-                ("What", ("layers", "features", "objects", "grids")),
+                ("What", ("layers", "features", "objects", "plate", "grids")),
                 ("Sequence", ("snapshots", "frames"))):
             box = layout.box()
             box.label(text=title)
@@ -114,7 +117,7 @@ class ImportSettings:
                 row.prop(self, name)
 
 
-REMEMBERED = tuple(name for name in ImportSettings.__annotations__ if name not in ("layers", "objects"))
+REMEMBERED = tuple(name for name in ImportSettings.__annotations__ if name not in ("layers", "objects", "plate"))
 
 
 def remember(settings, preferences):
