@@ -147,6 +147,13 @@ named = shutil.copy(TILE, os.path.join(FOLDER, "part.v2.gcode"))
 clear()
 result["named"] = run(filepath=named, voxel_size=0.2), bpy.context.object.name
 
+# --- removed while others were still being converted ---------------------------------------------------------------------
+clear()
+kept, gone, unlinked = (objects.link(name, None) for name in ("kept", "gone", "unlinked"))
+bpy.data.objects.remove(gone)
+bpy.context.collection.objects.unlink(unlinked)
+result["still_there"] = [thing.name for thing in objects.still_there([kept, gone, unlinked])]
+
 # --- several prints, one of them not a print --------------------------------------------------------------------------
 bad = os.path.join(FOLDER, "bad.gcode")
 with open(bad, "w", encoding="ascii") as file:

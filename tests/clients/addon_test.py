@@ -36,6 +36,8 @@ manifest = dict(re.findall(r'^(\w+) = "(.*)"$', held["stratum_import/blender_man
 check({"schema_version", "id", "version", "name", "tagline", "maintainer", "type", "blender_version_min"} <= set(manifest),
       "the manifest has what Blender asks for")
 check(manifest["id"] == "stratum_import" and len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum(), "  as it asks for it")
+permission = re.search(r'^files = "(.*)"$', held["stratum_import/blender_manifest.toml"].decode(), re.MULTILINE).group(1)
+check(len(permission) <= 64 and permission[-1].isalnum(), "  and its permission")
 version = ", ".join(manifest["version"].split("."))
 check(f'"version": ({version})' in held["stratum_import/__init__.py"].decode(), f"  and bl_info's version, {manifest['version']}")
 check(ZIP.endswith(f"-{manifest['version']}.zip"), "  which is the project's")
@@ -61,8 +63,8 @@ for kind in ("mesh", "modifier"):
     for axis in range(3):
         for end, exact in (("min", low), ("max", high)):
             off = measured[end][axis] - exact[axis]
-            # Half a voxel at most: the shift is undone. Edges are rounded by the mesher.
-            check(abs(off) < 0.06, f"  {end} {'xyz'[axis]} is off by {off:+.3f} mm")
+            # Half a voxel: the shift is undone, edges are rounded by the mesher. And a little for merged faces.
+            check(abs(off) < 0.08, f"  {end} {'xyz'[axis]} is off by {off:+.3f} mm")
     check(abs(measured["volume"] / volume - 1) < 0.03, f"  volume {measured['volume']:.1f}, level set {volume:.1f} mm3")
     check(measured["smooth"], "  smooth normals")
 check(not result["mesh"][2], "the mesh is valid")
@@ -79,7 +81,7 @@ exact = [0.1 * (b - a) for a, b in zip(*report["toolpath"]["selected_bbox_mm"])]
 check(all(abs(b - a - e) < 0.02 for a, b, e in zip(low, high, exact)), f"a unit is a centimetre: {exact}")
 check(abs(low[2]) < 0.01 and abs(low[1] + high[1]) < 0.02, "it stands on the ground, in the middle of y")
 check(high[0] < cube[0][0], f"clear of the default cube: {high[0]:.2f} < {cube[0][0]:.2f}")
-check(100e3 < result["faces"] < 1.5e6, f"{result['faces']} faces")
+check(20e3 < result["faces"] < 1.5e6, f"{result['faces']} faces")
 check(result["orange"][0] > 1500 and result["orange"][1] == 0,
       f"the camera that was aimed sees all of it: {result['orange'][0]} of {160 * 120} pixels, {result['orange'][1]} at the edges")
 check(json.loads(result["remembered"])["aim"] is True, "the settings are remembered")
@@ -91,7 +93,8 @@ check(result["names"] == {"part.v2.gcode": "part.v2", "a.b.c.gcode.3mf": "a.b.c"
 check(result["named"] == ["FINISHED", "part.v2"], f"so do objects': {result['named']}")
 
 # --- colors --------------------------------------------------------------------------------------------------------------
-check(result["painted"] == [["p tool 1", "p #c81e14"], [1, 1, 0, 0]], f"faces have the material that most of their corners name: {result['painted']}")
+check(result["painted"] == [["p tool 1", "p #c81e14"], [1, 1, 0, 0]],
+      f"faces have the material that most of their corners name: {result['painted']}")
 check(all(abs(a - b) < 1e-3 for a, b in zip(result["painted_colors"][0][:3], (0.0137, 0.0762, 0.1470))), "in linear colors")
 check(result["painted_valid"], "triangles and quads make a valid mesh")
 done, measured, names = result["two"]
@@ -107,6 +110,7 @@ check("bad.gcode" in result["batch"] and "part.v2" not in result["batch"], f"of 
 boxes = result["batch_boxes"]
 check(sorted(boxes) == ["part.v2", "two_tone"], f"the others are there: {sorted(boxes)}")
 check(boxes["two_tone"][1][0] < boxes["part.v2"][0][0], "side by side")
+check(result["still_there"] == ["kept"], f"what was removed meanwhile is not selected: {result['still_there']}")
 check(result["sequence"] == "FINISHED" and result["end"] == 20, "a sequence of ten steps")
 check(result["seen"] == [1] * 10, "one step is seen at a time")
 check(all(a < b for a, b in zip(result["volumes"], result["volumes"][1:])), "each has more plastic than the one before")

@@ -31,5 +31,6 @@ for axis in range(3):
     for end, exact in (("min", low), ("max", high)):
         shifts = [(1e3 * result[step][end][axis] + start[axis] - exact[axis]) / voxel for step in ("there", "moved")]
         check(abs(shifts[0]) < 1, f"{end} {'xyz'[axis]}: the mesh is {shifts[0]:+.2f} voxel off")
-        check(abs(shifts[1] - shifts[0] + 0.5) < 1e-3 and abs(shifts[1]) < 0.55, f"  {shifts[1]:+.2f} when it is moved back by half a voxel")
+        check(abs(shifts[1] - shifts[0] + 0.5) < 1e-3 and abs(shifts[1]) < 0.55,
+              f"  {shifts[1]:+.2f} when it is moved back by half a voxel")
 check(result["there"]["vertices"] > 1000, f"the mesh has {result['there']['vertices']} vertices")

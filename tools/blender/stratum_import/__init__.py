@@ -9,7 +9,7 @@ from bpy.props import CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from .conversion import ConversionError, find_converter
-from .objects import aim_camera, select_only, show_in_views
+from .objects import aim_camera, select_only, show_in_views, still_there
 from .session import Session
 from .settings import ENDINGS, ImportSettings, recall, remember
 
@@ -114,12 +114,14 @@ class IMPORT_OT_stratum_gcode(bpy.types.Operator, ImportHelper, ImportSettings):
 
     def _finish(self):
         session = self._session
-        if session.shown:
-            select_only(session.shown)
+        things = still_there(session.shown)
+        if things:
+            select_only(things)
             if self.aim:
-                aim_camera(bpy.context.scene, session.shown)
+                aim_camera(bpy.context.scene, things)
             if self._interactive:
                 show_in_views(bpy.context.window)
+        if session.shown:
             remember(self, preferences())
         for kind, lines in (("INFO", session.lines), ("WARNING", session.warnings), ("ERROR", session.failures)):
             for line in lines:

@@ -158,6 +158,20 @@ def show_between(thing, first, last):
         thing.keyframe_insert("hide_render", frame=frame)
 
 
+def still_there(things):
+    """Those that the user hasn't removed meanwhile, and can select."""
+    bpy.context.view_layer.update()
+    seen = set(bpy.context.view_layer.objects)
+    there = []
+    for thing in things:
+        try:
+            if thing in seen:
+                there.append(thing)
+        except ReferenceError:
+            pass
+    return there
+
+
 def select_only(things):
     for thing in bpy.context.selected_objects:
         thing.select_set(False)

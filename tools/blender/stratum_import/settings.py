@@ -40,8 +40,10 @@ class ImportSettings:
         ("bed", "Bed", "Where the G-code prints it")))
     beside: BoolProperty(name="Beside others", default=True,
                          description="Moves a print to the left until it stands clear of what is there; not with origin Bed")
-    aim: BoolProperty(name="Aim the camera", description="The scene's camera keeps its direction and sees all of the print", default=False)
-    adaptivity: FloatProperty(name="Adaptivity", description="Of Volume to Mesh: 0 keeps all faces, 0.5 merges many", min=0, max=0.5, default=0.05)
+    aim: BoolProperty(name="Aim the camera", default=False,
+                      description="The scene's camera keeps its direction and sees all of the print")
+    adaptivity: FloatProperty(name="Adaptivity", description="Of Volume to Mesh: 0 keeps all faces, 0.5 merges many",
+                              min=0, max=0.5, default=0.05)
     faces: IntProperty(name="Faces", description="About so many at most: 1 to 4 voxels a layer are made, as many as that allows",
                        min=1000, default=1000000)
     voxel_size: FloatProperty(name="Voxel size", description="mm; 0 follows from the faces", min=0, max=5, default=0)
@@ -54,7 +56,8 @@ class ImportSettings:
         ("cull", "Outside only", "Leaves out what no outside point can reach"),
         ("keep", "All", "All inner surfaces")))
     grids: StringProperty(name="Attribute grids", description="Of volumes: layer,time,feature,tool,object,width,speed,color")
-    snapshots: IntProperty(name="Print progress", description="Steps of a keyframed sequence; 1 is the whole print", min=1, max=100, default=1)
+    snapshots: IntProperty(name="Print progress", description="Steps of a keyframed sequence; 1 is the whole print",
+                           min=1, max=100, default=1)
     frames: IntProperty(name="Frames a step", min=1, max=1000, default=10)
 
     def scale(self, scene):
