@@ -21,7 +21,20 @@ add_custom_target(manuals ALL DEPENDS ${manuals})
 
 set(data ${CMAKE_INSTALL_DATADIR}/stratum)
 install(DIRECTORY data/brdf DESTINATION ${data}/data COMPONENT tools FILES_MATCHING PATTERN "*.bsdf.gz")
-install(DIRECTORY tools/blender DESTINATION ${data} COMPONENT tools PATTERN "__pycache__" EXCLUDE)
+# One zip for all Blenders: the folder in it is an add-on for 3.4, and an extension for 4.2 and later.
+set(addon stratum_import-${PROJECT_VERSION}.zip)
+set(addon_files)
+foreach(file __init__.py blender_manifest.toml conversion.py materials.py objects.py ply.py session.py settings.py)
+  list(APPEND addon_files stratum_import/${file})
+endforeach()
+list(TRANSFORM addon_files PREPEND ${PROJECT_SOURCE_DIR}/tools/blender/ OUTPUT_VARIABLE addon_sources)
+add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/${addon} VERBATIM
+  COMMAND ${CMAKE_COMMAND} -E tar cf ${PROJECT_BINARY_DIR}/${addon} --format=zip --mtime=2026-01-01 ${addon_files}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/tools/blender
+  DEPENDS ${addon_sources}
+  COMMENT "Blender add-on")
+add_custom_target(blender_addon ALL DEPENDS ${PROJECT_BINARY_DIR}/${addon})
+install(FILES ${PROJECT_BINARY_DIR}/${addon} DESTINATION ${data}/blender COMPONENT tools)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)
 file(GLOB documents CONFIGURE_DEPENDS docs/*.md)

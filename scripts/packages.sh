@@ -22,6 +22,6 @@ BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostr
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
     libhwy-dev zlib1g-dev libzip-dev libstb-dev pkg-config)
 # What the tests need besides: the test library and the real programs that our files must work in.
-TEST_PACKAGES=(admesh libgtest-dev libopenvdb-tools blender python3 python3-openvdb prusa-slicer)
+TEST_PACKAGES=(admesh libgtest-dev libopenvdb-tools blender python3 python3-numpy python3-openvdb prusa-slicer)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.
 BENCH_PACKAGES=(libembree-dev python3-matplotlib)

@@ -1,11 +1,12 @@
-"""Runs inside Blender: imports the .vdb given after `--`, meshes it at threshold 0, prints what it found."""
+"""Runs inside Blender what docs/blender.md does by hand: imports the .vdb given after `--`, whose voxel size in its own unit
+comes next, meshes it at threshold 0, moves it back by half a voxel, and prints what it found before and after."""
 
 import json
 import sys
 
 import bpy
 
-path = sys.argv[sys.argv.index("--") + 1]
+path, voxel = sys.argv[sys.argv.index("--") + 1 :]
 bpy.ops.object.volume_import(filepath=path)
 volume = bpy.context.object
 volume.data.grids.load()
@@ -18,16 +19,17 @@ modifier.object = volume
 modifier.grid_name = "surface"
 modifier.resolution_mode = "GRID"
 modifier.threshold = 0.0
-evaluated = mesh.evaluated_get(bpy.context.evaluated_depsgraph_get())
-points = [vertex.co for vertex in evaluated.data.vertices]
-print(
-    "RESULT "
-    + json.dumps(
-        {
-            "grids": grids,
-            "vertices": len(points),
-            "min": [min(p[axis] for p in points) for axis in range(3)],
-            "max": [max(p[axis] for p in points) for axis in range(3)],
-        }
-    )
-)
+modifier.adaptivity = 0.05
+modifier.use_smooth_shade = True
+
+
+def measure():
+    points = [v.co for v in mesh.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices]
+    return {"vertices": len(points), "min": [min(p[axis] for p in points) for axis in range(3)],
+            "max": [max(p[axis] for p in points) for axis in range(3)]}
+
+
+found = {"grids": grids, "there": measure()}
+volume.location = (-float(voxel) / 2,) * 3
+found["moved"] = measure()
+print("RESULT " + json.dumps(found))

@@ -1,4 +1,4 @@
-"""Real Blender, headless, loads our .vdb and meshes it: one float grid `surface`, the print's bounding box."""
+"""Real Blender, headless, loads our .vdb in meters and meshes it by hand: one float grid `surface`, the print's box."""
 
 import json
 import os
@@ -9,9 +9,11 @@ from run_tools import check, convert, gcode
 
 INSIDE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "blender_inside.py")
 
-vdb, report = convert(gcode("tile.gcode"), "--voxel-size", "0.1", "--features", "-skirt,-brim,-custom")
+vdb, report = convert(gcode("tile.gcode"), "--voxel-size", "0.1", "--features", "-skirt,-brim,-custom", "--interior", "cull",
+                      "--unit", "m", "--origin", "center")
+voxel = report["grid"]["voxel_size_mm"]
 done = subprocess.run(
-    ["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", vdb],
+    ["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", vdb, str(voxel * 1e-3)],
     capture_output=True,
     text=True,
 )
@@ -22,13 +24,13 @@ result = json.loads(lines[0][len("RESULT ") :])
 
 check(result["grids"] == [["surface", "FLOAT"]], f"one float grid named surface: {result['grids']}")
 low, high = report["toolpath"]["selected_bbox_mm"]
-voxel = report["grid"]["voxel_size_mm"]
-# Blender 3.4 takes a voxel's value to lie at its centre, half a voxel from OpenVDB's lattice point, so its mesh is
+start = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]]
+# Blender 3.4 takes a voxel's value to lie at its center, half a voxel from OpenVDB's lattice point, so its mesh is
 # shifted by up to half a voxel a side against the solid; the mesher's own rounding of edges is below a voxel.
 for axis in range(3):
-    shift_low = (result["min"][axis] - low[axis]) / voxel
-    shift_high = (result["max"][axis] - high[axis]) / voxel
-    print(f"axis {'xyz'[axis]}: solid {low[axis]:.3f} .. {high[axis]:.3f} mm, mesh {result['min'][axis]:.3f} .. "
-          f"{result['max'][axis]:.3f}; shifted by {shift_low:+.2f} and {shift_high:+.2f} voxel")
-    check(abs(shift_low) < 1 and abs(shift_high) < 1, "the mesh has the print's box within a voxel")
-check(result["vertices"] > 1000, f"the mesh has {result['vertices']} vertices")
+    for end, exact in (("min", low), ("max", high)):
+        shifts = [(1e3 * result[step][end][axis] + start[axis] - exact[axis]) / voxel for step in ("there", "moved")]
+        check(abs(shifts[0]) < 1, f"{end} {'xyz'[axis]}: the mesh is {shifts[0]:+.2f} voxel off")
+        check(abs(shifts[1] - shifts[0] + 0.5) < 1e-3 and abs(shifts[1]) < 0.55,
+              f"  {shifts[1]:+.2f} when it is moved back by half a voxel")
+check(result["there"]["vertices"] > 1000, f"the mesh has {result['there']['vertices']} vertices")

@@ -107,7 +107,8 @@ if shutil.which("dpkg-shlibdeps") and shutil.which("cpack"):
     check("-dev" not in depends, "  and on nothing for developers")
     contents = run("dpkg-deb", "-c", deb)
     for path in ("./usr/bin/gcode2vdb", "./usr/share/man/man1/vdbtrace.1.gz", "./usr/share/doc/stratum/copyright",
-                 "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"):
+                 "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/blender/stratum_import-",
+                 "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"):
         check(path in contents, f"  has {path}")
     check("/include/" not in contents, "  and no headers")
 shutil.rmtree(FOLDER)
