@@ -11,13 +11,14 @@ MAY_INCLUDE = {
     "io": set(),
     "parallel": set(),
     "gcode": {"io"},
+    "motion": {"io", "parallel", "gcode"},
     "voxelize": {"io", "parallel", "gcode"},
     "march": {"io", "parallel"},
     "ondemand": {"io", "parallel", "gcode", "voxelize", "march"},
     "shade": {"io", "parallel", "march"},
     "study": {"io", "parallel", "gcode", "voxelize", "march", "ondemand", "shade"},
 }
-WITHOUT_OPENVDB = {"io", "parallel", "gcode", "shade"}
+WITHOUT_OPENVDB = {"io", "parallel", "gcode", "motion", "shade"}
 MOST_LINES = 500
 
 problems = []

@@ -111,6 +111,7 @@ void Machine::execute(const Command& command) {
             break;
     }
     ++counts_.commands;
+    if (moves_ != nullptr) moves_->command(command, unit_, line_);
     if (command.letter == 'G') return executeG(command);
     if (command.letter == 'M') return executeM(command);
     selectTool(command);
@@ -203,6 +204,7 @@ void Machine::selectTool(const Command& command) {
 }
 
 void Machine::useTool(std::size_t tool) {
+    if (moves_ != nullptr) moves_->changeTool(tool_, tool);
     tool_ = tool;
     recorder_.setTool(static_cast<std::uint8_t>(tool));
     // PrusaSlicer and its kin subtract a nozzle's offset themselves; offsets that the firmware knows (M218, G10 P) are

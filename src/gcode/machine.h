@@ -13,6 +13,7 @@
 #include "gcode/curve.h"
 #include "gcode/frame.h"
 #include "gcode/lexer.h"
+#include "gcode/motion_recorder.h"
 #include "gcode/reader.h"
 #include "gcode/settings.h"
 #include "gcode/warning_log.h"
@@ -41,6 +42,9 @@ public:
     /// `name` stands in messages. `settings` and `recorder` must outlive the machine.
     Machine(const Settings& settings, const ReadOptions& options, std::string_view name, BeadRecorder& recorder,
             WarningLog& warnings);
+
+    /// From now on the recorder, which must outlive the machine, is told everything that moves.
+    void recordMotion(MotionRecorder* moves) { moves_ = moves; }
 
     /// Throws InputError "name:line: ..." for numbers that can't be meant.
     void run(const Line& line);
@@ -105,6 +109,10 @@ private:
     std::optional<Arc> arcOf(const Command& command, const Point& target, bool clockwise);
     void deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion);
     double switchedExtrusion(double length);
+    void recordTravel(const Command& command, const Point& target, int motion, double drive);
+    void recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before);
+
+    void setVelocityLimit(std::string_view text);
 
     double takeAxis(const Command& command, char letter, std::size_t axis) const;
     /// The stored place that RepRapFirmware's R word names, or nullptr.
@@ -153,6 +161,8 @@ private:
     std::map<std::string, Saved, std::less<>> saved_;
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
+    MotionRecorder* moves_ = nullptr;  // nullptr: nobody asks how it moves
+    double drive_per_extrusion_ = 0;    // what E moves by what leaves the nozzle, of the move that is run
 
     MoveCounts counts_;
     double filament_mm_ = 0;

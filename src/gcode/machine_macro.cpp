@@ -71,10 +71,21 @@ void Machine::executeMacro(const Command& command) {
         const std::string_view extruder = argument(command.text, "EXTRUDER").value_or("");
         const char digit = extruder.empty() ? '0' : extruder.back();
         useTool(digit >= '0' && digit <= '9' ? static_cast<std::size_t>(digit - '0') : 0);
+    } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
+        setVelocityLimit(command.text);
     } else if (!isHarmlessMacro(name)) {
         warn(fmt::format("macro {} is not in the file; what it prints or moves is not in the toolpath",
                          name.substr(0, 60)));
     }
+}
+
+void Machine::setVelocityLimit(std::string_view text) {
+    moves_->velocityLimit({.velocity = numberArgument(text, "VELOCITY"),
+                            .acceleration = numberArgument(text, "ACCEL"),
+                            .to_deceleration = numberArgument(text, "ACCEL_TO_DECEL"),
+                            .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
+                            .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
+                           line_);
 }
 
 void Machine::setMacroOffset(std::string_view text) {
@@ -93,6 +104,7 @@ void Machine::setMacroOffset(std::string_view text) {
         // The nozzle follows at once, so that the program's coordinate stays what it was.
         target[axis] = moves ? program + frame_.offset()[axis] : frame_.position()[axis];
     }
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
     frame_.moveTo(target);
 }
 
@@ -122,6 +134,7 @@ void Machine::restoreState(std::string_view text) {
     if (numberArgument(text, "MOVE").value_or(0) == 0) return;
     Point target;
     for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = saved.frame.program(axis) + frame_.offset()[axis];
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
     frame_.moveTo(target);
 }
 

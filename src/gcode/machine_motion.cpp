@@ -101,6 +101,7 @@ void Machine::move(const Command& command, int motion) {
     double extrusion = drive != 0 ? leavesNozzle(drive, in_place) : 0;
     const bool switched = motor_on_ && motion > 0 && settings_.extrusion.drive == ExtrusionScan::Drive::switched;
     if (extrusion > 0 || switched) {
+        drive_per_extrusion_ = extrusion > 0 ? drive / extrusion : 0;
         if (motion < 2)
             runPath(target, std::nullopt, extrusion);
         else if (motion == 5)
@@ -109,6 +110,7 @@ void Machine::move(const Command& command, int motion) {
             runArc(command, target, motion == 2, extrusion);
     } else {
         ++counts_.travels;
+        if (moves_ != nullptr) recordTravel(command, target, motion, drive);
     }
     frame_.moveTo(target);
 }
@@ -152,11 +154,15 @@ void Machine::returnToPlace(const Command& command) {
     ++counts_.travels;
     const bool all = !command.has('X') && !command.has('Y') && !command.has('Z');
     if (all && command.has('E')) return;
-    frame_.moveTo(all ? stored.place : placeFrom(stored.place, command));
+    const Point target = all ? stored.place : placeFrom(stored.place, command);
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.moveTo(target);
 }
 
 void Machine::runPath(const Point& target, const std::optional<Arc>& arc, double extrusion) {
     const Point& at = frame_.position();
+    const std::size_t beads_before = recorder_.toolpath().beads.size();
+    const double drive = extrusion * drive_per_extrusion_;
     double plan = norm(target.x - at.x, target.y - at.y);
     if (arc) {
         const double radius = 0.5 * (norm(at.x - arc->center_x, at.y - arc->center_y) +
@@ -170,6 +176,7 @@ void Machine::runPath(const Point& target, const std::optional<Arc>& arc, double
     } else {
         ++counts_.stationary;
     }
+    if (moves_ != nullptr) recordPath(target, arc, drive, beads_before);
     frame_.moveTo(target);
 }
 
@@ -182,6 +189,9 @@ void Machine::runPieces(const std::vector<Point>& pieces, double extrusion) {
     }
     if (!(total > kNoMotion)) {
         ++counts_.stationary;
+        if (moves_ != nullptr)
+            recordPath(frame_.position(), std::nullopt, extrusion * drive_per_extrusion_,
+                       recorder_.toolpath().beads.size());
         return;
     }
     for (const Point& to : pieces) runPath(to, std::nullopt, extrusion * distance(frame_.position(), to) / total);
@@ -271,6 +281,19 @@ double Machine::leavesNozzle(double drive, bool in_place) {
     drawn_back -= fetched;
     unloaded = drawn_back > 0;
     return drive * (1 - fetched / mm);
+}
+
+void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before) {
+    const double filament = (volumetric_ ? drive / filamentArea() : drive) * flow_[tool_];
+    const std::size_t beads = recorder_.toolpath().beads.size();
+    const auto bead = beads > beads_before ? static_cast<std::uint32_t>(beads - 1) : Move::kNoBead;
+    moves_->move(frame_.position(), target, arc, filament, feed_ * speed_factor_, bead, line_);
+}
+
+void Machine::recordTravel(const Command& command, const Point& target, int motion, double drive) {
+    std::optional<Arc> arc;
+    if ((motion == 2 || motion == 3) && plane_.normal() == 2) arc = arcOf(command, target, motion == 2);
+    recordPath(target, arc, drive, recorder_.toolpath().beads.size());
 }
 
 double Machine::switchedExtrusion(double length) {

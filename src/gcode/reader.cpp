@@ -5,6 +5,7 @@
 #include "gcode/filament.h"
 #include "gcode/lexer.h"
 #include "gcode/machine.h"
+#include "gcode/motion_recorder.h"
 #include "gcode/sections.h"
 #include "gcode/settings.h"
 #include "gcode/sniff.h"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace stratum::gcode {
@@ -68,6 +70,11 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     WarningLog warnings;
     BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
     Machine machine(settings, options, name, recorder, warnings);
+    std::optional<MotionRecorder> motion;
+    if (options.motion != nullptr) {
+        motion.emplace(*options.motion, readMachineSettings(text, options.corner_rule), warnings);
+        machine.recordMotion(&*motion);
+    }
     Lexer lexer(text);
     Line line;
     std::size_t reported = 0;

@@ -1,6 +1,7 @@
 // bytes -> Toolpath: the one entrance of this room.
 #pragma once
 
+#include "gcode/motion.h"
 #include "gcode/toolpath.h"
 
 #include <cstdint>
@@ -24,6 +25,8 @@ struct ReadOptions {
     std::vector<double> filament_diameters;  ///< mm by tool, the last one also beyond; overrides the file's settings
     std::optional<double> layer_height;      ///< mm; used where neither tags nor Z moves tell
     std::optional<int> plate;                ///< which program of a .gcode.3mf; needed only if it has several
+    MotionSink* motion = nullptr;            ///< is told everything that moves; nullptr: nobody asks
+    CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
     /// Called now and then with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;
 };

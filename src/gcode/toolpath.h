@@ -87,6 +87,15 @@ struct ColorChange {
     std::array<std::uint8_t, 3> color{};  ///< sRGB
 };
 
+/// When a bead is laid and how fast, as the machine's planner has it (src/motion).
+struct BeadTiming {
+    double start = 0;   ///< s since the program's begin
+    float seconds = 0;  ///< that it takes
+    float entry = 0;    ///< mm/s along the path, at its start
+    float peak = 0;     ///< mm/s, the highest on it
+    float exit = 0;     ///< mm/s, at its end
+};
+
 /// Everything that one G-code file deposits, in print order.
 struct Toolpath {
     std::vector<Bead> beads;
@@ -103,6 +112,7 @@ struct Toolpath {
     std::uint32_t layer_count = 0;
     std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool, from the file's settings; may be short
     std::vector<ColorChange> color_changes;                ///< in print order
+    std::vector<BeadTiming> timing;                        ///< by bead; empty unless its motion was planned
     std::vector<double> filament_by_tool;                  ///< mm as the file counts it, by T number; may be short
     std::vector<double> footer_by_tool;  ///< mm that the file itself says each tool uses; empty if it doesn't say
     double footer_mm = 0;                ///< mm that the file says all tools use; 0 if it doesn't say

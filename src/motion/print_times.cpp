@@ -1,0 +1,92 @@
+#include "motion/print_times.h"
+
+#include "io/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace stratum::motion {
+namespace {
+
+using gcode::CornerRule;
+
+constexpr std::array<std::string_view, 6> kRules{
+    "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"};
+
+// Keeps what the sums need, while the toolpath is still being read.
+class Recorder : public PlanSink {
+public:
+    void piece(const PlannedPiece& piece) override {
+        const Segment& segment = piece.segment;
+        const double seconds = piece.speed.seconds();
+        if (segment.bead == gcode::Move::kNoBead) {
+            (segment.travels ? travel : retraction) += seconds;
+            return;
+        }
+        if (timing.size() <= segment.bead) {
+            // Beads that nothing moved for stand where the next one begins.
+            timing.resize(segment.bead + std::size_t{1}, {.start = piece.start});
+            timing.back().entry = static_cast<float>(piece.speed.entry);
+        }
+        gcode::BeadTiming& bead = timing[segment.bead];
+        bead.seconds += static_cast<float>(seconds);
+        bead.peak = std::max(bead.peak, static_cast<float>(piece.speed.peak));
+        bead.exit = static_cast<float>(piece.speed.exit);
+    }
+    void wait(double, double seconds) override { waiting += seconds; }
+
+    std::vector<gcode::BeadTiming> timing;
+    double travel = 0;
+    double retraction = 0;
+    double waiting = 0;
+};
+
+void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
+    times.layers.assign(toolpath.layer_count + std::size_t{1}, 0.0);
+    double before = 0;
+    std::size_t layer = 0;
+    for (std::size_t i = 0; i < toolpath.timing.size(); ++i) {
+        const gcode::BeadTiming& timing = toolpath.timing[i];
+        const gcode::Run& run = toolpath.runOf(toolpath.beads[i]);
+        const double seconds = static_cast<double>(timing.seconds);
+        times.features[static_cast<std::size_t>(run.feature)] += seconds;
+        layer = run.layer;
+        const double end = timing.start + seconds;
+        times.layers[layer] += end - before;
+        before = end;
+    }
+    times.layers[layer] += times.total - before;
+}
+
+}  // namespace
+
+std::string_view ruleName(CornerRule rule) { return kRules[static_cast<std::size_t>(rule)]; }
+
+CornerRule ruleNamed(std::string_view name) {
+    const auto found = std::find(kRules.begin(), kRules.end(), name);
+    if (found == kRules.end())
+        throw UsageError(fmt::format("planner {}: expected one of {}", name, fmt::join(kRules, ", ")));
+    return static_cast<CornerRule>(found - kRules.begin());
+}
+
+gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
+                                  PrintTimes& times) {
+    Recorder recorder;
+    Planner planner(recorder);
+    gcode::ReadOptions read = options;
+    read.motion = &planner;
+    gcode::Toolpath toolpath = gcode::readToolpath(bytes, name, read);
+    planner.finish();
+    recorder.timing.resize(toolpath.beads.size(), {.start = planner.seconds()});
+    toolpath.timing = std::move(recorder.timing);
+    times.total = planner.seconds();
+    times.travel = recorder.travel;
+    times.retraction = recorder.retraction;
+    times.waiting = recorder.waiting;
+    times.rule = ruleName(planner.rule());
+    addUp(toolpath, times);
+    return toolpath;
+}
+
+}  // namespace stratum::motion

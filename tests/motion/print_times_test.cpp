@@ -1,0 +1,175 @@
+#include "motion/print_times.h"
+
+#include "corpus.h"
+#include "gcode/input_bytes.h"
+#include "io/error.h"
+#include "motions.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+namespace stratum::motion {
+namespace {
+
+struct Timed {
+    gcode::Toolpath toolpath;
+    PrintTimes times;
+};
+
+Timed timed(std::string_view program) {
+    Timed result;
+    result.toolpath = readTimedToolpath(program, "test.gcode", {}, result.times);
+    return result;
+}
+
+Timed timedFile(const std::filesystem::path& path) {
+    const gcode::InputBytes file(path.string());
+    Timed result;
+    result.toolpath = readTimedToolpath(file.bytes(), file.name(), {}, result.times);
+    return result;
+}
+
+struct Stated {
+    const char* file;
+    double seconds;
+    double within;  // a share
+};
+
+class StatedTime : public testing::TestWithParam<Stated> {};
+INSTANTIATE_TEST_SUITE_P(Corpus, StatedTime,
+                         testing::Values(Stated{"gcode/Printrun-testgeometry.gcode", 4441, 0.002},
+                                         Stated{"gcode/libbgcode-mini_cube_a.gcode", 1926, 0.002},
+                                         Stated{"gcode/libbgcode-mini_cube_b.bgcode", 1926, 0.002},
+                                         Stated{"gcode/preprocess_cancellation-prusaslicer.gcode", 536, 0.006},
+                                         Stated{"gcode/preprocess_cancellation-m486.gcode", 536, 0.006},
+                                         Stated{"gcode/preprocess_cancellation-superslicer.gcode", 439, 0.006},
+                                         Stated{"gcode/vase_ps25.gcode", 2927, 0.003},
+                                         Stated{"gcode/volumetric_fwretract.gcode", 1184, 0.005},
+                                         Stated{"gcode/spot_1000cc_0.1mm_grid.gcode.gz", 73427, 0.002},
+                                         Stated{"gcode/preprocess_cancellation-cura.gcode", 451, 0.02},
+                                         Stated{"gcode/filaswitch-mc_testmodel1_Cura.gcode", 2656, 0.05}),
+                         [](const auto& chosen) { return "n" + std::to_string(chosen.index); });
+
+TEST_P(StatedTime, IsWhatThePlanTakes) {
+    STRATUM_NEEDS_CORPUS(path, GetParam().file);
+    const Timed print = timedFile(path);
+    EXPECT_NEAR(print.times.total, GetParam().seconds, GetParam().within * GetParam().seconds) << GetParam().file;
+}
+
+class OwnPrints : public testing::TestWithParam<Stated> {};
+INSTANTIATE_TEST_SUITE_P(Data, OwnPrints,
+                         testing::Values(Stated{"bridges", 3444, 0.003}, Stated{"gear", 1820, 0.003},
+                                         Stated{"hull", 2309, 0.003}, Stated{"knot", 1847, 0.003},
+                                         Stated{"tile", 303, 0.003}, Stated{"two_tone", 1105, 0.003},
+                                         Stated{"two_tone_mmu", 1433, 0.003}, Stated{"vase", 1054, 0.003}),
+                         [](const auto& chosen) { return std::string(chosen.param.file); });
+
+TEST_P(OwnPrints, TakeWhatPrusaSlicerSays) {
+    const Timed print = timedFile(test::dataDir() / "gcode" / (std::string(GetParam().file) + ".gcode"));
+    EXPECT_NEAR(print.times.total, GetParam().seconds, GetParam().within * GetParam().seconds + 0.5);
+    EXPECT_EQ(print.times.rule, "slicer-jerk");
+}
+
+// What M73 P says of the time at its line: minutes that are left, cut or rounded.
+TEST(PrintTimes, EveryM73IsMet) {
+    for (const char* name : {"gcode/Printrun-testgeometry.gcode", "gcode/libbgcode-mini_cube_a.gcode"}) {
+        STRATUM_NEEDS_CORPUS(path, name);
+        const gcode::InputBytes file(path.string());
+        const PlanList plan = planOf(file.bytes());
+        std::size_t piece = 0;
+        std::uint32_t line = 0;
+        int checked = 0;
+        std::string_view rest = file.bytes();
+        while (!rest.empty()) {
+            ++line;
+            const auto end = std::min(rest.find('\n'), rest.size());
+            int percent = 0;
+            int minutes = 0;
+            if (std::sscanf(std::string(rest.substr(0, end)).c_str(), "M73 P%d R%d", &percent, &minutes) == 2) {
+                while (piece < plan.pieces.size() && plan.pieces[piece].segment.line < line) ++piece;
+                const double now = piece < plan.pieces.size() ? plan.pieces[piece].start : plan.seconds;
+                EXPECT_NEAR(plan.seconds - now, 60.0 * minutes, 60 + 0.01 * plan.seconds) << name << ":" << line;
+                EXPECT_NEAR(100 * now / plan.seconds, percent, 1.6) << name << ":" << line;
+                ++checked;
+            }
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+        EXPECT_GT(checked, 100) << name;
+    }
+}
+
+TEST(PrintTimes, CurasLayersAreMet) {
+    STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-cura.gcode");
+    const gcode::InputBytes file(path.string());
+    const PlanList plan = planOf(file.bytes());
+    std::size_t piece = 0;
+    std::uint32_t line = 0;
+    int checked = 0;
+    std::string_view rest = file.bytes();
+    while (!rest.empty()) {
+        ++line;
+        const auto end = std::min(rest.find('\n'), rest.size());
+        double elapsed = 0;
+        if (std::sscanf(std::string(rest.substr(0, end)).c_str(), ";TIME_ELAPSED:%lf", &elapsed) == 1) {
+            while (piece < plan.pieces.size() && plan.pieces[piece].segment.line < line) ++piece;
+            const double now = piece < plan.pieces.size() ? plan.pieces[piece].start : plan.seconds;
+            EXPECT_NEAR(now, elapsed, 5 + 0.05 * elapsed) << line;
+            ++checked;
+        }
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    EXPECT_EQ(checked, 25);
+}
+
+TEST(PrintTimes, SumsAddUp) {
+    const Timed print = timedFile(test::dataDir() / "gcode" / "two_tone.gcode");
+    const PrintTimes& t = print.times;
+    EXPECT_NEAR(std::accumulate(t.layers.begin(), t.layers.end(), 0.0), t.total, 1e-6 * t.total);
+    const double beads = std::accumulate(t.features.begin(), t.features.end(), 0.0);
+    EXPECT_NEAR(beads + t.travel + t.retraction + t.waiting, t.total, 1e-5 * t.total);
+    ASSERT_EQ(print.toolpath.timing.size(), print.toolpath.beads.size());
+    double before = 0;
+    for (const gcode::BeadTiming& timing : print.toolpath.timing) {
+        EXPECT_GE(timing.start, before - 1e-4);
+        EXPECT_GT(timing.seconds, 0);
+        before = timing.start + static_cast<double>(timing.seconds);
+    }
+    EXPECT_LE(before, t.total + 1e-3);
+}
+
+TEST(PrintTimes, PlanningLeavesTheToolpathAlone) {
+    const std::filesystem::path path = test::dataDir() / "gcode" / "two_tone_mmu.gcode";
+    const gcode::InputBytes file(path.string());
+    const gcode::Toolpath plain = gcode::readToolpath(file.bytes(), file.name());
+    const Timed print = timedFile(path);
+    EXPECT_TRUE(plain.timing.empty());
+    ASSERT_EQ(plain.beads.size(), print.toolpath.beads.size());
+    EXPECT_EQ(std::memcmp(plain.beads.data(), print.toolpath.beads.data(), plain.beads.size() * sizeof(gcode::Bead)),
+              0);
+    EXPECT_TRUE(plain.runs == print.toolpath.runs);
+}
+
+TEST(PrintTimes, BeadsOfArcsAndCurvesHaveTheirTime) {
+    // A half circle of 10 mm at 10 mm/s, much faster than the corners between its pieces need.
+    const Timed print = timed("M83\nG1 X1 E.1 F600\nG3 X1 Y20 J10 E2\nG5 X21 Y20 I5 J5 P-5 Q5 E2\n");
+    ASSERT_EQ(print.toolpath.timing.size(), print.toolpath.beads.size());
+    EXPECT_NEAR(static_cast<double>(print.toolpath.timing[1].seconds), std::numbers::pi, 0.02);
+    for (const gcode::BeadTiming& timing : print.toolpath.timing) EXPECT_GT(timing.seconds, 0);
+}
+
+TEST(PrintTimes, RulesHaveNames) {
+    for (const char* name : {"auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"})
+        EXPECT_EQ(ruleName(ruleNamed(name)), name);
+    EXPECT_THROW(ruleNamed("speed"), UsageError);
+}
+
+}  // namespace
+}  // namespace stratum::motion
