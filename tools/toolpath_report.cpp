@@ -30,8 +30,8 @@ Json describeTools(const gcode::Toolpath& toolpath) {
         if (!(toolpath.filament_by_tool[tool] > 0)) continue;
         Json entry = {{"tool", tool}, {"filament_mm", toolpath.filament_by_tool[tool]}, {"footer_mm", nullptr}};
         if (tool < toolpath.footer_by_tool.size()) entry["footer_mm"] = toolpath.footer_by_tool[tool];
-        if (tool < toolpath.tool_colors.size()) {
-            const auto& [red, green, blue] = toolpath.tool_colors[tool];
+        if (tool < toolpath.tool_colors.size() && toolpath.tool_colors[tool]) {
+            const auto& [red, green, blue] = *toolpath.tool_colors[tool];
             entry["color"] = fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
         }
         tools.push_back(std::move(entry));

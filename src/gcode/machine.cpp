@@ -189,6 +189,8 @@ void Machine::executeM(const Command& command) {
             return setFlow(command);
         case 486:
             return labelObject(command);
+        case 600:
+            return recorder_.changeFilament(line_);
         default:
             if (!isHarmless('M', command.code)) warn(fmt::format("unknown command M{}, ignored", command.code));
     }
