@@ -230,6 +230,7 @@ Settings readSettings(std::string_view bytes) {
     }
     Settings settings = reader.finish();
     settings.extrusion = scanExtrusion(bytes);
+    if (!settings.relative_e.value_or(false)) settings.extrusion.relative_after_g90 = fallsBackAfterG90(bytes);
     settings.cut_short = findCut(bytes, settings.slicer);
     return settings;
 }
