@@ -39,6 +39,23 @@ Json describeTools(const gcode::Toolpath& toolpath) {
     return tools;
 }
 
+// Only what the file says; null where it says nothing of all this.
+Json describeStated(const gcode::StatedFacts& stated) {
+    Json facts = nullptr;
+    const auto set = [&facts](const char* name, const auto& value) {
+        if (value) facts[name] = *value;
+    };
+    set("seconds", stated.seconds);
+    set("model_seconds", stated.model_seconds);
+    set("grams", stated.grams);
+    if (!stated.materials.empty()) facts["materials"] = stated.materials;
+    if (!stated.nozzle_diameters.empty()) facts["nozzle_diameters_mm"] = stated.nozzle_diameters;
+    if (!stated.printer.empty()) facts["printer"] = stated.printer;
+    set("layer_height_mm", stated.layer_height);
+    set("first_layer_height_mm", stated.first_layer_height);
+    return facts;
+}
+
 Json describeObjects(const gcode::Toolpath& toolpath) {
     const std::vector<gcode::FeatureTotal> totals = gcode::objectTotals(toolpath);
     Json objects = Json::array();
@@ -78,6 +95,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"firmware_reason", toolpath.firmware_reason},
             {"extrusion", toolpath.extrusion_rule},
             {"cut_short", toolpath.cut_short},
+            {"stated", describeStated(toolpath.stated)},
             {"features", describeFeatures(toolpath)},
             {"tools", describeTools(toolpath)},
             {"objects", describeObjects(toolpath)},

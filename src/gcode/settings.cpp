@@ -99,6 +99,8 @@ class SettingsReader {
 public:
     void comment(std::string_view text) {
         text = trim(text);
+        stated_.comment(text);
+        if (readFooter(text, settings.footer)) return;
         const auto equals = text.find(" = ");
         if (equals != std::string_view::npos && text.find(' ') == equals)
             pair(text.substr(0, equals), trim(text.substr(equals + 3)));
@@ -125,19 +127,22 @@ public:
         for (std::size_t tool = 0; tool < extruder_colors_.size(); ++tool)
             if (!tools[tool]) tools[tool] = extruder_colors_[tool];
         while (!tools.empty() && !tools.back()) tools.pop_back();
+        settings.stated = stated_.finish();
         return std::move(settings);
     }
 
     Settings settings;
 
 private:
+    StatedReader stated_;
     std::vector<std::optional<Rgb>> filament_colors_;
     std::vector<std::optional<Rgb>> extruder_colors_;
 
     void pair(std::string_view key, std::string_view value) {
         if (key == "filament_diameter") {
             if (auto list = diameters(value, ","); !list.empty()) settings.filament_diameters = std::move(list);
-        } else if (key == "layer_height" || key == "sliceHeight") {  // the latter is Kiri:Moto's
+        } else if (key == "layer_height" || key == "sliceHeight" ||  // Kiri:Moto's
+                   key == "layer_thickness_mm") {                    // KISSlicer's
             if (const auto height = positive(value, 100)) settings.layer_height = height;
         } else if (key == "use_relative_e_distances") {
             settings.relative_e = flag(value);
@@ -177,15 +182,13 @@ private:
                 settings.slicer.append(" ").append(text);
         } else if (take(text, "FLAVOR:")) {
             curaFlavor(text);
-        } else if (take(text, "Layer height:") || take(text, "layerHeight,")) {
+        } else if (take(text, "Layer height:") || take(text, "layerHeight,") || take(text, "layer_height:")) {
             if (const auto height = positive(text, 100)) settings.layer_height = height;
         } else if (take(text, "Filament Diameter #")) {
             const auto colon = text.find(':');
             const auto diameter =
                 colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
-        } else if (readFooter(text, settings.footer)) {
-            return;
         } else if (take(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
         } else if (take(text, "filamentDiameters,")) {

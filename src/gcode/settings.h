@@ -8,6 +8,7 @@
 #include "gcode/footer.h"
 #include "gcode/frame.h"
 #include "gcode/reader.h"
+#include "gcode/stated.h"
 
 #include <cstdint>
 #include <optional>
@@ -35,6 +36,7 @@ struct Settings {
     Firmware firmware = Firmware::automatic;
     std::string firmware_reason;  ///< what the file says about it
     Footer footer;                ///< what the file says it uses
+    StatedFacts stated;           ///< what else it says of the print
 };
 
 /// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends

@@ -6,6 +6,7 @@
 
 #include "gcode/color.h"
 #include "gcode/packed_double.h"
+#include "gcode/stated.h"
 
 #include <cstdint>
 #include <optional>
@@ -109,6 +110,7 @@ struct Toolpath {
     std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
     std::vector<double> footer_by_tool;      ///< mm that the file itself says each tool uses; empty if it doesn't say
     double footer_mm = 0;                    ///< mm that the file says all tools use; 0 if it doesn't say
+    StatedFacts stated;                      ///< what the file says of time, weight, material, nozzle, printer, layers
     std::string extrusion_rule;              ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
     std::string firmware_reason;             ///< why that rule set was chosen
     std::string cut_short;                   ///< why the program seems to end too early; empty if it doesn't
