@@ -30,13 +30,30 @@ Json describeTools(const gcode::Toolpath& toolpath) {
         if (!(toolpath.filament_by_tool[tool] > 0)) continue;
         Json entry = {{"tool", tool}, {"filament_mm", toolpath.filament_by_tool[tool]}, {"footer_mm", nullptr}};
         if (tool < toolpath.footer_by_tool.size()) entry["footer_mm"] = toolpath.footer_by_tool[tool];
-        if (tool < toolpath.tool_colors.size()) {
-            const auto& [red, green, blue] = toolpath.tool_colors[tool];
+        if (tool < toolpath.tool_colors.size() && toolpath.tool_colors[tool]) {
+            const auto& [red, green, blue] = *toolpath.tool_colors[tool];
             entry["color"] = fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
         }
         tools.push_back(std::move(entry));
     }
     return tools;
+}
+
+// Only what the file says; null where it says nothing of all this.
+Json describeStated(const gcode::StatedFacts& stated) {
+    Json facts = nullptr;
+    const auto set = [&facts](const char* name, const auto& value) {
+        if (value) facts[name] = *value;
+    };
+    set("seconds", stated.seconds);
+    set("model_seconds", stated.model_seconds);
+    set("grams", stated.grams);
+    if (!stated.materials.empty()) facts["materials"] = stated.materials;
+    if (!stated.nozzle_diameters.empty()) facts["nozzle_diameters_mm"] = stated.nozzle_diameters;
+    if (!stated.printer.empty()) facts["printer"] = stated.printer;
+    set("layer_height_mm", stated.layer_height);
+    set("first_layer_height_mm", stated.first_layer_height);
+    return facts;
 }
 
 Json describeObjects(const gcode::Toolpath& toolpath) {
@@ -78,6 +95,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"firmware_reason", toolpath.firmware_reason},
             {"extrusion", toolpath.extrusion_rule},
             {"cut_short", toolpath.cut_short},
+            {"stated", describeStated(toolpath.stated)},
             {"features", describeFeatures(toolpath)},
             {"tools", describeTools(toolpath)},
             {"objects", describeObjects(toolpath)},

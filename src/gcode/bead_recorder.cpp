@@ -53,6 +53,14 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
     }
 }
 
+void BeadRecorder::changeFilament(std::uint32_t line) {
+    const auto& changes = toolpath_.color_changes;
+    const bool named = !changes.empty() && changes.back().first_bead == toolpath_.beads.size();
+    if (!named && !toolpath_.empty())
+        warnings_.add("M600 changes the filament, and the file doesn't say to which colour; the colour before is kept",
+                      line);
+}
+
 void BeadRecorder::markLayer(const Tag& mark) {
     if (!layer_marks_) {
         // The file has marks, so what was counted by z until now came before the first layer.

@@ -29,6 +29,8 @@ public:
     void stopObject() { next_.object = 0; }
     /// Gives the object in force another name, unless one of that name exists: then that one is in force.
     void renameObject(std::string_view name, std::uint32_t line);
+    /// M600: the filament is changed by hand. Remarks where no tag has named the new colour.
+    void changeFilament(std::uint32_t line);
     /// mm, as tagged; 0 if it is yet to be found.
     double height() const { return static_cast<double>(next_.height); }
 

@@ -9,10 +9,13 @@
 
 namespace stratum::gcode {
 
+/// Red, green, blue, sRGB.
+using Rgb = std::array<std::uint8_t, 3>;
+
 /// sRGB of a text that begins with '#' and six hexadecimal digits; nullopt for any other.
-inline std::optional<std::array<std::uint8_t, 3>> parseColor(std::string_view text) {
+inline std::optional<Rgb> parseColor(std::string_view text) {
     if (text.size() < 7 || text.front() != '#') return std::nullopt;
-    std::array<std::uint8_t, 3> color{};
+    Rgb color{};
     for (std::size_t i = 0; i < 3; ++i) {
         const char* const first = text.data() + 1 + 2 * i;
         const auto [end, error] = std::from_chars(first, first + 2, color[i], 16);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "gcode/byte_buffer.h"
+#include "gcode/package_facts.h"
 
 #include <cstddef>
 #include <functional>
@@ -41,6 +42,7 @@ struct Program {
     /// Settings stored beside the text, in the file's order. The text has them too, as "; key = value" at its end.
     std::vector<std::pair<std::string, std::string>> metadata;
     std::optional<double> filament_mm;  ///< all filament that the container says the program uses
+    PackageFacts facts;                 ///< what else it says
     std::string cut_short;              ///< why the program seems to end too early; empty if it doesn't
 };
 

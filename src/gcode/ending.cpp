@@ -20,8 +20,9 @@ struct Trailer {
 constexpr std::array kTrailers{
     Trailer{"PrusaSlicer", {"; filament used [", "; prusaslicer_config = end", "; filament used = "}},
     Trailer{"SuperSlicer", {"; filament used [", "; SuperSlicer_config = end", "; filament used = "}},
-    Trailer{"OrcaSlicer", {"; filament used [", "; CONFIG_BLOCK_END", "; EXECUTABLE_BLOCK_END"}},
+    Trailer{"Orca", {"; filament used [", "; CONFIG_BLOCK_END", "; EXECUTABLE_BLOCK_END"}},
     Trailer{"BambuStudio", {"; EXECUTABLE_BLOCK_END", "; filament end gcode", "; filament used ["}},
+    Trailer{"Flash Studio", {"; EXECUTABLE_BLOCK_END", "; CONFIG_BLOCK_END", "; filament used ["}},
     Trailer{"Slic3r", {"; filament used = ", "; filament used [", "; top_solid_layers = "}},
     Trailer{"Cura", {";End of Gcode", ";SETTING_3 ", ";End of gcode"}},
     Trailer{"Simplify3D", {"; Build Summary", ";   Build time: ", ";   Plastic volume: "}},
@@ -35,6 +36,19 @@ bool isMove(std::string_view text) {
     if (!lexer.next(line)) return false;
     return line.count > 0 && (line.commands[0].kind == Command::Kind::words ||
                               (line.commands[0].letter == 'G' && line.commands[0].code <= 5));
+}
+
+// Does the line break off amid a word: a command letter without its number, or a value's letter behind a command that
+// wants one? "M84 X Y E" and "G28 X" are whole.
+bool endsAmidAWord(std::string_view text) {
+    const auto last = text.find_last_not_of(" \t");
+    if (last == std::string_view::npos || text.find_first_of(";(\"") != std::string_view::npos) return false;
+    constexpr std::string_view kCommands = "GMTNgmtn";
+    constexpr std::string_view kValues = "SPFRspfr";
+    const bool alone = last == 0 || text[last - 1] == ' ';
+    if (kCommands.find(text[last]) != std::string_view::npos) return alone;
+    return alone && last > 0 && kValues.find(text[last]) != std::string_view::npos &&
+           kCommands.find(text.front()) != std::string_view::npos;
 }
 
 // Does any line after the first begin with a motion? Some write into their header what others write at the end.
@@ -61,7 +75,9 @@ std::string findCut(std::string_view bytes, std::string_view slicer) {
     }
     if (bytes.empty() || bytes.back() == '\n' || bytes.back() == '\r') return {};
     const auto start = tail.find_last_of("\r\n");
-    if (isMove(start == std::string_view::npos ? tail : tail.substr(start + 1))) return "the last line has no end";
+    const std::string_view last_line = start == std::string_view::npos ? tail : tail.substr(start + 1);
+    if (isMove(last_line)) return "the last line has no end";
+    if (endsAmidAWord(last_line)) return "the last line breaks off amid a word";
     return {};
 }
 

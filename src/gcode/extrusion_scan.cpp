@@ -2,6 +2,9 @@
 
 #include "gcode/lexer.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace stratum::gcode {
 namespace {
 
@@ -63,7 +66,89 @@ private:
     std::size_t falls_ = 0;
 };
 
+// The start of the line that `at` is in.
+std::size_t lineStart(std::string_view bytes, std::size_t at) {
+    const auto end = bytes.substr(0, at).find_last_of("\r\n");
+    return end == std::string_view::npos ? 0 : end + 1;
+}
+
+// Whether the line at `start` has that command, not only its letters in a comment.
+bool hasCommand(std::string_view bytes, std::size_t start, char letter, std::int32_t code) {
+    Lexer lexer(bytes.substr(start));
+    Line line;
+    if (!lexer.next(line)) return false;
+    for (std::size_t i = 0; i < line.count; ++i) {
+        const Command& command = line.commands[i];
+        if (command.letter == letter && command.code == code && command.subcode == 0) return true;
+    }
+    return false;
+}
+
+// The first command of that text at or behind `from`; npos if there is none.
+std::size_t findCommand(std::string_view bytes, std::string_view text, std::size_t from) {
+    const std::int32_t code = (text[1] - '0') * 10 + (text[2] - '0');
+    while (from < bytes.size()) {
+        const void* const hit = ::memmem(bytes.data() + from, bytes.size() - from, text.data(), text.size());
+        if (hit == nullptr) break;
+        const auto at = static_cast<std::size_t>(static_cast<const char*>(hit) - bytes.data());
+        if (hasCommand(bytes, lineStart(bytes, at), text[0], code)) return at;
+        from = at + text.size();
+    }
+    return std::string_view::npos;
+}
+
+// Moves with E, and how many of them fall back, behind places where the mode is in question.
+struct Falls {
+    std::size_t moves = 0;
+    std::size_t falls = 0;
+
+    // From `bytes` until something sets E's mode anew, or there is enough.
+    void count(std::string_view bytes) {
+        Lexer lexer(bytes);
+        Line line;
+        double last = 0;
+        while (moves < kEnoughMoves && lexer.next(line)) {
+            for (std::size_t i = 0; i < line.count; ++i) {
+                const Command& command = line.commands[i];
+                const bool set = command.letter == 'M' && (command.code == 82 || command.code == 83);
+                if (set ||
+                    (command.letter == 'G' && command.subcode == 0 && (command.code == 90 || command.code == 91)))
+                    return;
+                if (command.letter == 'G' && command.code == 92 && command.has('E')) last = 0;
+                const bool motion =
+                    command.kind == Command::Kind::words || (command.letter == 'G' && command.code <= 3);
+                if (!motion || !command.hasValue('E')) continue;
+                if (command.has('X') || command.has('Y')) {
+                    ++moves;
+                    if (command.value('E') < last) ++falls;
+                }
+                last = command.value('E');
+            }
+        }
+    }
+};
+
 }  // namespace
+
+bool fallsBackAfterG90(std::string_view bytes) {
+    constexpr auto kNone = std::string_view::npos;
+    Falls found;
+    std::size_t m83 = findCommand(bytes, "M83", 0);
+    std::size_t m82 = m83 == kNone ? kNone : findCommand(bytes, "M82", m83);
+    while (m83 != kNone && found.moves < kEnoughMoves) {
+        const std::size_t g90 = findCommand(bytes, "G90", m83);
+        if (g90 == kNone) break;
+        if (m82 < g90) {  // M82 came between: the next M83 counts
+            m83 = findCommand(bytes, "M83", m82);
+            m82 = m83 == kNone ? kNone : findCommand(bytes, "M82", m83);
+            continue;
+        }
+        const auto line_end = std::min(bytes.find('\n', g90), bytes.size());
+        found.count(bytes.substr(line_end));
+        m83 = line_end;  // still the mode in force as far as the slicer is concerned
+    }
+    return found.moves >= kFewestMoves && found.falls * kFallsInMoves > found.moves;
+}
 
 ExtrusionScan scanExtrusion(std::string_view bytes) {
     Scanner scanner;

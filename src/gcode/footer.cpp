@@ -3,6 +3,7 @@
 #include "gcode/number.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace stratum::gcode {
 namespace {
@@ -70,6 +71,21 @@ bool readFooter(std::string_view text, Footer& footer) {
             setLengths(text, 1000, footer);
         else
             footer = {.length = {}, .volume = amounts(text, 1)};
+        return true;
+    }
+    if (take(text, "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
+        const std::vector<double> list = amounts(text, 1);
+        if (!list.empty()) footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}};
+        return true;
+    }
+    if (take(text, "filament_length_m =")) {  // Slic3r 1.3.1
+        setLengths(text, 1000, footer);
+        return true;
+    }
+    if (take(text, "Ext ")) {  // KISSlicer: "Ext 1 =    53.49 mm  (0.378 cm^3)"
+        const std::size_t number = takeIndex(text);
+        if (number == 0 || number >= kMostTools || !take(text, " =")) return false;
+        setAt(footer.length, number - 1, text);
         return true;
     }
     if (take(text, "EXTRUDER_TRAIN.")) {

@@ -1,5 +1,6 @@
 // What a file itself says that it uses: the slicer's sums in its header or trailer, for comparison with what was read.
-// Sources: PrusaSlicer and its kin ("filament used [mm] = 1.5, 2"), Slic3r ("filament used = 290.4mm"), Cura ("Filament
+// Sources: PrusaSlicer and its kin ("filament used [mm] = 1.5, 2"), BambuStudio ("total filament length [mm] : 1.5,2"),
+// Slic3r ("filament used = 290.4mm", "filament_length_m = 0.2904"), KISSlicer ("Ext 1 = 53.49 mm"), Cura ("Filament
 // used: 0.27387m, 0m", or in mm3 where its E is), Griffin headers ("EXTRUDER_TRAIN.0.MATERIAL.VOLUME_USED:12034"),
 // Simplify3D ("Filament length: 2706.2 mm"), ideaMaker ("Material#1 Used: 422.7"), Kiri:Moto ("--- filament used:
 // 225").

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kBitmapAt = 0x10;
 constexpr std::size_t kTextAt = 0x18;
+constexpr std::size_t kSeconds = 0x1c;
 constexpr std::size_t kRightFilament = 0x20;
 constexpr std::size_t kLeftFilament = 0x24;
 constexpr std::size_t kHeader = 58;
@@ -66,6 +67,8 @@ Program openGx(std::string_view bytes, std::string_view name) {
     const double filament =
         static_cast<double>(littleEndian(bytes, kRightFilament, 4)) + littleEndian(bytes, kLeftFilament, 4);
     if (filament > 0) program.filament_mm = filament;
+    const auto seconds = static_cast<double>(littleEndian(bytes, kSeconds, 4));
+    if (seconds > 0) program.facts.stated.seconds = seconds;
     return program;
 }
 

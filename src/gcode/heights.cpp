@@ -116,7 +116,8 @@ void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
         if (run.height > 0 || !(length[k] > 0)) continue;
         const double diameter = 2 * std::sqrt(area[k] / length[k] / std::numbers::pi);
         if (run.feature == Feature::bridge) heights[k] = std::max(heights[k], std::min(diameter, kMostBridge));
-        if (run.feature == Feature::ironing) heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
+        if (run.feature == Feature::ironing && heights[k] >= kLeastHeight)
+            heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
     }
 }
 

@@ -6,7 +6,8 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::array<std::int32_t, 16> kHarmlessG{4, 11, 12, 26, 27, 29, 30, 31, 32, 33, 34, 35, 40, 49, 80, 94};
+// 380 is Bambu's way of lowering the bed to its end stop.
+constexpr std::array<std::int32_t, 17> kHarmlessG{4, 11, 12, 26, 27, 29, 30, 31, 32, 33, 34, 35, 40, 49, 80, 94, 380};
 
 struct Range {
     std::int32_t first;

@@ -16,10 +16,15 @@ bool isLetter(char c) {
 }
 char upper(char c) { return static_cast<char>(c & ~0x20); }
 
-// Commands whose argument is text or a file name, so that "M117 G1 X5" moves nothing (Marlin's parser.cpp, GCODE_TEXT).
+// Commands whose argument is text, a file name or other commands, so that "M117 G1 X5" moves nothing (Marlin's
+// parser.cpp; M98: docs.duet3d.com; M810-M819 keep their commands for later; M1002 and M1006: Bambu's flags by name and
+// its tunes, "C37 D10 M60").
 bool takesText(char letter, std::int32_t code) {
     if (letter != 'M') return false;
+    if (code >= 810 && code <= 819) return true;
     switch (code) {
+        case 0:
+        case 1:
         case 16:
         case 23:
         case 28:
@@ -29,6 +34,7 @@ bool takesText(char letter, std::int32_t code) {
         case 36:
         case 37:
         case 38:
+        case 98:
         case 117:
         case 118:
         case 550:
@@ -38,11 +44,16 @@ bool takesText(char letter, std::int32_t code) {
         case 588:
         case 589:
         case 928:
+        case 1002:
+        case 1006:
             return true;
         default:
             return false;
     }
 }
+
+// Letters that a line may begin with to go on with the motion in force: axes, arcs and the feed rate.
+bool goesOn(char letter) { return std::string_view("XYZEFIJKRABCUVW").find(letter) != std::string_view::npos; }
 
 const char* skipBlanks(const char* p, const char* end) {
     while (p != end && isBlank(*p)) ++p;
@@ -73,6 +84,11 @@ public:
         p_ = skipBlanks(p_, end_);
         if (p_ == end_ || *p_ == '%') return;  // '%' alone marks the ends of a CNC program
         skipLineNumber();
+        p_ = skipBlanks(p_, end_);
+        if (p_ != end_ && *p_ == '/') {
+            line_.deleted = p_ + 1 == end_ || p_[1] != '/';  // two of them are a comment
+            return;
+        }
         while (p_ != end_) {
             const char c = *p_;
             if (isBlank(c)) {
@@ -114,6 +130,12 @@ private:
     void word() {
         const char* next = p_ + 1;
         const char letter = upper(*p_);
+        if (named_ && letter == 'A') {  // what follows is a name, whatever it looks like
+            const char* name = skipBlanks(p_ + 1, end_);
+            if (name != end_ && *name == '"') name = find(name + 1, end_, '"');
+            p_ = find(name, end_, ';');
+            return closeText(p_);
+        }
         if (line_.count == 0 && next != end_ && (isLetter(*next) || *next == '_')) {
             // Tx and Tc are Prusa's "ask for a tool", not macros.
             if (letter == 'T' && (next + 1 == end_ || isBlank(next[1]) || next[1] == ';')) return tool(next);
@@ -123,15 +145,37 @@ private:
         const bool number = next != end_ && isDigit(*next);
         if ((letter == 'G' || letter == 'M') && number) return numbered(letter, next);
         if (letter == 'T' && line_.count == 0) return tool(next);
-        if (!command_) open();
+        if (!command_) {
+            open();
+            if (!goesOn(letter)) foreign();
+        }
         double value = 0;
         if (parseNumber(next, end_, value)) {
             command_->set(letter, value);
             p_ = next;
+        } else if (next != end_ && *next == '{') {
+            command_->setExpression(letter);
+            p_ = behindBraces(next);
         } else {
             command_->set(letter);
             ++p_;
         }
+    }
+
+    void foreign() {
+        command_->kind = Command::Kind::foreign;
+        const char* const word_end = std::find_if(p_, end_, [](char c) { return isBlank(c) || c == ';' || c == '('; });
+        command_->name = view(p_, word_end);
+    }
+
+    // Behind the brace that closes the one at `p`, or the end.
+    const char* behindBraces(const char* p) const {
+        int depth = 0;
+        for (; p != end_; ++p) {
+            if (*p == '{') ++depth;
+            if (*p == '}' && --depth == 0) return p + 1;
+        }
+        return p;
     }
 
     Command& open() {
@@ -142,6 +186,7 @@ private:
         }
         command_ = &line_.commands[line_.count++];
         command_->clear();
+        named_ = false;
         return *command_;
     }
 
@@ -155,6 +200,7 @@ private:
             command.subcode = takeInteger(digits, end_);
         }
         p_ = text_ = digits;
+        named_ = letter == 'M' && command.code == 486;
         if (!takesText(letter, command.code)) return;
         p_ = find(p_, end_, ';');
         closeText(p_);
@@ -192,6 +238,7 @@ private:
     const char* p_;
     const char* end_;
     const char* text_ = nullptr;
+    bool named_ = false;          // it is M486, whose A begins a name
     Command* command_ = nullptr;  // the one being filled
     Line& line_;
 };
@@ -207,12 +254,14 @@ void Command::clear() {
     text = {};
     present_ = 0;
     valued_ = 0;
+    expression_ = 0;
 }
 
 void Command::set(char parameter, double number) {
     const std::uint32_t i = index(parameter);
     present_ |= 1U << i;
     valued_ |= 1U << i;
+    expression_ &= ~(1U << i);
     values_[i] = number;
 }
 
@@ -237,6 +286,7 @@ bool Lexer::next(Line& line) {
     line.count = 0;
     line.comment = {};
     line.unreadable = false;
+    line.deleted = false;
     LineLexer(takeLine(), line).run();
     return true;
 }

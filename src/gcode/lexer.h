@@ -2,7 +2,8 @@
 //
 // Handled here: N words and *checksums, ';' and '(...)' comments, lower case, missing spaces, tabs, LF, CR, CRLF and
 // any mixture of them, a byte order mark, bytes that are no text, several commands in a line (RepRapFirmware, CNC),
-// commands whose argument is free text (M117 ...), and Klipper's extended commands (SET_THING A=1).
+// commands whose argument is free text (M117 ...) or ends with a name (M486 A...), Klipper's extended commands
+// (SET_THING A=1), RepRapFirmware's expressions in braces, and lines that begin with '/'.
 #pragma once
 
 #include <array>
@@ -15,6 +16,7 @@ namespace stratum::gcode {
 struct Command {
     enum class Kind : std::uint8_t {
         words,     ///< parameters only: the motion command in force goes on
+        foreign,   ///< a line that begins with a letter of no motion ("Q603 ..."): no command that is known here
         numbered,  ///< G1, M82, T0, G92.1
         extended,  ///< a macro or extended command, in `name`
     };
@@ -22,10 +24,14 @@ struct Command {
     char letter = 0;           ///< 'G', 'M' or 'T' of a numbered command
     std::int32_t code = 0;     ///< its number; -1 where T names no number (T?, Tx)
     std::int32_t subcode = 0;  ///< 1 of G92.1
-    std::string_view name;     ///< of an extended command, as written
+    std::string_view name;     ///< of an extended or foreign command, as written
     std::string_view text;     ///< what follows the code or name, up to the comment: for free-text arguments
 
+    /// Some parameter has no number.
+    bool lacksNumbers() const { return (present_ & ~valued_) != 0; }
     bool has(char parameter) const { return ((present_ >> index(parameter)) & 1U) != 0; }
+    /// Without a number, but with an expression of RepRapFirmware ("F{60*var.speed}"), whose value is unknown here.
+    bool isExpression(char parameter) const { return ((expression_ >> index(parameter)) & 1U) != 0; }
     bool hasValue(char parameter) const { return ((valued_ >> index(parameter)) & 1U) != 0; }
     /// The parameter's number. Only meaningful if hasValue().
     double value(char parameter) const { return values_[index(parameter)]; }
@@ -35,6 +41,11 @@ struct Command {
     void set(char parameter) {
         present_ |= 1U << index(parameter);
         valued_ &= ~(1U << index(parameter));
+        expression_ &= ~(1U << index(parameter));
+    }
+    void setExpression(char parameter) {
+        set(parameter);
+        expression_ |= 1U << index(parameter);
     }
     void set(char parameter, double number);
 
@@ -42,6 +53,7 @@ private:
     static std::uint32_t index(char letter) { return static_cast<std::uint32_t>(letter - 'A') & 31U; }
     std::uint32_t present_ = 0;
     std::uint32_t valued_ = 0;
+    std::uint32_t expression_ = 0;
     std::array<double, 32> values_;  // only those marked in valued_ are ever read
 };
 
@@ -53,6 +65,7 @@ struct Line {
     std::array<Command, kMaxCommands> commands;
     std::string_view comment;  ///< without its ';' or parentheses, untrimmed; of several the ';' one or the first
     bool unreadable = false;   ///< something in it is neither a word nor a comment
+    bool deleted = false;      ///< begins with one '/' (block delete, NIST RS274/NGC 3.3.1): nothing in it is a command
 };
 
 /// Splits bytes into lines. Allocates nothing; the bytes must outlive it.

@@ -97,6 +97,7 @@ void Machine::run(const Line& line) {
         execute(command);
     }
     if (workspace) frame_.select(*workspace);
+    if (line.deleted) warn("a line that begins with '/' (block delete) is left out");
     if (line.unreadable && line.count == 0) warn("characters that are no G-code words; they are ignored");
 }
 
@@ -105,6 +106,8 @@ void Machine::execute(const Command& command) {
         case Command::Kind::words:
             if (hasAxis(command) || command.has('E') || drivingLetter(command) != 0) move(command, motion_);
             return;
+        case Command::Kind::foreign:
+            return remarkForeign(command);
         case Command::Kind::extended:
             return executeMacro(command);
         case Command::Kind::numbered:
@@ -158,9 +161,8 @@ void Machine::executeG(const Command& command) {
         case 61:
             return returnToPlace(command);
         case 90:
-            return setAbsolute(command.subcode == 1 ? absolute_ : true);
         case 91:
-            return setAbsolute(command.subcode == 1 ? absolute_ : false);
+            return setAbsolute(command);
         case 92:
             return setPosition(command);
         default:
@@ -173,6 +175,7 @@ void Machine::executeM(const Command& command) {
         case 82:
         case 83:
             e_absolute_ = command.code == 82;
+            m83_ = !e_absolute_;
             e_mode_known_ = true;
             return;
         case 101:
@@ -190,6 +193,8 @@ void Machine::executeM(const Command& command) {
             return setFlow(command);
         case 486:
             return labelObject(command);
+        case 600:
+            return recorder_.changeFilament(line_);
         default:
             if (!isHarmless('M', command.code)) warn(fmt::format("unknown command M{}, ignored", command.code));
     }
@@ -251,20 +256,40 @@ void Machine::setPosition(const Command& command) {
     const bool extruder = command.has('E') || letter != 0;
     const bool bare = !hasAxis(command) && !extruder;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (bare || command.has(kAxes[axis])) frame_.rename(axis, placeOf(command, kAxes[axis]));
-    if (!bare && !extruder) return;
+        if (bare || (command.has(kAxes[axis]) && !command.isExpression(kAxes[axis])))
+            frame_.rename(axis, placeOf(command, kAxes[axis]));
+    if ((!bare && !extruder) || (letter != 0 && command.isExpression(letter))) return;
     const double value = letter != 0 && command.hasValue(letter) ? command.value(letter) * eUnit() : 0;
     if (!std::isfinite(value)) refuse("the E of this G92 is no number; is the file damaged?");
     e_ = value;
 }
 
-void Machine::setAbsolute(bool absolute) {
+void Machine::setAbsolute(const Command& command) {
+    const bool absolute = command.code == 90;
+    if (command.subcode != 0) {  // of arcs' centres only: LinuxCNC's G90.1 and G91.1
+        if (command.subcode == 1 && absolute) warn("G90.1 is nothing that printers know; I and J count from the start");
+        return;
+    }
     absolute_ = absolute;
     if (firmware_ != Firmware::marlin) return;
     // Marlin 2 lets G90 undo M83, Marlin 1 did not; slicers that set relative E count on the latter and send G90 after.
     if (absolute && settings_.relative_e.value_or(false)) return;
+    if (absolute && m83_ && settings_.extrusion.relative_after_g90) {
+        e_absolute_ = false;
+        return warn(
+            "by Marlin's rules G90 makes E absolute again after M83, but E keeps falling back as only increments "
+            "do; it stays relative (M82 in the file if not)");
+    }
     e_absolute_ = absolute;
     e_follows_axes_ = true;
+}
+
+void Machine::remarkForeign(const Command& command) {
+    // FlashPrint states the print's box as Q603; O, S, D and H are a CNC program's number, spindle and tool.
+    const std::string_view name = command.name;
+    if (name == "Q603" || name.empty() || std::string_view("OSDHosdh").find(name.front()) != std::string_view::npos)
+        return;
+    warn(fmt::format("unknown command {}, ignored", name.substr(0, 60)));
 }
 
 void Machine::setHomeOffset(const Command& command) {

@@ -64,6 +64,7 @@ private:
     struct Saved {
         Frame frame;
         double e = 0;
+        double feed = 0;
         double speed_factor = 1;
         std::array<double, 256> flow{};
         bool absolute = true;
@@ -86,7 +87,8 @@ private:
     void storePlace(const Command& command);
     void returnToPlace(const Command& command);
     void setPosition(const Command& command);
-    void setAbsolute(bool absolute);
+    void setAbsolute(const Command& command);
+    void remarkForeign(const Command& command);
     void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);
     void setSpeedFactor(const Command& command);
@@ -100,6 +102,8 @@ private:
     void restoreState(std::string_view text);
 
     void move(const Command& command, int motion);
+    /// Whether the firmware refuses a move with letters that have no number; remarks them in any case.
+    bool refusesLetters(const Command& command);
     /// The straight or, in the bed plane, circular path to the target.
     void runPath(const Point& target, const std::optional<Arc>& arc, double extrusion);
     void runPieces(const std::vector<Point>& pieces, double extrusion);
@@ -149,6 +153,7 @@ private:
     bool e_absolute_ = true;
     bool e_mode_known_ = false;    // by M82, M83, an option, or assumed
     bool e_follows_axes_ = false;  // G90 or G91 has set it by Marlin's rule
+    bool m83_ = false;             // of M82 and M83 the latter came last
     bool volumetric_ = false;
     bool motor_on_ = false;  // between M101 and M103, where those are all there is
     std::size_t tool_ = 0;

@@ -51,6 +51,14 @@ std::optional<double> numberArgument(std::string_view text, std::string_view key
     return number;
 }
 
+// 12 of "extruder12", 0 of "extruder"; no more than a tool can be.
+std::size_t trailingNumber(std::string_view text) {
+    std::size_t number = 0;
+    for (const char c : text.substr(text.find_last_not_of("0123456789") + 1))
+        number = std::min<std::size_t>(number * 10 + static_cast<std::size_t>(c - '0'), 254);
+    return number;
+}
+
 }  // namespace
 
 void Machine::executeMacro(const Command& command) {
@@ -68,9 +76,7 @@ void Machine::executeMacro(const Command& command) {
         restoreState(command.text);
     } else if (same(name, "ACTIVATE_EXTRUDER")) {
         // "extruder" is the first, "extruder1" the second.
-        const std::string_view extruder = argument(command.text, "EXTRUDER").value_or("");
-        const char digit = extruder.empty() ? '0' : extruder.back();
-        useTool(digit >= '0' && digit <= '9' ? static_cast<std::size_t>(digit - '0') : 0);
+        useTool(trailingNumber(argument(command.text, "EXTRUDER").value_or("")));
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
     } else if (!isHarmlessMacro(name)) {
@@ -114,6 +120,7 @@ void Machine::saveState(std::string_view text) {
     if (saved_.size() >= kMostStates && !saved_.contains(name)) return warn("more saved states than are kept");
     saved_.insert_or_assign(name, Saved{.frame = frame_,
                                         .e = e_,
+                                        .feed = feed_,
                                         .speed_factor = speed_factor_,
                                         .flow = flow_,
                                         .absolute = absolute_,
@@ -128,6 +135,7 @@ void Machine::restoreState(std::string_view text) {
     e_absolute_ = saved.e_absolute;
     e_ = saved.e;
     flow_ = saved.flow;
+    feed_ = saved.feed;
     speed_factor_ = saved.speed_factor;
     recorder_.setSpeed(feed_ * speed_factor_);
     frame_.takeNames(saved.frame);

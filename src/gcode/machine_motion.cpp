@@ -34,8 +34,7 @@ double distance(const Point& a, const Point& b) { return norm(norm(b.x - a.x, b.
 
 double Machine::takeAxis(const Command& command, char letter, std::size_t axis) const {
     const double current = frame_.position()[axis];
-    if (!command.has(letter)) return current;
-    if (!command.hasValue(letter)) refuse(fmt::format("{} has no number; expected e.g. {}10.5", letter, letter));
+    if (!command.hasValue(letter)) return current;
     const double value = command.value(letter) * unit_;
     const double target = absolute_ ? value + frame_.offset()[axis] : current + value;
     if (!(std::abs(target) <= kMaxCoordinate))
@@ -57,8 +56,7 @@ char Machine::drivingLetter(const Command& command) {
 
 double Machine::takeExtrusion(const Command& command) {
     const char letter = drivingLetter(command);
-    if (letter == 0) return 0;
-    if (!command.hasValue(letter)) refuse(fmt::format("{} has no number; expected e.g. {}0.5", letter, letter));
+    if (letter == 0 || !command.hasValue(letter)) return 0;
     if (!e_mode_known_) assumeExtruderMode();
     const double value = command.value(letter) * eUnit();
     const double extrusion = e_absolute_ ? value - e_ : value;
@@ -88,7 +86,30 @@ void Machine::assumeExtruderMode() {
     }
 }
 
+bool Machine::refusesLetters(const Command& command) {
+    bool missing = false;
+    for (const char letter : {'X', 'Y', 'Z', 'E', 'F', 'I', 'J', 'R'}) {
+        if (!command.has(letter) || command.hasValue(letter)) continue;
+        if (command.isExpression(letter)) {
+            warn(fmt::format("{}{{...}} is an expression, whose value isn't in the file; {}", letter,
+                             letter == 'F' ? "the speed is unknown from there on" : "it is left out"));
+        } else if (firmware_ == Firmware::marlin) {
+            warn(fmt::format("{} without a number in a move; it is left out, as Marlin does", letter));
+        } else {
+            missing = true;
+            warn(fmt::format("{} without a number: {} refuses such a move; it is left out", letter,
+                             firmwareName(firmware_)));
+        }
+    }
+    return missing;
+}
+
 void Machine::move(const Command& command, int motion) {
+    if (command.lacksNumbers() && refusesLetters(command)) return;
+    if (command.isExpression('F')) {
+        feed_ = 0;
+        recorder_.setSpeed(0);
+    }
     if (command.hasValue('F') && command.value('F') > 0) {
         feed_ = command.value('F') * unit_ / 60;
         recorder_.setSpeed(feed_ * speed_factor_);
@@ -241,8 +262,7 @@ std::optional<Arc> Machine::arcOf(const Command& command, const Point& target, b
     const char first = kOffsets[plane_.first];
     const char second = kOffsets[plane_.second];
     for (const char letter : {first, second, 'R'}) {
-        if (!command.has(letter)) continue;
-        if (!command.hasValue(letter)) refuse(fmt::format("{} has no number; expected e.g. {}10.5", letter, letter));
+        if (!command.hasValue(letter)) continue;
         if (!(std::abs(command.value(letter) * unit_) <= kMaxCoordinate))
             refuse(fmt::format("{}{} is no arc on a printer (limit {} mm); is the file damaged?", letter,
                                command.value(letter), kMaxCoordinate));
@@ -250,11 +270,11 @@ std::optional<Arc> Machine::arcOf(const Command& command, const Point& target, b
     const PlanPoint start{frame_.position()[plane_.first], frame_.position()[plane_.second]};
     const PlanPoint end{target[plane_.first], target[plane_.second]};
     std::optional<Arc> arc;
-    if (command.has('R')) {
+    if (command.hasValue('R')) {
         arc = arcFromRadius(start, end, command.value('R') * unit_, clockwise);
     } else {
-        const double i = command.has(first) ? command.value(first) * unit_ : 0;
-        const double j = command.has(second) ? command.value(second) * unit_ : 0;
+        const double i = command.hasValue(first) ? command.value(first) * unit_ : 0;
+        const double j = command.hasValue(second) ? command.value(second) * unit_ : 0;
         arc = arcFromOffset(start, end, {i, j}, clockwise);
     }
     if (!arc) warn("arc whose centre, radius and end don't agree; drawn as a straight line");

@@ -51,6 +51,40 @@ void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_
             last_line);
 }
 
+// What the container says counts where the text is silent.
+void takeStated(const StatedFacts& text, const StatedFacts& container, StatedFacts& stated) {
+    stated = text;
+    if (!stated.seconds) stated.seconds = container.seconds;
+    if (!stated.grams) stated.grams = container.grams;
+    if (stated.printer.empty()) stated.printer = container.printer;
+    if (stated.materials.empty()) stated.materials = container.materials;
+}
+
+// By tool; a ufp lists each material once, so that its list means tools only where it is as long as theirs.
+void takeColors(const Program& program, Toolpath& toolpath) {
+    const std::vector<std::optional<Rgb>>& colors = program.facts.filament_colors;
+    if (!toolpath.tool_colors.empty() || colors.empty()) return;
+    if (program.format == "ufp" && colors.size() != toolpath.filament_by_tool.size()) return;
+    toolpath.tool_colors = colors;
+}
+
+// BambuStudio and OrcaSlicer label objects by number in the text; the names stand beside it. Equal names get their
+// numbers, so that each can be chosen.
+void nameObjects(const Program& program, Toolpath& toolpath) {
+    constexpr std::string_view kLabel = "unique label id: ";
+    const auto& names = program.facts.object_names;
+    for (std::string& object : toolpath.objects) {
+        if (!object.starts_with(kLabel)) continue;
+        const std::string number = object.substr(kLabel.size());
+        const auto named =
+            std::find_if(names.begin(), names.end(), [&](const auto& one) { return one.first == number; });
+        if (named == names.end()) continue;
+        const auto same =
+            std::count_if(names.begin(), names.end(), [&](const auto& one) { return one.second == named->second; });
+        object = same > 1 ? fmt::format("{} {}", named->second, number) : named->second;
+    }
+}
+
 }  // namespace
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
@@ -100,6 +134,10 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     toolpath.layer_height = nominal.value_or(0);
     for (const Run& run : toolpath.runs) toolpath.layer_count = std::max(toolpath.layer_count, run.layer);
     toolpath.format = program.format;
+    takeStated(settings.stated, program.facts.stated, toolpath.stated);
+    takeColors(program, toolpath);
+    nameObjects(program, toolpath);
+    if (!(toolpath.footer_mm > 0)) toolpath.footer_mm = program.filament_mm.value_or(0);
     return toolpath;
 }
 

@@ -48,19 +48,15 @@ std::vector<double> diameters(std::string_view text, std::string_view separators
     return values;
 }
 
-// "#FF8000;#DB5182", with or without quotes; an empty place is black only if another tool has a colour.
-std::vector<std::array<std::uint8_t, 3>> colors(std::string_view text) {
-    std::vector<std::array<std::uint8_t, 3>> values;
-    bool any = false;
+// "#FF8000;#DB5182", with or without quotes; of an empty place nothing is known.
+std::vector<std::optional<Rgb>> colors(std::string_view text) {
+    std::vector<std::optional<Rgb>> values;
     while (!text.empty() && values.size() < 256) {
         const auto cut = std::min(text.find_first_of(";,"), text.size());
-        const std::string_view one = trim(text.substr(0, cut));
-        const auto color = parseColor(one);
-        any = any || color;
-        values.push_back(color.value_or(std::array<std::uint8_t, 3>{}));
+        values.push_back(parseColor(trim(text.substr(0, cut))));
         text.remove_prefix(std::min(cut + 1, text.size()));
     }
-    return any ? values : std::vector<std::array<std::uint8_t, 3>>{};
+    return values;
 }
 
 // "0x0,18x0": the nozzles' places by tool.
@@ -103,6 +99,8 @@ class SettingsReader {
 public:
     void comment(std::string_view text) {
         text = trim(text);
+        stated_.comment(text);
+        if (readFooter(text, settings.footer)) return;
         const auto equals = text.find(" = ");
         if (equals != std::string_view::npos && text.find(' ') == equals)
             pair(text.substr(0, equals), trim(text.substr(equals + 3)));
@@ -121,13 +119,30 @@ public:
         }
     }
 
+    Settings finish() {
+        // The filament is what is seen; the extruder's colour is a mark in the slicer's own views.
+        std::vector<std::optional<Rgb>>& tools = settings.tool_colors;
+        tools = std::move(filament_colors_);
+        tools.resize(std::max(tools.size(), extruder_colors_.size()));
+        for (std::size_t tool = 0; tool < extruder_colors_.size(); ++tool)
+            if (!tools[tool]) tools[tool] = extruder_colors_[tool];
+        while (!tools.empty() && !tools.back()) tools.pop_back();
+        settings.stated = stated_.finish();
+        return std::move(settings);
+    }
+
     Settings settings;
 
 private:
+    StatedReader stated_;
+    std::vector<std::optional<Rgb>> filament_colors_;
+    std::vector<std::optional<Rgb>> extruder_colors_;
+
     void pair(std::string_view key, std::string_view value) {
         if (key == "filament_diameter") {
             if (auto list = diameters(value, ","); !list.empty()) settings.filament_diameters = std::move(list);
-        } else if (key == "layer_height" || key == "sliceHeight") {  // the latter is Kiri:Moto's
+        } else if (key == "layer_height" || key == "sliceHeight" ||  // Kiri:Moto's
+                   key == "layer_thickness_mm") {                    // KISSlicer's
             if (const auto height = positive(value, 100)) settings.layer_height = height;
         } else if (key == "use_relative_e_distances") {
             settings.relative_e = flag(value);
@@ -137,9 +152,9 @@ private:
         } else if (key == "single_extruder_multi_material") {
             settings.shared_nozzle = flag(value).value_or(false);
         } else if (key == "extruder_colour") {
-            if (auto list = colors(value); !list.empty()) settings.tool_colors = std::move(list);
+            extruder_colors_ = colors(value);
         } else if (key == "filament_colour") {
-            if (settings.tool_colors.empty()) settings.tool_colors = colors(value);
+            filament_colors_ = colors(value);
         } else if (key == "extruder_offset") {
             settings.tool_offsets = offsets(value);
         } else if (key == "nozzle_diameter") {
@@ -167,15 +182,13 @@ private:
                 settings.slicer.append(" ").append(text);
         } else if (take(text, "FLAVOR:")) {
             curaFlavor(text);
-        } else if (take(text, "Layer height:") || take(text, "layerHeight,")) {
+        } else if (take(text, "Layer height:") || take(text, "layerHeight,") || take(text, "layer_height:")) {
             if (const auto height = positive(text, 100)) settings.layer_height = height;
         } else if (take(text, "Filament Diameter #")) {
             const auto colon = text.find(':');
             const auto diameter =
                 colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
-        } else if (readFooter(text, settings.footer)) {
-            return;
         } else if (take(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
         } else if (take(text, "filamentDiameters,")) {
@@ -218,9 +231,11 @@ Settings readSettings(std::string_view bytes) {
         tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
         readComments(tail, reader);
     }
-    reader.settings.extrusion = scanExtrusion(bytes);
-    reader.settings.cut_short = findCut(bytes, reader.settings.slicer);
-    return std::move(reader.settings);
+    Settings settings = reader.finish();
+    settings.extrusion = scanExtrusion(bytes);
+    if (!settings.relative_e.value_or(false)) settings.extrusion.relative_after_g90 = fallsBackAfterG90(bytes);
+    settings.cut_short = findCut(bytes, settings.slicer);
+    return settings;
 }
 
 }  // namespace stratum::gcode

@@ -3,12 +3,13 @@
 // headers of Cura, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Skeinforge's "(<layerHeight> 0.3 )".
 #pragma once
 
+#include "gcode/color.h"
 #include "gcode/extrusion_scan.h"
 #include "gcode/footer.h"
 #include "gcode/frame.h"
 #include "gcode/reader.h"
+#include "gcode/stated.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,13 +20,13 @@ namespace stratum::gcode {
 
 /// Values are absent where the file is silent or says nonsense.
 struct Settings {
-    std::string slicer;                                    ///< name and version
-    std::vector<double> filament_diameters;                ///< mm, by tool
-    std::optional<double> layer_height;                    ///< mm
-    std::optional<bool> relative_e;                        ///< E words are increments
-    std::optional<bool> volumetric_e;                      ///< E words are mm^3
-    std::string volumetric_reason;                         ///< where the file says so
-    std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool: the extruder's colour, else the filament's
+    std::string slicer;                           ///< name and version
+    std::vector<double> filament_diameters;       ///< mm, by tool
+    std::optional<double> layer_height;           ///< mm
+    std::optional<bool> relative_e;               ///< E words are increments
+    std::optional<bool> volumetric_e;             ///< E words are mm^3
+    std::string volumetric_reason;                ///< where the file says so
+    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's colour, else the extruder's
     std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
     std::optional<double> nozzle_diameter;  ///< mm, of the first tool
     std::optional<double> extrusion_width;  ///< mm
@@ -35,6 +36,7 @@ struct Settings {
     Firmware firmware = Firmware::automatic;
     std::string firmware_reason;  ///< what the file says about it
     Footer footer;                ///< what the file says it uses
+    StatedFacts stated;           ///< what else it says of the print
 };
 
 /// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends

@@ -40,6 +40,36 @@ void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     }
 }
 
+// Each once, those of the tools that print.
+template <typename Value>
+std::vector<Value> inUse(const std::vector<Value>& by_tool, const Toolpath& toolpath) {
+    std::vector<Value> values;
+    for (std::size_t tool = 0; tool < by_tool.size(); ++tool) {
+        const bool prints = tool < toolpath.filament_by_tool.size() && toolpath.filament_by_tool[tool] > 0;
+        if (!prints || by_tool[tool] == Value{}) continue;
+        if (std::find(values.begin(), values.end(), by_tool[tool]) == values.end()) values.push_back(by_tool[tool]);
+    }
+    return values;
+}
+
+// One line with what the file says, or none.
+void describeStated(const Toolpath& toolpath, fmt::memory_buffer& out) {
+    const StatedFacts& stated = toolpath.stated;
+    std::vector<std::string> parts;
+    if (stated.seconds) parts.push_back(describeDuration(*stated.seconds));
+    if (stated.model_seconds)
+        parts.push_back(fmt::format("{} of it for the model", describeDuration(*stated.model_seconds)));
+    if (stated.grams) parts.push_back(fmt::format("{:g} g", *stated.grams));
+    const auto materials = inUse(stated.materials, toolpath);
+    if (!materials.empty()) parts.push_back(fmt::format("{}", fmt::join(materials, " and ")));
+    const auto nozzles = inUse(stated.nozzle_diameters, toolpath);
+    if (!nozzles.empty()) parts.push_back(fmt::format("nozzle {:g} mm", fmt::join(nozzles, " and ")));
+    if (!stated.printer.empty()) parts.push_back(stated.printer);
+    if (stated.layer_height) parts.push_back(fmt::format("layers of {:g} mm", *stated.layer_height));
+    if (stated.first_layer_height) parts.push_back(fmt::format("the first {:g} mm", *stated.first_layer_height));
+    if (!parts.empty()) fmt::format_to(std::back_inserter(out), "the file says: {}\n", fmt::join(parts, ", "));
+}
+
 }  // namespace
 
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath) {
@@ -60,6 +90,7 @@ std::string summarize(const Toolpath& toolpath) {
     const auto totals = featureTotals(toolpath);
     double length = 0;
     for (const FeatureTotal& total : totals) length += total.length;
+    describeStated(toolpath, out);
     fmt::format_to(std::back_inserter(out), "{} ({}), read by the rules of {}: {}\n",
                    toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.format, toolpath.firmware,
                    toolpath.firmware_reason);

@@ -23,8 +23,9 @@ std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 /// By index into Toolpath::objects; [0] is what belongs to none.
 std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath);
 
-/// Slicer, container and firmware rules with their reason; layers, beads, length, volume; filament per tool beside what
-/// the file itself says; features; objects; warnings with count and first line. Ends with a line end.
+/// What the file states (time, weight, material, nozzle, printer, layer heights); slicer, container and firmware rules
+/// with their reason; layers, beads, length, volume; filament per tool beside what the file itself says; features;
+/// objects; warnings with count and first line. Ends with a line end.
 std::string summarize(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

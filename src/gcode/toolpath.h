@@ -4,10 +4,12 @@
 // Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
 #pragma once
 
+#include "gcode/color.h"
 #include "gcode/packed_double.h"
+#include "gcode/stated.h"
 
-#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,7 +86,7 @@ struct Warning {
 struct ColorChange {
     std::uint32_t first_bead = 0;  ///< index into Toolpath::beads; may be one past the last
     std::uint8_t tool = 0;
-    std::array<std::uint8_t, 3> color{};  ///< sRGB
+    Rgb color{};
 };
 
 /// When a bead is laid and how fast, as the machine's planner has it (src/motion).
@@ -110,16 +112,19 @@ struct Toolpath {
     double filament_diameter = 1.75;  ///< mm, of tool 0
     double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
     std::uint32_t layer_count = 0;
-    std::vector<std::array<std::uint8_t, 3>> tool_colors;  ///< sRGB by tool, from the file's settings; may be short
-    std::vector<ColorChange> color_changes;                ///< in print order
-    std::vector<BeadTiming> timing;                        ///< by bead; empty unless its motion was planned
-    std::vector<double> filament_by_tool;                  ///< mm as the file counts it, by T number; may be short
-    std::vector<double> footer_by_tool;  ///< mm that the file itself says each tool uses; empty if it doesn't say
-    double footer_mm = 0;                ///< mm that the file says all tools use; 0 if it doesn't say
-    std::string extrusion_rule;          ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
-    std::string firmware_reason;         ///< why that rule set was chosen
-    std::string cut_short;               ///< why the program seems to end too early; empty if it doesn't
-    double filament_mm = 0;              ///< positive E of the beads as the file counts it, in mm of filament
+    /// By tool, from the file's settings; empty for a tool of which they state none; may be short. bead_colors.h asks
+    /// it.
+    std::vector<std::optional<Rgb>> tool_colors;
+    std::vector<ColorChange> color_changes;  ///< in print order
+    std::vector<BeadTiming> timing;          ///< by bead; empty unless its motion was planned
+    std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
+    std::vector<double> footer_by_tool;      ///< mm that the file itself says each tool uses; empty if it doesn't say
+    double footer_mm = 0;                    ///< mm that the file says all tools use; 0 if it doesn't say
+    StatedFacts stated;                      ///< what the file says of time, weight, material, nozzle, printer, layers
+    std::string extrusion_rule;              ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
+    std::string firmware_reason;             ///< why that rule set was chosen
+    std::string cut_short;                   ///< why the program seems to end too early; empty if it doesn't
+    double filament_mm = 0;                  ///< positive E of the beads as the file counts it, in mm of filament
     double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }

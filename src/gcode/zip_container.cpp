@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::gcode {
@@ -61,6 +63,9 @@ struct Plate {
 struct Contents {
     std::vector<Plate> plates;
     std::optional<zip_uint64_t> ufp_model;
+    std::optional<zip_uint64_t> slice_info;  // of a 3mf
+    std::optional<zip_uint64_t> relations;   // of a ufp's model
+    std::vector<std::pair<std::string, zip_uint64_t>> materials;
     bool model = false;  // an unsliced 3MF project
     zip_int64_t entries = 0;
 };
@@ -89,6 +94,9 @@ Contents listContents(zip_t* archive, std::string_view name) {
         std::string_view entry = raw;
         if (entry.starts_with('/')) entry.remove_prefix(1);
         if (entry == "3D/model.gcode") contents.ufp_model = index;
+        if (entry == "Metadata/slice_info.config") contents.slice_info = index;
+        if (entry == "3D/_rels/model.gcode.rels") contents.relations = index;
+        if (entry.starts_with("Materials/")) contents.materials.emplace_back(entry, index);
         if (entry == "3D/3dmodel.model") contents.model = true;
         if (const int number = plateNumber(entry); number > 0) contents.plates.push_back({number, index});
     }
@@ -103,12 +111,12 @@ std::string listPlates(const std::vector<Plate>& plates) {
     return list;
 }
 
-zip_uint64_t choosePlate(const std::vector<Plate>& plates, std::string_view name, std::optional<int> wanted) {
+const Plate& choosePlate(const std::vector<Plate>& plates, std::string_view name, std::optional<int> wanted) {
     if (!wanted && plates.size() > 1)
         throw UsageError(fmt::format("{}: has {} plates ({}); choose one, e.g. --plate {}", name, plates.size(),
                                      listPlates(plates), plates.front().number));
     for (const Plate& plate : plates)
-        if (!wanted || plate.number == *wanted) return plate.index;
+        if (!wanted || plate.number == *wanted) return plate;
     throw UsageError(
         fmt::format("{}: --plate {}: there is no such plate; it has {}", name, *wanted, listPlates(plates)));
 }
@@ -149,6 +157,27 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
     text.truncate(done);
 }
 
+// A small file beside the G-code; empty if it can't be had, for the print can be read without it.
+std::string unpackAside(zip_t* archive, zip_uint64_t index, std::string_view name) {
+    constexpr std::size_t kMost = std::size_t{1} << 20;
+    try {
+        ByteBuffer text;
+        unpackEntry(archive, index, name, kMost, text, {});
+        return std::string(text.view());
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+PackageFacts readMaterials(zip_t* archive, const Contents& contents, std::string_view name) {
+    PackageFacts facts;
+    if (!contents.relations) return facts;
+    for (const std::string& path : materialPaths(unpackAside(archive, *contents.relations, name)))
+        for (const auto& [entry, index] : contents.materials)
+            if (entry == path) readMaterial(unpackAside(archive, index, name), facts);
+    return facts;
+}
+
 }  // namespace
 
 bool isZip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"sv) || bytes.starts_with("PK\x05\x06"sv); }
@@ -161,10 +190,14 @@ Program openZip(std::string_view bytes, std::string_view name, std::optional<int
     zip_uint64_t index = 0;
     if (!contents.plates.empty()) {
         program.format = "3mf";
-        index = choosePlate(contents.plates, name, plate);
+        const Plate& chosen = choosePlate(contents.plates, name, plate);
+        index = chosen.index;
+        if (contents.slice_info)
+            program.facts = readSliceInfo(unpackAside(archive.get(), *contents.slice_info, name), chosen.number);
     } else if (contents.ufp_model) {
         program.format = "ufp";
         index = *contents.ufp_model;
+        program.facts = readMaterials(archive.get(), contents, name);
     } else if (contents.model) {
         throw InputError(fmt::format("{}: is a 3MF model without G-code; slice it and export the sliced plate", name));
     } else {

@@ -1,5 +1,6 @@
 #include "voxelize/attributes.h"
 
+#include "gcode/bead_colors.h"
 #include "io/error.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace stratum::voxelize {
@@ -107,20 +109,9 @@ float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
 }
 
 openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {
-    const std::uint8_t tool = toolpath_.runOf(toolpath_.beads[bead]).tool;
-    std::array<std::uint8_t, 3> srgb{};
-    bool known = false;
-    if (tool < toolpath_.tool_colors.size()) {
-        srgb = toolpath_.tool_colors[tool];
-        known = true;
-    }
-    for (const gcode::ColorChange& change : toolpath_.color_changes) {
-        if (change.first_bead > bead) break;
-        if (change.tool != tool) continue;
-        srgb = change.color;
-        known = true;
-    }
-    return known ? openvdb::Vec3f(linear(srgb[0]), linear(srgb[1]), linear(srgb[2])) : openvdb::Vec3f(kGrey);
+    const std::optional<gcode::Rgb> srgb = gcode::colorOf(toolpath_, bead);
+    if (!srgb) return openvdb::Vec3f(kGrey);
+    return {linear((*srgb)[0]), linear((*srgb)[1]), linear((*srgb)[2])};
 }
 
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& toolpath,

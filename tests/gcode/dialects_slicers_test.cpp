@@ -366,19 +366,5 @@ INSTANTIATE_TEST_SUITE_P(Lines, SlicerDialect, testing::ValuesIn(kLines), nameOf
 INSTANTIATE_TEST_SUITE_P(Tags, SlicerDialect, testing::ValuesIn(kTags), nameOf);
 INSTANTIATE_TEST_SUITE_P(Heights, SlicerDialect, testing::ValuesIn(kHeights), nameOf);
 
-TEST(SlicerSettings, ColorsByTool) {
-    using Colors = std::vector<std::array<std::uint8_t, 3>>;
-    const std::string program = "M83\nG1 Z.2\nG1 X10 E1\n";
-    // PrusaSlicer: the extruder's colour goes before the filament's, whatever comes first in the file.
-    EXPECT_EQ(
-        readProgram(program + "; extruder_colour = #FF8000;#0102fe\n; filament_colour = #111111;#222222\n").tool_colors,
-        (Colors{{255, 128, 0}, {1, 2, 254}}));
-    EXPECT_EQ(
-        readProgram(program + "; filament_colour = #111111;\"#222222\"\n; extruder_colour = \"\";\"\"\n").tool_colors,
-        (Colors{{0x11, 0x11, 0x11}, {0x22, 0x22, 0x22}}));
-    EXPECT_TRUE(readProgram(program + "; extruder_colour = ;\n").tool_colors.empty());
-    EXPECT_TRUE(readProgram(program).tool_colors.empty());
-}
-
 }  // namespace
 }  // namespace stratum::gcode

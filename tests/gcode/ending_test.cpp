@@ -11,6 +11,14 @@ TEST(Ending, OfUnknownSlicersTheLastLineTells) {
         EXPECT_EQ(findCut(whole, ""), "") << whole;
 }
 
+TEST(Ending, AWordThatBreaksOff) {
+    for (const auto* cut : {"G1 X1\nG", "G1 X1\nM", "G1 X1\nT", "G1 X1\nM104 S", "G1 X1\nM204 P800 T"})
+        EXPECT_EQ(findCut(cut, ""), "the last line breaks off amid a word") << cut;
+    for (const auto* whole : {"G1 X1\nM84 X Y E", "G1 X1\nG28 X", "G1 X1\nM104 S0", "G1 X1\nEND_PRINT", "G1 X1\n;S",
+                              "G1 X1\nM117 DONE ; S", "G1 X1\nM104 S\n"})
+        EXPECT_EQ(findCut(whole, ""), "") << whole;
+}
+
 TEST(Ending, OfKnownOnesTheTrailer) {
     EXPECT_NE(findCut("G1 X1\n", "PrusaSlicer 2.5.0").find("what PrusaSlicer writes"), std::string::npos);
     EXPECT_EQ(findCut("G1 X1\n; filament used [mm] = 1\n", "PrusaSlicer 2.5.0"), "");

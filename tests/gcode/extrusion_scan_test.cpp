@@ -1,5 +1,9 @@
 #include "gcode/extrusion_scan.h"
 
+#include "corpus.h"
+#include "gcode/program.h"
+#include "io/mapped_file.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
@@ -38,6 +42,39 @@ TEST(ExtrusionScan, ResetsAndRetractionsAreNoFalls) {
     std::string program;
     for (int i = 0; i < 20; ++i) program += moves(3, false) + "G1 E1\nG92 E0\n";
     EXPECT_FALSE(scanExtrusion(program).falls_back);
+}
+
+TEST(ExtrusionScan, BehindAG90ThatCameAfterM83) {
+    EXPECT_TRUE(fallsBackAfterG90("M83\nG90\n" + moves(20, true)));
+    EXPECT_TRUE(fallsBackAfterG90("G90\nM82\nM83\n G90 G21\n" + moves(20, true)));
+    EXPECT_TRUE(fallsBackAfterG90("M83\n" + moves(3, true) + "G91\nG90\n" + moves(20, true)));
+    EXPECT_FALSE(fallsBackAfterG90("M83\nG90\n" + moves(20, false)));
+    EXPECT_FALSE(fallsBackAfterG90("M83\nG90\n" + moves(8, true)));  // too few to tell
+    EXPECT_FALSE(fallsBackAfterG90("M83\nG90\nM82\n" + moves(20, true)));
+    EXPECT_FALSE(fallsBackAfterG90("M82\nG90\n" + moves(20, true)));
+    EXPECT_FALSE(fallsBackAfterG90("; M83\nG90\n" + moves(20, true)));
+    EXPECT_FALSE(fallsBackAfterG90("M83\nG90.1\n" + moves(20, true)));
+    EXPECT_FALSE(fallsBackAfterG90("M83\nM82\nG90\n" + moves(20, true) + "M83\n"));
+    EXPECT_FALSE(fallsBackAfterG90(""));
+}
+
+TEST(ExtrusionScan, AFileWithoutSettingsThatCountsOnMarlin1) {
+    // Simplify3D's M83 comes before its G90; with the comments gone, nothing but the numbers says that it holds.
+    STRATUM_NEEDS_CORPUS(path, "gcode/filaswitch-mc_testmodel1_S3D.gcode");
+    const MappedFile file(path);
+    const Toolpath whole = readToolpath(file.bytes(), "whole");
+    std::string bare;
+    bool comment = false;
+    for (const char c : file.bytes()) {
+        if (c == ';') comment = true;
+        if (c == '\n') comment = false;
+        if (!comment) bare += c;
+    }
+    const Toolpath toolpath = readToolpath(bare, "bare");
+    EXPECT_EQ(toolpath.beads.size(), whole.beads.size());
+    EXPECT_NEAR(toolpath.filament_mm, whole.filament_mm, 1e-6);
+    EXPECT_GT(warningCount(toolpath, "G90 makes E absolute again"), 0U);
+    EXPECT_EQ(warningCount(whole, "G90 makes E absolute again"), 0U);
 }
 
 }  // namespace

@@ -24,6 +24,13 @@ TEST(Footer, OfSeveralSlicers) {
     EXPECT_EQ(footerOf("--- filament used: 225.03 mm ---").length, (List{225.03}));
 }
 
+TEST(Footer, OfHeaders) {
+    EXPECT_EQ(footerOf("total filament length [mm] : 325.49").length, (List{325.49}));
+    EXPECT_EQ(footerOf("total filament length [mm] : 1.5,2").length, (List{3.5}));  // of the tools in use
+    EXPECT_EQ(footerOf("filament_length_m = 0.2904").length, (List{290.4}));
+    EXPECT_EQ(footerOf("Ext 2 =    53.49 mm  (0.378 cm^3)").length, (List{0, 53.49}));
+}
+
 TEST(Footer, Volumes) {
     EXPECT_EQ(footerOf("Filament used: 772.133mm3, 674.215mm3").volume, (List{772.133, 674.215}));
     EXPECT_TRUE(footerOf("Filament used: 772.133mm3, 674.215mm3").length.empty());
@@ -31,9 +38,10 @@ TEST(Footer, Volumes) {
 }
 
 TEST(Footer, NonsenseIsNotTaken) {
-    for (const auto* comment : {"filament used [mm] = much", "Filament used: -1m", "Material#0 Used: 4",
-                                "Material# Used: 4", "EXTRUDER_TRAIN.9999.MATERIAL.VOLUME_USED:1",
-                                "EXTRUDER_TRAIN.0.NOZZLE.DIAMETER:0.4", "Filament used:", "filament_diameter = 1.75"})
+    for (const auto* comment :
+         {"filament used [mm] = much", "Filament used: -1m", "Material#0 Used: 4", "Material# Used: 4",
+          "EXTRUDER_TRAIN.9999.MATERIAL.VOLUME_USED:1", "EXTRUDER_TRAIN.0.NOZZLE.DIAMETER:0.4", "Ext = 5 mm",
+          "Ext 0 = 5 mm", "total filament length [mm] : ?", "Filament used:", "filament_diameter = 1.75"})
         EXPECT_TRUE(footerOf(comment).empty()) << comment;
 }
 

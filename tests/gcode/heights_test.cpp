@@ -91,5 +91,12 @@ TEST(LocalRises, WhatLiesBelow) {
     EXPECT_EQ(rises[5].share, 0);
 }
 
+TEST(Heights, IroningBelowTheBed) {
+    const Toolpath toolpath =
+        readProgram("M83\n;layer_height = 0.2\nG1 Z0\n;TYPE:Ironing\nG1 X9 E.01\nG1 Z-.1\nG1 X0 E.01\n");
+    for (const Bead& bead : toolpath.beads) EXPECT_GT(toolpath.runOf(bead).height, 0.009F);
+    EXPECT_GT(warningCount(toolpath, "at or below the bed"), 0U);
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -17,18 +17,21 @@ std::string show(const Line& line) {
         const Command& command = line.commands[i];
         text += '<';
         if (command.kind == Command::Kind::extended) text += command.name;
+        if (command.kind == Command::Kind::foreign) text += fmt::format("~{}", command.name);
         if (command.kind == Command::Kind::numbered) {
             text += fmt::format("{}{}", command.letter, command.code);
             if (command.subcode != 0) text += fmt::format(".{}", command.subcode);
         }
         for (char letter = 'A'; letter <= 'Z'; ++letter)
             if (command.has(letter))
-                text += command.hasValue(letter) ? fmt::format(" {}{}", letter, command.value(letter))
-                                                 : fmt::format(" {}?", letter);
+                text += command.hasValue(letter)       ? fmt::format(" {}{}", letter, command.value(letter))
+                        : command.isExpression(letter) ? fmt::format(" {}{{}}", letter)
+                                                       : fmt::format(" {}?", letter);
         text += '>';
     }
     if (!line.comment.empty()) text += fmt::format("|{}", line.comment);
     if (line.unreadable) text += '!';
+    if (line.deleted) text += '/';
     return text;
 }
 
@@ -81,6 +84,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"M109 S[temp] T0", "<M109 E? M? P? S? T0>!"}, Case{"\xEF\xBB\xBFG1 X1", "<G1 X1>"},
                     Case{"G99999999999999999999", "<G9999999>"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    TextIsNoCommand, LexerLine,
+    testing::Values(Case{"M486 AGlock g19 mag.stl", "<M486>"}, Case{"M486 A\"gear; G28.stl\" ; c", "<M486>| c"},
+                    Case{"M486 S1 Abox_G1_X99.stl", "<M486 S1>"}, Case{"M486 T2", "<M486 T2>"},
+                    Case{"M1 use g92 X5", "<M1>"}, Case{"M0 click", "<M0>"}, Case{"M98 P/macros/g28.g", "<M98>"},
+                    Case{"M810 G1 X5 E5", "<M810>"}, Case{"M1002 judge_flag g29_before_print_flag", "<M1002>"},
+                    Case{"M1006 A0 B10 L100 C37 D10 M60 E37 F10 N60", "<M1006>"}, Case{"M820 G1 X5", "<M820><G1 X5>"}));
+
+INSTANTIATE_TEST_SUITE_P(Foreign, LexerLine,
+                         testing::Values(Case{"Q603 MINX-37.50 MAXY5", "<~Q603 A? I? M? N? Q603 X? Y5>"},
+                                         Case{"S1000 X5", "<~S1000 S1000 X5>"}, Case{"G X5", "<~G G? X5>"},
+                                         Case{"Y5 E1", "< E1 Y5>"}, Case{"I1 J2 X3", "< I1 J2 X3>"},
+                                         Case{"/ G1 X50", "/"}, Case{"// G1 X50", ""}, Case{"N4 /G1 X50", "/"},
+                                         Case{"G1 X5 / 2", "<G1 X5>!"}));
+
+INSTANTIATE_TEST_SUITE_P(Expressions, LexerLine,
+                         testing::Values(Case{"G1 F{60*var.x2}", "<G1 F{}>"},
+                                         Case{"G1 X{move.axes[0].max - 5} Y3 E{a{1}}", "<G1 E{} X{} Y3>"},
+                                         Case{"G1 X{open Y5", "<G1 X{}>"}, Case{"G1 X{1} X2", "<G1 X2>"}));
+
 TEST(Lexer, LineEndsOfEveryKind) {
     EXPECT_EQ(lex("G1\nG2\r\nG3\rG4"), (std::vector<std::string>{"<G1>", "<G2>", "<G3>", "<G4>"}));
     EXPECT_EQ(lex("G1\r\r\nG2\n\n"), (std::vector<std::string>{"<G1>", "", "<G2>", ""}));
@@ -89,7 +112,7 @@ TEST(Lexer, LineEndsOfEveryKind) {
 }
 
 TEST(Lexer, FreeTextIsKept) {
-    Lexer lexer("M117 Hello G1\nEXCLUDE_OBJECT_START NAME=a_1 ; x\nM486 S3 T4");
+    Lexer lexer("M117 Hello G1\nEXCLUDE_OBJECT_START NAME=a_1 ; x\nM486 S3 T4\nM486 S3 Ag28 b.stl;c");
     Line line;
     ASSERT_TRUE(lexer.next(line));
     EXPECT_EQ(line.commands[0].text, " Hello G1");
@@ -97,6 +120,8 @@ TEST(Lexer, FreeTextIsKept) {
     EXPECT_EQ(line.commands[0].text, " NAME=a_1 ");
     ASSERT_TRUE(lexer.next(line));
     EXPECT_EQ(line.commands[0].text, " S3 T4");
+    ASSERT_TRUE(lexer.next(line));
+    EXPECT_EQ(line.commands[0].text, " S3 Ag28 b.stl");
 }
 
 TEST(Lexer, AParameterOfAnEarlierLineIsForgotten) {

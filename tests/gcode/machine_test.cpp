@@ -271,11 +271,8 @@ TEST_P(MachineRefuses, WithThePlace) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, MachineRefuses,
-    testing::Values(BadCase{"M83\nG1 X1e9 E\n", "E has no number"}, BadCase{"M83\nG1 X1000000000 E1\n", "X1000000000"},
-                    BadCase{"M83\nG1 Y-100001 E1\n", "Y-100001"}, BadCase{"M83\nG1 Xnan Y1 E1\n", "X has no number"},
-                    BadCase{"M83\nG1 X{x} E1\n", "X has no number"}, BadCase{"M83\nG1 Zinf E1\n", "Z has no number"},
+    testing::Values(BadCase{"M83\nG1 X1000000000 E1\n", "X1000000000"}, BadCase{"M83\nG1 Y-100001 E1\n", "Y-100001"},
                     BadCase{"M83\nG1 X1 E1000000000\n", "E1000000000"},
-                    BadCase{"M83\nG2 X1 Y1 I E1\n", "I has no number"},
                     BadCase{"M83\nG2 X1 Y1 J1000000 E1\n", "J1000000"}, BadCase{"M83\nG92 X1000000\n", "X1000000"},
                     BadCase{"M83\nM200 D500\n", "M200 D500"}, BadCase{"M83\nM221 S-5\n", "M221 S-5"},
                     BadCase{"G20\nG1 X9000 E1\n", "X9000"}));

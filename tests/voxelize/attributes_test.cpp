@@ -29,7 +29,7 @@ gcode::Toolpath twoTone() {
         toolpath.runs.back().speed = 60;
         toolpath.beads[n].run = static_cast<std::uint32_t>(toolpath.runs.size() - 1);
     }
-    toolpath.tool_colors = {{255, 0, 0}, {0, 255, 0}};
+    toolpath.tool_colors = {gcode::Rgb{255, 0, 0}, gcode::Rgb{0, 255, 0}};
     toolpath.color_changes = {{2, 2, {0, 0, 255}}};
     return toolpath;
 }

@@ -1,0 +1,60 @@
+// What a file says of the print before anyone reads a move: time, weight, material, nozzle, printer, layer heights.
+// Nothing here is computed; what the file doesn't say is absent.
+// Sources: PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio GCode.cpp ("estimated printing time (normal mode) =",
+// "total filament used [g] =", "model printing time: ...; total estimated time:", their settings); Cura's ";TIME:" and
+// Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas); ideaMaker
+// ("Print Time:"); KISSlicer ("Estimated Build Time: 332.83 minutes"); Kiri:Moto ("--- print time: 806s ---");
+// FlashPrint ("machine_type:", "right_extruder_material:") and the header of its .gx; Snapmaker Luban
+// ("estimated_time(s):", "Extruder 0 Material:").
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// Lists are by tool (T number).
+struct StatedFacts {
+    std::optional<double> seconds;             ///< of the whole job, warming up included where the slicer counts it
+    std::optional<double> model_seconds;       ///< of the printing alone (BambuStudio)
+    std::optional<double> grams;               ///< all filament
+    std::vector<std::string> materials;        ///< as the slicer names them, e.g. "PLA"
+    std::vector<double> nozzle_diameters;      ///< mm
+    std::string printer;                       ///< the model, or else the name of its profile
+    std::optional<double> layer_height;        ///< mm
+    std::optional<double> first_layer_height;  ///< mm
+
+    bool empty() const;
+};
+
+/// Collects the facts from comments; of several that state the same, the last one counts.
+class StatedReader {
+public:
+    /// Takes in a comment, without its ';' and trimmed, if it states one of them.
+    void comment(std::string_view text);
+    /// The facts, with a first layer's height in per cent made mm. Ends the reader's use.
+    StatedFacts finish();
+
+private:
+    void pair(std::string_view key, std::string_view value);
+    void sentence(std::string_view key, std::string_view value);
+    void setting(std::string_view key, std::string_view value);
+    void setMaterial(std::size_t tool, std::string_view name);
+    void setNozzle(std::size_t tool, std::string_view diameter);
+
+    StatedFacts facts_;
+    std::string profile_;                // the printer's settings, where no model is named
+    std::optional<double> first_share_;  // of the layer height
+    bool total_grams_ = false;           // the sum is stated, not only its parts
+};
+
+/// Seconds of "1d 2h 3m 4s", "1h:20m:36s", "0 hours 43 minutes", "332.83 minutes", "806s" or a bare number of seconds;
+/// nullopt for anything else.
+std::optional<double> parseDuration(std::string_view text);
+
+/// "1 h 14 min 1 s".
+std::string describeDuration(double seconds);
+
+}  // namespace stratum::gcode
