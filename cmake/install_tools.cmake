@@ -35,7 +35,7 @@ add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/${addon} VERBATIM
   COMMENT "Blender add-on")
 add_custom_target(blender_addon ALL DEPENDS ${PROJECT_BINARY_DIR}/${addon})
 install(FILES ${PROJECT_BINARY_DIR}/${addon} DESTINATION ${data}/blender COMPONENT tools)
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+# With all that they link to, as it lies in the sources: pictures, and the pages and tables of the studies.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)
-file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
-install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT tools)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)

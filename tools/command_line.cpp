@@ -5,8 +5,10 @@
 
 #include "io/atomic_file.h"
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -17,6 +19,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <new>
 
 namespace stratum::tools {
@@ -29,6 +32,51 @@ constexpr int kBadInput = 3;
 int complain(const CLI::App& app, std::string_view message, int status) {
     fmt::print(stderr, "{}: {}\n", app.get_name(), message);
     return status;
+}
+
+// The app of the subcommand that is asked for, or the one itself.
+const CLI::App& deepest(const CLI::App& app) {
+    const auto verbs = app.get_subcommands();
+    return verbs.empty() ? app : *verbs.front();
+}
+
+std::string unknownWord(const CLI::App& app, const CLI::ExtrasError& error) {
+    const std::vector<std::string> words = app.remaining(true);
+    if (words.empty()) return error.what();
+    const std::string word = words.front().substr(0, words.front().find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : deepest(app).get_options())
+        if (!option->get_group().empty())
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    return fmt::format("{}: {}{} (see {} -h)", word, word.starts_with('-') ? "no such option" : "not expected here",
+                       didYouMean(word, views), app.get_name());
+}
+
+// The first word of a tool of many verbs, if it is none of them.
+std::string unknownVerb(const CLI::App& app, const char* word) {
+    if (app.get_require_subcommand_min() == 0 || word[0] == '-') return {};
+    std::vector<std::string_view> names;
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.emplace_back(verb->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    return fmt::format("{}: is none of {}{}", word, fmt::join(names, ", "), didYouMean(word, names));
+}
+
+// -o=a.png would be a file named "=a.png".
+std::string shortWithEquals(const CLI::App& app, int argc, char** argv) {
+    std::vector<const CLI::Option*> options = app.get_options();
+    for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+        for (const CLI::Option* option : verb->get_options()) options.push_back(option);
+    for (int n = 1; n < argc; ++n) {
+        const std::string_view word = argv[n];
+        if (word.size() < 3 || word[0] != '-' || word[2] != '=') continue;
+        for (const CLI::Option* option : options)
+            if (option->check_sname(std::string(1, word[1])) && !option->get_lnames().empty())
+                return fmt::format("{}: a short option takes its value as the next word: write -{} {} or --{}={}", word,
+                                   word[1], word.substr(3), option->get_lnames().front(), word.substr(3));
+    }
+    return {};
 }
 
 }  // namespace
@@ -68,27 +116,53 @@ void useHugePages(char** argv) {
 #endif
 }
 
+Failure currentFailure() {
+    try {
+        throw;
+    } catch (const UsageError& error) {
+        return {error.what(), kWrongUsage};
+    } catch (const InputError& error) {
+        return {error.what(), kBadInput};
+    } catch (const BatchFailure& error) {
+        return {error.what(), error.status()};
+    } catch (const std::bad_alloc&) {
+        return {"out of memory; choose a larger voxel or a smaller picture", kFailed};
+    } catch (const std::exception& error) {
+        return {error.what(), kFailed};
+    }
+}
+
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
     AtomicFile::removeOnSignals();
+    if (argc == 1) {
+        fmt::print(stderr, "{}", shortUsage(app));
+        return kWrongUsage;
+    }
+    if (const std::string slip = shortWithEquals(app, argc, argv); !slip.empty())
+        return complain(app, slip, kWrongUsage);
+    if (const std::string slip = unknownVerb(app, argv[1]); !slip.empty()) return complain(app, slip, kWrongUsage);
+    int status = 0;
     try {
         app.parse(argc, argv);
+        try {
+            body();
+        } catch (...) {
+            const Failure failure = currentFailure();
+            complain(app, failure.message, failure.status);
+            status = failure.status;
+        }
     } catch (const CLI::Success& request) {
-        return app.exit(request);
+        app.exit(request);
+    } catch (const CLI::ExtrasError& error) {
+        return complain(app, unknownWord(app, error), kWrongUsage);
     } catch (const CLI::ParseError& error) {
         return complain(app, fmt::format("{} (see {} -h)", error.what(), app.get_name()), kWrongUsage);
     }
-    try {
-        body();
-        return 0;
-    } catch (const UsageError& error) {
-        return complain(app, error.what(), kWrongUsage);
-    } catch (const InputError& error) {
-        return complain(app, error.what(), kBadInput);
-    } catch (const std::bad_alloc&) {
-        return complain(app, "out of memory; choose a larger voxel or a smaller picture", kFailed);
-    } catch (const std::exception& error) {
-        return complain(app, error.what(), kFailed);
-    }
+    // What a full disk has not taken shows here at the latest. (std::cout is CLI11's way to say what it is asked for.)
+    std::cout.flush();
+    if ((!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && status == 0)
+        return complain(app, "standard output: could not be written; is the disk full?", kFailed);
+    return status;
 }
 
 ThreadLimit::ThreadLimit(int threads) : threads_(threads > 0 ? threads : tbb::info::default_concurrency()) {
@@ -97,37 +171,6 @@ ThreadLimit::ThreadLimit(int threads) : threads_(threads > 0 ? threads : tbb::in
 }
 
 ThreadLimit::~ThreadLimit() = default;
-
-ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)),
-      visible_(!quiet && ::isatty(STDERR_FILENO) != 0),
-      start_(std::chrono::steady_clock::now()),
-      shown_(start_) {}
-
-ProgressBar::~ProgressBar() {
-    if (visible_) fmt::print(stderr, "\r\033[K");
-}
-
-void ProgressBar::show(double fraction) {
-    using namespace std::chrono;
-    const auto now = steady_clock::now();
-    // Ten times a second is smooth; quick work shows nothing at all.
-    if (!visible_ || now - shown_ < milliseconds(100)) return;
-    shown_ = now;
-    constexpr int kWidth = 32;
-    const int filled = std::clamp(static_cast<int>(fraction * kWidth), 0, kWidth);
-    const double seconds = duration<double>(now - start_).count();
-    const double left = fraction > 0.01 ? seconds / fraction - seconds : 0;
-    std::string bar;
-    for (int i = 0; i < kWidth; ++i) bar += i < filled ? "━" : "─";
-    fmt::print(stderr, "\r\033[K{:<12} {} {:3.0f} %  {:.0f} s left", label_, bar, fraction * 100, left);
-    std::fflush(stderr);
-}
-
-std::function<void(double)> ProgressBar::callback() {
-    if (!visible_) return {};
-    return [this](double fraction) { show(fraction); };
-}
 
 double Stopwatch::lap() {
     const auto now = std::chrono::steady_clock::now();
@@ -147,8 +190,8 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
     // File names need not be UTF-8; a report must not fail over one.
     const std::string text = report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (options.stats == "-") {
-        std::fwrite(text.data(), 1, text.size(), stdout);
-        std::fflush(stdout);
+        if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+            throw OutputError("--stats -: standard output could not be written; is the disk full?");
         return;
     }
     AtomicFile file(options.stats);
@@ -160,7 +203,11 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
 }
 
 void say(const CommonOptions& options, std::string_view line) {
-    if (!options.quiet) fmt::print(options.stats == "-" ? stderr : stdout, "{}\n", line);
+    if (options.quiet) return;
+    // A full disk is told of once, at the end.
+    const std::string text = fmt::format("{}\n", line);
+    std::FILE* stream = options.stats == "-" || options.output_on_stdout ? stderr : stdout;
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
 }
 
 std::string humanBytes(double bytes) {

@@ -1,4 +1,4 @@
-// What all tools share: the common options, exit statuses, the report file and the progress bar.
+// What all tools share: the common options, exit statuses and the report file.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@ struct CommonOptions {
     int threads = 0;    ///< 0: as many as the machine has
     std::string stats;  ///< file for the JSON report, "-" is standard output, empty is none
     bool quiet = false;
+    bool output_on_stdout = false;  ///< -o -: what is said goes to stderr then
 };
 
 /// Adds the common options and the manual (manual.h) to a command line. -h shows the options of `brief`; all, if empty.
@@ -35,8 +37,27 @@ void addVersion(CLI::App& app);
 /// more. To be called before anything else is done.
 void useHugePages(char** argv);
 
+/// What an exception says, and the exit status that it means.
+struct Failure {
+    std::string message;
+    int status = 1;
+};
+
+/// Of the exception that is being handled.
+Failure currentFailure();
+
+/// Some inputs of several failed; what they lacked has been said.
+class BatchFailure : public std::runtime_error {
+public:
+    BatchFailure(const std::string& text, int status) : std::runtime_error(text), status_(status) {}
+    int status() const { return status_; }
+
+private:
+    int status_;
+};
+
 /// Parses, runs `body` and turns what escapes into a message on stderr and an exit status:
-/// 0 done, 1 failed, 2 wrong usage, 3 bad input.
+/// 0 done, 1 failed, 2 wrong usage, 3 bad input. Without any argument: a short usage, and 2.
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
 
 /// Limits TBB to --threads for as long as it lives.
@@ -51,25 +72,6 @@ public:
 private:
     int threads_;
     std::unique_ptr<tbb::detail::d1::global_control> control_;
-};
-
-/// A line that fills while work goes on. Shown only if stderr is a terminal and the tool is not quiet; gone afterwards.
-class ProgressBar {
-public:
-    ProgressBar(std::string label, bool quiet);
-    ~ProgressBar();
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
-    /// Fraction done, 0..1. Calls must not overlap.
-    void show(double fraction);
-    /// Empty when nothing would be shown, so that the work reports nothing.
-    std::function<void(double)> callback();
-
-private:
-    std::string label_;
-    bool visible_;
-    std::chrono::steady_clock::time_point start_;
-    std::chrono::steady_clock::time_point shown_;
 };
 
 /// Wall time since construction or the last lap, in seconds.
@@ -87,7 +89,8 @@ std::size_t peakRssBytes();
 /// Writes the report where --stats says; does nothing if it says nothing. Throws OutputError.
 void writeStats(const CommonOptions& options, const nlohmann::ordered_json& report);
 
-/// A line of the summary for people: to stdout, or to stderr if stdout carries the report; nothing if quiet.
+/// A line of the summary for people: to stdout, or to stderr if stdout carries the report or the output; nothing if
+/// quiet.
 void say(const CommonOptions& options, std::string_view line);
 
 /// "1.23 GB", "45.6 MB", "789 B".

@@ -1,6 +1,12 @@
 // gcode2vdb: G-code -> level set of the part as printed.
+#include "batch.h"
+#include "choices.h"
 #include "command_line.h"
+#include "grid_report.h"
+#include "output_names.h"
 #include "print_options.h"
+#include "progress.h"
+#include "run_files.h"
 #include "toolpath_report.h"
 
 #include "gcode/input_bytes.h"
@@ -11,8 +17,6 @@
 #include "io/error.h"
 #include "io/mapped_file.h"
 #include "voxelize/attributes.h"
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
 #include "voxelize/selection.h"
@@ -25,7 +29,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +46,7 @@ Examples:
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
-  gcode2vdb part.gcode --snapshots 25%,50%,75%      three partial prints beside the whole one
+  gcode2vdb part.gcode --snapshots 25%,50%,75%      part_025pct.vdb, ..., three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
   gcode2vdb part.gcode --interior cull --voxel-size 0.05   only what is seen from outside
   gcode2vdb part.gcode --grids layer,color          what each voxel was printed as
@@ -75,33 +78,37 @@ void addOptions(CLI::App& app, Options& o) {
         ->required()
         ->type_name("FILE");
     app.add_option("-o,--output", o.output,
-                   "A .vdb, or a mesh: .stl, .ply, .obj; a folder for .vdb files if there are several inputs")
-        ->type_name("FILE");
+                   "A .vdb, or a mesh: .stl, .ply, .obj; a folder, made if missing, for the .vdb files of several "
+                   "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
+                   "of several inputs beside each)")
+        ->type_name("FILE|DIR");
     tools::addPrintOptions(app, o.print);
     const char* lattice = "Lattice";
     app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
-        ->check(CLI::IsMember({"mm", "cm", "m"}))
+        ->check(tools::oneOf({"mm", "cm", "m"}))
         ->type_name("UNIT")
         ->group(lattice);
     app.add_option("--origin", o.origin, "bed: as in the G-code; center: the part over the origin; min: its corner")
-        ->check(CLI::IsMember({"bed", "center", "min"}))
+        ->check(tools::oneOf({"bed", "center", "min"}))
         ->type_name("WHERE")
         ->group(lattice);
     app.add_option("--up", o.up, "z as printed, or y for programs whose up is y")
-        ->check(CLI::IsMember({"z", "y"}))
+        ->check(tools::oneOf({"z", "y"}))
         ->type_name("AXIS")
         ->group(lattice);
     const char* what = "What to convert";
     app.add_option(
            "--interior", o.interior,
            "keep all inner surfaces (the default for .vdb), or cull what no outside point can reach (for meshes)")
-        ->check(CLI::IsMember({"keep", "cull"}))
+        ->check(tools::oneOf({"keep", "cull"}))
         ->type_name("HOW")
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
-    app.add_option("--grids", o.grids,
-                   "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
+    tools::completes(
+        app.add_option("--grids", o.grids,
+                       "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels"),
+        tools::Completion::list, {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "color"})
         ->type_name("LIST")
         ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
@@ -111,14 +118,14 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_option_function<std::string>(
            "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
            "float or half (default float)")
-        ->check(CLI::IsMember({"float", "half"}))
+        ->check(tools::oneOf({"float", "half"}))
         ->type_name("KIND")
         ->group(writing);
-    const std::map<std::string, voxelize::Compression> compressions{{"blosc", voxelize::Compression::blosc},
-                                                                    {"zip", voxelize::Compression::zip},
-                                                                    {"none", voxelize::Compression::none}};
+    const auto compression = [](voxelize::Compression value) { return static_cast<int>(value); };
     app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
-        ->transform(CLI::CheckedTransformer(compressions).description(""))
+        ->transform(tools::enumeration({{"blosc", compression(voxelize::Compression::blosc)},
+                                        {"zip", compression(voxelize::Compression::zip)},
+                                        {"none", compression(voxelize::Compression::none)}}))
         ->type_name("KIND")
         ->group(writing);
     app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
@@ -165,6 +172,8 @@ voxelize::Placement placementFor(const Options& o, const voxelize::Bounds& bound
     return placement;
 }
 
+fs::path usdaOf(fs::path vdb) { return vdb.replace_extension(".usda"); }
+
 // One output: the whole selection, or what of it a snapshot has printed.
 struct Job {
     std::string label;
@@ -180,7 +189,7 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
         for (const voxelize::Snapshot& snapshot : voxelize::parseSnapshots(o.snapshots, toolpath)) {
             fs::path path = output;
             path.replace_filename(
-                fmt::format("{}.{}{}", output.stem().string(), snapshot.label, output.extension().string()));
+                fmt::format("{}_{}{}", output.stem().string(), snapshot.label, output.extension().string()));
             const auto end = static_cast<std::uint32_t>(snapshot.bead_count);
             const auto beads = std::lower_bound(selection.begin(), selection.end(), end) - selection.begin();
             if (beads > 0) jobs.push_back({snapshot.label, path, static_cast<std::size_t>(beads), end});
@@ -190,42 +199,8 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
     return jobs;
 }
 
-Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    const openvdb::Vec3d a = grid.indexToWorld(box.min());
-    const openvdb::Vec3d b = grid.indexToWorld(box.max());
-    const openvdb::Vec3d low = openvdb::math::minComponent(a, b);
-    const openvdb::Vec3d high = openvdb::math::maxComponent(a, b);
-    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return {
-        {"voxel_size_mm", lattice.voxel_size},
-        {"half_width", lattice.half_width},
-        {"layer_height_mm", lattice.layer_height},
-        {"aligned_share", lattice.aligned_share},
-        {"choice", lattice.reason},
-        {"active_voxels", grid.activeVoxelCount()},
-        {"leaves", grid.tree().leafCount()},
-        {"bytes", grid.memUsage()},
-        {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
-        {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
-}
-
-Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
-    const voxelize::CullForecast left = voxelizer.forecastCull();
-    const std::size_t leaves = grid.tree().leafCount() - left.leaves;
-    return {{"active_voxels", grid.activeVoxelCount() - left.active_voxels},
-            {"leaves", leaves},
-            {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
-}
-
-Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
-    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return {{"vertices", mesh.points.size()},
-            {"triangles", mesh.triangleCount()},
-            {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
-}
-
-Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
+Json convert(const Options& o, const std::string& input, const fs::path& output, tools::RunFiles& files_of_run,
+             int threads) {
     tools::Stopwatch total;
     tools::Stopwatch watch;
     // Unwritable places are found before the work, not after it.
@@ -233,15 +208,14 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
 
     const gcode::InputBytes file(input);
     const std::string& name = file.name();
-    gcode::ReadOptions read = o.print.read;
-    tools::ProgressBar parse_bar("reading", o.common.quiet);
-    read.progress = parse_bar.callback();
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), name, read);
+    const gcode::Toolpath toolpath = [&] {
+        gcode::ReadOptions read = o.print.read;
+        tools::ProgressBar bar("reading", o.common.quiet);
+        read.progress = bar.callback();
+        return gcode::readToolpath(file.bytes(), name, read);
+    }();
     const double parse_seconds = watch.lap();
-    for (const gcode::Warning& warning : toolpath.warnings)
-        if (!o.common.quiet)
-            fmt::print(stderr, "gcode2vdb: {}:{}: {}{}\n", name, warning.first_line, warning.text,
-                       warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
+    if (!o.common.quiet) tools::printWarnings("gcode2vdb", name, toolpath);
     tools::say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", name,
                                      toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                                      toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
@@ -274,8 +248,11 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     options.placement = placementFor(o, bounds);
     options.placement.up_y = o.up == "y";
     options.interior = interior;
-    tools::ProgressBar bar("voxelizing", o.common.quiet);
-    options.progress = bar.callback();
+    std::optional<tools::ProgressBar> bar;
+    if (tools::showsProgress(o.common.quiet))
+        options.progress = [&bar](double fraction) {
+            if (bar) bar->show(fraction);
+        };
     voxelize::Voxelizer voxelizer(toolpath, selection, lattice, options);
     double voxelize_seconds = watch.lap();
     double cull_seconds = 0;
@@ -283,11 +260,21 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     double write_seconds = 0;
     Json files = Json::array();
     Json grid_report;
-    for (const Job& job : planJobs(o, toolpath, selection, output)) {
+    const std::vector<Job> jobs = planJobs(o, toolpath, selection, output);
+    for (const Job& job : jobs)
+        if (!job.label.empty()) {
+            files_of_run.writes(job.path.string(), "--snapshots");
+            if (o.usda) files_of_run.writes(usdaOf(job.path).string(), "--usda");
+        }
+    for (const Job& job : jobs) {
         watch.lap();
+        bar.emplace("voxelizing", o.common.quiet);
         openvdb::FloatGrid::Ptr grid = voxelizer.printUntil(job.end);
+        if (!attributes.empty()) bar.emplace("grids", o.common.quiet);
         openvdb::GridPtrVec grids = voxelizer.attributes(attributes);
+        bar.reset();
         if (o.interior_distance) {
+            const tools::ProgressNote note("distances", o.common.quiet);
             // The voxelizer goes on from its own values at the next step.
             grid = grid->deepCopy();
             voxelize::sweepInterior(*grid);
@@ -297,20 +284,25 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         provenance.snapshot = job.label;
         std::optional<voxelize::SurfaceMesh> mesh;
         if (as_mesh) {
-            mesh = voxelize::meshSurface(*grid, {provenance.culled, o.adaptivity});
+            {
+                const tools::ProgressNote note("meshing", o.common.quiet);
+                mesh = voxelize::meshSurface(*grid, {provenance.culled, o.adaptivity});
+            }
             mesh_seconds += watch.lap();
+            const tools::ProgressNote note("writing", o.common.quiet);
             voxelize::writeMesh(*mesh, job.path);
         } else {
+            const tools::ProgressNote note("writing", o.common.quiet);
             voxelize::describe(*grid, lattice, provenance);
             grids.insert(grids.begin(), grid);
             voxelize::writeVdb(grids, job.path, o.file);
             if (o.usda) {
-                const fs::path scene = fs::path(job.path).replace_extension(".usda");
-                voxelize::writeUsda(grids, job.path, scene, {0.001 * tools::millimetresIn(o.unit), o.up == "y"});
+                voxelize::writeUsda(grids, job.path, usdaOf(job.path),
+                                    {0.001 * tools::millimetresIn(o.unit), o.up == "y"});
             }
         }
         write_seconds += watch.lap();
-        const auto bytes = fs::file_size(job.path);
+        const auto bytes = isStandardOutput(job.path) ? 0 : fs::file_size(job.path);
         files.push_back({{"path", job.path.string()},
                          {"snapshot", job.label},
                          {"bytes", bytes},
@@ -318,7 +310,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                          {"active_voxels", grid->activeVoxelCount()},
                          {"leaves_evaluated", voxelizer.report().leaves_evaluated},
                          {"leaves_reused", voxelizer.report().leaves_reused}});
-        if (mesh) files.back()["mesh"] = describeMesh(*mesh, *grid, lattice);
+        if (mesh) files.back()["mesh"] = tools::describeMesh(*mesh, *grid, lattice);
         tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
                                          tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
@@ -328,8 +320,9 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                        fmt::format("  {} triangles", tools::humanCount(static_cast<double>(mesh->triangleCount()))));
         // Counting the enclosed volume reads every leaf once more: only for a report.
         if (!o.common.stats.empty() && job.label.empty()) {
-            grid_report = describeGrid(*grid, lattice);
-            if (!provenance.culled) grid_report["cull_would_save"] = describeCull(voxelizer, *grid);
+            const tools::ProgressNote note("measuring", o.common.quiet);
+            grid_report = tools::describeGrid(*grid, lattice);
+            if (!provenance.culled) grid_report["cull_would_save"] = tools::describeCull(voxelizer, *grid);
         }
     }
     Json skipped = Json::array();
@@ -381,38 +374,66 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             {"threads", threads}};
 }
 
-// part.gcode.gz and part.gcode.3mf -> part.vdb
-fs::path outputName(const std::string& input) {
-    if (input == "-") throw UsageError("standard input has no name to call the output by; give -o OUT.vdb");
-    fs::path name = fs::path(input).filename();
-    if (name.extension() == ".gz" || name.extension() == ".3mf") name = name.stem();
-    return name.replace_extension(".vdb");
+fs::path inFolder(const fs::path& folder, const std::string& input) { return folder / (tools::stemOf(input) + ".vdb"); }
+
+// Where each input's output goes.
+std::vector<fs::path> outputsOf(const Options& o) {
+    const bool folder = o.inputs.size() > 1 || tools::namesFolder(o.output);
+    std::vector<fs::path> outputs;
+    for (const std::string& input : o.inputs)
+        outputs.push_back(folder
+                              ? inFolder(o.output.empty() ? fs::path(input).parent_path() : fs::path(o.output), input)
+                          : o.output.empty() ? inFolder({}, input)
+                                             : fs::path(o.output));
+    return outputs;
 }
 
-void run(const Options& o) {
+// What is asked of the output fits its kind. Before the work.
+void check(const Options& o, const std::vector<fs::path>& outputs) {
+    if (outputs.size() > 1) {
+        std::error_code ignored;
+        if (fs::path(o.output).has_extension() && !fs::is_directory(o.output, ignored) && !o.output.ends_with('/'))
+            throw UsageError(fmt::format("-o {}: of {} inputs it names the folder of their .vdb files, e.g. -o voxels",
+                                         o.output, outputs.size()));
+        if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
+    }
+    const fs::path& output = outputs.front();
+    const bool mesh = voxelize::isMeshPath(output);
+    const bool standard = isStandardOutput(output);
+    if (!mesh && output != "-" && output.extension() != ".vdb")
+        throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
+    if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
+    if (mesh && !o.grids.empty())
+        throw UsageError(fmt::format("--grids: a mesh has no voxels; write a .vdb, not {}", output.string()));
+    if (standard && (o.usda || !o.snapshots.empty()))
+        throw UsageError(fmt::format("{}: writes files beside the output; name one, -o {} is a stream",
+                                     o.usda ? "--usda" : "--snapshots", output.string()));
+}
+
+void run(Options& o) {
+    const std::vector<fs::path> outputs = outputsOf(o);
+    check(o, outputs);
+    tools::RunFiles files;
+    for (const std::string& input : o.inputs) files.reads(input);
+    for (const fs::path& output : outputs) {
+        files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
+        if (o.usda) files.writes(usdaOf(output).string(), "--usda");
+    }
+    files.writes(o.dump_toolpath, "--dump-toolpath");
+    files.writes(o.common.stats, "--stats");
+    if (!o.output.empty() && outputs.front() != o.output) tools::makeFolder(o.output);
+    o.common.output_on_stdout = isStandardOutput(outputs.front()) || o.dump_toolpath == "-";
+
     const tools::ThreadLimit limit(o.common.threads);
     openvdb::initialize();
-    if (o.inputs.size() == 1) {
-        fs::path output = o.output;
-        if (output.empty()) output = outputName(o.inputs.front());
-        const bool mesh = voxelize::isMeshPath(output);
-        if (!mesh && output.extension() != ".vdb")
-            throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
-        if (mesh && o.usda)
-            throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
-        if (mesh && !o.grids.empty())
-            throw UsageError(fmt::format("--grids: a mesh has no voxels; write a .vdb, not {}", output.string()));
-        tools::writeStats(o.common, convert(o, o.inputs.front(), output, limit.threads()));
-        return;
-    }
-    if (!fs::is_directory(o.output))
-        throw UsageError(
-            fmt::format("{} inputs: -o must name an existing folder for their .vdb files", o.inputs.size()));
-    if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
+    tools::Batch batch("gcode2vdb", o.inputs.size());
     Json reports = Json::array();
-    for (const std::string& input : o.inputs)
-        reports.push_back(convert(o, input, fs::path(o.output) / outputName(input), limit.threads()));
-    tools::writeStats(o.common, reports);
+    for (std::size_t n = 0; n < o.inputs.size(); ++n)
+        batch.attempt(o.inputs[n],
+                      [&] { reports.push_back(convert(o, o.inputs[n], outputs[n], files, limit.threads())); });
+    for (const Json& failure : batch.failures()) reports.push_back(failure);
+    tools::writeStats(o.common, o.inputs.size() == 1 ? reports.front() : reports);
+    batch.finish();
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "manual.h"
 
+#include "choices.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,28 +20,9 @@ constexpr const char* kOptionsGroup = "Options";  // CLI11's for options without
 constexpr const char* kCommonGroup = "General";
 constexpr std::size_t kScreenColumns = 120;
 
-// CLI11 appends to a type name what the checks say of themselves: "UNIT:{mm,cm,m}".
-std::string checksOf(const CLI::Option& option) {
-    std::string text;
-    for (int n = 0;; ++n) {
-        try {
-            const std::string check = const_cast<CLI::Option&>(option).get_validator(n)->get_description();
-            if (!check.empty()) text += ":" + check;
-        } catch (const CLI::OptionNotFound&) {
-            return text;
-        }
-    }
-}
-
 std::string typeName(const CLI::Option& option) {
     const std::string name = option.get_type_name();
     return name.substr(0, name.size() - checksOf(option).size());
-}
-
-std::vector<std::string> choicesOf(const CLI::Option& option) {
-    const std::string checks = checksOf(option);
-    if (checks.rfind(":{", 0) != 0) return {};
-    return CLI::detail::split(checks.substr(2, checks.find('}') - 2), ',');
 }
 
 bool isVisible(const CLI::Option& option) { return !option.get_group().empty(); }
@@ -51,6 +34,16 @@ std::vector<std::string> groupsOf(const CLI::App& app) {
     std::stable_partition(groups.begin(), groups.end(), [](const std::string& g) { return g != kCommonGroup; });
     std::stable_partition(groups.begin(), groups.end(), [](const std::string& g) { return g == kOptionsGroup; });
     return groups;
+}
+
+// The footer as far as its first examples go.
+std::string firstExamples(const CLI::App& app) {
+    std::string footer = app.get_footer();
+    const std::size_t examples = footer.find(kExamplesTitle);
+    if (examples == std::string::npos) return footer;
+    std::size_t end = footer.find('\n', examples);
+    for (std::size_t n = 0; n < kExamplesInBrief && end != std::string::npos; ++n) end = footer.find('\n', end + 1);
+    return footer.substr(0, end);
 }
 
 class HelpFormatter : public CLI::Formatter {
@@ -108,12 +101,7 @@ public:
 
 private:
     static std::string briefFooter(const CLI::App& app) {
-        std::string footer = app.get_footer();
-        const std::size_t examples = footer.find(kExamplesTitle);
-        if (examples == std::string::npos) return footer;
-        std::size_t end = footer.find('\n', examples);
-        for (std::size_t n = 0; n < kExamplesInBrief && end != std::string::npos; ++n) end = footer.find('\n', end + 1);
-        return fmt::format("{}\n\n{} --help-all tells the rest.", footer.substr(0, end), app.get_name());
+        return fmt::format("{}\n\n{} --help-all tells the rest.", firstExamples(app), app.get_name());
     }
 
     std::set<std::string> brief_;
@@ -147,8 +135,8 @@ void manOption(std::string& page, const CLI::Option& option) {
         name += (name.empty() ? "" : ", ") + fmt::format("\\fB{}\\fR", roff(one));
     if (option.get_type_size() != 0) name += fmt::format(" \\fI{}\\fR", roff(typeName(option)));
     page += fmt::format(".TP\n{}\n{}\n", name, roff(option.get_description()));
-    if (const auto choices = choicesOf(option); !choices.empty())
-        page += fmt::format("One of {}.\n", roff(fmt::format("{}", fmt::join(choices, ", "))));
+    if (const Choices choices = choicesOf(option); !checksOf(option).empty() && !choices.names.empty())
+        page += fmt::format("One of {}.\n", roff(fmt::format("{}", fmt::join(choices.names, ", "))));
     if (!option.get_excludes().empty()) {
         std::vector<std::string> names;
         for (const CLI::Option* other : option.get_excludes()) names.push_back(other->get_name());
@@ -177,15 +165,33 @@ std::string words(const CLI::App& app) {
     return list;
 }
 
+// What completes a value, by kind. A list goes on after its last comma, and after a sign if it has those.
+std::string completionOf(const Choices& choices) {
+    const std::string names = fmt::format("{}", fmt::join(choices.names, " "));
+    switch (choices.how) {
+        case Completion::word:
+            return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$cur\"))", names);
+        case Completion::preset:
+            return fmt::format("COMPREPLY=($(compgen -W \"{}\" -- \"$cur\") $(compgen -f -- \"$cur\"))", names);
+        case Completion::list:
+            return fmt::format("COMPREPLY=($(compgen -P \"$begun\" -W \"{}\" -- \"${{cur##*,}}\"))", names);
+        case Completion::selection:
+            break;
+    }
+    std::string both;
+    for (const std::string& name : choices.names) both += fmt::format("{}+{} -{}", both.empty() ? "" : " ", name, name);
+    return fmt::format("COMPREPLY=($(compgen -P \"$begun\" -W \"{}\" -- \"${{cur##*,}}\"))", both);
+}
+
 // case labels of the options that take one of a few words.
 std::string choiceCases(const CLI::App& app) {
     std::string cases;
     for (const CLI::Option* option : app.get_options()) {
-        const auto choices = choicesOf(*option);
-        if (option->nonpositional() && isVisible(*option) && !choices.empty())
-            cases += fmt::format("        {}) COMPREPLY=($(compgen -W \"{}\" -- \"$cur\")); return;;\n",
+        const Choices choices = choicesOf(*option);
+        if (option->nonpositional() && isVisible(*option) && !choices.names.empty())
+            cases += fmt::format("        {}) {}; return;;\n",
                                  fmt::join(CLI::detail::split(option->get_name(false, true), ','), "|"),
-                                 fmt::join(choices, " "));
+                                 completionOf(choices));
     }
     return cases;
 }
@@ -224,11 +230,29 @@ std::string manPage(const CLI::App& app) {
            "Where the tables of materials are, if not where they were installed.\n";
 }
 
+std::string shortUsage(const CLI::App& app) {
+    std::string text = fmt::format("{}\nUsage: {}", app.get_description(), app.get_name());
+    if (app.get_require_subcommand_min() > 0) {
+        std::vector<std::string> verbs;
+        for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+            verbs.push_back(verb->get_name());
+        text += fmt::format(" {}", fmt::join(verbs, "|"));
+    }
+    for (const CLI::Option* option : app.get_options())
+        if (option->get_positional()) text += fmt::format(" {}...", typeName(*option));
+    return fmt::format("{} [OPTIONS]\n{}\n{} -h lists the options that most need.\n", text, firstExamples(app),
+                       app.get_name());
+}
+
 std::string bashCompletion(const CLI::App& app) {
     const std::string& name = app.get_name();
     std::string script = fmt::format(
         "# bash completion for {0}\n_{0}() {{\n    local cur=${{COMP_WORDS[COMP_CWORD]}} "
-        "prev=${{COMP_WORDS[COMP_CWORD-1]}}\n    local words=\"{1}\"\n",
+        "prev=${{COMP_WORDS[COMP_CWORD-1]}}\n    local words=\"{1}\"\n"
+        // --view=fr is three words to bash.
+        "    if [[ $cur == \"=\" ]]; then cur=; elif [[ $prev == \"=\" ]]; then prev=${{COMP_WORDS[COMP_CWORD-2]}}; "
+        "fi\n"
+        "    local begun=; [[ $cur == *,* ]] && begun=\"${{cur%,*}},\"\n",
         name, words(app));
     std::string cases = choiceCases(app);
     std::string verb_words;

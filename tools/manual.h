@@ -12,6 +12,9 @@ namespace stratum::tools {
 /// in `brief` (none: all of them) and the first three examples of the footer.
 void addManual(CLI::App& app, const std::vector<std::string>& brief = {});
 
+/// A few lines for who calls a tool without any argument: what it does, how it is called, some examples.
+std::string shortUsage(const CLI::App& app);
+
 /// A page for man(1), section 1, in the man macros.
 std::string manPage(const CLI::App& app);
 

@@ -1,19 +1,18 @@
 #include "print_options.h"
 
+#include "choices.h"
 #include "command_line.h"
 
 #include "voxelize/voxel_choice.h"
 
 #include <fmt/format.h>
 
-#include <map>
-
 namespace stratum::tools {
 
 double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
 
 void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
-    const char* lattice = "Lattice";
+    const char* lattice = kLattice;
     const auto take_size = [&options, pictures](const std::string& text) {
         options.voxel_auto = pictures && text == "auto";
         options.lattice.voxel_size.reset();
@@ -38,7 +37,7 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
         ->excludes("--voxel-size")
         ->excludes("--voxels-per-layer")
         ->group(lattice);
-    app.add_option("--memory-budget", options.memory_budget, "Finest voxel that fits, e.g. 4GB")
+    app.add_option("--memory-budget", options.memory_budget, "Finest voxel that fits, e.g. 4GB or 4GiB")
         ->type_name("SIZE")
         ->excludes("--voxel-size")
         ->excludes("--voxels-per-layer")
@@ -47,18 +46,22 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
     app.add_option("--half-width", options.lattice.half_width, "Narrow band to each side (default 3)")
         ->type_name("VOXELS")
         ->group(lattice);
-    const char* what = "What to convert";
+    const char* what = kWhat;
     app.add_option("--layers", options.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
         ->type_name("A:B")
         ->group(what);
-    app.add_option("--features", options.features, "Only (+NAME,...) or all but (-NAME,...) these features")
+    std::vector<std::string> features;
+    for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
+        features.emplace_back(gcode::featureName(static_cast<gcode::Feature>(f)));
+    completes(app.add_option("--features", options.features, "Only (+NAME,...) or all but (-NAME,...) these features"),
+              Completion::selection, features)
         ->type_name("LIST")
         ->group(what);
     app.add_option("--object", options.objects, "Only this object of the print; may be given again for more")
         ->allow_extra_args(false)
         ->type_name("NAME|NUMBER")
         ->group(what);
-    const char* reading = "Reading";
+    const char* reading = kReading;
     app.add_option("--plate", options.read.plate, "Which plate of a .gcode.3mf that has several")
         ->check(CLI::PositiveNumber)
         ->type_name("N")
@@ -73,19 +76,19 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
         ->check(CLI::Range(0.001, 50.0))
         ->type_name("MM")
         ->group(reading);
-    const std::map<std::string, gcode::ExtruderMode> modes{{"auto", gcode::ExtruderMode::automatic},
-                                                           {"absolute", gcode::ExtruderMode::absolute},
-                                                           {"relative", gcode::ExtruderMode::relative}};
+    const auto mode = [](gcode::ExtruderMode value) { return static_cast<int>(value); };
     app.add_option("--e-mode", options.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
-        ->transform(CLI::CheckedTransformer(modes).description(""))
+        ->transform(enumeration({{"auto", mode(gcode::ExtruderMode::automatic)},
+                                 {"absolute", mode(gcode::ExtruderMode::absolute)},
+                                 {"relative", mode(gcode::ExtruderMode::relative)}}))
         ->type_name("MODE")
         ->group(reading);
-    const std::map<std::string, gcode::Firmware> firmwares{{"auto", gcode::Firmware::automatic},
-                                                           {"marlin", gcode::Firmware::marlin},
-                                                           {"klipper", gcode::Firmware::klipper},
-                                                           {"reprap", gcode::Firmware::reprap}};
+    const auto firmware = [](gcode::Firmware value) { return static_cast<int>(value); };
     app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
-        ->transform(CLI::CheckedTransformer(firmwares).description(""))
+        ->transform(enumeration({{"auto", firmware(gcode::Firmware::automatic)},
+                                 {"marlin", firmware(gcode::Firmware::marlin)},
+                                 {"klipper", firmware(gcode::Firmware::klipper)},
+                                 {"reprap", firmware(gcode::Firmware::reprap)}}))
         ->type_name("NAME")
         ->group(reading);
 }
@@ -96,6 +99,12 @@ voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpa
     if (!options.features.empty()) voxelize::parseFeatures(options.features, selection);
     for (const std::string& object : options.objects) voxelize::chooseObject(object, toolpath, selection);
     return selection;
+}
+
+void printWarnings(std::string_view tool, std::string_view name, const gcode::Toolpath& toolpath) {
+    for (const gcode::Warning& warning : toolpath.warnings)
+        fmt::print(stderr, "{}: {}:{}: {}{}\n", tool, name, warning.first_line, warning.text,
+                   warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
 }
 
 std::string describeSelection(const PrintOptions& options) {

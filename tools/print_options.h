@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::tools {
@@ -31,11 +32,19 @@ struct PrintOptions {
 /// say.
 double millimetresIn(const std::string& unit);
 
-/// Adds them in the groups "Lattice", "What to convert" and "Reading". With `pictures`, --voxel-size may be auto.
+/// The headings of options that are of prints alone.
+inline constexpr const char* kLattice = "Lattice";
+inline constexpr const char* kWhat = "What to convert";
+inline constexpr const char* kReading = "Reading";
+
+/// Adds them in those groups. With `pictures`, --voxel-size may be auto.
 void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures = false);
 
 /// What --layers, --features and --object keep of a print. Throws UsageError or InputError.
 voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath);
+
+/// What reading the file `name` warned of, on stderr.
+void printWarnings(std::string_view tool, std::string_view name, const gcode::Toolpath& toolpath);
 
 /// The selection in words, "layers 1:20; features -skirt"; empty if all is kept.
 std::string describeSelection(const PrintOptions& options);

@@ -1,5 +1,7 @@
 #include "trace_frame.h"
 
+#include "progress.h"
+
 #include "shade/denoise.h"
 #include "shade/picture.h"
 
@@ -52,10 +54,14 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
     if (o.denoise) metadata.insert({"Denoised", shade::kDenoiserLabel});
     if (o.render.seconds > 0.0)
         metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
-    picture.write(result.film, metadata, o.tone);
+    {
+        const ProgressNote note("writing", o.common.quiet);
+        picture.write(result.film, metadata, o.tone);
+    }
     if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
     const double write_seconds = watch.lap();
-    const double total_seconds = frame.load_seconds + frame.build_seconds + render_seconds + write_seconds;
+    const double total_seconds =
+        frame.load_seconds + frame.build_seconds + render_seconds + denoise_seconds + write_seconds;
 
     const shade::RayCounts& rays = result.rays;
     const double mrays = static_cast<double>(rays.total()) / render_seconds * 1e-6;

@@ -2,6 +2,7 @@
 
 #include "brick_picture.h"
 #include "command_line.h"
+#include "progress.h"
 
 #include "io/error.h"
 #include "march/annotation.h"
@@ -205,8 +206,13 @@ private:
         Shape shape;
         // Bricks are laid out from the file as rays come to them, unless something else wants the grid.
         std::shared_ptr<const march::LeafFile> file;
-        if (marchesBricks(options_) && !options_.smooth_normals) file = march::openLevelSet(object.vdb, object.grid);
-        openvdb::FloatGrid::ConstPtr grid = file ? nullptr : march::readLevelSet(object.vdb, object.grid);
+        openvdb::FloatGrid::ConstPtr grid;
+        {
+            const ProgressNote note("loading", options_.prints.quiet);
+            if (marchesBricks(options_) && !options_.smooth_normals)
+                file = march::openLevelSet(object.vdb, object.grid);
+            if (!file) grid = march::readLevelSet(object.vdb, object.grid);
+        }
         const openvdb::FloatGrid& head = file ? file->head() : *grid;
         const std::uint64_t active = file ? file->activeVoxelCount() : grid->activeVoxelCount();
         shape.report = {{"path", object.vdb},
@@ -229,6 +235,7 @@ private:
         }
         if (options_.smooth_normals) annotation.smooth = grid;
         result_.load_seconds += watch_.lap();
+        const ProgressNote note("laying out", options_.prints.quiet);
         const IntersectorPtr plain =
             file ? march::makeBrickIntersector(std::move(file), options_.values, options_.brick_cache)
                  : intersectorOf(grid, options_);

@@ -1,7 +1,10 @@
 #include "trace_options.h"
 
+#include "choices.h"
+
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "shade/preset_names.h"
 #include "shade/scene_file.h"
 
 #include <fmt/format.h>
@@ -9,8 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
-#include <map>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -46,9 +50,38 @@ std::array<int, N> parseIntegers(const std::string& text, char separator, const 
     return values;
 }
 
-std::optional<glm::dvec3> toVector(const std::vector<double>& values) {
-    if (values.empty()) return std::nullopt;
-    return glm::dvec3(values[0], values[1], values[2]);
+// "a,b,...": finite numbers, as many as one of `counts`.
+std::vector<double> parseNumbers(const std::string& text, std::initializer_list<std::size_t> counts, const char* option,
+                                 const char* expected) {
+    std::vector<double> values;
+    bool good = true;
+    for (const std::string& word : CLI::detail::split(text, ',')) {
+        double value = 0;
+        const char* end = word.data() + word.size();
+        const auto [stop, error] = std::from_chars(word.data() + (word.starts_with('+') ? 1 : 0), end, value);
+        good = good && error == std::errc{} && stop == end && std::isfinite(value);
+        values.push_back(value);
+    }
+    if (!good || std::find(counts.begin(), counts.end(), values.size()) == counts.end())
+        throw UsageError(
+            fmt::format("{} {}: expected {}, numbers with commas between them and no spaces", option, text, expected));
+    return values;
+}
+
+std::optional<glm::dvec3> parseVector(const std::string& text, const char* option) {
+    const std::vector<double> v = parseNumbers(text, {3}, option, "X,Y,Z");
+    return glm::dvec3(v[0], v[1], v[2]);
+}
+
+// Of several inputs, one that can't be read is told of when its turn comes.
+bool isScene(const fs::path& path, bool alone) {
+    if (path == "-") return false;
+    try {
+        return shade::isSceneFile(MappedFile(path).bytes());
+    } catch (const InputError&) {
+        if (alone) throw;
+        return false;
+    }
 }
 
 }  // namespace
@@ -57,15 +90,20 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option(
            "IN", o.inputs,
            "A level set, a print (G-code in any container), or a scene that names some; options override the scene. "
-           "Several level sets or prints make a series of pictures with the camera of the last")
+           "Several level sets or prints make a series of pictures with the camera of the last. - is standard input")
         ->required()
         ->type_name("FILE.vdb|FILE.gcode|SCENE.json");
-    app.add_option("-o,--output", o.output, "A tone-mapped .png or a linear .exr")->type_name("FILE");
+    app.add_option(
+           "-o,--output", o.output,
+           "A tone-mapped .png or a linear .exr; - is a PNG on standard output, -.exr an EXR; a folder, made if "
+           "missing, for --each (default: named after the input)")
+        ->type_name("FILE|DIR");
+    app.add_flag("--each", o.each, "Of several inputs, a picture each with a camera of its own, not a series");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
 
     app.add_option("--file-up", o.file_up,
                    "Which axis of the level set points up: z or y (default: what the file says, or z)")
-        ->check(CLI::IsMember({"z", "y"}))
+        ->check(oneOf({"z", "y"}))
         ->type_name("AXIS");
 
     const char* picture = "Picture";
@@ -86,9 +124,11 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
                    "Keeps what is finished in this file and goes on from there; the picture is the same")
         ->type_name("FILE")
         ->group(picture);
-    app.add_option("--aov", o.aov,
-                   "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, tool, "
-                   "feature")
+    completes(app.add_option("--aov", o.aov,
+                             "More layers, for .exr: normal, depth, position, albedo, mask, variance, samples, layer, "
+                             "tool, feature"),
+              Completion::list,
+              {"normal", "depth", "position", "albedo", "mask", "variance", "samples", "layer", "tool", "feature"})
         ->type_name("NAME,...")
         ->group(picture);
     app.add_flag("--denoise", o.denoise, "Takes noise out of the finished picture, guided by normals, depth and albedo")
@@ -98,11 +138,12 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--exposure", o.tone.exposure, "Stops, for .png")->type_name("EV")->group(picture);
 
     const char* camera = "Camera";
-    app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)")
+    completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
+              Completion::word, {"iso", "front", "back", "left", "right", "top", "bottom"})
         ->type_name("NAME")
         ->group(camera);
-    const auto vector = [&](const char* name, std::vector<double>& value, const char* help) {
-        return app.add_option(name, value, help)->delimiter(',')->expected(3)->type_name("X,Y,Z")->group(camera);
+    const auto vector = [&](const char* name, std::string& value, const char* help) {
+        return app.add_option(name, value, help)->type_name("X,Y,Z")->group(camera);
     };
     auto* eye = vector("--eye", o.eye, "Where the camera stands, in the world units of the .vdb");
     vector("--look-at", o.look_at, "What it looks at (default: the middle of the part)")->needs(eye);
@@ -114,8 +155,6 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("LENGTH")
         ->group(camera);
     app.add_option("--focus", o.focus, "Distance that is sharp, or a point (default: the middle of the part)")
-        ->delimiter(',')
-        ->expected(1, 3)
         ->type_name("LENGTH|X,Y,Z")
         ->group(camera);
     app.add_option("--turntable", o.turntable, "N numbered pictures from all around")
@@ -125,17 +164,18 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
 
     const char* light = "Light and material";
-    app.add_option("--integrator", o.render.integrator.name,
-                   "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, feature "
-                   "(default path)")
+    completes(app.add_option("--integrator", o.render.integrator.name,
+                             "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, "
+                             "feature (default path)"),
+              Completion::word,
+              {"path", "direct", "environment-sum", "phong", "ao", "normal", "depth", "position", "mask", "layer",
+               "tool", "feature"})
         ->type_name("NAME")
         ->group(light);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
         ->type_name("N")
         ->group(light);
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
-        ->delimiter(',')
-        ->expected(5)
         ->type_name("KA,KD,KS,SHININESS,KR")
         ->group(light);
     app.add_option("--environment-rows", o.render.integrator.environment_rows,
@@ -145,33 +185,41 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(light);
-    app.add_option(
-           "--brdf", o.scene.brdf,
-           "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
-           "EXR), or the name of one in data/brdf, e.g. pla-blue")
+    std::vector<std::string> materials = shade::brdfNames();
+    materials.insert(materials.end(), {"lambert:", "plastic:"});
+    completes(app.add_option(
+                  "--brdf", o.scene.brdf,
+                  "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, "
+                  "MERL, EXR), or the name of one in data/brdf, e.g. pla-blue"),
+              Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
         ->group(light);
-    app.add_option("--color-by", o.scene.color_by,
-                   "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, time, color")
+    completes(app.add_option("--color-by", o.scene.color_by,
+                             "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
+                             "time, color"),
+              Completion::word, {"tool", "feature", "layer", "object", "speed", "width", "time", "color"})
         ->type_name("NAME")
         ->group(light);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
-        ->check(CLI::IsMember({"geometric", "smooth"}))
+        ->check(oneOf({"geometric", "smooth"}))
         ->type_name("NAME")
         ->group(light);
-    app.add_option(
-           "--env", o.scene.env,
-           "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map (default studio)")
+    completes(app.add_option("--env", o.scene.env,
+                             "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map "
+                             "(default studio)"),
+              Completion::preset, {"studio", "sky", "sky:", "constant:"})
         ->type_name("SPEC|FILE")
         ->group(light);
     app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
         ->type_name("DEG")
         ->group(light);
     app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps")->type_name("EV")->group(light);
-    app.add_option("--light", o.scene.lights,
-                   "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
-                   "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges, "
-                   "radiance), ambient:R,G,B; may be repeated")
+    completes(app.add_option("--light", o.scene.lights,
+                             "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
+                             "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
+                             "half edges, radiance), ambient:R,G,B; may be repeated"),
+              Completion::word, {"directional:", "sun:", "point:", "rectangle:", "ambient:"})
+        ->allow_extra_args(false)
         ->type_name("SPEC")
         ->group(light);
     app.add_option("--write-brdf", o.write_brdf, "Also write the material as a MERL .binary or an .exr texture")
@@ -179,7 +227,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->group(light);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
     app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
-        ->check(CLI::IsMember({"paper", "pei", "grid"}))
+        ->check(oneOf({"paper", "pei", "grid"}))
         ->type_name("NAME")
         ->group(light);
 
@@ -187,14 +235,14 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option(
            "--march", o.march,
            "brick (exact), sphere (sphere tracing), vdb (OpenVDB's own), or auto, which is brick (default auto)")
-        ->check(CLI::IsMember({"auto", "brick", "sphere", "vdb"}))
+        ->check(oneOf({"auto", "brick", "sphere", "vdb"}))
         ->type_name("NAME")
         ->group(tracing);
     app.add_option("--brick-values", o.values,
                    "brick: keep samples as float, or as int16, half of the memory, rounded to a 32767th of the narrow "
                    "band's half-width (default int16)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, march::BrickValues>{
-            {"float", march::BrickValues::Float32}, {"int16", march::BrickValues::Int16}}))
+        ->transform(enumeration({{"float", static_cast<int>(march::BrickValues::Float32)},
+                                 {"int16", static_cast<int>(march::BrickValues::Int16)}}))
         ->type_name("float|int16")
         ->group(tracing);
     addTracePrintOptions(app, o.prints);
@@ -207,9 +255,10 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
 
 void readScene(TraceCommand& o, int argc, char** argv) {
     const fs::path path = o.inputs.front();
-    if (!shade::isSceneFile(MappedFile(path).bytes())) return;
+    if (!isScene(path, o.inputs.size() == 1)) return;
     if (o.inputs.size() > 1)
-        throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets", o.inputs.front()));
+        throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets, but --each takes scenes, too",
+                                     o.inputs.front()));
     const shade::SceneFile file = shade::readSceneFile(path);
     TraceCommand over;
     over.scene = file.scene;
@@ -243,18 +292,22 @@ void applyText(TraceCommand& o) {
         const auto c = parseIntegers<4>(o.crop, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
         o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
     }
-    if (!o.phong.empty()) o.render.integrator.phong = {o.phong[0], o.phong[1], o.phong[2], o.phong[3], o.phong[4]};
+    if (!o.phong.empty()) {
+        const auto v = parseNumbers(o.phong, {5}, "--phong", "KA,KD,KS,SHININESS,KR");
+        o.render.integrator.phong = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]),
+                                     static_cast<float>(v[3]), static_cast<float>(v[4])};
+    }
     if (!o.aov.empty()) o.render.aovs = shade::parseAovs(o.aov);
     if (!o.view.empty()) o.scene.camera.view = shade::parseView(o.view);
-    if (!o.eye.empty()) o.scene.camera.eye = toVector(o.eye);
-    if (!o.look_at.empty()) o.scene.camera.look_at = toVector(o.look_at);
-    if (!o.up.empty()) o.scene.camera.up = toVector(o.up);
-    if (o.focus.size() == 2) throw UsageError("--focus: a distance, or a point X,Y,Z");
+    if (!o.eye.empty()) o.scene.camera.eye = parseVector(o.eye, "--eye");
+    if (!o.look_at.empty()) o.scene.camera.look_at = parseVector(o.look_at, "--look-at");
+    if (!o.up.empty()) o.scene.camera.up = parseVector(o.up, "--up");
     if (!o.focus.empty()) {
+        const std::vector<double> focus = parseNumbers(o.focus, {1, 3}, "--focus", "a distance or a point X,Y,Z");
         o.scene.camera.focus_distance.reset();
         o.scene.camera.focus_point.reset();
-        if (o.focus.size() == 1) o.scene.camera.focus_distance = o.focus[0];
-        if (o.focus.size() == 3) o.scene.camera.focus_point = toVector(o.focus);
+        if (focus.size() == 1) o.scene.camera.focus_distance = focus[0];
+        if (focus.size() == 3) o.scene.camera.focus_point = glm::dvec3(focus[0], focus[1], focus[2]);
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
     if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);

@@ -22,9 +22,9 @@ struct TraceCommand {
     CommonOptions common;
     std::vector<std::string> inputs, notes;
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
-    std::vector<double> eye, look_at, up, focus;
+    std::string eye, look_at, up, focus, phong;
+    bool each = false;
     int turntable = 1;
-    std::vector<float> phong;
     bool spp_given = false, denoise = false;
     march::BrickValues values = march::BrickValues::Int16;
     TracePrintOptions prints;

@@ -1,6 +1,7 @@
 #include "trace_print.h"
 
 #include "command_line.h"
+#include "progress.h"
 
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
@@ -10,6 +11,7 @@
 #include "voxelize/voxel_choice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -23,6 +25,8 @@ namespace stratum::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kVdbMagic = " BDV";
 
 // Those of the selection that are printed by then.
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
@@ -121,6 +125,22 @@ Json reportOf(const std::vector<TracedLevel>& levels, double per_distance) {
     return report;
 }
 
+// What people give as a level set and is none is G-code at best.
+gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options) {
+    if (file.bytes().starts_with(kVdbMagic))
+        throw InputError(
+            fmt::format("{}: holds OpenVDB grids, which can't be read from a stream; give a file", file.name()));
+    try {
+        return gcode::readToolpath(file.bytes(), file.name(), options);
+    } catch (const InputError& error) {
+        if (!file.name().ends_with(".vdb")) throw;
+        throw InputError(
+            fmt::format("{}: is no OpenVDB file, its first bytes are not those of one; download or convert "
+                        "it again. Nor is it G-code ({})",
+                        file.name(), error.what()));
+    }
+}
+
 }  // namespace
 
 void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
@@ -153,13 +173,40 @@ void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
         ->group("What to convert");
 }
 
+std::vector<std::string> givenPrintOptions(const CLI::App& app) {
+    constexpr std::array<std::string_view, 3> kGroups = {kLattice, kWhat, kReading};
+    std::vector<std::string> given;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool of_prints = std::find(kGroups.begin(), kGroups.end(), option->get_group()) != kGroups.end() ||
+                               name == "--brick-picture" || name == "--secondary-voxel";
+        if (of_prints && option->count() > 0) given.push_back(name);
+    }
+    return given;
+}
+
+void refusePrintOptions(const std::vector<std::string>& given, const std::string& vdb) {
+    if (given.empty()) return;
+    const std::string& first = given.front();
+    const bool in_time = first == "--printed" || first == "--progress-series";
+    const bool of_rays = first == "--brick-picture" || first == "--secondary-voxel";
+    throw UsageError(fmt::format(
+        "{}: needs G-code, and {} is a level set, whose voxels are made; {}give vdbtrace the "
+        "print itself",
+        fmt::join(given, ", "), vdb,
+        of_rays
+            ? ""
+            : fmt::format("make it anew with gcode2vdb {}, or ", in_time ? "--snapshots" : fmt::format("{}", first))));
+}
+
 bool isVdbFile(const std::string& path) {
+    if (path == "-") return false;
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", path));
     std::array<char, 4> magic{};
     file.read(magic.data(), magic.size());
     if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", path));
-    return std::string_view(magic.data(), magic.size()) == std::string_view(" BDV", 4);
+    return std::string_view(magic.data(), magic.size()) == kVdbMagic;
 }
 
 TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& options) {
@@ -167,18 +214,17 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     TracedPrint result;
     std::shared_ptr<const gcode::Toolpath> toolpath;
     std::size_t bytes = 0;
+    std::string name;
     {
         const gcode::InputBytes file(path);
         bytes = file.bytes().size();
+        name = file.name();
         gcode::ReadOptions read = options.print.read;
         ProgressBar bar("reading", options.quiet);
         read.progress = bar.callback();
-        toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), file.name(), read));
-        if (!options.quiet)
-            for (const gcode::Warning& warning : toolpath->warnings)
-                fmt::print(stderr, "vdbtrace: {}:{}: {}{}\n", file.name(), warning.first_line, warning.text,
-                           warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
+        toolpath = std::make_shared<const gcode::Toolpath>(readEither(file, read));
     }
+    if (!options.quiet) printWarnings("vdbtrace", name, *toolpath);
     result.parse_seconds = watch.lap();
     std::vector<std::uint32_t> selection = voxelize::selectBeads(*toolpath, selectionOf(options.print, *toolpath));
     if (!options.printed.empty()) cut(selection, options.printed, *toolpath);
@@ -227,7 +273,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     if (!result.wide.empty())
         result.report["secondary"] = {{"from_mm", result.wide_from}, {"levels", reportOf(result.wide, 0)}};
     if (!options.printed.empty()) result.report["printed"] = options.printed;
-    result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", path, selection.size(), toolpath->beads.size(),
+    result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", name, selection.size(), toolpath->beads.size(),
                               lattice.voxel_size, lattice.reason);
     for (std::size_t n = 1; n < result.levels.size(); ++n)
         result.line += fmt::format("; {:g} mm from {:.3g} mm away", result.levels[n].field->layout().lattice.voxel_size,

@@ -50,8 +50,15 @@ struct TracedPrint {
     double parse_seconds = 0;
 };
 
-/// Whether a file holds an OpenVDB grid, by its first bytes. Throws InputError for one that can't be read or is empty.
+/// Whether a file holds an OpenVDB grid, by its first bytes; standard input ("-") doesn't. Throws InputError for one
+/// that can't be read or is empty.
 bool isVdbFile(const std::string& path);
+
+/// Options on this command line that are of G-code alone, "--printed".
+std::vector<std::string> givenPrintOptions(const CLI::App& app);
+
+/// Throws UsageError if there are such options and the input, a level set, has no use for them.
+void refusePrintOptions(const std::vector<std::string>& given, const std::string& vdb);
 
 /// Reads G-code in any container. Throws InputError, UsageError.
 TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& options);

@@ -1,6 +1,10 @@
 // vdbstudy: what the other two tools cost and how exact they are, measured on this machine.
+#include "choices.h"
 #include "command_line.h"
 #include "manual.h"
+#include "output_names.h"
+#include "progress.h"
+#include "run_files.h"
 
 #include "io/error.h"
 #include "study/geometry.h"
@@ -12,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -108,14 +113,18 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->type_name("N");
     verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
     CLI::App* seeds = addVerb(app, o, "seeds", "Level sets and formulas beside polygons and beads: the two theses");
-    seeds->add_option("PRINT", o.seeds.prints, "Prints, or folders of them")->type_name("FILE.gcode|DIR");
-    seeds->add_option("--scenes", o.seeds.scenes, "Scenes of spheres, boxes and cylinders")->type_name("SCENE.json");
+    seeds->add_option("PRINT", o.seeds.prints, "Prints, or folders of them; *.json are scenes")
+        ->type_name("FILE.gcode|DIR|SCENE.json");
+    seeds
+        ->add_option("--scenes", o.seeds.scenes, "A scene of spheres, boxes and cylinders; may be given again for more")
+        ->allow_extra_args(false)
+        ->type_name("SCENE.json");
     seeds->add_option("--env", o.seeds.environment, "Light of the prints, as vdbtrace takes it (default studio)")
         ->type_name("SPEC|FILE");
     seeds->add_option("--integrators", o.seeds.integrators, "Of the prints: path, ao (default both)")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"path", "ao"}))
+        ->check(tools::oneOf({"path", "ao"}))
         ->type_name("NAME,...");
     seeds->add_option("--spp", o.seeds.spp, "Samples a pixel of the path-traced prints (default 32)")
         ->check(CLI::Range(1, 65536))
@@ -131,9 +140,20 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     tools::Stopwatch watch;
     o.study.command.assign(argv, argv + argc);
     o.study.threads = o.common.threads;
-    std::error_code failed;
-    fs::create_directories(o.study.folder, failed);
-    if (failed) throw OutputError(fmt::format("{}: can't be made: {}", o.study.folder.string(), failed.message()));
+    // A shell puts all names of a pattern after --scenes, of which the first is its own.
+    std::vector<std::string>& prints = o.seeds.prints;
+    const auto scenes = std::stable_partition(prints.begin(), prints.end(),
+                                              [](const std::string& name) { return !name.ends_with(".json"); });
+    o.seeds.scenes.insert(o.seeds.scenes.end(), scenes, prints.end());
+    prints.erase(scenes, prints.end());
+    tools::RunFiles files;
+    for (const auto* prints : {&o.memory.prints, &o.need.prints, &o.seeds.prints, &o.seeds.scenes})
+        for (const auto& print : *prints) files.reads(print);
+    for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
+    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html"})
+        files.writes((o.study.folder / (verb.app->get_name() + ending)).string(), "-o");
+    files.writes(o.common.stats, "--stats");
+    tools::makeFolder(o.study.folder);
     tools::ProgressBar bar(verb.app->get_name(), o.common.quiet);
     o.study.progress = bar.callback();
     const study::StudyReport report = verb.work();

@@ -1,21 +1,22 @@
 // vdbtrace: level set -> picture.
+#include "batch.h"
 #include "command_line.h"
+#include "output_names.h"
+#include "run_files.h"
 #include "trace_frame.h"
-#include "trace_objects.h"
 #include "trace_options.h"
+#include "trace_series.h"
 
+#include "io/atomic_file.h"
 #include "io/error.h"
-#include "shade/brdf_file.h"
 #include "shade/denoise.h"
 #include "shade/picture.h"
-#include "shade/pixel_size.h"
-#include "voxelize/voxel_choice.h"
+#include "shade/preset_names.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,110 +26,142 @@ using namespace stratum;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-void run(tools::TraceCommand& o, int argc, char** argv) {
-    tools::readScene(o, argc, argv);
-    if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
-    tools::applyText(o);
-    if (o.march != "auto" && o.march != "brick") tools::useHugePages(argv);  // bricks have their own
-    const tools::ThreadLimit limit(o.common.threads);
-    if (o.output.empty()) o.output = fs::path(o.inputs.front()).filename().replace_extension(".png").string();
+std::size_t pictures(const tools::TraceCommand& o) {
+    return o.inputs.size() * static_cast<std::size_t>(o.prints.series) * static_cast<std::size_t>(o.turntable);
+}
+
+// What can't be read is told of when its turn comes.
+bool isLevelSet(const std::string& path) {
+    try {
+        return tools::isVdbFile(path);
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+// What is asked of the pictures fits together, and what is asked of G-code has some. Before the work.
+void check(const tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
     const bool linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     if (!o.render.aovs.empty() && !linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
-    if (!o.render.checkpoint.empty() &&
-        (o.prints.series > 1 || o.inputs.size() * static_cast<std::size_t>(o.turntable) > 1))
+    if (isStandardOutput(o.output) && pictures(o) > 1)
+        throw UsageError(fmt::format("-o {}: only one picture can go to standard output; name a file for the {}",
+                                     o.output, pictures(o)));
+    if (!o.render.checkpoint.empty() && pictures(o) > 1)
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
+    if (o.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
+        throw UsageError("--progress-series is of one print alone");
     if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
-    if (o.denoise) shade::addDenoisingGuides(o.render);
-    for (const std::string& note : o.notes) tools::say(o.common, note);
+    if (given_of_prints.empty()) return;
+    if (o.objects.empty()) {
+        for (const std::string& input : o.inputs)
+            if (isLevelSet(input)) tools::refusePrintOptions(given_of_prints, input);
+    } else if (std::none_of(o.objects.begin(), o.objects.end(), [](const shade::ObjectOptions& object) {
+                   return !object.sdf && !isLevelSet(object.vdb);
+               })) {
+        tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
+    }
+}
 
-    tools::TraceOptions reading{.march = o.march,
-                                .values = o.values,
-                                .brdf = o.scene.brdf,
-                                .color_by = o.scene.color_by,
-                                .smooth_normals = o.scene.smooth_normals,
-                                .labels = shade::labelsOf(o.render.aovs),
-                                .prints = o.prints};
-    reading.prints.quiet = o.common.quiet;
-    if (!o.prints.brick_cache.empty()) {
-        if (o.march != "auto" && o.march != "brick")
-            throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
-        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.prints.brick_cache), 1e18));
-    }
-    if (const std::string& name = o.render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
-        const shade::Label label = shade::parseLabel(name);
-        if (std::find(reading.labels.begin(), reading.labels.end(), label) == reading.labels.end())
-            reading.labels.push_back(label);
-    }
-    const auto turns = static_cast<std::size_t>(o.turntable);
-    std::optional<shade::SceneDescription> scene;
-    reading.prints.pixel_spread = [&](const voxelize::Bounds& print) {
-        if (!o.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        const march::Box box{{print.min[0], print.min[1], print.min[2]}, {print.max[0], print.max[1], print.max[2]}};
-        const shade::Camera camera =
-            scene ? scene->camera : shade::Camera::make(o.scene.camera, box, o.render.width, o.render.height);
-        return shade::pixelSpread(camera, box, o.turntable);
+void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::string& option) {
+    const auto material = [&files](const std::string& text) {
+        if (!shade::isBrdfPreset(text)) files.reads(text);
     };
-    glm::dvec3 middle(0.0);
-    Json reports = Json::array();
-    // From the last, which is the whole print and gives the camera, the bed and the light to all.
-    for (std::size_t n = o.inputs.size(); n-- > 0;) {
-        std::vector<shade::ObjectOptions> wanted = o.objects;
-        if (wanted.empty()) {
-            wanted.emplace_back();
-            wanted.back().vdb = o.inputs[n];
-            wanted.back().grid = o.grid;
-            wanted.back().up = o.file_up;
-        }
-        if (o.prints.series > 1 && o.inputs.size() * wanted.size() > 1)
-            throw UsageError("--progress-series is of one print alone");
-        const tools::TraceObjects objects = tools::readTraceObjects(wanted, reading);
-        if (o.prints.series > 1 && !objects.showMoment)
-            throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
-        const std::size_t count = o.inputs.size() * objects.moments * turns;
-        if (!o.prints.brick_picture.empty() && !objects.writeBrickPicture)
-            throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
-        for (const std::string& line : objects.lines) tools::say(o.common, line);
-        tools::Stopwatch watch;
-        if (!scene) {
-            shade::SceneOptions seen = o.scene;
-            seen.mm_per_unit = objects.mm_per_unit;
-            // What is not seen costs nothing.
-            if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";
-            scene = shade::makeScene(seen, *objects.intersector, o.render.width, o.render.height);
-            const march::Box box = objects.intersector->bounds();
-            middle = 0.5 * (box.min + box.max);
-            for (const std::string& note : scene->material->notes()) tools::say(o.common, "  material: " + note);
-            if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene->material);
-        }
-        scene->objects = objects.materials;
-        scene->labels = objects.labels;
-        double before_seconds = watch.lap();
-        // From the whole print down to its first part: what one picture has made, the next one mostly keeps.
-        for (std::size_t moment = objects.moments; moment-- > 0;) {
-            if (moment + 1 < objects.moments) {
-                objects.showMoment(moment);
-                before_seconds = watch.lap();
-            }
-            const bool first = moment + 1 == objects.moments;
-            for (std::size_t turn = 0; turn < turns; ++turn) {
-                shade::SceneDescription view = *scene;
-                if (turn > 0)
-                    view.camera =
-                        scene->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle);
-                reports.push_back(tools::renderFrame(
-                    o,
-                    {fs::path(o.inputs[n]).filename().string(),
-                     tools::numbered(o.output, (n * objects.moments + moment) * turns + turn, count),
-                     first ? objects.load_seconds : 0.0, (first ? objects.build_seconds : 0.0) + before_seconds},
-                    objects, view, limit.threads()));
-                watch.lap();
-            }
-        }
-        if (!o.prints.brick_picture.empty() && n == 0) objects.writeBrickPicture(o.prints.brick_picture);
+    for (const std::string& input : o.inputs) files.reads(input);
+    for (const shade::ObjectOptions& object : o.objects) {
+        files.reads(object.vdb);
+        material(object.material.brdf);
+        for (const auto& each : object.material.each) material(each.second);
     }
-    tools::writeStats(o.common, reports.size() == 1 ? reports.front() : reports);
+    material(o.scene.brdf);
+    if (!shade::isEnvironmentPreset(o.scene.env)) files.reads(o.scene.env);
+    for (std::size_t n = 0; n < pictures(o); ++n) files.writes(tools::numbered(o.output, n, pictures(o)), option);
+    files.writes(o.render.checkpoint, "--checkpoint");
+    files.writes(o.write_brdf, "--write-brdf");
+    files.writes(o.prints.brick_picture, "--brick-picture");
+}
+
+// The scene, if the input is one, and everything that is kept as text.
+void prepare(tools::TraceCommand& o, int argc, char** argv) {
+    tools::readScene(o, argc, argv);
+    if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
+    tools::applyText(o);
+}
+
+// --each: commands of one input each, without those that fail.
+std::vector<tools::TraceCommand> split(const tools::TraceCommand& whole, tools::Batch& batch, int argc, char** argv) {
+    if (!whole.output.empty() && !tools::namesFolder(whole.output) && fs::path(whole.output).has_extension())
+        throw UsageError(
+            fmt::format("-o {}: with --each it names the folder of the pictures, e.g. -o pictures", whole.output));
+    std::vector<tools::TraceCommand> commands;
+    for (const std::string& input : whole.inputs) {
+        tools::TraceCommand one = whole;
+        one.inputs = {input};
+        if (!batch.attempt(input, [&] { prepare(one, argc, argv); })) continue;
+        const fs::path folder = whole.output.empty() ? fs::path(input).parent_path() : fs::path(whole.output);
+        one.output = (folder / (tools::stemOf(input) + (one.render.aovs.empty() ? ".png" : ".exr"))).string();
+        one.each = true;
+        commands.push_back(std::move(one));
+    }
+    return commands;
+}
+
+// Where the pictures of a command without --each go.
+void nameOutput(tools::TraceCommand& o) {
+    const bool folder = tools::namesFolder(o.output);
+    if (!o.output.empty() && !folder) return;
+    const std::string stem = o.inputs.size() > 1 ? tools::commonStem(o.inputs) : tools::stemOf(o.inputs.front());
+    const std::string name = stem + (folder && !o.render.aovs.empty() ? ".exr" : ".png");
+    o.output = (folder ? fs::path(o.output) / name : fs::path(name)).string();
+}
+
+void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv) {
+    // Before standard input is read: the process starts itself once more. Bricks have huge pages of their own.
+    if (whole.march != "auto" && whole.march != "brick") tools::useHugePages(argv);
+    const std::vector<std::string> given_of_prints = tools::givenPrintOptions(app);
+    const bool folder = whole.each || tools::namesFolder(whole.output);
+    const bool named = !folder && !whole.output.empty();
+    tools::Batch batch("vdbtrace", whole.inputs.size());
+    std::vector<tools::TraceCommand> commands;
+    if (whole.each) {
+        commands = split(whole, batch, argc, argv);
+    } else {
+        prepare(whole, argc, argv);
+        nameOutput(whole);
+        commands = {whole};
+    }
+    const tools::ThreadLimit limit(whole.common.threads);
+    tools::RunFiles files;
+    for (const tools::TraceCommand& o : commands)
+        for (const std::string& input : o.inputs) files.reads(input);
+    for (const tools::TraceCommand& o : commands) listFiles(files, o, named ? "-o" : "");
+    files.writes(whole.common.stats, "--stats");
+    for (tools::TraceCommand& o : commands) {
+        o.common.output_on_stdout = isStandardOutput(o.output);
+        if (folder) tools::makeFolder(fs::path(o.output).parent_path());
+        check(o, given_of_prints);
+    }
+
+    Json reports = Json::array();
+    const auto keep = [&reports](const Json& some) {
+        for (const Json& report : some) reports.push_back(report);
+    };
+    for (tools::TraceCommand& o : commands) {
+        if (o.denoise) shade::addDenoisingGuides(o.render);
+        for (const std::string& note : o.notes) tools::say(o.common, note);
+        if (!whole.each) {
+            keep(tools::traceSeries(o, limit.threads(), batch));
+            continue;
+        }
+        batch.attempt(o.inputs.front(), [&] {
+            tools::Batch alone("vdbtrace", 1);
+            keep(tools::traceSeries(o, limit.threads(), alone));
+        });
+    }
+    keep(batch.failures());
+    tools::writeStats(whole.common, reports.size() == 1 ? reports.front() : reports);
+    batch.finish();
 }
 
 }  // namespace
@@ -137,5 +170,5 @@ int main(int argc, char** argv) {
     CLI::App app("Ray-traces an OpenVDB level set into a picture.", "vdbtrace");
     tools::TraceCommand command;
     tools::addTraceOptions(app, command);
-    return tools::runTool(app, argc, argv, [&] { run(command, argc, argv); });
+    return tools::runTool(app, argc, argv, [&] { run(app, command, argc, argv); });
 }

@@ -85,9 +85,31 @@ void sweep(const std::filesystem::path& destination) {
     }
 }
 
+// A device or a pipe; what is not there will be a file.
+bool isStream(const std::filesystem::path& destination) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(destination, ignored);
+    return isStandardOutput(destination) ||
+           (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+            !std::filesystem::is_directory(status));
+}
+
+std::string nameOf(const std::filesystem::path& destination) {
+    return isStandardOutput(destination) ? "standard output" : destination.string();
+}
+
 }  // namespace
 
+bool isStandardOutput(const std::filesystem::path& destination) {
+    const std::string& text = destination.native();
+    return text == "-" || (text.starts_with("-.") && text.find('/') == std::string::npos);
+}
+
 AtomicFile::AtomicFile(std::filesystem::path destination, Making making) : destination_(std::move(destination)) {
+    if (isStream(destination_)) {
+        openStream();
+        return;
+    }
     const std::filesystem::path folder = folderOf(destination_);
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
@@ -98,6 +120,47 @@ AtomicFile::AtomicFile(std::filesystem::path destination, Making making) : desti
     sweep(destination_);
     part_ = folder / fmt::format(".{}.{}.part", destination_.filename().string(), ::getpid());
     if (making == Making::named || !openUnnamed()) openNamed();
+}
+
+void AtomicFile::openStream() {
+    stream_ = isStandardOutput(destination_) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                             : ::open(destination_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (stream_ < 0)
+        throw OutputError(fmt::format("{}: can't be written ({}); choose another place or mend the permissions",
+                                      nameOf(destination_), std::strerror(errno)));
+    // The C library removes the name at once.
+    if (std::FILE* file = std::tmpfile()) {
+        fd_ = ::fcntl(::fileno(file), F_DUPFD_CLOEXEC, 0);
+        std::fclose(file);
+    }
+    temporary_ = fmt::format("/proc/self/fd/{}", fd_);
+    if (fd_ >= 0 && ::access(temporary_.c_str(), W_OK) == 0) return;
+    const int error = errno;
+    close();
+    throw OutputError(fmt::format("{}: the folder for temporary files can't be written to ({}); give a file",
+                                  nameOf(destination_), std::strerror(error)));
+}
+
+void AtomicFile::pour() {
+    std::array<char, 65536> buffer{};
+    for (off_t at = 0;;) {
+        const ssize_t got = ::pread(fd_, buffer.data(), buffer.size(), at);
+        if (got == 0) break;
+        ssize_t done = 0;
+        while (got > 0 && done < got) {
+            const ssize_t put = ::write(stream_, buffer.data() + done, static_cast<std::size_t>(got - done));
+            if (put < 0 && errno == EINTR) continue;
+            if (put < 0)
+                throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", nameOf(destination_),
+                                              std::strerror(errno)));
+            done += put;
+        }
+        if (got < 0 && errno != EINTR)
+            throw OutputError(fmt::format("{}: what was written for it can't be read again ({})", nameOf(destination_),
+                                          std::strerror(errno)));
+        if (got > 0) at += got;
+    }
+    close();
 }
 
 // The mode of both is what a plain open would have given: the umask applies.
@@ -135,7 +198,8 @@ void AtomicFile::openNamed() {
 
 void AtomicFile::close() {
     if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
+    if (stream_ >= 0) ::close(stream_);
+    fd_ = stream_ = -1;
 }
 
 AtomicFile::~AtomicFile() {
@@ -145,6 +209,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+    if (stream_ >= 0) return pour();
     if (::fsync(fd_) != 0)
         throw OutputError(fmt::format("{}: could not be flushed to the disk ({}); is the disk full?",
                                       destination_.string(), std::strerror(errno)));
@@ -172,7 +237,7 @@ void AtomicFile::write(const std::function<void(const std::filesystem::path&)>& 
     } catch (const OutputError& error) {
         std::string text = error.what();
         const std::string from = temporary_.string();
-        const std::string to = destination_.string();
+        const std::string to = nameOf(destination_);
         for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
             text.replace(at, from.size(), to);
         throw OutputError(text);

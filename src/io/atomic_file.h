@@ -6,6 +6,10 @@
 
 namespace stratum {
 
+/// Whether a destination means standard output: "-", or "-.ENDING" where the ending says what to write. A file of such
+/// a name is reached as ./-.
+bool isStandardOutput(const std::filesystem::path& destination);
+
 /// One output file in the making. Write to `temporary()`, then `commit()`. Without a commit (an exception, a signal
 /// that the tool handles) nothing is left and what stood at the destination stays.
 ///
@@ -13,6 +17,9 @@ namespace stratum {
 /// even a run that is killed or a machine that loses power leaves anything behind. Elsewhere, on NFS for one, it lies
 /// in the same folder as ".NAME.PROCESS.part"; what a killed run leaves there, the next one with the same destination
 /// removes. A lock (flock) tells it from the file of a run that is still at work.
+///
+/// Streams have nothing to be renamed over: standard output, and what stands at the destination and is no regular file
+/// (a pipe, a device). They get the bytes with the commit, from a file in the folder for temporary files.
 class AtomicFile {
 public:
     enum class Making {
@@ -41,6 +48,8 @@ public:
     static void removeOnSignals();
 
 private:
+    void openStream();
+    void pour();
     bool openUnnamed();
     void openNamed();
     void close();
@@ -49,6 +58,7 @@ private:
     std::filesystem::path part_;       // its name beside the destination
     std::filesystem::path temporary_;  // part_, or a name that only this process sees
     int fd_ = -1;                      // holds the lock
+    int stream_ = -1;                  // where the bytes go in the end, if that is a stream
     int slot_ = -1;                    // of part_, while there is such a file
 };
 

@@ -1,6 +1,7 @@
 #include "shade/aov.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
 
@@ -52,11 +53,14 @@ std::vector<Aov> parseAovs(std::string_view text) {
         text.remove_prefix(std::min(text.size(), word.size() + 1));
         const auto found =
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
-        if (found == kinds().end())
-            throw UsageError(fmt::format(
-                "--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, samples, layer, "
-                "tool, feature",
-                word));
+        if (found == kinds().end()) {
+            std::vector<std::string_view> names;
+            for (const Kind& kind : kinds()) names.push_back(kind.name);
+            throw UsageError(
+                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, "
+                            "samples, layer, tool, feature{}",
+                            word, didYouMean(word, names)));
+        }
         if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
     }
     return aovs;

@@ -1,6 +1,7 @@
 #include "shade/bed_texture.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/sampler.h"
@@ -68,7 +69,8 @@ BedSurface parseBedSurface(std::string_view text) {
     if (text == "paper") return BedSurface::paper;
     if (text == "pei") return BedSurface::pei;
     if (text == "grid") return BedSurface::grid;
-    throw UsageError(fmt::format("--bed-surface {}: unknown; choose paper, pei or grid", text));
+    throw UsageError(fmt::format("--bed-surface {}: unknown; choose paper, pei or grid{}", text,
+                                 didYouMean(text, {"paper", "pei", "grid"})));
 }
 
 BedTexture::BedTexture(BedSurface surface, double mm_per_unit) : surface_(surface), mm_per_unit_(mm_per_unit) {

@@ -1,10 +1,12 @@
 #include "shade/brdf.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 #include "shade/brdf_file.h"
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/preset.h"
+#include "shade/preset_names.h"
 #include "shade/sampling.h"
 
 #include <fmt/format.h>
@@ -29,8 +31,9 @@ std::filesystem::path tableFolder() {
     return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
 }
 
-std::string namesIn(const std::filesystem::path& folder) {
-    constexpr std::string_view kEnding = ".bsdf.gz";
+constexpr std::string_view kEnding = ".bsdf.gz";
+
+std::vector<std::string> namesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
@@ -38,24 +41,44 @@ std::string namesIn(const std::filesystem::path& folder) {
         if (name.ends_with(kEnding)) names.push_back(name.substr(0, name.size() - kEnding.size()));
     }
     std::sort(names.begin(), names.end());
-    return names.empty() ? fmt::format("none; {} has no tables", folder.string())
-                         : fmt::format("{}", fmt::join(names, ", "));
+    return names;
+}
+
+/// The table of that name, or an empty path.
+std::filesystem::path tableNamed(std::string_view text) {
+    if (text.empty() || text.find_first_of(":/.") != std::string_view::npos) return {};
+    std::error_code error;
+    std::filesystem::path path = tableFolder() / (std::string(text) + std::string(kEnding));
+    return std::filesystem::is_regular_file(path, error) ? path : std::filesystem::path();
 }
 
 std::shared_ptr<const Brdf> readNamed(std::string_view text) {
+    if (const std::filesystem::path table = tableNamed(text); !table.empty()) return readBrdfFile(table);
     std::error_code error;
     if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
         return readBrdfFile(text);
-    const bool plain = text.find_first_of(":/.") == std::string_view::npos && !text.empty();
-    const std::filesystem::path path = tableFolder() / (std::string(text) + ".bsdf.gz");
-    if (plain && std::filesystem::is_regular_file(path, error)) return readBrdfFile(path);
+    const std::vector<std::string> tables = namesIn(tableFolder());
+    std::vector<std::string_view> names(tables.begin(), tables.end());
+    names.insert(names.end(), {"lambert", "plastic"});
     throw UsageError(
         fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-                    "a file, or one of: {}",
-                    text, namesIn(tableFolder())));
+                    "a file, or one of: {}{}",
+                    text,
+                    tables.empty() ? fmt::format("none; {} has no tables", tableFolder().string())
+                                   : fmt::format("{}", fmt::join(tables, ", ")),
+                    didYouMean(text.substr(0, text.find(':')), names)));
+}
+
+bool isFormula(std::string_view text) {
+    const std::string_view name = text.substr(0, text.find(':'));
+    return name == "lambert" || name == "plastic";
 }
 
 }  // namespace
+
+std::vector<std::string> brdfNames() { return namesIn(tableFolder()); }
+
+bool isBrdfPreset(std::string_view text) { return isFormula(text) || !tableNamed(text).empty(); }
 
 const std::vector<std::string>& Brdf::notes() const {
     static const std::vector<std::string> none;
@@ -71,8 +94,7 @@ const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";
-    const std::string_view name = text.substr(0, text.find(':'));
-    if (name != "lambert" && name != "plastic") return readNamed(text);
+    if (!isFormula(text)) return readNamed(text);
     const Preset preset = parsePreset(text, kOption);
     const auto colour = [&] {
         for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");

@@ -1,6 +1,7 @@
 #include "shade/camera.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -79,7 +81,10 @@ struct Axis {
 View parseView(std::string_view text) {
     for (const NamedView& v : kViews)
         if (v.name == text) return v.view;
-    throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom", text));
+    std::vector<std::string_view> names;
+    for (const NamedView& v : kViews) names.push_back(v.name);
+    throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom{}", text,
+                                 didYouMean(text, names)));
 }
 
 void CameraOptions::validate() const {

@@ -1,16 +1,20 @@
 #include "shade/environment.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 #include "shade/bed_light.h"
 #include "shade/constant.h"
 #include "shade/map_environment.h"
 #include "shade/preset.h"
+#include "shade/preset_names.h"
 #include "shade/sampling.h"
 #include "shade/sky.h"
 #include "shade/studio.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace stratum::shade {
@@ -18,7 +22,10 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::string_view kOption = "--env";
+constexpr std::array<std::string_view, 3> kPresets = {"studio", "sky", "constant"};
 constexpr double kRadians = std::numbers::pi / 180.0;
+
+std::string nameOf(std::string_view text) { return std::string(text.substr(0, text.find(':'))); }
 
 std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlacement& placement) {
     SkyOptions sky;
@@ -56,17 +63,23 @@ void Environment::towardStream(std::span<const glm::vec3> directions, std::span<
     for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = toward(directions[n], normals[n]);
 }
 
+bool isEnvironmentPreset(std::string_view text) {
+    return std::find(kPresets.begin(), kPresets.end(), nameOf(text)) != kPresets.end();
+}
+
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement) {
     if (!(placement.exposure >= -30.0 && placement.exposure <= 30.0))
         throw UsageError(fmt::format("--env-exposure {}: must be from -30 to 30 stops", placement.exposure));
     if (!std::isfinite(placement.rotation)) throw UsageError("--env-rotation: must be a number of degrees");
-    if (std::error_code error; !text.empty() && std::filesystem::exists(std::filesystem::path(text), error))
+    if (std::error_code error;
+        !isEnvironmentPreset(text) && !text.empty() && std::filesystem::exists(std::filesystem::path(text), error))
         return std::make_shared<MapEnvironment>(readLightMap(text), placement.rotation,
                                                 static_cast<float>(std::exp2(placement.exposure)));
-    const std::string name(text.substr(0, text.find(':')));
-    if (name != "studio" && name != "constant" && name != "sky")
-        throw UsageError(fmt::format(
-            "{} {}: is no file; write the name of a .hdr or .exr map, studio, sky or constant:R,G,B", kOption, text));
+    const std::string name = nameOf(text);
+    if (!isEnvironmentPreset(text))
+        throw UsageError(
+            fmt::format("{} {}: is no file; write the name of a .hdr or .exr map, studio, sky or constant:R,G,B{}",
+                        kOption, text, didYouMean(name, kPresets)));
     const Preset preset = parsePreset(text, kOption);
     if (placement.exposure != 0.0)
         throw UsageError(fmt::format("--env-exposure is for maps from files; --env {} needs none", text));

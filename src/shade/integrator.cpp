@@ -1,6 +1,7 @@
 #include "shade/integrator.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 #include "shade/ambient_occlusion.h"
 #include "shade/environment_sum.h"
 #include "shade/feature.h"
@@ -25,7 +26,8 @@ constexpr std::array<std::string_view, 12> kNames = {"path",   "direct", "enviro
 
 void IntegratorOptions::validate() const {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-        throw UsageError(fmt::format("--integrator {}: unknown; choose {}", name, fmt::join(kNames, ", ")));
+        throw UsageError(fmt::format("--integrator {}: unknown; choose {}{}", name, fmt::join(kNames, ", "),
+                                     didYouMean(name, kNames)));
     if (bounces < 1 || bounces > 64)
         throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
     const auto within = [](float value, float high) { return value >= 0.0f && value <= high; };

@@ -1,33 +1,14 @@
 #include "shade/json_section.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace stratum::shade {
-namespace {
-
-/// Levenshtein's distance: single letters inserted, removed or replaced.
-std::size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            diagonal = above;
-        }
-    }
-    return row.back();
-}
-
-}  // namespace
 
 JsonSection::JsonSection(const Json& json, std::string path, const std::string& file)
     : json_(json), path_(std::move(path)), file_(file) {

@@ -1,6 +1,7 @@
 #include "shade/light.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 #include "shade/directional.h"
 #include "shade/point_light.h"
 #include "shade/preset.h"
@@ -64,8 +65,8 @@ std::shared_ptr<const Light> parseLight(std::string_view text) {
     }
     throw UsageError(
         fmt::format("{} {}: unknown light; write directional:, sun:, point:, rectangle: or ambient: and "
-                    "numbers, see -h",
-                    kOption, text));
+                    "numbers, see -h{}",
+                    kOption, text, didYouMean(preset.name, {"directional", "sun", "point", "rectangle", "ambient"})));
 }
 
 std::optional<Color> parseAmbient(std::string_view text) {

@@ -1,6 +1,7 @@
 #include "shade/object_file.h"
 
 #include "io/error.h"
+#include "shade/preset_names.h"
 #include "shade/sdf_file.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,7 @@ MaterialOptions readMaterial(JsonSection& section, const std::filesystem::path& 
     const auto* j = section.find("material");
     if (!j) return material;
     if (j->is_string()) {
-        material.brdf = beside(folder, j->get<std::string>());
+        material.brdf = materialBeside(folder, j->get<std::string>());
         return material;
     }
     if (!j->is_object()) section.fail("material", "a text as --brdf has it, or { \"by\": ..., ... }");
@@ -39,9 +40,9 @@ MaterialOptions readMaterial(JsonSection& section, const std::filesystem::path& 
         if (item.key() == "by")
             material.by = text;
         else if (item.key() == "other")
-            material.brdf = beside(folder, text);
+            material.brdf = materialBeside(folder, text);
         else
-            material.each[item.key()] = beside(folder, text);
+            material.each[item.key()] = materialBeside(folder, text);
     }
     if (material.by.empty()) section.fail("material.by", "the attribute that chooses, e.g. \"tool\"");
     return material;
@@ -53,6 +54,10 @@ std::string beside(const std::filesystem::path& folder, const std::string& text)
     std::error_code error;
     const std::filesystem::path path = folder / text;
     return !text.empty() && std::filesystem::is_regular_file(path, error) ? path.string() : text;
+}
+
+std::string materialBeside(const std::filesystem::path& folder, const std::string& text) {
+    return isBrdfPreset(text) ? text : beside(folder, text);
 }
 
 std::string readUp(JsonSection& section) {

@@ -14,6 +14,7 @@ namespace {
 
 /// Whether the name says EXR; throws if it says neither kind.
 bool isExr(const std::filesystem::path& path) {
+    if (path == "-") return false;
     std::string ending = path.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

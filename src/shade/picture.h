@@ -18,7 +18,7 @@ using Metadata = std::map<std::string, std::string>;
 /// A picture file in the making. Make it before the work so that a bad name fails at once.
 class PictureFile {
 public:
-    /// Throws UsageError if the name ends neither in .png nor in .exr, OutputError if it can't be written.
+    /// Standard output: "-" (PNG), "-.exr". Throws UsageError for other names than *.png and *.exr, and OutputError.
     explicit PictureFile(const std::filesystem::path& path);
     /// Whether it keeps linear values and layers: an EXR.
     bool linear() const { return exr_; }

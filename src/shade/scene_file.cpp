@@ -5,6 +5,7 @@
 #include "shade/camera_pose.h"
 #include "shade/json_section.h"
 #include "shade/object_file.h"
+#include "shade/preset_names.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -133,7 +134,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     top.read("aov", aov);
     file.render.aovs = parseAovs(aov);
     top.read("material", file.scene.brdf);
-    file.scene.brdf = beside(folder, file.scene.brdf);
+    file.scene.brdf = materialBeside(folder, file.scene.brdf);
     top.read("bed", file.scene.bed);
     std::string surface;
     top.read("bed_surface", surface);
@@ -145,7 +146,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
         section.read("rotation", file.scene.env_rotation);
         section.read("exposure", file.scene.env_exposure);
         section.finish();
-        file.scene.env = beside(folder, file.scene.env);
+        if (!isEnvironmentPreset(file.scene.env)) file.scene.env = beside(folder, file.scene.env);
     }
     if (const Json* lights = top.find("lights")) {
         if (!lights->is_array()) top.fail("lights", "a list of texts, as --light has them");

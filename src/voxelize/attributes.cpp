@@ -2,6 +2,7 @@
 
 #include "gcode/bead_colors.h"
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
 
@@ -69,8 +70,8 @@ std::vector<Attribute> parseGrids(std::string_view text) {
         if (name == "surface") continue;
         const auto known = std::find(kNames.begin(), kNames.end(), name);
         if (known == kNames.end())
-            throw UsageError(fmt::format("--grids {}: expected names separated by commas, of surface, {}", name,
-                                         fmt::join(kNames, ", ")));
+            throw UsageError(fmt::format("--grids {}: expected names separated by commas, of surface, {}{}", name,
+                                         fmt::join(kNames, ", "), didYouMean(name, kNames)));
         const auto attribute = static_cast<Attribute>(known - kNames.begin());
         if (std::find(attributes.begin(), attributes.end(), attribute) == attributes.end())
             attributes.push_back(attribute);

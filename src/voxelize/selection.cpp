@@ -1,10 +1,13 @@
 #include "voxelize/selection.h"
 
 #include "io/error.h"
+#include "io/nearest_name.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 namespace stratum::voxelize {
@@ -57,6 +60,42 @@ std::size_t endOfTime(const gcode::Toolpath& toolpath, double seconds) {
     return toolpath.beads.size();
 }
 
+/// A snapshot whose label waits for the others.
+struct Cut {
+    enum class Kind { percent, layer, minutes } kind;
+    double value;
+    std::size_t bead_count;
+};
+
+// Digits behind the point that a number has, 6 at most.
+int decimalsOf(double value) {
+    std::string text = fmt::format("{:.6f}", value);
+    text.erase(text.find_last_not_of('0') + 1);
+    return static_cast<int>(text.size() - text.find('.')) - 1;
+}
+
+// Labels of one kind have as many digits before and after the point, so that names of files sort as the numbers do.
+std::vector<Snapshot> labelled(const std::vector<Cut>& cuts, std::uint32_t layer_count) {
+    std::array<int, 3> decimals{};
+    for (const Cut& cut : cuts) {
+        int& most = decimals[static_cast<std::size_t>(cut.kind)];
+        most = std::max(most, decimalsOf(cut.value));
+    }
+    const int layer_digits = std::max(4, static_cast<int>(std::to_string(layer_count).size()));
+    const auto number = [&decimals](const Cut& cut, int digits) {
+        const int behind = decimals[static_cast<std::size_t>(cut.kind)];
+        return fmt::format("{:0{}.{}f}", cut.value, digits + (behind > 0 ? 1 + behind : 0), behind);
+    };
+    std::vector<Snapshot> snapshots;
+    for (const Cut& cut : cuts) {
+        if (cut.bead_count == 0) continue;
+        if (cut.kind == Cut::Kind::percent) snapshots.push_back({number(cut, 3) + "pct", cut.bead_count});
+        if (cut.kind == Cut::Kind::layer) snapshots.push_back({"layer" + number(cut, layer_digits), cut.bead_count});
+        if (cut.kind == Cut::Kind::minutes) snapshots.push_back({number(cut, 4) + "min", cut.bead_count});
+    }
+    return snapshots;
+}
+
 }  // namespace
 
 void parseLayers(std::string_view text, Selection& selection) {
@@ -80,11 +119,13 @@ void parseFeatures(std::string_view text, Selection& selection) {
     for (const std::string_view part : split(text, ',')) {
         const gcode::Feature feature = part.size() < 2 ? gcode::Feature::count_ : gcode::featureNamed(part.substr(1));
         if (feature == gcode::Feature::count_ || (part[0] != '+' && part[0] != '-')) {
-            std::string names;
+            std::vector<std::string_view> names;
             for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
-                names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-            throw UsageError(fmt::format(
-                "--features {}: expected +NAME or -NAME, separated by commas; the names are:{}", part, names));
+                names.push_back(gcode::featureName(static_cast<gcode::Feature>(f)));
+            const bool sign = part.starts_with('+') || part.starts_with('-');
+            throw UsageError(
+                fmt::format("--features {}: expected +NAME or -NAME, separated by commas; the names are: {}{}", part,
+                            fmt::join(names, " "), didYouMean(part.substr(sign ? 1 : 0), names)));
         }
         // A list that starts with + names what to keep; one that starts with - names what to drop.
         if (first) selection.features.fill(part[0] == '-');
@@ -138,7 +179,7 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
 }
 
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {
-    std::vector<Snapshot> snapshots;
+    std::vector<Cut> cuts;
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
@@ -149,25 +190,25 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
         if (part.ends_with('%')) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
             if (!percent || !(*percent > 0 && *percent <= 100)) throw bad();
-            snapshots.push_back({fmt::format("{:g}pct", *percent), endOfShare(toolpath, *percent / 100)});
+            cuts.push_back({Cut::Kind::percent, *percent, endOfShare(toolpath, *percent / 100)});
         } else if (part.starts_with("layer:")) {
             const auto layer = parseNumber<std::uint32_t>(part.substr(6));
             if (!layer || *layer > toolpath.layer_count) throw bad();
-            snapshots.push_back({fmt::format("layer{:04}", *layer), endOfLayer(toolpath, *layer)});
+            cuts.push_back({Cut::Kind::layer, static_cast<double>(*layer), endOfLayer(toolpath, *layer)});
         } else if (part.starts_with("every:")) {
             const auto step = parseNumber<std::uint32_t>(part.substr(6));
             if (!step || *step == 0) throw bad();
             for (std::uint32_t layer = *step; layer <= toolpath.layer_count; layer += *step)
-                snapshots.push_back({fmt::format("layer{:04}", layer), endOfLayer(toolpath, layer)});
+                cuts.push_back({Cut::Kind::layer, static_cast<double>(layer), endOfLayer(toolpath, layer)});
         } else if (part.starts_with("time:")) {
             const auto minutes = parseNumber<double>(part.substr(5));
             if (!minutes || !(*minutes > 0)) throw bad();
-            snapshots.push_back({fmt::format("{:g}min", *minutes), endOfTime(toolpath, *minutes * 60)});
+            cuts.push_back({Cut::Kind::minutes, *minutes, endOfTime(toolpath, *minutes * 60)});
         } else {
             throw bad();
         }
     }
-    std::erase_if(snapshots, [](const Snapshot& s) { return s.bead_count == 0; });
+    std::vector<Snapshot> snapshots = labelled(cuts, toolpath.layer_count);
     std::stable_sort(snapshots.begin(), snapshots.end(),
                      [](const Snapshot& a, const Snapshot& b) { return a.bead_count < b.bead_count; });
     const auto same = [](const Snapshot& a, const Snapshot& b) { return a.label == b.label; };

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
 
 /// A partial print: everything printed before bead number `bead_count`.
 struct Snapshot {
-    std::string label;  ///< for the file name, e.g. "25pct", "layer0040"
+    std::string label;  ///< for the file name, e.g. "025pct", "layer0040", "0090min": they sort as they print
     std::size_t bead_count = 0;
 };
 

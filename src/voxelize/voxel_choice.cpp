@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace stratum::voxelize {
 namespace {
@@ -105,10 +106,15 @@ double parseSize(std::string_view text) {
     for (const char* p = end; p != text.data() + text.size(); ++p)
         if (*p != ' ') suffix += static_cast<char>(std::tolower(static_cast<unsigned char>(*p)));
     if (suffix.ends_with('b')) suffix.pop_back();
-    const double unit = suffix.empty() ? 1 : suffix == "k" ? 1e3 : suffix == "m" ? 1e6 : suffix == "g" ? 1e9 : 0;
-    if (error != std::errc{} || !(value > 0) || !std::isfinite(value) || unit == 0)
-        throw UsageError(fmt::format("{}: expected a size such as 800MB or 4GB", text));
-    return value * unit;
+    // SI, and with an i the binary ones of IEC 80000-13.
+    const bool binary = suffix.size() == 2 && suffix.ends_with('i');
+    if (binary) suffix.pop_back();
+    constexpr std::string_view kPrefixes = "kmgt";
+    const std::size_t power = suffix.size() == 1 ? kPrefixes.find(suffix[0]) : std::string_view::npos;
+    const bool known = suffix.empty() ? !binary : power != std::string_view::npos;
+    if (error != std::errc{} || !(value > 0) || !std::isfinite(value) || !known)
+        throw UsageError(fmt::format("{}: expected a size such as 800MB, 4GB or 4GiB", text));
+    return suffix.empty() ? value : value * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));
 }
 
 }  // namespace stratum::voxelize

@@ -38,7 +38,7 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                          const Lattice& one_per_layer, Interior interior);
 
-/// "4GB", "800 MB", "1.5g" -> bytes; powers of ten. Throws UsageError.
+/// "4GB", "800 MB", "1.5g" -> bytes; powers of ten, or of 1024 with an i: "4GiB". Throws UsageError.
 double parseSize(std::string_view text);
 
 }  // namespace stratum::voxelize

@@ -237,6 +237,7 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     std::vector<openvdb::GridBase::Ptr> grids = makeAttributeGrids(s.toolpath, wanted, *s.grid);
     if (wanted.empty()) return grids;
     const BeadAttributes values(s.toolpath, wanted);
+    ProgressMeter meter(std::max<std::size_t>(s.bins.entryCount(), 1), s.options.progress);
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
     tbb::enumerable_thread_specific<LeafColumn> owning(
         [&s] { return LeafColumn(s.toolpath, s.stack, s.lattice, s.options.placement.unit, true); });
@@ -257,6 +258,7 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
                     for (std::size_t n = 0; n < wanted.size(); ++n)
                         fillLeaf(*grids[n], wanted[n], origin, values, owners);
                 }
+            meter.advance(s.bins[c].size());
         }
     });
     return grids;

@@ -72,7 +72,7 @@ public:
     openvdb::FloatGrid::Ptr printUntil(std::uint32_t end);
     openvdb::FloatGrid::Ptr printAll() { return printUntil(0xffffffff); }
 
-    /// Attribute grids over the active voxels of the grid as it is now, in the given order.
+    /// Attribute grids over the active voxels of the grid as it is now, in the given order. Progress runs anew.
     std::vector<openvdb::GridBase::Ptr> attributes(std::span<const Attribute> wanted) const;
 
     /// What Interior::cull would keep of the grid as it is now, which Interior::keep built. Looks the leaves up and

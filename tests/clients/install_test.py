@@ -3,6 +3,7 @@
 import gzip
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -69,6 +70,29 @@ for tool in TOOLS:
     if tool == "vdbstudy":
         check(complete("stab") == ["stability"], "  completes commands")
         check("--points" in complete("geometry", "--p"), "  and their options")
+
+    if tool == "gcode2vdb":
+        check(complete("--features", "-sk") == ["-skirt"], "  of a list with signs")
+        check(complete("--features", "-skirt,+perim") == ["-skirt,+perimeter"], "  also of its end")
+        check(complete("--grids", "layer,ti") == ["layer,time"] and complete("--firmware", "k") == ["klipper"], "  and more")
+    if tool == "vdbtrace":
+        check(complete("--view", "f") == ["front"] and complete("--view", "=", "f") == ["front"], "  views, also after =")
+        check(complete("--integrator", "env") == ["environment-sum"], "  integrators")
+        check("pla-blue" in complete("--brdf", "pla") and "studio" in complete("--env", "stu"), "  presets")
+        check(complete("--aov", "normal,de") == ["normal,depth"] and complete("--march", "br") == ["brick"], "  layers")
+
+# --- documents: whatever they link to is there --------------------------------------------------------------------------
+documents = os.path.join(prefix, "share/doc/stratum")
+links = 0
+for folder, _, names in os.walk(documents):
+    for name in filter(lambda name: name.endswith(".md"), names):
+        with open(os.path.join(folder, name), encoding="utf-8") as file:
+            for target in re.findall(r"\]\(([^)\s]+)\)", file.read()):
+                if re.match("https?:|mailto:|#", target):
+                    continue
+                links += 1
+                check(os.path.exists(os.path.join(folder, target.split("#")[0])), f"{name}: {target}")
+check(links > 40, f"{links} links in the installed documents")
 
 # A table of materials that only the moved tree has.
 tables = os.path.join(prefix, "share/stratum/data/brdf")

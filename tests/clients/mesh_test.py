@@ -64,5 +64,5 @@ for options in (["--unit", "m", "--origin", "center"], ["--up", "y"], ["--origin
     volume = other["files"][0]["mesh"]["volume_mm3"]
     check(abs(volume / made["volume_mm3"] - 1) < 1e-4, f"{' '.join(options)} keeps the volume")
 _, report = mesh(gcode("tile.gcode"), "c.stl", "--voxel-size", "0.2", "--snapshots", "50%")
-check([os.path.basename(f["path"]) for f in report["files"]] == ["c.50pct.stl", "c.stl"] and
+check([os.path.basename(f["path"]) for f in report["files"]] == ["c_050pct.stl", "c.stl"] and
       report["files"][0]["mesh"]["volume_mm3"] < report["files"][1]["mesh"]["volume_mm3"], "snapshots are meshes too")

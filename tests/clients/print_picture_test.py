@@ -42,12 +42,12 @@ def same(label, print_options, vdb_options, *trace_options):
     check(done.returncode == 0, f"{label}: {done.stderr.strip()}")
     made = "eager.vdb" if os.path.exists(path("eager.vdb")) else None
     if "--snapshots" in vdb_options:
-        made = next(name for name in os.listdir(FOLDER) if name.startswith("eager.") and name.endswith(".vdb") and name != "eager.vdb")
+        made = next(name for name in os.listdir(FOLDER) if name.startswith("eager_") and name.endswith(".vdb"))
     os.rename(path(made), path("part"))
     eager = picture("part", "eager.exr", *trace_options)
     os.rename(path("kept"), path("part"))
     for name in os.listdir(FOLDER):
-        if name.startswith("eager.") and name.endswith(".vdb"):
+        if name.startswith("eager") and name.endswith(".vdb"):
             os.remove(path(name))
     check(late is not None and late == eager, f"{label}: the same bytes as from the level set")
 

@@ -6,9 +6,11 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -140,6 +142,41 @@ TEST(AtomicFile, RefusesBeforeTheWork) {
     EXPECT_THROW(AtomicFile("/nonexistent/folder/out.vdb"), OutputError);
     const test::ScratchFolder folder;
     EXPECT_THROW(AtomicFile{folder.path()}, OutputError);
+}
+
+// What stands there and is no file stays what it is, and gets the bytes.
+TEST(AtomicFile, PoursIntoStreams) {
+    const test::ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    {
+        AtomicFile file(folder / "pipe");
+        std::ofstream(file.temporary()) << "whole";
+        std::array<char, 16> buffer{};
+        EXPECT_LE(::read(reader, buffer.data(), buffer.size()), 0) << "nothing before the commit";
+        file.commit();
+        EXPECT_EQ(::read(reader, buffer.data(), buffer.size()), 5);
+        EXPECT_STREQ(buffer.data(), "whole");
+    }
+    ::close(reader);
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST(AtomicFile, AFullDeviceIsAnError) {
+    AtomicFile file("/dev/full");
+    std::ofstream(file.temporary()) << "much";
+    EXPECT_THROW(file.commit(), OutputError);
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, ADashIsStandardOutput) {
+    EXPECT_TRUE(isStandardOutput("-"));
+    EXPECT_TRUE(isStandardOutput("-.exr"));
+    EXPECT_FALSE(isStandardOutput("./-"));
+    EXPECT_FALSE(isStandardOutput("-.d/a"));
+    EXPECT_FALSE(isStandardOutput("a-"));
+    EXPECT_FALSE(isStandardOutput(""));
 }
 
 TEST_P(EachMaking, ASignalRemovesTheTemporary) {

@@ -91,6 +91,18 @@ TEST_F(VdbCheck, AcceptsWhatOpenVdbWrites) {
     EXPECT_EQ(refusal(bytesOf({openvdb::FloatGrid::create(1.0F)}, kMask | kBlosc), VdbDepth::leaves, ""), "");
 }
 
+// The list of the leaves' sizes is packed differently by its length.
+TEST_F(VdbCheck, AcceptsAnyNumberOfLeaves) {
+    for (int leaves = 1; leaves <= 140; ++leaves) {
+        auto grid = openvdb::FloatGrid::create(0.3F);
+        grid->setName("surface");
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        for (int n = 0; n < leaves; ++n) grid->tree().setValue(openvdb::Coord(8 * n, 0, 0), 0.1F);
+        const std::string bytes = bytesOf({grid}, openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+        EXPECT_EQ(refusal(bytes), "") << leaves << " leaves";
+    }
+}
+
 TEST_F(VdbCheck, RefusesEveryCut) {
     for (const std::uint32_t compression : {kMask | kBlosc, kMask | kZip, kMask}) {
         const std::string bytes = bytesOf({small()}, compression);

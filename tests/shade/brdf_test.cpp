@@ -1,8 +1,14 @@
 #include "shade/brdf.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 
 #include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
 
 namespace stratum {
 namespace {
@@ -21,6 +27,28 @@ TEST(MakeBrdf, RefusesNonsense) {
                              "lambert:a,b,c", "lambert:0.1,0.2,nan", "lambert:0.1,0.2,0.3,", "plastic:0.1,0.2,0.3",
                              "plastic:0.1,0.2,0.3,0", "plastic:0.1,0.2,0.3,2", "chrome:1,1,1"})
         EXPECT_THROW(makeBrdf(text), UsageError) << text;
+}
+
+TEST(MakeBrdf, TablesOfTheProjectComeBeforeFilesOfTheirNames) {
+    const test::ScratchFolder folder;
+    const test::WorkingFolder inside(folder.path());
+    std::ofstream("pla-blue") << "no table";
+    std::filesystem::create_directory("petg-orange");
+    EXPECT_NO_THROW(makeBrdf("pla-blue"));
+    EXPECT_NO_THROW(makeBrdf("petg-orange"));
+    EXPECT_THROW(makeBrdf("./pla-blue"), InputError);
+}
+
+TEST(MakeBrdf, GuessesMistypedNames) {
+    for (const auto& [wrong, right] : {std::pair("pla-bleu", "pla-blue"), std::pair("plastik:1,1,1,1", "plastic")}) {
+        try {
+            makeBrdf(wrong);
+            ADD_FAILURE();
+        } catch (const UsageError& error) {
+            EXPECT_NE(std::string(error.what()).find(std::string("did you mean '") + right), std::string::npos)
+                << error.what();
+        }
+    }
 }
 
 }  // namespace

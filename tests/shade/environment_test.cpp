@@ -1,6 +1,7 @@
 #include "shade/environment.h"
 
 #include "io/error.h"
+#include "scratch_folder.h"
 #include "shade/bed_light.h"
 #include "shade/frame.h"
 #include "shade/sampler.h"
@@ -13,7 +14,10 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <string_view>
 
 namespace stratum {
 namespace {
@@ -195,6 +199,27 @@ TEST(MakeEnvironment, RefusesNonsense) {
     for (const char* text : {"", "skies", "sky:1", "sky:0,0", "sky:45,0,99", "no_such.hdr", "studio:1", "constant",
                              "constant:1,2", "constant:-1,0,0", "constant:1,1,x"})
         EXPECT_THROW(makeEnvironment(text, {}), UsageError) << text;
+}
+
+TEST(MakeEnvironment, PresetsComeBeforeFilesOfTheirNames) {
+    const test::ScratchFolder folder;
+    const test::WorkingFolder inside(folder.path());
+    std::filesystem::create_directory("studio");
+    std::ofstream("sky") << "no map";
+    std::ofstream("constant:1,1,1") << "no map";
+    EXPECT_NO_THROW(makeEnvironment("studio", {}));
+    EXPECT_NO_THROW(makeEnvironment("sky", {}));
+    EXPECT_NO_THROW(makeEnvironment("constant:1,1,1", {}));
+    EXPECT_THROW(makeEnvironment("./sky", {}), InputError);
+}
+
+TEST(MakeEnvironment, GuessesMistypedPresets) {
+    try {
+        makeEnvironment("studoi", {});
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string_view(error.what()).find("did you mean 'studio'?"), std::string_view::npos);
+    }
 }
 
 }  // namespace

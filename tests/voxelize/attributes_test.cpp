@@ -125,7 +125,12 @@ TEST(VoxelChoice, SizesAreReadAsPeopleWriteThem) {
     EXPECT_EQ(parseSize("800 mb"), 8e8);
     EXPECT_EQ(parseSize("1.5g"), 1.5e9);
     EXPECT_EQ(parseSize("123"), 123);
-    for (const char* bad : {"", "GB", "-4GB", "4 apples", "nan"}) EXPECT_THROW(parseSize(bad), UsageError) << bad;
+    EXPECT_EQ(parseSize("4GiB"), 4.0 * 1024 * 1024 * 1024);
+    EXPECT_EQ(parseSize("200 MiB"), 200.0 * 1024 * 1024);
+    EXPECT_EQ(parseSize("1.5Ki"), 1536);
+    EXPECT_EQ(parseSize("2TB"), 2e12);
+    for (const char* bad : {"", "4iB", "4GiBB", "4PB", "GB", "-4GB", "4 apples", "nan"})
+        EXPECT_THROW(parseSize(bad), UsageError) << bad;
 }
 
 TEST(VoxelChoice, TheBudgetIsKeptAndUsed) {

@@ -119,16 +119,35 @@ TEST(Snapshots, PercentLayerAndEvery) {
     const gcode::Toolpath toolpath = tenLayers();
     const auto snapshots = parseSnapshots("50%,layer:3,every:4,25%", toolpath);
     ASSERT_EQ(snapshots.size(), 5U);
-    EXPECT_EQ(snapshots[0].label, "25pct");
+    EXPECT_EQ(snapshots[0].label, "025pct");
     EXPECT_EQ(snapshots[0].bead_count, 5U);
     EXPECT_EQ(snapshots[1].label, "layer0003");
     EXPECT_EQ(snapshots[1].bead_count, 6U);
     EXPECT_EQ(snapshots[2].label, "layer0004");
-    EXPECT_EQ(snapshots[3].label, "50pct");
+    EXPECT_EQ(snapshots[3].label, "050pct");
     EXPECT_EQ(snapshots[3].bead_count, 10U);
     EXPECT_EQ(snapshots[4].label, "layer0008");
     for (const char* bad : {"", "0%", "101%", "x%", "layer:", "layer:11", "every:0", "half"})
         EXPECT_THROW(parseSnapshots(bad, toolpath), UsageError) << bad;
+}
+
+TEST(Snapshots, LabelsOfOneKindSortAsTheyPrint) {
+    const gcode::Toolpath toolpath = tenLayers();
+    const auto snapshots = parseSnapshots("12.5%,100%,50%", toolpath);
+    ASSERT_EQ(snapshots.size(), 3U);
+    EXPECT_EQ(snapshots[0].label, "012.5pct");
+    EXPECT_EQ(snapshots[1].label, "050.0pct");
+    EXPECT_EQ(snapshots[2].label, "100.0pct");
+}
+
+TEST(Selection, GuessesMistypedFeatures) {
+    Selection selection;
+    try {
+        parseFeatures("-skirl", selection);
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string_view(error.what()).find("did you mean 'skirt'?"), std::string_view::npos) << error.what();
+    }
 }
 
 }  // namespace
