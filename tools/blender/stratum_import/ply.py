@@ -19,17 +19,6 @@ class PolygonMesh:
         return starts
 
 
-def face_count(path):
-    """What the header of a PLY file says."""
-    with open(path, "rb") as file:
-        for line in file:
-            if line.startswith(b"element face "):
-                return int(line.split()[2])
-            if line == b"end_header\n":
-                break
-    raise ValueError(f"{path}: no faces in its PLY header")
-
-
 def read_ply(path):
     """The PolygonMesh of a file. Raises ValueError if it isn't laid out as gcode2vdb does it."""
     with open(path, "rb") as file:

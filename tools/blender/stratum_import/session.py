@@ -10,7 +10,6 @@ import bpy
 from . import objects
 from .conversion import Conversion, ConversionError
 from .materials import Palette
-from .ply import face_count
 from .settings import print_name
 
 
@@ -26,7 +25,7 @@ class Session:
         self._converter = converter
         self._conversion = None
         self._path = ""
-        self._trying = False  # a coarse mesh first, whose faces tell how fine the voxels may be
+        self._trying = False  # a coarse level set first, which tells how fine the voxels may be
         self._start = 0.0
         self.shown = []  # one object a print, the last of a sequence
         self.lines = []
@@ -65,7 +64,7 @@ class Session:
         self._convert(self._settings.trial_options() if self._trying else self._settings.command_options())
 
     def _convert(self, options):
-        ending = ".ply" if self._trying or self._settings.kind == "MESH" else ".vdb"
+        ending = ".ply" if self._settings.kind == "MESH" and not self._trying else ".vdb"
         try:
             self._conversion = Conversion(self._converter, self._path, print_name(self._path) + ending, options)
         except ConversionError as error:
@@ -77,7 +76,7 @@ class Session:
             report = conversion.result()
             if self._trying:
                 self._trying = False
-                self._convert(self._settings.command_options(face_count(report["files"][0]["path"])))
+                self._convert(self._settings.command_options(report["files"][0]["active_voxels"]))
             else:
                 self._take(report)
         except FAILURES as error:

@@ -9,6 +9,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 
 ENDINGS = (".gz", ".gcode", ".gco", ".g", ".bgcode", ".3mf", ".ufp", ".gx")
 MOST_VOXELS_PER_LAYER = 4
+# Active voxels of the trial, times the square of the voxels a layer: 2 to 5 a face for the prints in data/gcode.
+VOXELS_PER_FACE = 3
 PER_MM = {"MM": 1.0, "CM": 0.1, "M": 0.001}
 
 
@@ -69,11 +71,11 @@ class ImportSettings:
         return self.kind != "VOLUME" and self.voxel_size == 0 and not self.memory_budget
 
     def trial_options(self):
-        """For the coarsest mesh, of the whole print."""
-        return ["--voxels-per-layer", "1", *self._selection_options()]
+        """For the coarsest level set, of the whole print."""
+        return ["--voxels-per-layer", "1", "--grids=surface", *self._selection_options()]
 
-    def command_options(self, trial_faces=None):
-        """`trial_faces` is what came of trial_options(), if follows_faces()."""
+    def command_options(self, trial_voxels=None):
+        """`trial_voxels` are the active ones of trial_options(), if follows_faces()."""
         options = [*self._selection_options(), "--origin", self.origin]
         if self.kind != "MESH" and self.grids:
             options.append(f"--grids={self.grids}")
@@ -81,10 +83,10 @@ class ImportSettings:
             options += ["--voxel-size", f"{self.voxel_size:.6g}"]
         elif self.memory_budget:
             options += ["--memory-budget", self.memory_budget]
-        elif trial_faces is not None:
-            # Faces grow by the square of the voxels a layer.
-            most = math.sqrt(self.faces / max(trial_faces, 1))
-            options += ["--voxels-per-layer", str(min(max(int(most + 0.25), 1), MOST_VOXELS_PER_LAYER))]
+        elif trial_voxels is not None:
+            # Both grow by the square of the voxels a layer.
+            most = math.isqrt(int(VOXELS_PER_FACE * self.faces / max(trial_voxels, 1)))
+            options += ["--voxels-per-layer", str(min(max(most, 1), MOST_VOXELS_PER_LAYER))]
         if self.snapshots > 1:
             steps = (f"{100 * n / self.snapshots:.4g}%" for n in range(1, self.snapshots))
             options += ["--snapshots", ",".join(steps)]
