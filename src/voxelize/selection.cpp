@@ -48,13 +48,43 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
     return toolpath.beads.size();
 }
 
-std::size_t endOfTime(const gcode::Toolpath& toolpath, double seconds) {
+// When each bead is finished, in s.
+std::vector<double> endsOfBeads(const gcode::Toolpath& toolpath) {
+    std::vector<double> ends;
+    ends.reserve(toolpath.beads.size());
+    for (const gcode::BeadTiming& timing : toolpath.timing)
+        ends.push_back(timing.start + static_cast<double>(timing.seconds));
+    if (!ends.empty()) return ends;
     double time = 0;
-    for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
-        time += gcode::beadSeconds(toolpath, toolpath.beads[i]);
-        if (time > seconds) return i;
-    }
-    return toolpath.beads.size();
+    for (const gcode::Bead& bead : toolpath.beads) ends.push_back(time += gcode::beadSeconds(toolpath, bead));
+    return ends;
+}
+
+struct Moment {
+    std::string label;
+    std::size_t bead_count = 0;
+};
+
+// "90" (minutes), "5400s", "90m", "1.5h" or "50%"; nullopt if it is none of them.
+std::optional<Moment> momentOf(std::string_view text, const gcode::Toolpath& toolpath) {
+    constexpr std::string_view kUnits = "smh%";
+    constexpr std::array<double, 3> kSeconds{1, 60, 3600};
+    const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+    const bool named = unit != std::string_view::npos;
+    const auto value = parseNumber<double>(named ? text.substr(0, text.size() - 1) : text);
+    if (!value || !(*value > 0 && *value < 1e9)) return std::nullopt;
+    const bool share = named && unit == kSeconds.size();
+    if (share && *value > 100) return std::nullopt;
+    const std::vector<double> ends = endsOfBeads(toolpath);
+    // The margin keeps 100 % at all beads, whatever the rounding.
+    const double seconds =
+        share ? *value / 100 * (ends.empty() ? 0 : ends.back()) * (1 + 1e-9) : *value * (named ? kSeconds[unit] : 60);
+    const auto late = [seconds](double end) { return end > seconds; };
+    const auto count = static_cast<std::size_t>(std::find_if(ends.begin(), ends.end(), late) - ends.begin());
+    return Moment{share   ? fmt::format("time{:g}pct", *value)
+                  : named ? fmt::format("{:g}{}", *value, unit == 1 ? "min" : text.substr(text.size() - 1))
+                          : fmt::format("{:g}min", *value),
+                  count};
 }
 
 }  // namespace
@@ -137,16 +167,18 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
     return beads;
 }
 
+bool needsTiming(std::string_view snapshots) { return snapshots.find("time:") != std::string_view::npos; }
+
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {
     std::vector<Snapshot> snapshots;
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
-                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N or time:MINUTES, separated by "
-                            "commas; the print has layers 1 to {}",
+                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N, time:MINUTES, time:SECONDSs "
+                            "or time:N%, separated by commas; the print has layers 1 to {}",
                             option, part, toolpath.layer_count));
         };
-        if (part.ends_with('%')) {
+        if (part.ends_with('%') && !part.starts_with("time:")) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
             if (!percent || !(*percent > 0 && *percent <= 100)) throw bad();
             snapshots.push_back({fmt::format("{:g}pct", *percent), endOfShare(toolpath, *percent / 100)});
@@ -160,9 +192,9 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
             for (std::uint32_t layer = *step; layer <= toolpath.layer_count; layer += *step)
                 snapshots.push_back({fmt::format("layer{:04}", layer), endOfLayer(toolpath, layer)});
         } else if (part.starts_with("time:")) {
-            const auto minutes = parseNumber<double>(part.substr(5));
-            if (!minutes || !(*minutes > 0)) throw bad();
-            snapshots.push_back({fmt::format("{:g}min", *minutes), endOfTime(toolpath, *minutes * 60)});
+            const auto moment = momentOf(part.substr(5), toolpath);
+            if (!moment) throw bad();
+            snapshots.push_back({moment->label, moment->bead_count});
         } else {
             throw bad();
         }
