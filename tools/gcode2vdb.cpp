@@ -1,6 +1,7 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "command_line.h"
 #include "print_options.h"
+#include "time_report.h"
 #include "toolpath_report.h"
 
 #include "gcode/input_bytes.h"
@@ -10,6 +11,7 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "motion/print_times.h"
 #include "voxelize/attributes.h"
 #include "voxelize/enclosed_volume.h"
 #include "voxelize/estimate.h"
@@ -225,6 +227,16 @@ Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& g
             {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
 }
 
+// Whether anything asks when beads are laid.
+bool needsTimes(const Options& o) {
+    const std::vector<voxelize::Attribute> grids = voxelize::parseGrids(o.grids);
+    const auto timed = [](voxelize::Attribute grid) {
+        return grid == voxelize::Attribute::time || grid == voxelize::Attribute::speed;
+    };
+    return o.summary || !o.common.stats.empty() || voxelize::needsTiming(o.snapshots) ||
+           std::any_of(grids.begin(), grids.end(), timed);
+}
+
 Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
     tools::Stopwatch total;
     tools::Stopwatch watch;
@@ -236,7 +248,11 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     gcode::ReadOptions read = o.print.read;
     tools::ProgressBar parse_bar("reading", o.common.quiet);
     read.progress = parse_bar.callback();
-    const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), name, read);
+    motion::PrintTimes times;
+    const bool planned = needsTimes(o);
+    const gcode::Toolpath toolpath = planned ? motion::readTimedToolpath(file.bytes(), name, read, times)
+                                             : gcode::readToolpath(file.bytes(), name, read);
+    const double stated = planned ? tools::statedSeconds(file.bytes()) : 0;
     const double parse_seconds = watch.lap();
     for (const gcode::Warning& warning : toolpath.warnings)
         if (!o.common.quiet)
@@ -246,7 +262,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                                      toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                                      toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
                                      gcode::beadVolume(toolpath) * 1e-3));
-    if (o.summary) tools::say(o.common, gcode::summarize(toolpath));
+    if (o.summary) tools::say(o.common, gcode::summarize(toolpath) + tools::timeLines(times, stated));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, tools::selectionOf(o.print, toolpath));
@@ -367,6 +383,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
               {"slicer", toolpath.slicer},
               {"format", toolpath.format}}},
             {"toolpath", toolpath_report},
+            {"time", planned ? tools::describeTimes(times, stated) : Json(nullptr)},
             {"grid", grid_report},
             {"files", files},
             {"skipped", skipped},

@@ -84,6 +84,18 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
                                                            {"marlin", gcode::Firmware::marlin},
                                                            {"klipper", gcode::Firmware::klipper},
                                                            {"reprap", gcode::Firmware::reprap}};
+    const std::map<std::string, gcode::CornerRule> rules{{"auto", gcode::CornerRule::automatic},
+                                                         {"jerk", gcode::CornerRule::jerk},
+                                                         {"slicer-jerk", gcode::CornerRule::slicer_jerk},
+                                                         {"plan-jerk", gcode::CornerRule::plan_jerk},
+                                                         {"junction-deviation", gcode::CornerRule::junction_deviation},
+                                                         {"corner-velocity", gcode::CornerRule::corner_velocity}};
+    app.add_option(
+           "--planner", options.read.corner_rule,
+           "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity")
+        ->transform(CLI::CheckedTransformer(rules).description(""))
+        ->type_name("RULE")
+        ->group(reading);
     app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
         ->transform(CLI::CheckedTransformer(firmwares).description(""))
         ->type_name("NAME")
