@@ -7,6 +7,7 @@
 #include "print_options.h"
 #include "progress.h"
 #include "run_files.h"
+#include "time_report.h"
 #include "toolpath_report.h"
 
 #include "gcode/input_bytes.h"
@@ -16,6 +17,7 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "motion/print_times.h"
 #include "voxelize/attributes.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
@@ -199,6 +201,16 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
     return jobs;
 }
 
+// Whether anything asks when beads are laid.
+bool needsTimes(const Options& o) {
+    const std::vector<voxelize::Attribute> grids = voxelize::parseGrids(o.grids);
+    const auto timed = [](voxelize::Attribute grid) {
+        return grid == voxelize::Attribute::time || grid == voxelize::Attribute::speed;
+    };
+    return o.summary || !o.common.stats.empty() || voxelize::needsTiming(o.snapshots) ||
+           std::any_of(grids.begin(), grids.end(), timed);
+}
+
 Json convert(const Options& o, const std::string& input, const fs::path& output, tools::RunFiles& files_of_run,
              int threads) {
     tools::Stopwatch total;
@@ -208,11 +220,14 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
 
     const gcode::InputBytes file(input);
     const std::string& name = file.name();
+    motion::PrintTimes times;
+    const bool planned = needsTimes(o);
     const gcode::Toolpath toolpath = [&] {
         gcode::ReadOptions read = o.print.read;
         tools::ProgressBar bar("reading", o.common.quiet);
         read.progress = bar.callback();
-        return gcode::readToolpath(file.bytes(), name, read);
+        return planned ? motion::readTimedToolpath(file.bytes(), name, read, times)
+                       : gcode::readToolpath(file.bytes(), name, read);
     }();
     const double parse_seconds = watch.lap();
     if (!o.common.quiet) tools::printWarnings("gcode2vdb", name, toolpath);
@@ -220,7 +235,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                                      toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                                      toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
                                      gcode::beadVolume(toolpath) * 1e-3));
-    if (o.summary) tools::say(o.common, gcode::summarize(toolpath));
+    if (o.summary) tools::say(o.common, gcode::summarize(toolpath) + tools::timeLines(times, toolpath.stated));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, tools::selectionOf(o.print, toolpath));
@@ -360,6 +375,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
               {"slicer", toolpath.slicer},
               {"format", toolpath.format}}},
             {"toolpath", toolpath_report},
+            {"time", planned ? tools::describeTimes(times, toolpath.stated) : Json(nullptr)},
             {"grid", grid_report},
             {"files", files},
             {"skipped", skipped},

@@ -83,6 +83,18 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
                                  {"relative", mode(gcode::ExtruderMode::relative)}}))
         ->type_name("MODE")
         ->group(reading);
+    const auto rule = [](gcode::CornerRule value) { return static_cast<int>(value); };
+    app.add_option(
+           "--planner", options.read.corner_rule,
+           "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity")
+        ->transform(enumeration({{"auto", rule(gcode::CornerRule::automatic)},
+                                 {"jerk", rule(gcode::CornerRule::jerk)},
+                                 {"slicer-jerk", rule(gcode::CornerRule::slicer_jerk)},
+                                 {"plan-jerk", rule(gcode::CornerRule::plan_jerk)},
+                                 {"junction-deviation", rule(gcode::CornerRule::junction_deviation)},
+                                 {"corner-velocity", rule(gcode::CornerRule::corner_velocity)}}))
+        ->type_name("RULE")
+        ->group(reading);
     const auto firmware = [](gcode::Firmware value) { return static_cast<int>(value); };
     app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
         ->transform(enumeration({{"auto", firmware(gcode::Firmware::automatic)},

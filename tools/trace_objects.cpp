@@ -252,7 +252,10 @@ private:
                             "brick",
                             options_.march, object.vdb));
         watch_.lap();
-        TracedPrint print = readTracedPrint(object.vdb, options_.prints);
+        TracePrintOptions prints = options_.prints;
+        for (const std::string& name : attributes_)
+            if (wanted(object, name)) prints.timed = prints.timed || name == "time" || name == "speed";
+        TracedPrint print = readTracedPrint(object.vdb, prints);
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;

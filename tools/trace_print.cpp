@@ -6,6 +6,7 @@
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "io/error.h"
+#include "motion/print_times.h"
 #include "ondemand/detail_levels.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxel_choice.h"
@@ -32,18 +33,20 @@ constexpr std::string_view kVdbMagic = " BDV";
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
     const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath, "--printed");
     if (cuts.size() != 1)
-        throw UsageError(fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40 or time:90", printed));
+        throw UsageError(
+            fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40, time:90 or time:50%", printed));
     const auto last = std::lower_bound(selection.begin(), selection.end(), cuts.front().bead_count);
     selection.erase(last, selection.end());
     if (selection.empty())
         throw UsageError(fmt::format("--printed {}: nothing of what is selected is printed by then", printed));
 }
 
-// Equal steps of the extruded volume; the last one is all. Prints of few beads have fewer.
-std::vector<std::uint32_t> momentsOf(int series, const gcode::Toolpath& toolpath) {
+// Equal steps of the extruded volume, or of time; the last one is all. Prints of few beads have fewer.
+std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Toolpath& toolpath) {
     std::vector<std::uint32_t> moments;
     std::string steps;
-    for (int n = 1; n < series; ++n) steps += fmt::format("{}{:.9g}%", n > 1 ? "," : "", 100.0 * n / series);
+    for (int n = 1; n < series; ++n)
+        steps += fmt::format("{}{}{:.9g}%", n > 1 ? "," : "", by_time ? "time:" : "", 100.0 * n / series);
     if (!steps.empty())
         for (const voxelize::Snapshot& step : voxelize::parseSnapshots(steps, toolpath))
             moments.push_back(static_cast<std::uint32_t>(step.bead_count));
@@ -126,12 +129,14 @@ Json reportOf(const std::vector<TracedLevel>& levels, double per_distance) {
 }
 
 // What people give as a level set and is none is G-code at best.
-gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options) {
+gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
     if (file.bytes().starts_with(kVdbMagic))
         throw InputError(
             fmt::format("{}: holds OpenVDB grids, which can't be read from a stream; give a file", file.name()));
     try {
-        return gcode::readToolpath(file.bytes(), file.name(), options);
+        motion::PrintTimes times;
+        return timed ? motion::readTimedToolpath(file.bytes(), file.name(), options, times)
+                     : gcode::readToolpath(file.bytes(), file.name(), options);
     } catch (const InputError& error) {
         if (!file.name().ends_with(".vdb")) throw;
         throw InputError(
@@ -162,7 +167,7 @@ void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
         ->group("Tracing");
     addPrintOptions(app, options.print, true);
     app.add_option("--printed", options.printed,
-                   "G-code: what is printed by then: 25%, layer:40, or time:90 (minutes of extruding)")
+                   "G-code: what is printed by then: 25%, layer:40, time:90 (minutes; 5400s, 1.5h), or time:50%")
         ->type_name("WHEN")
         ->group("What to convert");
     app.add_option("--progress-series", options.series,
@@ -170,6 +175,9 @@ void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
         ->check(CLI::Range(1, 100000))
         ->excludes("--printed")
         ->type_name("N")
+        ->group("What to convert");
+    app.add_flag("--by-time", options.series_by_time, "--progress-series: equal times instead of equal volumes")
+        ->needs("--progress-series")
         ->group("What to convert");
 }
 
@@ -222,7 +230,8 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
         gcode::ReadOptions read = options.print.read;
         ProgressBar bar("reading", options.quiet);
         read.progress = bar.callback();
-        toolpath = std::make_shared<const gcode::Toolpath>(readEither(file, read));
+        const bool timed = options.timed || options.series_by_time || voxelize::needsTiming(options.printed);
+        toolpath = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed));
     }
     if (!options.quiet) printWarnings("vdbtrace", name, *toolpath);
     result.parse_seconds = watch.lap();
@@ -279,7 +288,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
         result.line += fmt::format("; {:g} mm from {:.3g} mm away", result.levels[n].field->layout().lattice.voxel_size,
                                    result.levels[n].from);
     result.selection = std::move(selection);
-    result.moments = momentsOf(options.series, *toolpath);
+    result.moments = momentsOf(options.series, options.series_by_time, *toolpath);
     return result;
 }
 

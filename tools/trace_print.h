@@ -19,7 +19,9 @@ namespace stratum::tools {
 /// How to take a print.
 struct TracePrintOptions {
     PrintOptions print;
-    std::string printed;        ///< --printed: a cut as for --snapshots; empty: all of it
+    std::string printed;  ///< --printed: a cut as for --snapshots; empty: all of it
+    bool timed = false;   ///< something wants to know when beads are laid
+    bool series_by_time = false;
     int series = 1;             ///< --progress-series: as many moments, the last one the end
     std::string brick_cache;    ///< --brick-cache, also of large level sets; empty: no bound
     std::string brick_picture;  ///< --brick-picture: a file, or empty

@@ -30,7 +30,7 @@ std::string_view ruleName(gcode::CornerRule rule);
 gcode::CornerRule ruleNamed(std::string_view name);
 
 /// Reads a program and plans its motion: fills Toolpath::timing and tells the sums. Throws what readToolpath() throws.
-/// About a quarter more time than reading alone, and 24 bytes a bead.
+/// Takes about twice as long as reading alone, and 24 bytes a bead.
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
                                   PrintTimes& times);
 

@@ -83,6 +83,8 @@ BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const 
     : toolpath_(toolpath) {
     if (std::find(attributes.begin(), attributes.end(), Attribute::time) == attributes.end()) return;
     start_.reserve(toolpath.beads.size());
+    for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
+    if (!start_.empty()) return;
     double time = 0;
     for (const gcode::Bead& bead : toolpath.beads) {
         start_.push_back(static_cast<float>(time));
@@ -106,7 +108,10 @@ std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) co
 
 float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
     if (attribute == Attribute::time) return start_[bead];
-    return attribute == Attribute::width ? toolpath_.beads[bead].width : toolpath_.runOf(toolpath_.beads[bead]).speed;
+    if (attribute == Attribute::width) return toolpath_.beads[bead].width;
+    const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
+    if (!(seconds > 0)) return toolpath_.runOf(toolpath_.beads[bead]).speed;
+    return static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;
 }
 
 openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {

@@ -16,12 +16,12 @@ namespace stratum::voxelize {
 /// surface is nearest.
 enum class Attribute : std::uint8_t {
     layer,    ///< Int32: 1, 2, ...
-    time,     ///< float: seconds of extruding before the bead; travel is not counted
+    time,     ///< float: seconds from the program's begin to the bead (Toolpath::timing); without a plan, of extruding
     feature,  ///< Int32: see gcode::Feature; metadata "names" lists them
     tool,     ///< Int32: T number
     object,   ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
     width,    ///< float: mm
-    speed,    ///< float: mm/s, the feed rate asked for
+    speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the one asked for
     color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 grey where it has none
 };
 

@@ -51,18 +51,21 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
     return toolpath.beads.size();
 }
 
-std::size_t endOfTime(const gcode::Toolpath& toolpath, double seconds) {
+// When each bead is finished, in s.
+std::vector<double> endsOfBeads(const gcode::Toolpath& toolpath) {
+    std::vector<double> ends;
+    ends.reserve(toolpath.beads.size());
+    for (const gcode::BeadTiming& timing : toolpath.timing)
+        ends.push_back(timing.start + static_cast<double>(timing.seconds));
+    if (!ends.empty()) return ends;
     double time = 0;
-    for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
-        time += gcode::beadSeconds(toolpath, toolpath.beads[i]);
-        if (time > seconds) return i;
-    }
-    return toolpath.beads.size();
+    for (const gcode::Bead& bead : toolpath.beads) ends.push_back(time += gcode::beadSeconds(toolpath, bead));
+    return ends;
 }
 
 /// A snapshot whose label waits for the others.
 struct Cut {
-    enum class Kind { percent, layer, minutes } kind;
+    enum class Kind { percent, layer, seconds, minutes, hours, time_share, count_ } kind;
     double value;
     std::size_t bead_count;
 };
@@ -76,7 +79,7 @@ int decimalsOf(double value) {
 
 // Labels of one kind have as many digits before and after the point, so that names of files sort as the numbers do.
 std::vector<Snapshot> labelled(const std::vector<Cut>& cuts, std::uint32_t layer_count) {
-    std::array<int, 3> decimals{};
+    std::array<int, static_cast<std::size_t>(Cut::Kind::count_)> decimals{};
     for (const Cut& cut : cuts) {
         int& most = decimals[static_cast<std::size_t>(cut.kind)];
         most = std::max(most, decimalsOf(cut.value));
@@ -86,14 +89,49 @@ std::vector<Snapshot> labelled(const std::vector<Cut>& cuts, std::uint32_t layer
         const int behind = decimals[static_cast<std::size_t>(cut.kind)];
         return fmt::format("{:0{}.{}f}", cut.value, digits + (behind > 0 ? 1 + behind : 0), behind);
     };
+    const auto labelOf = [&](const Cut& cut) -> std::string {
+        switch (cut.kind) {
+            case Cut::Kind::percent:
+                return number(cut, 3) + "pct";
+            case Cut::Kind::layer:
+                return "layer" + number(cut, layer_digits);
+            case Cut::Kind::seconds:
+                return number(cut, 6) + "s";
+            case Cut::Kind::minutes:
+                return number(cut, 4) + "min";
+            case Cut::Kind::hours:
+                return number(cut, 3) + "h";
+            default:
+                return "time" + number(cut, 3) + "pct";
+        }
+    };
     std::vector<Snapshot> snapshots;
     for (const Cut& cut : cuts) {
         if (cut.bead_count == 0) continue;
-        if (cut.kind == Cut::Kind::percent) snapshots.push_back({number(cut, 3) + "pct", cut.bead_count});
-        if (cut.kind == Cut::Kind::layer) snapshots.push_back({"layer" + number(cut, layer_digits), cut.bead_count});
-        if (cut.kind == Cut::Kind::minutes) snapshots.push_back({number(cut, 4) + "min", cut.bead_count});
+        snapshots.push_back({labelOf(cut), cut.bead_count});
     }
     return snapshots;
+}
+
+// "90" (minutes), "5400s", "90m", "1.5h" or "50%"; nullopt if it is none of them.
+std::optional<Cut> momentOf(std::string_view text, const gcode::Toolpath& toolpath) {
+    constexpr std::string_view kUnits = "smh%";
+    constexpr std::array<double, 3> kSeconds{1, 60, 3600};
+    const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+    const bool named = unit != std::string_view::npos;
+    const auto value = parseNumber<double>(named ? text.substr(0, text.size() - 1) : text);
+    if (!value || !(*value > 0 && *value < 1e9)) return std::nullopt;
+    const bool share = named && unit == kSeconds.size();
+    if (share && *value > 100) return std::nullopt;
+    const std::vector<double> ends = endsOfBeads(toolpath);
+    // The margin keeps 100 % at all beads, whatever the rounding.
+    const double seconds =
+        share ? *value / 100 * (ends.empty() ? 0 : ends.back()) * (1 + 1e-9) : *value * (named ? kSeconds[unit] : 60);
+    const auto late = [seconds](double end) { return end > seconds; };
+    const auto count = static_cast<std::size_t>(std::find_if(ends.begin(), ends.end(), late) - ends.begin());
+    constexpr std::array<Cut::Kind, 4> kKinds{Cut::Kind::seconds, Cut::Kind::minutes, Cut::Kind::hours,
+                                              Cut::Kind::time_share};
+    return Cut{named ? kKinds[unit] : Cut::Kind::minutes, *value, count};
 }
 
 }  // namespace
@@ -178,16 +216,18 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
     return beads;
 }
 
+bool needsTiming(std::string_view snapshots) { return snapshots.find("time:") != std::string_view::npos; }
+
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {
     std::vector<Cut> cuts;
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
-                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N or time:MINUTES, separated by "
-                            "commas; the print has layers 1 to {}",
+                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N, time:MINUTES, time:SECONDSs "
+                            "or time:N%, separated by commas; the print has layers 1 to {}",
                             option, part, toolpath.layer_count));
         };
-        if (part.ends_with('%')) {
+        if (part.ends_with('%') && !part.starts_with("time:")) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
             if (!percent || !(*percent > 0 && *percent <= 100)) throw bad();
             cuts.push_back({Cut::Kind::percent, *percent, endOfShare(toolpath, *percent / 100)});
@@ -201,9 +241,9 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
             for (std::uint32_t layer = *step; layer <= toolpath.layer_count; layer += *step)
                 cuts.push_back({Cut::Kind::layer, static_cast<double>(layer), endOfLayer(toolpath, layer)});
         } else if (part.starts_with("time:")) {
-            const auto minutes = parseNumber<double>(part.substr(5));
-            if (!minutes || !(*minutes > 0)) throw bad();
-            cuts.push_back({Cut::Kind::minutes, *minutes, endOfTime(toolpath, *minutes * 60)});
+            const auto moment = momentOf(part.substr(5), toolpath);
+            if (!moment) throw bad();
+            cuts.push_back(*moment);
         } else {
             throw bad();
         }

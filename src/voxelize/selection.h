@@ -37,6 +37,9 @@ void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpa
 /// Indices of the selected beads, ascending. Throws InputError, saying what there is, if none is left.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
 
+/// Whether such a list names a time, for which the toolpath's motion had better be planned.
+bool needsTiming(std::string_view snapshots);
+
 /// A partial print: everything printed before bead number `bead_count`.
 struct Snapshot {
     std::string label;  ///< for the file name, e.g. "025pct", "layer0040", "0090min": they sort as they print
@@ -44,8 +47,9 @@ struct Snapshot {
 };
 
 /// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40), "every:10" (after each 10 layers)
-/// and "time:90" (what 90 minutes of extruding at the speeds asked for have laid down; travel is not counted). In print
-/// order, without doubles. Throws UsageError, which names the option that the text is of.
+/// and "time:90" (what lies there after 90 minutes; also time:5400s, time:90m, time:1.5h, and time:50%, of the time to
+/// the last bead). Time is Toolpath::timing's; without one, that of extruding at the speeds asked for. In print order,
+/// without doubles. Throws UsageError, which names the option that the text is of.
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath,
                                      std::string_view option = "--snapshots");
 

@@ -71,6 +71,19 @@ TEST(Attributes, EveryVoxelNamesTheNearestBead) {
         0.5f);
 }
 
+TEST(Attributes, TimeAndSpeedAreThePlans) {
+    gcode::Toolpath toolpath = twoTone();
+    const std::vector<Attribute> wanted{Attribute::time, Attribute::speed};
+    EXPECT_EQ(BeadAttributes(toolpath, wanted).number(Attribute::speed, 1), 60);
+    for (std::size_t n = 0; n < toolpath.beads.size(); ++n)
+        toolpath.timing.push_back({.start = 10.0 * static_cast<double>(n + 1), .seconds = n == 2 ? 0.0f : 2.0f});
+    const BeadAttributes values(toolpath, wanted);
+    EXPECT_EQ(values.number(Attribute::time, 0), 10);
+    EXPECT_EQ(values.number(Attribute::time, 2), 30);
+    EXPECT_NEAR(values.number(Attribute::speed, 1), gcode::beadLength(toolpath, toolpath.beads[1]) / 2, 1e-5);
+    EXPECT_EQ(values.number(Attribute::speed, 2), 60);  // one that takes no time
+}
+
 TEST(Attributes, UnknownNamesAreListed) {
     try {
         parseGrids("layer,colour");

@@ -150,5 +150,36 @@ TEST(Selection, GuessesMistypedFeatures) {
     }
 }
 
+// Beads of half a minute each, and half a minute of travel before every layer: 15 minutes.
+gcode::Toolpath timedLayers() {
+    gcode::Toolpath toolpath = tenLayers();
+    for (std::size_t i = 0; i < toolpath.beads.size(); ++i)
+        toolpath.timing.push_back({.start = 30.0 * static_cast<double>(i + 1 + i / 2), .seconds = 30});
+    return toolpath;
+}
+
+TEST(Snapshots, TimesAreThePlans) {
+    const gcode::Toolpath toolpath = timedLayers();
+    const auto beads = [&](std::string_view text) {
+        const auto snapshots = parseSnapshots(text, toolpath);
+        return snapshots.size() == 1 ? snapshots[0].bead_count : 999;
+    };
+    EXPECT_EQ(beads("time:1"), 1U);    // travel and a bead
+    EXPECT_EQ(beads("time:1.5"), 2U);  // the second
+    EXPECT_EQ(beads("time:2"), 2U);    // travel alone
+    EXPECT_EQ(beads("time:90s"), 2U);
+    EXPECT_EQ(beads("time:3m"), 4U);
+    EXPECT_EQ(beads("time:0.1h"), 8U);
+    EXPECT_EQ(beads("time:50%"), 10U);
+    EXPECT_EQ(beads("time:100%"), 20U);
+    EXPECT_EQ(parseSnapshots("time:90s", toolpath)[0].label, "000090s");
+    EXPECT_EQ(parseSnapshots("time:3", toolpath)[0].label, "0003min");
+    EXPECT_EQ(parseSnapshots("time:50%", toolpath)[0].label, "time050pct");
+    for (const char* text : {"time:", "time:0", "time:-1", "time:101%", "time:x", "time:3d", "time:nan", "time:inf"})
+        EXPECT_THROW(parseSnapshots(text, toolpath), UsageError) << text;
+    EXPECT_TRUE(needsTiming("25%,time:3"));
+    EXPECT_FALSE(needsTiming("25%,layer:3"));
+}
+
 }  // namespace
 }  // namespace stratum::voxelize

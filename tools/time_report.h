@@ -1,0 +1,20 @@
+// The part of reports that is about how long a print takes.
+#pragma once
+
+#include "gcode/stated.h"
+#include "motion/print_times.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace stratum::tools {
+
+/// {planned_s, stated_s, rule, ...}; stated_s is the time of the printing alone where the slicer tells it apart, and null
+/// where the file is silent.
+nlohmann::ordered_json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& stated);
+
+/// The same as lines of text, each with its line end.
+std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts& stated);
+
+}  // namespace stratum::tools
