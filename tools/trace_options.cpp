@@ -95,8 +95,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("FILE.vdb|FILE.gcode|SCENE.json");
     app.add_option(
            "-o,--output", o.output,
-           "A tone-mapped .png or a linear .exr; - is a PNG on standard output, -.exr an EXR; a folder, made if "
-           "missing, for --each (default: named after the input)")
+           "A tone-mapped .png or a linear .exr; - is a PNG on standard output, -.exr an EXR; with --each a folder")
         ->type_name("FILE|DIR");
     app.add_flag("--each", o.each, "Of several inputs, a picture each with a camera of its own, not a series");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");

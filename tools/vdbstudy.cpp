@@ -147,8 +147,8 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     o.seeds.scenes.insert(o.seeds.scenes.end(), scenes, prints.end());
     prints.erase(scenes, prints.end());
     tools::RunFiles files;
-    for (const auto* prints : {&o.memory.prints, &o.need.prints, &o.seeds.prints, &o.seeds.scenes})
-        for (const auto& print : *prints) files.reads(print);
+    for (const auto* inputs : {&o.memory.prints, &o.need.prints, &o.seeds.prints, &o.seeds.scenes})
+        for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
     for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html"})
         files.writes((o.study.folder / (verb.app->get_name() + ending)).string(), "-o");

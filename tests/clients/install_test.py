@@ -44,7 +44,7 @@ for tool in TOOLS:
 
     brief = run(program, "-h")
     everything = run(program, "--help-all")
-    check(len(brief.splitlines()) <= 50, f"{tool} -h fits a screen: {len(brief.splitlines())} lines")
+    check(len(brief.splitlines()) <= 60, f"{tool} -h fits a screen: {len(brief.splitlines())} lines")
     examples = everything.split("Examples:")[1].count(f"  {tool} ")
     check(examples >= 3 and brief.split("Examples:")[1].count(f"  {tool} ") >= 3, "  with three examples")
 

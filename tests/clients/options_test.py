@@ -93,7 +93,7 @@ for option in ("--stats", "--checkpoint"):
 refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.png", "--stats", "p.png"], 2, "different names")
 refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.exr", "--write-brdf", "p.exr"], 2, "different names")
 refused([VDBTRACE, "t.vdb", *SMALL, "-o", "p.png", "--turntable", "2", "--stats", "p_001.png"], 2, "different names")
-refused([VDBTRACE, "scene.json", "--stats", "t.vdb"], 2, "--stats t.vdb", "the input")
+refused([VDBTRACE, "scene.json", "--stats", "t.vdb"], 2, "--stats t.vdb: is an input")
 shutil.copy(gcode("tile.gcode"), path("s_050pct.vdb"))  # G-code by its content
 refused([GCODE2VDB, "s_050pct.vdb", "-o", "s.vdb", *COARSE, "--snapshots", "50%"], 2, "s_050pct.vdb", "is an input")
 refused([VDBSTUDY, "memory", "t.gcode", "-o", "studies", "--stats", "t.gcode"], 2, "--stats t.gcode: is an input")
