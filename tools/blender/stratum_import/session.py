@@ -9,7 +9,7 @@ import bpy
 
 from . import objects
 from .conversion import Conversion, ConversionError
-from .materials import Palette
+from .materials import Palette, tool_colors
 from .settings import print_name
 
 
@@ -25,7 +25,9 @@ class Session:
         self._converter = converter
         self._conversion = None
         self._path = ""
-        self._trying = False  # a coarse level set first, which tells how fine the voxels may be
+        self._trying = False  # a coarse level set first, which tells how fine the voxels may be, and the colors
+        self._voxels = 0
+        self._colored = False
         self._start = 0.0
         self.shown = []  # one object a print, the last of a sequence
         self.lines = []
@@ -60,7 +62,7 @@ class Session:
 
     def _begin(self, path):
         self._path, self._start = path, time.perf_counter()
-        self._trying = self._settings.follows_faces()
+        self._trying, self._colored = self._settings.wants_trial(), False
         self._convert(self._settings.trial_options() if self._trying else self._settings.command_options())
 
     def _convert(self, options):
@@ -76,11 +78,17 @@ class Session:
             report = conversion.result()
             if self._trying:
                 self._trying = False
-                self._convert(self._settings.command_options(report["files"][0]["active_voxels"]))
+                self._voxels = report["files"][0]["active_voxels"]
+                self._colored = self._settings.kind == "MESH" and len(set(tool_colors(report).values())) > 1
+                self._convert(self._settings.command_options(self._voxels, self._colored))
             else:
                 self._take(report)
         except FAILURES as error:
-            self.failures.append(str(error))
+            if self._colored and "--grids" in str(error):  # gcode2vdb 0.1.0 writes no colors into meshes
+                self._colored = False
+                self._convert(self._settings.command_options(self._voxels))
+            else:
+                self.failures.append(str(error))
         finally:
             conversion.close()
 

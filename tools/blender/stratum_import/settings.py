@@ -74,16 +74,22 @@ class ImportSettings:
         """For the coarsest level set, of the whole print."""
         return ["--voxels-per-layer", "1", "--grids=surface", *self._selection_options()]
 
-    def command_options(self, trial_voxels=None):
-        """`trial_voxels` are the active ones of trial_options(), if follows_faces()."""
+    def wants_trial(self):
+        """A mesh asks also for how many colors there are."""
+        return self.kind == "MESH" or self.follows_faces()
+
+    def command_options(self, trial_voxels=0, colored=False):
+        """`trial_voxels` are the active ones of trial_options(), if wants_trial(). A `colored` mesh has colors."""
         options = [*self._selection_options(), "--origin", self.origin]
         if self.kind != "MESH" and self.grids:
             options.append(f"--grids={self.grids}")
+        elif colored:
+            options.append("--grids=color")
         if self.voxel_size > 0:
             options += ["--voxel-size", f"{self.voxel_size:.6g}"]
         elif self.memory_budget:
             options += ["--memory-budget", self.memory_budget]
-        elif trial_voxels is not None:
+        elif self.follows_faces():
             # Both grow by the square of the voxels a layer.
             most = math.isqrt(int(VOXELS_PER_FACE * self.faces / max(trial_voxels, 1)))
             options += ["--voxels-per-layer", str(min(max(most, 1), MOST_VOXELS_PER_LAYER))]
