@@ -1,8 +1,10 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "command_line.h"
+#include "grid_report.h"
 #include "print_options.h"
 #include "toolpath_report.h"
 
+#include "gcode/bead_colors.h"
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "gcode/summary.h"
@@ -11,11 +13,10 @@
 #include "io/error.h"
 #include "io/mapped_file.h"
 #include "voxelize/attributes.h"
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
 #include "voxelize/selection.h"
+#include "voxelize/solid_check.h"
 #include "voxelize/surface_mesh.h"
 #include "voxelize/usd_file.h"
 #include "voxelize/vdb_file.h"
@@ -27,6 +28,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,7 +61,8 @@ struct Options {
     bool summary = false;
     tools::PrintOptions print;
     std::string interior;  // empty: what the output wants
-    double adaptivity = 0.05;
+    double mesh_error = 0.25;
+    bool forecast = false;
     bool interior_distance = false;
     bool usda = false;
     std::string grids;
@@ -100,8 +103,10 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
-    app.add_option("--grids", o.grids,
-                   "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels")
+    app.add_option(
+           "--grids", o.grids,
+           "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels; surface alone is "
+           "no others (default: color if there are several)")
         ->type_name("LIST")
         ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
@@ -123,10 +128,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(writing);
     app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
         ->group(writing);
-    app.add_option("--adaptivity", o.adaptivity, "Meshes: 0 keeps all faces, 0.5 merges many (default 0.05)")
-        ->check(CLI::Range(0.0, 0.5))
-        ->type_name("A")
+    app.add_option("--mesh-error", o.mesh_error, "Meshes: how far faces may be merged; 0 keeps all (default 0.25)")
+        ->check(CLI::Range(0.0, 2.0))
+        ->type_name("VOXELS")
         ->group(writing);
+    app.add_flag("--forecast", o.forecast, "With --stats: what --interior cull would save")->group(writing);
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
         ->group(writing);
@@ -190,41 +196,6 @@ std::vector<Job> planJobs(const Options& o, const gcode::Toolpath& toolpath,
     return jobs;
 }
 
-Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    const openvdb::Vec3d a = grid.indexToWorld(box.min());
-    const openvdb::Vec3d b = grid.indexToWorld(box.max());
-    const openvdb::Vec3d low = openvdb::math::minComponent(a, b);
-    const openvdb::Vec3d high = openvdb::math::maxComponent(a, b);
-    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return {
-        {"voxel_size_mm", lattice.voxel_size},
-        {"half_width", lattice.half_width},
-        {"layer_height_mm", lattice.layer_height},
-        {"aligned_share", lattice.aligned_share},
-        {"choice", lattice.reason},
-        {"active_voxels", grid.activeVoxelCount()},
-        {"leaves", grid.tree().leafCount()},
-        {"bytes", grid.memUsage()},
-        {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
-        {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
-}
-
-Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
-    const voxelize::CullForecast left = voxelizer.forecastCull();
-    const std::size_t leaves = grid.tree().leafCount() - left.leaves;
-    return {{"active_voxels", grid.activeVoxelCount() - left.active_voxels},
-            {"leaves", leaves},
-            {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
-}
-
-Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
-    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return {{"vertices", mesh.points.size()},
-            {"triangles", mesh.triangleCount()},
-            {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
-}
-
 Json convert(const Options& o, const std::string& input, const fs::path& output, int threads) {
     tools::Stopwatch total;
     tools::Stopwatch watch;
@@ -255,10 +226,17 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     const bool as_mesh = voxelize::isMeshPath(output);
     const auto interior =
         o.interior == "cull" || (o.interior.empty() && as_mesh) ? voxelize::Interior::cull : voxelize::Interior::keep;
-    const std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
+    std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
+    const std::vector<std::optional<gcode::Rgb>> colors = gcode::distinctColors(toolpath, selection);
+    if (colors.size() > 1 && o.grids.empty() && !as_mesh) {
+        attributes.push_back(voxelize::Attribute::color);
+        tools::say(o.common,
+                   fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors.size()));
+    }
     const voxelize::Lattice lattice = tools::latticeFor(o.print, toolpath, selection, bounds, interior);
     tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
                                      lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
+    if (!lattice.warning.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, lattice.warning);
 
     voxelize::Provenance provenance;
     provenance.source_file = fs::path(name).filename().string();
@@ -267,6 +245,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.unit = o.unit;
     provenance.up = o.up;
     provenance.selection = tools::describeSelection(o.print);
+    if (colors.size() == 1 && colors.front()) {
+        const auto [red, green, blue] = *colors.front();
+        provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
+    }
     provenance.culled = interior == voxelize::Interior::cull;
     provenance.swept = o.interior_distance;
 
@@ -281,6 +263,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     double cull_seconds = 0;
     double mesh_seconds = 0;
     double write_seconds = 0;
+    double check_seconds = 0;
     Json files = Json::array();
     Json grid_report;
     for (const Job& job : planJobs(o, toolpath, selection, output)) {
@@ -297,7 +280,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         provenance.snapshot = job.label;
         std::optional<voxelize::SurfaceMesh> mesh;
         if (as_mesh) {
-            mesh = voxelize::meshSurface(*grid, {provenance.culled, o.adaptivity});
+            const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
+            mesh = voxelize::meshSurface(*grid, {provenance.culled, o.mesh_error, color});
             mesh_seconds += watch.lap();
             voxelize::writeMesh(*mesh, job.path);
         } else {
@@ -310,6 +294,12 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             }
         }
         write_seconds += watch.lap();
+        const double deposited =
+            voxelize::depositedVolume(toolpath, std::span<const std::uint32_t>(selection).first(job.beads));
+        const double volume = tools::enclosedMm3(*grid, lattice);
+        const std::string doubt = tools::doubtOf(volume, deposited, provenance.culled);
+        if (!doubt.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, doubt);
+        check_seconds += watch.lap();
         const auto bytes = fs::file_size(job.path);
         files.push_back({{"path", job.path.string()},
                          {"snapshot", job.label},
@@ -318,7 +308,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
                          {"active_voxels", grid->activeVoxelCount()},
                          {"leaves_evaluated", voxelizer.report().leaves_evaluated},
                          {"leaves_reused", voxelizer.report().leaves_reused}});
-        if (mesh) files.back()["mesh"] = describeMesh(*mesh, *grid, lattice);
+        if (mesh) files.back()["mesh"] = tools::describeMesh(*mesh, *grid, lattice);
         tools::say(o.common, fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
                                          tools::humanCount(static_cast<double>(grid->activeVoxelCount())),
                                          tools::humanBytes(static_cast<double>(grid->memUsage())),
@@ -326,10 +316,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         if (mesh)
             tools::say(o.common,
                        fmt::format("  {} triangles", tools::humanCount(static_cast<double>(mesh->triangleCount()))));
-        // Counting the enclosed volume reads every leaf once more: only for a report.
         if (!o.common.stats.empty() && job.label.empty()) {
-            grid_report = describeGrid(*grid, lattice);
-            if (!provenance.culled) grid_report["cull_would_save"] = describeCull(voxelizer, *grid);
+            grid_report = tools::describeGrid(*grid, lattice, volume, deposited);
+            if (o.forecast && !provenance.culled)
+                grid_report["cull_would_save"] = tools::describeCull(voxelizer, *grid);
         }
     }
     Json skipped = Json::array();
@@ -348,6 +338,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         skipped.push_back({{"what", "attribute grids"},
                            {"why", "none asked for (--grids)"},
                            {"saved", "a nearest-bead search and four bytes a voxel for each"}});
+    if (!o.forecast && !provenance.culled)
+        skipped.push_back({{"what", "what --interior cull would save"},
+                           {"why", "not asked for (--forecast)"},
+                           {"saved", "a flood through all leaves, about a third of a build"}});
     if (provenance.culled) {
         const auto& report = voxelizer.report();
         skipped.push_back(
@@ -376,6 +370,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
               {"voxelize", voxelize_seconds - cull_seconds},
               {"mesh", mesh_seconds},
               {"write", write_seconds},
+              {"volume", check_seconds},
               {"total", total_seconds}}},
             {"peak_rss_bytes", tools::peakRssBytes()},
             {"threads", threads}};
@@ -389,6 +384,28 @@ fs::path outputName(const std::string& input) {
     return name.replace_extension(".vdb");
 }
 
+// A mesh has no voxels; a .ply can have the colors of its points.
+void refuseGridsOfMeshes(const Options& o, const fs::path& output) {
+    const auto grids = voxelize::parseGrids(o.grids);
+    if (grids.empty()) return;
+    const bool ply = voxelize::meshHasColors(output);
+    if (!ply || grids.size() > 1 || grids.front() != voxelize::Attribute::color)
+        throw UsageError(fmt::format("--grids {}: a mesh has no voxels; write a .vdb, not {}{}", o.grids,
+                                     output.string(),
+                                     ply ? ", or give --grids color" : ", or a .ply with --grids color"));
+}
+
+// a/part.gcode and b/part.gcode would be one file in a folder.
+void refuseEqualNames(const std::vector<std::string>& inputs, const std::string& folder) {
+    std::map<fs::path, std::string> sources;
+    for (const std::string& input : inputs) {
+        const auto [known, fresh] = sources.emplace(outputName(input), input);
+        if (!fresh)
+            throw UsageError(fmt::format("{} and {} would both be {}; convert them one by one, with -o", known->second,
+                                         input, (fs::path(folder) / known->first).string()));
+    }
+}
+
 void run(const Options& o) {
     const tools::ThreadLimit limit(o.common.threads);
     openvdb::initialize();
@@ -400,8 +417,7 @@ void run(const Options& o) {
             throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
         if (mesh && o.usda)
             throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
-        if (mesh && !o.grids.empty())
-            throw UsageError(fmt::format("--grids: a mesh has no voxels; write a .vdb, not {}", output.string()));
+        if (mesh) refuseGridsOfMeshes(o, output);
         tools::writeStats(o.common, convert(o, o.inputs.front(), output, limit.threads()));
         return;
     }
@@ -409,6 +425,7 @@ void run(const Options& o) {
         throw UsageError(
             fmt::format("{} inputs: -o must name an existing folder for their .vdb files", o.inputs.size()));
     if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
+    refuseEqualNames(o.inputs, o.output);
     Json reports = Json::array();
     for (const std::string& input : o.inputs)
         reports.push_back(convert(o, input, fs::path(o.output) / outputName(input), limit.threads()));

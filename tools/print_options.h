@@ -41,8 +41,8 @@ voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpa
 std::string describeSelection(const PrintOptions& options);
 
 /// The lattice: --tolerance and --memory-budget become voxels a layer, and so does `pixel`, the least that a pixel
-/// spans (mm), if the voxel size is to follow from the picture; everything else is the lattice's own choice. Throws
-/// UsageError.
+/// spans (mm), if the voxel size is to follow from the picture; everything else is the lattice's own choice. Where
+/// fewer than two voxels a layer were asked for, its warning says what share of the beads that loses. Throws UsageError.
 voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
                              voxelize::Interior interior, double pixel = 0);

@@ -1,0 +1,21 @@
+// Fewer triangles for a surface, within a stated error.
+#pragma once
+
+#include "voxelize/surface_mesh.h"
+
+#include <cstdint>
+#include <span>
+
+namespace stratum::voxelize {
+
+/// Collapses edges where the surface is flat or curves one way only. After M. Garland and P. Heckbert, "Surface
+/// Simplification Using Quadric Error Metrics" (SIGGRAPH 97), with planes of equal weight, so that their sum is a
+/// bound: every point that stays lies within `error` (world units) of the planes of all faces that it stands for.
+///
+/// A closed mesh stays closed and keeps its genus: only edges of two faces, whose ends have two neighbours in common,
+/// are collapsed, and no face turns by more than about 70 degrees at a step. Quads become triangles. `labels`, one a
+/// point or none: where two of them meet, points stay where they are. Points keep their labels' order: those of the
+/// result are returned. Single-threaded; the same result on every machine with IEEE doubles.
+std::vector<std::uint32_t> simplify(SurfaceMesh& mesh, double error, std::span<const std::uint32_t> labels = {});
+
+}  // namespace stratum::voxelize
