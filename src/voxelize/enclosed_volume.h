@@ -15,7 +15,7 @@ namespace stratum::voxelize {
 double enclosedVolume(const openvdb::FloatGrid& grid,
                       std::size_t most_leaves = std::numeric_limits<std::size_t>::max());
 
-/// Leaves that give the volume of a print to half a per cent; see docs/level_set.md for what counting them takes.
-constexpr std::size_t kVolumeSample = 32768;
+/// Leaves that give the volume of a print to about one per cent, in less than 0.1 s.
+constexpr std::size_t kVolumeSample = 8192;
 
 }  // namespace stratum::voxelize

@@ -39,8 +39,8 @@ struct SurfaceMesh {
 struct MeshOptions {
     /// Leaves out the surfaces of cavities: parts of the mesh that enclose a negative volume.
     bool outside_only = false;
-    /// Voxels: how far points of the simplified mesh may lie from the planes of the faces they stand for; 0 keeps a
-    /// point in every surface cell. See mesh_simplify.h.
+    /// Voxels: how far the simplified mesh may lie from the full one; 0 keeps a point in every surface cell. See
+    /// mesh_simplify.h for what that bounds.
     double error = 0.0;
     /// Colors the points by the nearest active voxel of this grid (linear sRGB), and keeps the faces between colors as
     /// they are; may be null.
@@ -50,9 +50,7 @@ struct MeshOptions {
 /// Meshes the zero level with OpenVDB's dual mesher (volumeToMesh; Ju et al., SIGGRAPH 2002, is the method). Samples
 /// within a thousandth of a voxel of the surface are first put that far inside: a print's layer planes lie on samples,
 /// and a sheet of zeros between two solids would become two faces in one place. Where neighbouring cells still get the
-/// same point, faces are collapsed, which opens nothing. Works on a copy of the grid. Coordinates of the simplified
-/// mesh are within `error` of these as measured: 0.25 voxel asked for, 0.27 at most, 0.03 on average
-/// (docs/level_set.md).
+/// same point, faces are collapsed, which opens nothing. Works on a copy of the grid.
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options = {});
 
 }  // namespace stratum::voxelize
