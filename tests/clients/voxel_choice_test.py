@@ -72,11 +72,11 @@ check(done.returncode == 2 and "a/part.gcode" in done.stderr and "b/part.gcode" 
       not os.listdir(os.path.join(FOLDER, "out")), f"one name for two: {done.stderr.strip()}")
 
 # Several colors of filament are written unasked; a single, stated one is said.
-report, _, _ = convert(gcode("two_tone.gcode"), "-o", out, "--layers", "1:4")
+report, _, _ = convert(gcode("two_tone.gcode"), "-o", out, "--voxel-size", "0.15")
 listing = run("vdb_print", "-l", out)
 check("color" in listing and "vec3s" in listing, "two colors: a grid of them")
 check("filament_color" not in listing, "  and no single one")
-convert(gcode("two_tone.gcode"), "-o", out, "--layers", "1:4", "--grids", "surface")
+convert(gcode("two_tone.gcode"), "-o", out, "--voxel-size", "0.15", "--grids", "surface")
 check("vec3s" not in run("vdb_print", "-l", out), "  not with --grids surface")
 convert(gcode("tile.gcode"), "-o", out)
 listing = run("vdb_print", "-l", out)
@@ -84,7 +84,7 @@ check("filament_color: #D8563B" in listing and "vec3s" not in listing, "one colo
 
 # Meshes: color of their points, and nothing else of grids.
 ply = os.path.join(FOLDER, "part.ply")
-report, said, status = convert(gcode("two_tone.gcode"), "-o", ply, "--grids", "color", "--layers", "1:4")
+report, said, status = convert(gcode("two_tone.gcode"), "-o", ply, "--grids", "color", "--voxel-size", "0.15")
 check(status == 0, f"a mesh with colors {said}")
 with open(ply, "rb") as file:
     data = file.read()
