@@ -10,6 +10,7 @@
 #include "time_report.h"
 #include "toolpath_report.h"
 
+#include "gcode/bead_colors.h"
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "gcode/summary.h"
@@ -22,6 +23,7 @@
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
 #include "voxelize/selection.h"
+#include "voxelize/solid_check.h"
 #include "voxelize/surface_mesh.h"
 #include "voxelize/usd_file.h"
 #include "voxelize/vdb_file.h"
@@ -32,6 +34,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,7 +67,8 @@ struct Options {
     bool summary = false;
     tools::PrintOptions print;
     std::string interior;  // empty: what the output wants
-    double adaptivity = 0.05;
+    double mesh_error = 0.25;
+    bool forecast = false;
     bool interior_distance = false;
     bool usda = false;
     std::string grids;
@@ -107,10 +111,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
-    tools::completes(
-        app.add_option("--grids", o.grids,
-                       "Also layer,time,feature,tool,object,width,speed,color, as grids of the same voxels"),
-        tools::Completion::list, {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "color"})
+    tools::completes(app.add_option("--grids", o.grids,
+                                    "Also layer,time,feature,tool,object,width,speed,color, as grids of the same "
+                                    "voxels; surface alone is no others (default: color if there are several)"),
+                     tools::Completion::list,
+                     {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "color"})
         ->type_name("LIST")
         ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
@@ -132,10 +137,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->group(writing);
     app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
         ->group(writing);
-    app.add_option("--adaptivity", o.adaptivity, "Meshes: 0 keeps all faces, 0.5 merges many (default 0.05)")
-        ->check(CLI::Range(0.0, 0.5))
-        ->type_name("A")
+    app.add_option("--mesh-error", o.mesh_error, "Meshes: how far faces may be merged; 0 keeps all (default 0.25)")
+        ->check(CLI::Range(0.0, 2.0))
+        ->type_name("VOXELS")
         ->group(writing);
+    app.add_flag("--forecast", o.forecast, "With --stats: what --interior cull would save")->group(writing);
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
         ->group(writing);
@@ -244,10 +250,17 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     const bool as_mesh = voxelize::isMeshPath(output);
     const auto interior =
         o.interior == "cull" || (o.interior.empty() && as_mesh) ? voxelize::Interior::cull : voxelize::Interior::keep;
-    const std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
+    std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
+    const std::vector<std::optional<gcode::Rgb>> colors = gcode::distinctColors(toolpath, selection);
+    if (colors.size() > 1 && o.grids.empty() && !as_mesh) {
+        attributes.push_back(voxelize::Attribute::color);
+        tools::say(o.common,
+                   fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors.size()));
+    }
     const voxelize::Lattice lattice = tools::latticeFor(o.print, toolpath, selection, bounds, interior);
     tools::say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
                                      lattice.voxel_size, lattice.reason, lattice.aligned_share * 100));
+    if (!lattice.warning.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, lattice.warning);
 
     voxelize::Provenance provenance;
     provenance.source_file = fs::path(name).filename().string();
@@ -256,6 +269,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     provenance.unit = o.unit;
     provenance.up = o.up;
     provenance.selection = tools::describeSelection(o.print);
+    if (colors.size() == 1 && colors.front()) {
+        const auto [red, green, blue] = *colors.front();
+        provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
+    }
     provenance.culled = interior == voxelize::Interior::cull;
     provenance.swept = o.interior_distance;
 
@@ -273,6 +290,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
     double cull_seconds = 0;
     double mesh_seconds = 0;
     double write_seconds = 0;
+    double check_seconds = 0;
     Json files = Json::array();
     Json grid_report;
     const std::vector<Job> jobs = planJobs(o, toolpath, selection, output);
@@ -299,9 +317,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         provenance.snapshot = job.label;
         std::optional<voxelize::SurfaceMesh> mesh;
         if (as_mesh) {
+            const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
             {
                 const tools::ProgressNote note("meshing", o.common.quiet);
-                mesh = voxelize::meshSurface(*grid, {provenance.culled, o.adaptivity});
+                mesh = voxelize::meshSurface(*grid, {provenance.culled, o.mesh_error, color});
             }
             mesh_seconds += watch.lap();
             const tools::ProgressNote note("writing", o.common.quiet);
@@ -317,6 +336,12 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             }
         }
         write_seconds += watch.lap();
+        const double deposited =
+            voxelize::depositedVolume(toolpath, std::span<const std::uint32_t>(selection).first(job.beads));
+        const double volume = tools::enclosedMm3(*grid, lattice);
+        const std::string doubt = tools::doubtOf(volume, deposited, provenance.culled);
+        if (!doubt.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, doubt);
+        check_seconds += watch.lap();
         const auto bytes = isStandardOutput(job.path) ? 0 : fs::file_size(job.path);
         files.push_back({{"path", job.path.string()},
                          {"snapshot", job.label},
@@ -333,11 +358,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         if (mesh)
             tools::say(o.common,
                        fmt::format("  {} triangles", tools::humanCount(static_cast<double>(mesh->triangleCount()))));
-        // Counting the enclosed volume reads every leaf once more: only for a report.
         if (!o.common.stats.empty() && job.label.empty()) {
-            const tools::ProgressNote note("measuring", o.common.quiet);
-            grid_report = tools::describeGrid(*grid, lattice);
-            if (!provenance.culled) grid_report["cull_would_save"] = tools::describeCull(voxelizer, *grid);
+            grid_report = tools::describeGrid(*grid, lattice, volume, deposited);
+            if (o.forecast && !provenance.culled)
+                grid_report["cull_would_save"] = tools::describeCull(voxelizer, *grid);
         }
     }
     Json skipped = Json::array();
@@ -356,6 +380,10 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
         skipped.push_back({{"what", "attribute grids"},
                            {"why", "none asked for (--grids)"},
                            {"saved", "a nearest-bead search and four bytes a voxel for each"}});
+    if (!o.forecast && !provenance.culled)
+        skipped.push_back({{"what", "what --interior cull would save"},
+                           {"why", "not asked for (--forecast)"},
+                           {"saved", "a flood through all leaves, about a third of a build"}});
     if (provenance.culled) {
         const auto& report = voxelizer.report();
         skipped.push_back(
@@ -385,6 +413,7 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
               {"voxelize", voxelize_seconds - cull_seconds},
               {"mesh", mesh_seconds},
               {"write", write_seconds},
+              {"volume", check_seconds},
               {"total", total_seconds}}},
             {"peak_rss_bytes", tools::peakRssBytes()},
             {"threads", threads}};
@@ -404,6 +433,17 @@ std::vector<fs::path> outputsOf(const Options& o) {
     return outputs;
 }
 
+// A mesh has no voxels; a .ply can have the colors of its points.
+void refuseGridsOfMeshes(const Options& o, const fs::path& output) {
+    const auto grids = voxelize::parseGrids(o.grids);
+    if (grids.empty()) return;
+    const bool ply = voxelize::meshHasColors(output);
+    if (!ply || grids.size() > 1 || grids.front() != voxelize::Attribute::color)
+        throw UsageError(fmt::format("--grids {}: a mesh has no voxels; write a .vdb, not {}{}", o.grids,
+                                     output.string(),
+                                     ply ? ", or give --grids color" : ", or a .ply with --grids color"));
+}
+
 // What is asked of the output fits its kind. Before the work.
 void check(const Options& o, const std::vector<fs::path>& outputs) {
     if (outputs.size() > 1) {
@@ -419,8 +459,7 @@ void check(const Options& o, const std::vector<fs::path>& outputs) {
     if (!mesh && output != "-" && output.extension() != ".vdb")
         throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
-    if (mesh && !o.grids.empty())
-        throw UsageError(fmt::format("--grids: a mesh has no voxels; write a .vdb, not {}", output.string()));
+    if (mesh) refuseGridsOfMeshes(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
         throw UsageError(fmt::format("{}: writes files beside the output; name one, -o {} is a stream",
                                      o.usda ? "--usda" : "--snapshots", output.string()));

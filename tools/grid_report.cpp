@@ -2,12 +2,19 @@
 
 #include "voxelize/enclosed_volume.h"
 #include "voxelize/estimate.h"
+#include "voxelize/solid_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
 
 namespace stratum::tools {
 
 using Json = nlohmann::ordered_json;
 
-Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, double volume_mm3,
+                  double deposited_mm3) {
     const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     const openvdb::Vec3d a = grid.indexToWorld(box.min());
     const openvdb::Vec3d b = grid.indexToWorld(box.max());
@@ -24,7 +31,8 @@ Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& latti
         {"leaves", grid.tree().leafCount()},
         {"bytes", grid.memUsage()},
         {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
-        {"volume_mm3", voxelize::enclosedVolume(grid) / (unit * unit * unit)}};
+        {"volume_mm3", volume_mm3},
+        {"deposited_mm3", deposited_mm3}};
 }
 
 Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
@@ -40,6 +48,20 @@ Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& g
     return {{"vertices", mesh.points.size()},
             {"triangles", mesh.triangleCount()},
             {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
+}
+
+double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
+    return voxelize::enclosedVolume(grid, voxelize::kVolumeSample) / (unit * unit * unit);
+}
+
+std::string doubtOf(double enclosed_mm3, double deposited_mm3, bool culled) {
+    const double excess = enclosed_mm3 / deposited_mm3 - 1;
+    if (excess >= -voxelize::kVolumeDoubt && (culled || excess <= voxelize::kVolumeDoubt)) return {};
+    return fmt::format("the level set holds {:.3g} cm3, {:.0f} % {} than the {:.3g} cm3 of its beads: {}",
+                       enclosed_mm3 * 1e-3, 100 * std::abs(excess), excess < 0 ? "less" : "more", deposited_mm3 * 1e-3,
+                       excess < 0 ? "they overlap that much, or are thinner than a voxel"
+                                  : "gaps between them are narrower than a voxel; choose a smaller one");
 }
 
 }  // namespace stratum::tools

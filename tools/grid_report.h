@@ -1,4 +1,4 @@
-// What a level set is, for gcode2vdb --stats.
+// What --stats says of a level set and of its mesh, and whether the level set holds what was extruded.
 #pragma once
 
 #include "voxelize/lattice.h"
@@ -8,14 +8,23 @@
 #include <openvdb/openvdb.h>
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 namespace stratum::tools {
 
-nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice);
-
-/// What --interior cull would have left of it.
+/// The grid's section. `volume_mm3` and `deposited_mm3`: see below.
+nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, double volume_mm3,
+                                    double deposited_mm3);
+/// What --interior cull would save of it: floods it.
 nlohmann::ordered_json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid);
-
 nlohmann::ordered_json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid,
                                     const voxelize::Lattice& lattice);
+
+/// The volume that the grid encloses, mm^3; of a sample of its leaves if they are many (see voxelize::kVolumeSample).
+double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice);
+
+/// A sentence if a level set holds clearly less or more than was extruded; empty if all is well. What culling fills is
+/// solid, so of a culled grid only too little can be told.
+std::string doubtOf(double enclosed_mm3, double deposited_mm3, bool culled);
 
 }  // namespace stratum::tools

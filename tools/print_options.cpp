@@ -3,6 +3,7 @@
 #include "choices.h"
 #include "command_line.h"
 
+#include "voxelize/solid_check.h"
 #include "voxelize/voxel_choice.h"
 
 #include <fmt/format.h>
@@ -134,29 +135,36 @@ voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath&
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
                              voxelize::Interior interior, double pixel) {
     voxelize::LatticeRequest request = options.lattice;
-    if (options.voxel_auto) {
-        request.voxels_per_layer = 1;
-        const double layer = voxelize::chooseLattice(toolpath, selection, bounds, request).layer_height;
-        request.voxels_per_layer = voxelize::voxelsPerLayerForPixel(layer, pixel);
-        voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
-        lattice.reason += fmt::format("; a pixel spans {:.3g} mm or more", pixel);
-        return lattice;
-    }
-    if (!options.tolerance && options.memory_budget.empty())
-        return voxelize::chooseLattice(toolpath, selection, bounds, request);
-    request.voxels_per_layer = 1;
-    const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
     std::string why;
-    if (options.tolerance) {
-        request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *options.tolerance);
-        why = fmt::format("errors of half a voxel at most stay within {:g} mm", *options.tolerance);
-    } else {
-        const double budget = voxelize::parseSize(options.memory_budget);
-        request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
-        why = fmt::format("the finest within {}", humanBytes(budget));
+    if (options.voxel_auto || options.tolerance || !options.memory_budget.empty()) {
+        request.voxels_per_layer = voxelize::kFewestVoxelsPerLayer;
+        const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
+        if (options.voxel_auto) {
+            request.voxels_per_layer = voxelize::voxelsPerLayerForPixel(coarse.layer_height, pixel);
+            why = fmt::format("; a pixel spans {:.3g} mm or more", pixel);
+        } else if (options.tolerance) {
+            request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *options.tolerance);
+            why = fmt::format("; errors of {:g} voxel at most stay within {:g} mm", voxelize::kLargestMissVoxels,
+                              *options.tolerance);
+        } else {
+            const double budget = voxelize::parseSize(options.memory_budget);
+            request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
+            why = fmt::format("; the finest within {}", humanBytes(budget));
+        }
     }
     voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
-    lattice.reason += "; " + why;
+    lattice.reason += why;
+    // As fine as two voxels a layer nothing is lost but what is thinner than a layer.
+    if (lattice.voxel_size * voxelize::kFewestVoxelsPerLayer > 1.01 * lattice.layer_height) {
+        const double lost = voxelize::lostShare(toolpath, selection, lattice);
+        const double per_layer = lattice.layer_height / lattice.voxel_size;
+        if (lost > 0 || per_layer < 1.01)
+            lattice.warning = fmt::format(
+                "{:.2g} voxel{} a layer of {:g} mm: {:.1f} % of a sample of beads have no solid in their middle; take "
+                "{} a layer, {:g} mm",
+                per_layer, per_layer == 1 ? "" : "s", lattice.layer_height, 100 * lost, voxelize::kFewestVoxelsPerLayer,
+                lattice.layer_height / voxelize::kFewestVoxelsPerLayer);
+    }
     return lattice;
 }
 

@@ -242,6 +242,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     const double pixel = pixels.smallest;
     const voxelize::Lattice lattice =
         latticeFor(options.print, *toolpath, selection, bounds, voxelize::Interior::keep, pixel);
+    if (!lattice.warning.empty() && !options.quiet) fmt::print(stderr, "vdbtrace: {}: {}\n", path, lattice.warning);
     constexpr double kLeastHalfWidth = 2;
     if (lattice.half_width < kLeastHalfWidth)
         throw UsageError(fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",

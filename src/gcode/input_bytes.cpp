@@ -32,7 +32,7 @@ InputBytes::InputBytes(const std::string& path, std::size_t most) : name_(path =
     if (path == "-")
         buffer_ = readAll(STDIN_FILENO, name_, most);
     else
-        file_.emplace(path);
+        file_.emplace(path, Access::sequential);
 }
 
 }  // namespace stratum::gcode

@@ -16,7 +16,7 @@
 
 namespace stratum {
 
-MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
+MappedFile::MappedFile(const std::filesystem::path& path, Access access) : path_(path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd < 0)
         throw InputError(fmt::format("{}: can't be opened ({}); check the name and the permissions", path.string(),
@@ -36,7 +36,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) : path_(path) {
     ::close(fd);
     if (map == MAP_FAILED) throw InputError(fmt::format("{}: can't be read ({})", path.string(), std::strerror(error)));
     data_ = static_cast<const char*>(map);
-    ::madvise(map, size_, MADV_SEQUENTIAL);
+    if (access == Access::sequential) ::madvise(map, size_, MADV_SEQUENTIAL);
 }
 
 MappedFile::~MappedFile() {

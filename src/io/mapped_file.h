@@ -2,17 +2,21 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace stratum {
 
+/// How a file will be read: the system reads far ahead, and drops what is behind, of one that is read from end to end.
+enum class Access : std::uint8_t { anywhere, sequential };
+
 /// Read-only map of a regular file. Movable, not copyable; safe to read from several threads.
 class MappedFile {
 public:
     /// Maps `path`. Throws InputError if it is missing, a directory, unreadable or empty.
-    explicit MappedFile(const std::filesystem::path& path);
+    explicit MappedFile(const std::filesystem::path& path, Access access = Access::anywhere);
     ~MappedFile();
     MappedFile(MappedFile&& other) noexcept;
     MappedFile& operator=(MappedFile&& other) noexcept;

@@ -1,6 +1,7 @@
 #include "march/sdf_grid.h"
 
 #include "io/error.h"
+#include "io/memory.h"
 #include "parallel/parallel_for.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace stratum::march {
@@ -19,9 +23,66 @@ constexpr int kLeaf = 8;          // voxels
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
+// Bytes of a leaf and its share of the nodes above.
+constexpr double kBytesPerLeaf = 2048 + 160;
+// The upper nodes of however small a grid: around the origin there are eight, of 32^3 pointers each.
+constexpr double kBytesOfTree = 2.2e6;
+
+struct LeafBox {
+    openvdb::Coord low;     // of its first leaf, voxels
+    std::size_t leaves[3];  // along each axis
+};
+
+// About how many leaves the surface passes: blocks of leaves are halved where it may be near, until there are many;
+// then each of them stands for as many leaves as a sheet in it has.
+double estimateLeaves(const Sdf& shape, double voxel_size, const LeafBox& box) {
+    constexpr std::size_t kMany = 20000;
+    struct Block {
+        std::int64_t x, y, z;  // in blocks
+    };
+    std::int64_t size = 1;  // of a block, in leaves
+    while (size < static_cast<std::int64_t>(std::max({box.leaves[0], box.leaves[1], box.leaves[2]}))) size *= 2;
+    std::vector<Block> blocks{{0, 0, 0}};
+    while (size > 1 && !blocks.empty() && blocks.size() < kMany) {
+        size /= 2;
+        std::vector<Block> halves;
+        const double edge = static_cast<double>(size * kLeaf) * voxel_size;
+        const double reach = kHalfWidth * voxel_size + std::sqrt(3.0) * 0.5 * edge;
+        for (const Block& block : blocks)
+            for (int corner = 0; corner < 8; ++corner) {
+                const Block half{2 * block.x + (corner & 1), 2 * block.y + (corner >> 1 & 1),
+                                 2 * block.z + (corner >> 2)};
+                if (half.x * size >= static_cast<std::int64_t>(box.leaves[0]) ||
+                    half.y * size >= static_cast<std::int64_t>(box.leaves[1]) ||
+                    half.z * size >= static_cast<std::int64_t>(box.leaves[2]))
+                    continue;
+                const glm::dvec3 middle{box.low.x() * voxel_size + (static_cast<double>(half.x) + 0.5) * edge,
+                                        box.low.y() * voxel_size + (static_cast<double>(half.y) + 0.5) * edge,
+                                        box.low.z() * voxel_size + (static_cast<double>(half.z) + 0.5) * edge};
+                if (std::abs(shape.distance(middle)) <= reach) halves.push_back(half);
+            }
+        blocks = std::move(halves);
+    }
+    return static_cast<double>(blocks.size()) * static_cast<double>(size) * static_cast<double>(size);
+}
+
+// Both lists and leaves; throws UsageError with a voxel that fits.
+void refuseIfTooLarge(const Sdf& shape, double voxel_size, const LeafBox& box, double width, std::size_t memory_limit) {
+    const auto limit = static_cast<double>(memory_limit != 0 ? memory_limit : availableMemory());
+    const double columns = static_cast<double>(box.leaves[0]) * static_cast<double>(box.leaves[1]);
+    const double bytes = kBytesOfTree + estimateLeaves(shape, voxel_size, box) * kBytesPerLeaf +
+                         columns * static_cast<double>(sizeof(std::vector<std::unique_ptr<Leaf>>));
+    if (bytes > limit)
+        throw UsageError(
+            fmt::format("a shape {:.3g} wide in voxels of {:g} takes about {:.3g} GB, {:.3g} GB are free; take a "
+                        "voxel_size of {:.2g} "
+                        "or more, or leave it out and trace the shape as it is",
+                        width, voxel_size, bytes * 1e-9, limit * 1e-9, 1.2 * voxel_size * std::sqrt(bytes / limit)));
+}
+
 }  // namespace
 
-openvdb::FloatGrid::Ptr makeSdfGrid(const Sdf& shape, double voxel_size) {
+openvdb::FloatGrid::Ptr makeSdfGrid(const Sdf& shape, double voxel_size, std::size_t memory_limit) {
     if (!(voxel_size > 0 && std::isfinite(voxel_size)))
         throw UsageError(
             fmt::format("the voxel size of a shape is {}; it must be a finite number above 0", voxel_size));
@@ -46,6 +107,7 @@ openvdb::FloatGrid::Ptr makeSdfGrid(const Sdf& shape, double voxel_size) {
     const auto nx = static_cast<std::size_t>(count[0]);
     const auto ny = static_cast<std::size_t>(count[1]);
     const auto nz = static_cast<std::size_t>(count[2]);
+    refuseIfTooLarge(shape, voxel_size, {low, {nx, ny, nz}}, box.max[0] - box.min[0], memory_limit);
     // Columns of leaves along z, each by one thread; put together in their order.
     std::vector<std::vector<std::unique_ptr<Leaf>>> columns(nx * ny);
     parallelFor(columns.size(), 4, [&](std::size_t begin, std::size_t end) {

@@ -135,6 +135,8 @@ Subject prepare(const GeometryOptions& options, std::size_t points, double fewes
     for (const std::uint32_t index : voxelize::selectBeads(subject.toolpath, selection))
         if (subject.toolpath.beads[index].z0 == subject.toolpath.beads[index].z1) subject.beads.push_back(index);
     subject.one_per_layer = latticeOf(subject.toolpath, subject.beads, 1);
+    // Back onto the layers' planes, which this study compares with those half a voxel off at every size.
+    subject.one_per_layer.origin_z -= 0.5 * subject.one_per_layer.voxel_size;
     subject.exact.emplace(subject.toolpath, subject.beads, 1.5 * subject.one_per_layer.layer_height);
     subject.points = subject.exact->samplePoints(points);
     subject.clearance.resize(points);

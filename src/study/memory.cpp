@@ -9,6 +9,7 @@
 #include "study/result_table.h"
 #include "study/times.h"
 #include "voxelize/selection.h"
+#include "voxelize/solid_check.h"
 #include "voxelize/vdb_file.h"
 #include "voxelize/voxel_choice.h"
 #include "voxelize/voxelizer.h"
@@ -82,7 +83,7 @@ std::string measure(const std::string& print, int count, Interior interior, cons
     const gcode::Toolpath toolpath = readPrint(print);
     const auto beads = voxelize::selectBeads(toolpath, {});
     const voxelize::Lattice lattice = latticeOf(toolpath, beads, count);
-    const double part = volumeOf(toolpath, beads);
+    const double part = voxelize::depositedVolume(toolpath, beads);
     const double estimate = voxelize::estimateBytes(toolpath, beads, lattice, interior);
     const auto line = [](const Row& cells) {
         const std::string text = csvLine(cells);

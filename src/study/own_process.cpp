@@ -4,12 +4,14 @@
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 
@@ -54,6 +56,13 @@ bool readUntil(int in, std::chrono::steady_clock::time_point end, std::string& t
     }
 }
 
+// See the header.
+void endTaskThreads() {
+    tbb::task_scheduler_handle handle{tbb::attach{}};
+    if (!tbb::finalize(handle, std::nothrow))
+        throw std::runtime_error("a process of its own can't begin in a parallel loop: TBB's threads are at work");
+}
+
 }  // namespace
 
 std::size_t peakSoFar() {
@@ -63,6 +72,7 @@ std::size_t peakSoFar() {
 }
 
 Outcome inOwnProcess(const std::function<std::string()>& work, double seconds) {
+    endTaskThreads();
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error("the system gives no pipe");
     const pid_t child = ::fork();

@@ -13,9 +13,10 @@ struct Outcome {
     std::size_t peak_rss_bytes = 0;  ///< largest resident set of that process
 };
 
-/// Forks, works in the child, waits. The caller must not have started threads yet: they don't survive a fork, so TBB's
-/// first use has to be in the child. A child that takes longer than `seconds` is killed. Throws std::runtime_error only
-/// if the system gives no process.
+/// Forks, works in the child, waits. Threads don't survive a fork, and what they hold stays locked in the child: TBB's
+/// are ended before, and start again with its next use on either side. A child that takes longer than `seconds` is
+/// killed. Throws std::runtime_error if the system gives no process, or if TBB's threads can't be ended: not from
+/// within a parallel loop.
 Outcome inOwnProcess(const std::function<std::string()>& work, double seconds = 3600);
 
 /// Largest resident set of this process until now, bytes.

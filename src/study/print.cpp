@@ -26,16 +26,6 @@ voxelize::Lattice latticeOf(const gcode::Toolpath& toolpath, const std::vector<s
     return voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
 }
 
-double volumeOf(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& beads) {
-    double sum = 0;
-    for (const std::uint32_t index : beads) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        sum += gcode::beadLength(toolpath, bead) *
-               gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
-    }
-    return sum;
-}
-
 std::string shortHash(const std::string& path) { return sha256Hex(MappedFile(path).bytes()).substr(0, 12); }
 
 }  // namespace stratum::study

@@ -21,9 +21,6 @@ voxelize::Lattice latticeOf(const gcode::Toolpath& toolpath, const std::vector<s
 voxelize::Lattice latticeOf(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& beads,
                             int voxels_per_layer);
 
-/// What these beads were given, mm^3.
-double volumeOf(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& beads);
-
 /// The first 12 digits of a file's SHA-256: tells whether rows of an earlier run are of the same file.
 std::string shortHash(const std::string& path);
 

@@ -10,6 +10,7 @@
 #include "study/thumbnail.h"
 #include "voxelize/enclosed_volume.h"
 #include "voxelize/selection.h"
+#include "voxelize/solid_check.h"
 #include "voxelize/voxelizer.h"
 
 #include <fmt/format.h>
@@ -193,7 +194,7 @@ std::vector<std::string> measurePrint(const std::string& path, const Representat
         bias = figure(apart.bias);
     }
     const bool whole = r.per_layer > 0 && !r.on_demand;
-    return {fmt::format("{:.5g}", volumeOf(*print.toolpath, print.beads) * 1e-3),
+    return {fmt::format("{:.5g}", voxelize::depositedVolume(*print.toolpath, print.beads) * 1e-3),
             whole && shot.volume ? fmt::format("{:.5g}", hold(r, print, peers, true).enclosed_cm3) : "",
             std::to_string(held.traced.primitives),
             std::to_string(bytes),

@@ -20,10 +20,17 @@ constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "
                                                  "object", "width", "speed",   "color"};
 constexpr float kGrey = 0.8f;
 
-// IEC 61966-2-1.
+// IEC 61966-2-1, by a table: a colour is asked for at every voxel.
 float linear(std::uint8_t srgb) {
-    const double v = srgb / 255.0;
-    return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+    static const std::array<float, 256> kTable = [] {
+        std::array<float, 256> table{};
+        for (std::size_t n = 0; n < table.size(); ++n) {
+            const double v = static_cast<double>(n) / 255;
+            table[n] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+        }
+        return table;
+    }();
+    return kTable[srgb];
 }
 
 template <typename Grid>

@@ -1,8 +1,6 @@
 #include "voxelize/estimate.h"
 
 #include <algorithm>
-#include <fstream>
-#include <string>
 
 namespace stratum::voxelize {
 
@@ -21,16 +19,6 @@ double estimateActiveVoxels(const gcode::Toolpath& toolpath, std::span<const std
     }
     // Coarse voxels: all of the solid is within the band, and a band stands around it. Fine ones: two bands along it.
     return std::min(solid + surface * band, 2 * surface * band) / (voxel_size * voxel_size * voxel_size);
-}
-
-std::size_t availableMemory() {
-    std::ifstream meminfo("/proc/meminfo");
-    std::string key;
-    std::size_t kilobytes = 0;
-    std::string unit;
-    while (meminfo >> key >> kilobytes >> unit)
-        if (key == "MemAvailable:") return kilobytes * 1024 / 10 * 9;
-    return std::size_t{4} << 30;
 }
 
 }  // namespace stratum::voxelize

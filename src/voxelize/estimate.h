@@ -3,7 +3,6 @@
 
 #include "gcode/toolpath.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -20,8 +19,5 @@ constexpr double kBytesPerLeaf = 2048 + 64 + 64 + 32;
 /// `voxel_size` in mm, `half_width` in voxels.
 double estimateActiveVoxels(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                             double voxel_size, double half_width);
-
-/// 90 % of the memory that the machine has free, bytes.
-std::size_t availableMemory();
 
 }  // namespace stratum::voxelize

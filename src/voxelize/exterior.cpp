@@ -11,6 +11,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace stratum::voxelize {
 namespace {
@@ -21,9 +23,10 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 
 // A leaf position that the flood has reached. Only the thread that works on its column writes; the words of `reached`
 // are read by others meanwhile. They only ever gain bits, and whoever gains a bit queues the neighbours it concerns, so
-// what a reader misses it sees in the next round.
+// what a reader misses it sees in the next round. That is why queueing releases what was written before it, and taking
+// from the queue acquires it.
 struct Cell {
-    Leaf* leaf = nullptr;  // ours; null if nothing is to be built, or all is outside or inside
+    std::unique_ptr<Leaf> leaf;  // null if nothing is to be built, or all is outside or inside
     bool surface = false;
     LeafMask wide;     // samples that the flood may take
     LeafMask outside;  // samples with phi >= 0
@@ -62,7 +65,7 @@ public:
           const openvdb::FloatTree* whole)
         : bins_(bins), columns_(columns), end_(end), rule_(rule), whole_(whole), places_(bins, columns, end) {}
 
-    ExteriorCounts run(std::vector<std::vector<Leaf*>>& leaves, const std::function<void(double)>& progress) {
+    ExteriorCounts run(LeavesByColumn& leaves, const std::function<void(double)>& progress) {
         begin();
         openAir();
         while (anyQueued()) {
@@ -114,8 +117,10 @@ private:
 
     void queue(std::size_t c, std::size_t slot) {
         near_[slot].store(1, std::memory_order_relaxed);
-        queued_[slot].store(1, std::memory_order_relaxed);
-        dirty_[c].store(1, std::memory_order_relaxed);
+        // Exchanges, not stores: two threads may queue one leaf, and who takes it must see what both have reached. A
+        // store would hide the first thread's.
+        queued_[slot].exchange(1, std::memory_order_release);
+        dirty_[c].exchange(1, std::memory_order_release);
     }
 
     bool anyQueued() const {
@@ -237,7 +242,8 @@ private:
             if (!opened) column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
             opened = true;
             content = column.evaluate(k);
-            if (content == LeafContent::surface) leaf = cell.leaf = column.makeLeaf();
+            if (content == LeafContent::surface) cell.leaf = column.makeLeaf();
+            leaf = cell.leaf.get();
         }
         cell.surface = leaf != nullptr;
         if (content == LeafContent::outside) cell.wide = cell.outside = LeafMask::full();
@@ -271,12 +277,12 @@ private:
             double evaluating = 0;
             LeafColumn& column = columns_();
             for (std::size_t c = first; c != last; ++c) {
-                if (dirty_[c].exchange(0, std::memory_order_relaxed) == 0) continue;
+                if (dirty_[c].exchange(0, std::memory_order_acquire) == 0) continue;
                 bool opened = false;
                 for (const Run& run : places_.runsOf(c))
                     for (int k = run.first; k <= run.last; ++k) {
                         const std::size_t slot = run.slotOf(k);
-                        if (queued_[slot].exchange(0, std::memory_order_relaxed) == 0) continue;
+                        if (queued_[slot].exchange(0, std::memory_order_acquire) == 0) continue;
                         visit(column, opened, c, k, slot, evaluating);
                     }
             }
@@ -348,7 +354,7 @@ private:
     }
 
     // Keeps what lies within the band of what is shown, and turns the rest inside.
-    void collect(std::vector<std::vector<Leaf*>>& leaves) {
+    void collect(LeavesByColumn& leaves) {
         std::atomic<std::size_t> kept{0};
         std::atomic<std::size_t> kept_voxels{0};
         forEachNear([&](std::size_t c, int k, std::size_t slot, const auto& of) {
@@ -364,7 +370,7 @@ private:
             LeafMask drop;
             for (std::size_t x = 0; x < 8; ++x)
                 drop.word[x] = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
-            const Leaf* leaf = cell.leaf;
+            const Leaf* leaf = cell.leaf.get();
             if (leaf == nullptr)
                 leaf = whole_->probeConstLeaf(openvdb::Coord(bins_.originI(c), bins_.originJ(c), k * kLeafDim));
             const std::size_t active = activeWithout(*leaf, drop);
@@ -373,10 +379,8 @@ private:
             kept_voxels.fetch_add(active, std::memory_order_relaxed);
             if (cell.leaf == nullptr) return;
             turnInside(*cell.leaf, drop);
-            leaves[c].push_back(cell.leaf);
-            cell.leaf = nullptr;
+            leaves[c].push_back(std::move(cell.leaf));
         });
-        for (Cell& cell : cells_) delete cell.leaf;
         counts_.evaluated = cells_.size();
         counts_.kept = kept;
         counts_.kept_voxels = kept_voxels;
@@ -424,15 +428,16 @@ private:
 }  // namespace
 
 ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves,
+                              const ExteriorRule& rule, LeavesByColumn& leaves,
                               const std::function<void(double)>& progress) {
-    leaves.assign(bins.size(), {});
+    leaves.clear();
+    leaves.resize(bins.size());
     return Flood(bins, columns, end, rule, nullptr).run(leaves, progress);
 }
 
 ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const ExteriorRule& rule, const openvdb::FloatTree& whole) {
-    std::vector<std::vector<Leaf*>> none;
+    LeavesByColumn none;
     return Flood(bins, columns, end, rule, &whole).run(none, {});
 }
 

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -37,12 +38,15 @@ struct ExteriorRule {
     double band = 2;       ///< voxels, 1..8: inside, what is this near to something shown stays active
 };
 
-/// Leaves with at least one active voxel by column, to be owned by the caller. Values that are shown are those of the
+/// Leaves with at least one active voxel, by column.
+using LeavesByColumn = std::vector<std::vector<std::unique_ptr<Leaf>>>;
+
+/// Fills `leaves`. Values that are shown are those of the
 /// whole level set, and so are those inside near them; every other voxel is inside. Parallel; the result does not
 /// depend on the number of threads. How many leaves will be reached nobody knows before: `progress` gets the share of
 /// all positions reached so far, and 1 at the end; one thread at a time.
 ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, std::vector<std::vector<Leaf*>>& leaves,
+                              const ExteriorRule& rule, LeavesByColumn& leaves,
                               const std::function<void(double)>& progress = {});
 
 /// What buildReachable would keep, found in the whole grid of the same beads, which must not change meanwhile: no

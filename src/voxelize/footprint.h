@@ -61,8 +61,9 @@ public:
         if (bead.arc >= 0) {
             const PlanPath path(toolpath_, bead);
             for (int j = columns.j0; j <= columns.j1; ++j)
-                for (int i = columns.i0; i <= columns.i1; ++i)
+                forEachNearRing(bead, reach, columns, j, [&](int i) {
                     if (path.distance(i * edge_ + half_, j * edge_ + half_) <= reach) visit(i, i, j);
+                });
             return;
         }
         // A straight bead's reach is a capsule: convex, so one run of columns a row. The run spans what the row cuts
@@ -103,6 +104,31 @@ public:
     }
 
 private:
+    // The columns of a row that lie within `reach` of an arc's circle: what the row cuts from a disc, less a hole. A
+    // little wider, for the two ends of an arc may differ in radius and rounding is not to lose any; the caller tests.
+    template <typename Visit>
+    void forEachNearRing(const gcode::Bead& bead, double reach, const ColumnRange& columns, int j, Visit visit) const {
+        const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+        const double a = std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+        const double b = std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y);
+        const double outer = std::max(a, b) + reach + 1e-6 * edge_;
+        const double inner = std::min(a, b) - reach - 1e-6 * edge_;
+        const double dy = j * edge_ + half_ - arc.center_y;
+        if (std::abs(dy) > outer) return;
+        const double far = std::sqrt(outer * outer - dy * dy);
+        const int i0 = std::max(first(arc.center_x - far), columns.i0);
+        const int i1 = std::min(last(arc.center_x + far), columns.i1);
+        int hole0 = i1 + 1;
+        int hole1 = i1;
+        if (inner > std::abs(dy)) {
+            const double near = std::sqrt(inner * inner - dy * dy);
+            hole0 = last(arc.center_x - near) + 1;
+            hole1 = first(arc.center_x + near) - 1;
+        }
+        for (int i = i0; i <= std::min(i1, hole0 - 1); ++i) visit(i);
+        for (int i = std::max(i0, std::max(hole0, hole1 + 1)); i <= i1; ++i) visit(i);
+    }
+
     // A bead too steep for flats is a rod of the same area; see BeadField.
     double radiusOf(const gcode::Bead& bead, const Section& section) const {
         return bead.z0 == bead.z1 ? section.radius : BeadField(toolpath_, bead).radius();

@@ -1,6 +1,7 @@
 #include "voxelize/lattice.h"
 
 #include "io/error.h"
+#include "io/memory.h"
 #include "voxelize/estimate.h"
 
 #include <fmt/format.h>
@@ -17,11 +18,36 @@ namespace {
 constexpr int kFinestVoxelsPerLayer = 4;
 constexpr int kCoarsestVoxelsPerLayer = 2;
 constexpr double kComfortableActiveVoxels = 60e6;
+// Of the memory at hand, what a grid nobody asked a size for may take by its estimate, which can be off by a factor of
+// two or three.
+constexpr double kComfortableShare = 0.5;
 
 // A plane within this fraction of a voxel of a voxel plane is on it.
 constexpr double kOnPlane = 0.01;
 
 std::int64_t micrometres(double mm) { return std::llround(mm * 1e3); }
+
+// The number of voxels a layer for a print whose user named none.
+void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                    const LatticeRequest& request, Lattice& lattice) {
+    const auto memory = static_cast<double>(request.memory != 0 ? request.memory : availableMemory());
+    const auto voxelsAt = [&](int count) {
+        return estimateActiveVoxels(toolpath, selection, lattice.layer_height / count, request.half_width);
+    };
+    const double affordable = kComfortableShare * memory / kBytesPerActiveVoxel;
+    int count = kFinestVoxelsPerLayer;
+    bool short_of_memory = false;
+    while (count > kCoarsestVoxelsPerLayer && voxelsAt(count) > std::min(kComfortableActiveVoxels, affordable)) {
+        short_of_memory = voxelsAt(count) <= kComfortableActiveVoxels;
+        --count;
+    }
+    lattice.voxel_size = lattice.layer_height / count;
+    lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count,
+                                 lattice.layer_height, voxelsAt(count) * 1e-6);
+    if (short_of_memory)
+        lattice.reason += fmt::format("; {} would take about {:.2g} GB of the {:.2g} GB that are free", count + 1,
+                                      voxelsAt(count + 1) * kBytesPerActiveVoxel * 1e-9, memory * 1e-9);
+}
 
 }  // namespace
 
@@ -65,15 +91,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         lattice.voxel_size = lattice.layer_height / *request.voxels_per_layer;
         lattice.reason = fmt::format("{} voxels a layer of {:g} mm", *request.voxels_per_layer, lattice.layer_height);
     } else {
-        int count = kFinestVoxelsPerLayer;
-        while (count > kCoarsestVoxelsPerLayer &&
-               estimateActiveVoxels(toolpath, selection, lattice.layer_height / count, request.half_width) >
-                   kComfortableActiveVoxels)
-            --count;
-        lattice.voxel_size = lattice.layer_height / count;
-        lattice.reason =
-            fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count, lattice.layer_height,
-                        estimateActiveVoxels(toolpath, selection, lattice.voxel_size, request.half_width) * 1e-6);
+        chooseByItself(toolpath, selection, request, lattice);
     }
     const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
     if (lattice.voxel_size > extent)
@@ -95,6 +113,12 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
     if (!by_plane.empty()) {
         const double plane = static_cast<double>(longest(by_plane)) * 1e-3;
         lattice.origin_z = plane - std::floor(plane / lattice.voxel_size + kOnPlane) * lattice.voxel_size;
+        // See the head of lattice.h.
+        if (lattice.voxel_size > (1 - kOnPlane) * lattice.layer_height) {
+            lattice.origin_z +=
+                lattice.origin_z < 0.5 * lattice.voxel_size ? 0.5 * lattice.voxel_size : -0.5 * lattice.voxel_size;
+            lattice.reason += ", its planes half a voxel off those of the layers";
+        }
         if (std::abs(lattice.origin_z) < 1e-9) lattice.origin_z = 0;
     }
 

@@ -270,11 +270,11 @@ LeafContent LeafColumn::evaluate(int leaf_k, std::size_t planes) {
     return clampLeaf(phi_, planes, background);
 }
 
-Leaf* LeafColumn::makeLeaf() const {
+std::unique_ptr<Leaf> LeafColumn::makeLeaf() const {
     const auto background = static_cast<float>(band_ * scale_);
     const openvdb::Coord origin(i_, j_, leaf_k_ * kLeafDim);
     // Partial: the values are written once, below, not twice.
-    auto* leaf = new Leaf(openvdb::PartialCreate(), origin, background, false);
+    auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, background, false);
     leaf->allocate();
     std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];
     storeLeaf(phi_, leaf->buffer().data());

@@ -10,6 +10,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -46,7 +47,7 @@ public:
     LeafContent evaluate(int leaf_k, std::size_t planes = kLeafPlanes);
 
     /// A new leaf with what evaluate() has just found to be surface.
-    Leaf* makeLeaf() const;
+    std::unique_ptr<Leaf> makeLeaf() const;
     /// The values of evaluate(), clamped to the background, world units.
     const LeafPlanes& planes() const { return phi_; }
 

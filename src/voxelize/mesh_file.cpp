@@ -76,11 +76,15 @@ std::size_t cornersOf(const SurfaceMesh::Face& face) { return face[3] == Surface
 void writePly(const SurfaceMesh& mesh, Writer& out) {
     out.text(
         fmt::format("ply\nformat binary_little_endian 1.0\ncomment by Stratum {}\nelement vertex {}\nproperty float x\n"
-                    "property float y\nproperty float z\nelement face {}\nproperty list uchar uint vertex_indices\n"
+                    "property float y\nproperty float z\n{}element face {}\nproperty list uchar uint vertex_indices\n"
                     "end_header\n",
-                    STRATUM_VERSION, mesh.points.size(), mesh.faces.size()));
-    for (const openvdb::Vec3s& p : mesh.points)
-        for (int axis = 0; axis < 3; ++axis) out.raw(p[axis]);
+                    STRATUM_VERSION, mesh.points.size(),
+                    mesh.colors.empty() ? "" : "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+                    mesh.faces.size()));
+    for (std::size_t n = 0; n < mesh.points.size(); ++n) {
+        for (int axis = 0; axis < 3; ++axis) out.raw(mesh.points[n][axis]);
+        if (!mesh.colors.empty()) out.raw(mesh.colors[n]);
+    }
     for (const SurfaceMesh::Face& face : mesh.faces) {
         out.raw(static_cast<std::uint8_t>(cornersOf(face)));
         for (std::size_t n = 0; n < cornersOf(face); ++n) out.raw(face[n]);
@@ -103,6 +107,8 @@ bool isMeshPath(const std::filesystem::path& path) {
     const std::string extension = extensionOf(path);
     return extension == ".stl" || extension == ".ply" || extension == ".obj";
 }
+
+bool meshHasColors(const std::filesystem::path& path) { return extensionOf(path) == ".ply"; }
 
 void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {
     AtomicFile file(path);

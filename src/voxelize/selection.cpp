@@ -31,12 +31,15 @@ std::optional<Number> parseNumber(std::string_view text) {
     return value;
 }
 
-// Index after the last bead of layers up to and including `layer`.
-std::size_t endOfLayer(const gcode::Toolpath& toolpath, std::uint32_t layer) {
-    std::size_t end = 0;
-    for (std::size_t i = 0; i < toolpath.beads.size(); ++i)
-        if (toolpath.runOf(toolpath.beads[i]).layer <= layer) end = i + 1;
-    return end;
+// By layer, the index after the last bead of that layer and those below. Beads are looked at once, for all layers.
+std::vector<std::size_t> endsOfLayers(const gcode::Toolpath& toolpath) {
+    std::vector<std::size_t> ends(std::size_t{toolpath.layer_count} + 1, 0);
+    for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
+        const std::uint32_t layer = toolpath.runOf(toolpath.beads[i]).layer;
+        if (layer < ends.size()) ends[layer] = i + 1;
+    }
+    for (std::size_t layer = 1; layer < ends.size(); ++layer) ends[layer] = std::max(ends[layer], ends[layer - 1]);
+    return ends;
 }
 
 std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
@@ -220,6 +223,11 @@ bool needsTiming(std::string_view snapshots) { return snapshots.find("time:") !=
 
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {
     std::vector<Cut> cuts;
+    std::vector<std::size_t> ends;
+    const auto endOfLayer = [&](std::uint32_t layer) {
+        if (ends.empty()) ends = endsOfLayers(toolpath);
+        return ends[layer];
+    };
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
@@ -234,12 +242,13 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
         } else if (part.starts_with("layer:")) {
             const auto layer = parseNumber<std::uint32_t>(part.substr(6));
             if (!layer || *layer > toolpath.layer_count) throw bad();
-            cuts.push_back({Cut::Kind::layer, static_cast<double>(*layer), endOfLayer(toolpath, *layer)});
+            cuts.push_back({Cut::Kind::layer, static_cast<double>(*layer), endOfLayer(*layer)});
         } else if (part.starts_with("every:")) {
             const auto step = parseNumber<std::uint32_t>(part.substr(6));
             if (!step || *step == 0) throw bad();
-            for (std::uint32_t layer = *step; layer <= toolpath.layer_count; layer += *step)
-                cuts.push_back({Cut::Kind::layer, static_cast<double>(layer), endOfLayer(toolpath, layer)});
+            for (std::uint64_t layer = *step; layer <= toolpath.layer_count; layer += *step)
+                cuts.push_back(
+                    {Cut::Kind::layer, static_cast<double>(layer), endOfLayer(static_cast<std::uint32_t>(layer))});
         } else if (part.starts_with("time:")) {
             const auto moment = momentOf(part.substr(5), toolpath);
             if (!moment) throw bad();

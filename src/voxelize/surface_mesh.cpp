@@ -1,9 +1,12 @@
 #include "voxelize/surface_mesh.h"
 
 #include "parallel/parallel_for.h"
+#include "voxelize/mesh_simplify.h"
 
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace stratum::voxelize {
@@ -97,6 +100,42 @@ void dropUnusedPoints(SurfaceMesh& mesh) {
             if (corner != SurfaceMesh::kNone) corner = place[corner];
 }
 
+// IEC 61966-2-1, from linear light.
+std::uint32_t srgb(float linear) {
+    const double v = std::clamp(static_cast<double>(linear), 0.0, 1.0);
+    return static_cast<std::uint32_t>(
+        std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
+}
+
+// 0xRRGGBB by point, of the nearest active voxel among the eight around it and those beside them.
+std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3SGrid& grid) {
+    std::vector<std::uint32_t> colors(mesh.points.size());
+    parallelFor(colors.size(), 4096, [&](std::size_t first, std::size_t last) {
+        const auto voxels = grid.getConstAccessor();
+        // Few colors, many points: a power costs more than a comparison.
+        openvdb::Vec3f known(-1);
+        std::uint32_t packed = 0;
+        for (std::size_t n = first; n != last; ++n) {
+            const openvdb::Vec3d at = grid.worldToIndex(openvdb::Vec3d(mesh.points[n]));
+            const openvdb::Coord middle = openvdb::Coord::round(at);
+            double nearest = 1e300;
+            openvdb::Vec3f color(0.8F);
+            for (int k = 0; k < 27; ++k) {
+                const openvdb::Coord voxel = middle.offsetBy(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+                const double distance = (voxel.asVec3d() - at).lengthSqr();
+                openvdb::Vec3f value;
+                if (distance >= nearest || !voxels.probeValue(voxel, value)) continue;
+                nearest = distance;
+                color = value;
+            }
+            if (color != known) packed = srgb(color[0]) << 16 | srgb(color[1]) << 8 | srgb(color[2]);
+            known = color;
+            colors[n] = packed;
+        }
+    });
+    return colors;
+}
+
 }  // namespace
 
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options) {
@@ -105,7 +144,7 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
     SurfaceMesh mesh;
     std::vector<openvdb::Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(*copy, mesh.points, triangles, quads, 0.0, options.adaptivity);
+    openvdb::tools::volumeToMesh(*copy, mesh.points, triangles, quads, 0.0, 0.0);
     // Corners come clockwise from outside.
     mesh.faces.reserve(triangles.size() + quads.size());
     for (const openvdb::Vec3I& t : triangles) mesh.faces.push_back({t[2], t[1], t[0], SurfaceMesh::kNone});
@@ -132,8 +171,15 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
 
     if (options.outside_only) dropCavities(mesh);
     dropUnusedPoints(mesh);
+    std::vector<std::uint32_t> labels;
+    if (options.color != nullptr) labels = colorsOf(mesh, *options.color);
+    if (options.error > 0) labels = simplify(mesh, options.error * grid.voxelSize()[0], labels);
+    for (const std::uint32_t label : labels)
+        mesh.colors.push_back({static_cast<std::uint8_t>(label >> 16), static_cast<std::uint8_t>(label >> 8 & 0xff),
+                               static_cast<std::uint8_t>(label & 0xff)});
     return mesh;
 }
+
 std::size_t SurfaceMesh::triangleCount() const {
     std::size_t count = faces.size();
     for (const Face& face : faces) count += face[3] != kNone;

@@ -19,6 +19,7 @@ struct SurfaceMesh {
 
     std::vector<openvdb::Vec3s> points;
     std::vector<Face> faces;
+    std::vector<std::array<std::uint8_t, 3>> colors;  ///< sRGB, one a point; or none
 
     /// Calls visit(a, b, c) with the indices of each triangle; a quad has two.
     template <typename Visit>
@@ -38,8 +39,12 @@ struct SurfaceMesh {
 struct MeshOptions {
     /// Leaves out the surfaces of cavities: parts of the mesh that enclose a negative volume.
     bool outside_only = false;
-    /// 0..1: merges faces where the surface is flat; 0 keeps a point in every surface cell.
-    double adaptivity = 0.0;
+    /// Voxels: how far the simplified mesh may lie from the full one; 0 keeps a point in every surface cell. See
+    /// mesh_simplify.h for what that bounds.
+    double error = 0.0;
+    /// Colors the points by the nearest active voxel of this grid (linear sRGB), and keeps the faces between colors as
+    /// they are; may be null.
+    const openvdb::Vec3SGrid* color = nullptr;
 };
 
 /// Meshes the zero level with OpenVDB's dual mesher (volumeToMesh; Ju et al., SIGGRAPH 2002, is the method). Samples

@@ -35,6 +35,7 @@ void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance
     text("up", provenance.up);
     text("snapshot", provenance.snapshot);
     text("selection", provenance.selection);
+    text("filament_color", provenance.filament_color);
     text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");
     text("interior", provenance.swept ? "distance" : "negative bound, not a distance");
     text("enclosed", provenance.culled ? "filled: only what the outside can reach is there" : "kept");

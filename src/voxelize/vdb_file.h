@@ -13,15 +13,16 @@ namespace stratum::voxelize {
 
 /// What the file says about its origin. Written as grid metadata under the names given here.
 struct Provenance {
-    std::string source_file;    ///< "source_file": name without folders
-    std::string source_sha256;  ///< "source_sha256"
-    std::string slicer;         ///< "slicer", left out if empty
-    std::string unit = "mm";    ///< "unit": of world space
-    std::string up = "z";       ///< "up": axis of world space that points away from the bed, z or y
-    std::string snapshot;       ///< "snapshot": label of a partial print, left out if empty
-    std::string selection;      ///< "selection": --layers and --features, left out if empty
-    bool culled = false;        ///< "enclosed": whether surfaces that the outside can't reach are there
-    bool swept = false;         ///< "interior": whether negative values are distances
+    std::string source_file;     ///< "source_file": name without folders
+    std::string source_sha256;   ///< "source_sha256"
+    std::string slicer;          ///< "slicer", left out if empty
+    std::string unit = "mm";     ///< "unit": of world space
+    std::string up = "z";        ///< "up": axis of world space that points away from the bed, z or y
+    std::string snapshot;        ///< "snapshot": label of a partial print, left out if empty
+    std::string filament_color;  ///< "filament_color": "#RRGGBB", sRGB, if all beads have one and it is stated
+    std::string selection;       ///< "selection": --layers and --features, left out if empty
+    bool culled = false;         ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool swept = false;          ///< "interior": whether negative values are distances
 };
 
 enum class Compression : std::uint8_t { blosc, zip, none };

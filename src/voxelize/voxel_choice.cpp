@@ -33,14 +33,14 @@ constexpr int kScaledFrom = 2;
 int voxelsPerLayerForTolerance(double layer_height, double tolerance) {
     if (!(std::isfinite(tolerance) && tolerance > 0))
         throw UsageError(fmt::format("--tolerance {}: expected a number of mm above 0, e.g. 0.02", tolerance));
-    const double count = std::ceil(kLargestErrorVoxels * layer_height / tolerance - 1e-9);
+    const double count = std::ceil(kLargestMissVoxels * layer_height / tolerance - 1e-9);
     if (count > kMostVoxelsPerLayer)
         throw UsageError(
             fmt::format("--tolerance {:g} mm needs {:.0f} voxels a layer of {:g} mm, at most {} are made; "
                         "the finest tolerance is {:g} mm",
                         tolerance, count, layer_height, kMostVoxelsPerLayer,
-                        kLargestErrorVoxels * layer_height / kMostVoxelsPerLayer));
-    return std::max(1, static_cast<int>(count));
+                        kLargestMissVoxels * layer_height / kMostVoxelsPerLayer));
+    return std::max(kFewestVoxelsPerLayer, static_cast<int>(count));
 }
 
 int voxelsPerLayerForPixel(double layer_height, double pixel) {
@@ -69,31 +69,26 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
 }
 
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
-                         const Lattice& one_per_layer, Interior interior) {
-    Lattice lattice = one_per_layer;
-    lattice.voxel_size = lattice.layer_height;
+                         const Lattice& any_size, Interior interior) {
+    static_assert(kScaledFrom == kFewestVoxelsPerLayer);
+    Lattice lattice = any_size;
+    lattice.voxel_size = lattice.layer_height / kFewestVoxelsPerLayer;
     const double coarsest = estimateBytes(toolpath, selection, lattice, interior);
     if (coarsest > budget)
         throw UsageError(fmt::format(
-            "--memory-budget: one voxel a layer of {:g} mm takes about {:.3g} MB already; give "
-            "that much, fewer layers or features{}",
-            lattice.layer_height, coarsest * 1e-6, interior == Interior::keep ? ", or --interior cull" : ""));
-    int best = 1;
-    double scaled = 0;
-    for (int count = 2; count <= kMostWithinBudget; ++count) {
-        // Finer never takes less than the square; no need to list what that alone rules out.
-        if (coarsest * count * count > 1.5 * budget) break;
+            "--memory-budget: {} voxels a layer of {:g} mm take about {:.3g} MB already, and fewer lose parts of the "
+            "print; give that much, fewer layers or features{}",
+            kFewestVoxelsPerLayer, lattice.layer_height, coarsest * 1e-6,
+            interior == Interior::keep ? ", or --interior cull" : ""));
+    int best = kFewestVoxelsPerLayer;
+    for (int count = best + 1; count <= kMostWithinBudget; ++count) {
+        const double finer = static_cast<double>(count) / kFewestVoxelsPerLayer;
+        // What is culled grows like a surface (see estimateBytes). The rest grows no slower, up to a third that leaves
+        // which are partly empty make of it: no need to list what that alone rules out.
+        const double least = coarsest * finer * finer;
+        if (least > (interior == Interior::cull ? 1 : 1.5) * budget) break;
         lattice.voxel_size = lattice.layer_height / count;
-        if (interior == Interior::cull && count > kScaledFrom) {
-            // From here on it grows like a surface; see estimateBytes.
-            const double finer = static_cast<double>(count) / kScaledFrom;
-            if (scaled * finer * finer > budget) break;
-            best = count;
-            continue;
-        }
-        const double bytes = estimateBytes(toolpath, selection, lattice, interior);
-        scaled = bytes;
-        if (bytes > budget) break;
+        if (interior == Interior::keep && estimateBytes(toolpath, selection, lattice, interior) > budget) break;
         best = count;
     }
     return best;

@@ -1,6 +1,7 @@
 #include "voxelize/voxelizer.h"
 
 #include "io/error.h"
+#include "io/memory.h"
 #include "parallel/parallel_for.h"
 #include "voxelize/estimate.h"
 #include "voxelize/exterior.h"
@@ -18,6 +19,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -67,8 +69,9 @@ LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::u
     if (estimate > estimateMargin(options.interior) * limit)
         throw UsageError(
             fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
-                        "(half the layer height is {:g} mm), fewer layers or features",
-                        lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2));
+                        "(half the layer height is {:g} mm), --memory-budget, fewer layers or features{}",
+                        lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2,
+                        options.interior == Interior::keep ? ", or --interior cull" : ""));
     return stackLayers(toolpath, selection);
 }
 
@@ -130,15 +133,14 @@ void Voxelizer::State::refuseIfTooLarge() {
     if (bytes > limit)
         throw UsageError(
             fmt::format("voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger "
-                        "voxel, fewer "
-                        "layers or features, or --interior cull",
+                        "voxel, --memory-budget, fewer layers or features, or --interior cull",
                         lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
 }
 
 void Voxelizer::State::buildTouched(std::uint32_t end) {
     // Leaves with something active; and, if there was a grid before, positions that are deep inside now.
     struct Built {
-        std::vector<Leaf*> leaves;
+        std::vector<std::unique_ptr<Leaf>> leaves;
         std::vector<openvdb::Coord> inside;
     };
     std::vector<Built> built(bins.size());
@@ -165,9 +167,9 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
     });
     std::size_t made = 0;
     auto accessor = grid->getAccessor();
-    for (const Built& column : built) {
+    for (Built& column : built) {
         made += column.leaves.size();
-        for (Leaf* leaf : column.leaves) accessor.addLeaf(leaf);
+        for (std::unique_ptr<Leaf>& leaf : column.leaves) accessor.addLeaf(leaf.release());
         for (const openvdb::Coord& origin : column.inside) accessor.addTile(1, origin, -background, false);
     }
     report.leaf_positions = std::max(report.leaf_positions, evaluated.load());
@@ -189,14 +191,14 @@ ExteriorRule Voxelizer::State::exteriorRule() const {
 
 void Voxelizer::State::buildReached(std::uint32_t end) {
     const auto start = Clock::now();
-    std::vector<std::vector<Leaf*>> leaves;
+    LeavesByColumn leaves;
     grid->tree().clear();
     const ExteriorCounts counts = buildReachable(bins, columnSource(), end, exteriorRule(), leaves, options.progress);
     const double share = counts.flood_seconds / (counts.flood_seconds + counts.evaluate_seconds + 1e-9);
     report.exterior_seconds = share * secondsSince(start);
     auto accessor = grid->getAccessor();
-    for (const std::vector<Leaf*>& column : leaves)
-        for (Leaf* leaf : column) accessor.addLeaf(leaf);
+    for (auto& column : leaves)
+        for (std::unique_ptr<Leaf>& leaf : column) accessor.addLeaf(leaf.release());
     report.leaf_positions = counts.positions;
     report.leaves_evaluated = counts.evaluated;
     report.flood_rounds = counts.rounds;

@@ -20,7 +20,9 @@ namespace stratum::voxelize {
 /// What becomes of surfaces that no outside point can reach.
 enum class Interior : std::uint8_t {
     keep,  ///< all are there: infill, gaps between beads
-    cull,  ///< they are filled, and their leaves never built; from outside not a bit differs
+    cull,  ///< they are filled, and their leaves never built. What stays has the same bits; gaps narrower than a
+           ///< voxel, or 0.3 layer heights, are filled from three voxels below where the outside comes to; see
+           ///< exterior.h
 };
 
 struct VoxelizeOptions {

@@ -26,7 +26,7 @@ def admesh(path):
     return found
 
 
-for print_, options in (("tile.gcode", []), ("tile.gcode", ["--adaptivity", "0"]), ("tile.gcode", ["--adaptivity", "0.5"]),
+for print_, options in (("tile.gcode", []), ("tile.gcode", ["--mesh-error", "0"]), ("tile.gcode", ["--mesh-error", "1"]),
                         ("knot.gcode", ["--layers", "1:8", "--features", "-support,-skirt,-brim"]),
                         ("two_tone.gcode", ["--interior", "keep", "--layers", "1:4"])):
     path, report = mesh(gcode(print_), "part.stl", "--voxel-size", "0.1", *options)

@@ -27,6 +27,25 @@ TEST(MappedFile, RefusesMissingEmptyAndFolder) {
     EXPECT_THROW(MappedFile{path}, InputError);
 }
 
+// "sr" among the kernel's flags of a mapping: read ahead far, drop what is behind.
+bool readsAhead(const MappedFile& file) {
+    std::ifstream maps("/proc/self/smaps");
+    bool ours = false;
+    for (std::string line; std::getline(maps, line);) {
+        if (line.find(file.path().string()) != std::string::npos) ours = true;
+        if (ours && line.starts_with("VmFlags:")) return line.find(" sr") != std::string::npos;
+    }
+    return false;
+}
+
+TEST(MappedFile, ReadsAheadOnlyWhereAsked) {
+    const test::ScratchFolder folder;
+    const auto path = folder / "mapped.bin";
+    std::ofstream(path, std::ios::binary) << std::string(100000, 'x');
+    EXPECT_FALSE(readsAhead(MappedFile(path)));
+    if (!readsAhead(MappedFile(path, Access::sequential))) GTEST_SKIP() << "the system shows no flags of mappings";
+}
+
 TEST(Sha256, KnownAnswers) {
     // FIPS 180-2, appendix B.1, and the empty message.
     EXPECT_EQ(sha256Hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

@@ -134,5 +134,22 @@ TEST(SdfIntersector, EndlessShapesAreTraced) {
     EXPECT_THROW(makeSdfIntersector(sdfSphere({0, 0, 0}, 1), 0), UsageError);
 }
 
+// A scene of a few bytes must not take all memory: what a grid needs is known before, by a factor of two.
+TEST(SdfGrid, IsRefusedIfItWouldNotFit) {
+    openvdb::initialize();
+    const auto shape = sdfUnion({sdfSphere({0, 0, 0}, 1), sdfTorus({1, 0, 0}, 2, 0.3, 2)});
+    for (const double voxel : {0.1, 0.03, 0.01}) {
+        const auto bytes = static_cast<double>(makeSdfGrid(*shape, voxel)->memUsage());
+        EXPECT_NO_THROW(makeSdfGrid(*shape, voxel, static_cast<std::size_t>(2 * bytes))) << voxel;
+        try {
+            makeSdfGrid(*shape, voxel, static_cast<std::size_t>(0.4 * bytes));
+            ADD_FAILURE() << "not refused";
+        } catch (const UsageError& error) {
+            EXPECT_NE(std::string(error.what()).find("GB are free; take a voxel_size of"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace stratum::march

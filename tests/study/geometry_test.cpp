@@ -5,7 +5,10 @@
 #include "scratch_folder.h"
 #include "study/field_error.h"
 #include "study/handmade.h"
+#include "study/print.h"
 #include "study/result_table.h"
+#include "voxelize/selection.h"
+#include "voxelize/voxel_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -59,6 +62,30 @@ TEST(SurfaceError, MeasuresAKnownDistance) {
     EXPECT_LT(error.distance.max, 0.0712);
     // Nothing within a tenth of that: all are lost.
     EXPECT_EQ(surfaceError(*level_set, points, 0.007).lost_share, 1);
+}
+
+// What --tolerance promises, both ways: see voxelize/voxel_choice.h.
+TEST(SurfaceError, OfAPrintStaysBelowTheTwoBounds) {
+    openvdb::initialize();
+    const gcode::Toolpath toolpath = readPrint((test::dataDir() / "gcode" / "knot.gcode").string());
+    voxelize::Selection selection;
+    voxelize::parseLayers("3:8", selection);
+    const auto beads = voxelize::selectBeads(toolpath, selection);
+    const UnionField exact(toolpath, beads, 0.3);
+    const auto points = exact.samplePoints(6000);
+    for (const int per_layer : {2, 3, 4}) {
+        const voxelize::Lattice lattice = latticeOf(toolpath, beads, per_layer);
+        const auto level_set = march::makeBrickIntersector(*voxelize::voxelize(toolpath, beads, lattice));
+        std::vector<UnionField::SurfacePoint> open;
+        for (const auto& point : points)
+            if (exact.clearance(point, 2 * lattice.voxel_size) >= 2 * lattice.voxel_size) open.push_back(point);
+        ASSERT_GT(open.size(), 500U);
+        const SurfaceError there = surfaceError(*level_set, open, 8 * lattice.voxel_size);
+        EXPECT_EQ(there.lost_share, 0) << per_layer;
+        EXPECT_LT(there.distance.max, voxelize::kLargestMissVoxels * lattice.voxel_size) << per_layer;
+        const Spread back = backwardError(*level_set, exact, points.size());
+        EXPECT_LT(back.max, voxelize::kLargestErrorVoxels * lattice.voxel_size) << per_layer;
+    }
 }
 
 TEST(Geometry, WritesATableAndGoesOn) {

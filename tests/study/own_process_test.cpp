@@ -1,10 +1,15 @@
 #include "study/own_process.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace stratum::study {
@@ -28,6 +33,41 @@ TEST(OwnProcess, CountsTheMemoryOfTheWorkAlone) {
     const std::size_t small = inOwnProcess([&] { return touch(1000); }).peak_rss_bytes;
     EXPECT_GT(large, kBytes);
     EXPECT_LT(small, kBytes / 2);
+}
+
+std::size_t threads() {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) count += entry.exists() ? 1 : 0;
+    return count;
+}
+
+// Two parts that wait for each other: done only by two threads.
+void workOnTwo() {
+    const tbb::global_control two(tbb::global_control::max_allowed_parallelism, 2);
+    std::atomic<int> arrived{0};
+    tbb::parallel_for(
+        0, 2,
+        [&](int) {
+            ++arrived;
+            for (int wait = 0; wait < 20000 && arrived < 2; ++wait) ::usleep(100);
+        },
+        tbb::simple_partitioner());
+    EXPECT_EQ(arrived, 2);
+}
+
+TEST(OwnProcess, BeginsWithoutOtherThreads) {
+    workOnTwo();
+    const std::size_t before = threads();
+    ASSERT_GT(before, 1U);
+    const Outcome outcome = inOwnProcess([] {
+        const std::size_t at_first = threads();
+        workOnTwo();
+        return std::to_string(at_first) + (threads() > at_first ? " then more" : " and no more");
+    });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_EQ(outcome.text, "1 then more");
+    EXPECT_LT(threads(), before);
+    workOnTwo();
 }
 
 TEST(OwnProcess, SaysHowItEnded) {

@@ -121,9 +121,10 @@ TEST(InteriorDistance, IsADistanceInsideAndChangesNothingOutside) {
 }
 
 TEST(VoxelChoice, ToleranceGivesTheCoarsestThatKeepsIt) {
-    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.1), 1);
-    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.05), 2);
-    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.049), 3);
+    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.1), kFewestVoxelsPerLayer);
+    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 5), kFewestVoxelsPerLayer);
+    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.075), 2);
+    EXPECT_EQ(voxelsPerLayerForTolerance(0.2, 0.074), 3);
     EXPECT_THROW(voxelsPerLayerForTolerance(0.2, 1e-6), UsageError);
     EXPECT_THROW(voxelsPerLayerForTolerance(0.2, -1), UsageError);
     EXPECT_EQ(voxelsPerLayerForPixel(0.2, 5), kFewestForPixels);
@@ -154,7 +155,7 @@ TEST(VoxelChoice, TheBudgetIsKeptAndUsed) {
                     static_cast<std::uint32_t>(layer + 1));
     const auto beads = allBeads(toolpath);
     LatticeRequest request;
-    request.voxels_per_layer = 1;
+    request.voxels_per_layer = kFewestVoxelsPerLayer;
     Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
     for (const Interior interior : {Interior::keep, Interior::cull}) {
         for (const double budget : {8e6, 20e6, 60e6}) {

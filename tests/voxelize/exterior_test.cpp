@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -158,6 +159,22 @@ TEST(Exterior, ProgressGrowsAndEnds) {
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GT(told.front(), 0);
     EXPECT_EQ(told.back(), 1);
+}
+
+// What was made by then is LeakSanitizer's to look for.
+TEST(Exterior, AFailureOnTheWayPassesThrough) {
+    const gcode::Toolpath toolpath = box();
+    Lattice lattice;
+    lattice.voxel_size = 0.1;
+    lattice.layer_height = 0.2;
+    VoxelizeOptions options;
+    options.progress = [](double done) {
+        if (done > 0.2) throw std::runtime_error("enough");
+    };
+    for (const Interior interior : {Interior::keep, Interior::cull}) {
+        options.interior = interior;
+        EXPECT_THROW(voxelize(toolpath, allBeads(toolpath), lattice, options), std::runtime_error);
+    }
 }
 
 TEST(Exterior, OneThreadOrTwoTheSameLeaves) {

@@ -57,6 +57,19 @@ TEST(Lattice, ChoosesByItselfBetweenTwoAndFourVoxelsALayer) {
     EXPECT_DOUBLE_EQ(large.voxel_size, 0.1);
 }
 
+TEST(Lattice, ChoosesWhatTheMemoryHolds) {
+    const auto print = stack(0.2, 0.2, 2000);
+    LatticeRequest request;
+    request.memory = std::size_t{1} << 40;
+    const Lattice plenty = choose(print, request);
+    EXPECT_DOUBLE_EQ(plenty.voxel_size, 0.05);
+    EXPECT_EQ(plenty.reason.find("free"), std::string::npos) << plenty.reason;
+    request.memory = std::size_t{1} << 20;
+    const Lattice scarce = choose(print, request);
+    EXPECT_DOUBLE_EQ(scarce.voxel_size, 0.1);
+    EXPECT_NE(scarce.reason.find("3 would take about"), std::string::npos) << scarce.reason;
+}
+
 TEST(Lattice, RefusesNonsense) {
     const auto toolpath = stack(0.2, 0.2, 3);
     for (const double size : {0.0, -1.0, 1e-9, 60.0, std::numeric_limits<double>::infinity(), std::nan("")})
