@@ -15,6 +15,7 @@
 #include "voxelize/estimate.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
+#include "voxelize/part_bounds.h"
 #include "voxelize/selection.h"
 #include "voxelize/surface_mesh.h"
 #include "voxelize/usd_file.h"
@@ -27,6 +28,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -301,6 +303,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             mesh_seconds += watch.lap();
             voxelize::writeMesh(*mesh, job.path);
         } else {
+            const auto printed = std::span<const std::uint32_t>(selection).first(job.beads);
+            provenance.part = voxelize::placed(voxelize::partBounds(toolpath, printed), options.placement);
             voxelize::describe(*grid, lattice, provenance);
             grids.insert(grids.begin(), grid);
             voxelize::writeVdb(grids, job.path, o.file);

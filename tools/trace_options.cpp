@@ -1,10 +1,14 @@
 #include "trace_options.h"
 
+#include "file_facts.h"
+
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "shade/filament_color.h"
 #include "shade/scene_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -123,6 +127,15 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("N")
         ->group(camera);
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
+    app.add_option("--frame", o.frame,
+                   "What a named view is fitted to: part, without skirts, prime towers and start lines, or all that is "
+                   "there (default part)")
+        ->check(CLI::IsMember({"part", "all"}))
+        ->type_name("NAME")
+        ->group(camera);
+    app.add_option("--zoom", o.scene.camera.zoom, "All F times larger, from the same place (default 1)")
+        ->type_name("F")
+        ->group(camera);
 
     const char* light = "Light and material";
     app.add_option("--integrator", o.render.integrator.name,
@@ -148,13 +161,20 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option(
            "--brdf", o.scene.brdf,
            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, MERL, "
-           "EXR), or the name of one in data/brdf, e.g. pla-blue")
+           "EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if the "
+           "file "
+           "states them)")
         ->type_name("SPEC|FILE|NAME")
+        ->group(light);
+    app.add_option("--color", o.color, "Plastic of this colour: '#ff6600', or a name as in CSS, e.g. teal")
+        ->excludes("--brdf")
+        ->type_name("COLOR")
         ->group(light);
     app.add_option("--color-by", o.scene.color_by,
                    "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, time, color")
         ->type_name("NAME")
         ->group(light);
+    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(light);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
         ->check(CLI::IsMember({"geometric", "smooth"}))
         ->type_name("NAME")
@@ -170,7 +190,8 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps")->type_name("EV")->group(light);
     app.add_option("--light", o.scene.lights,
                    "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
-                   "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges, "
+                   "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, half edges; "
+                   "both sides, "
                    "radiance), ambient:R,G,B; may be repeated")
         ->type_name("SPEC")
         ->group(light);
@@ -224,6 +245,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     // With objects only its name is used.
     over.inputs = {file.objects.empty() ? file.print : path.string()};
     over.objects = file.objects;
+    over.scene_text = sha256Hex(MappedFile(path).bytes());
     over.notes = file.notes;
     if (over.grid.empty()) over.grid = file.grid;
     if (!over.objects.empty() && !over.grid.empty())
@@ -231,6 +253,31 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     if (over.output.empty())
         over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
     o = std::move(over);
+}
+
+bool showsMaterial(const TraceCommand& o) {
+    return shade::needsLight(o.render.integrator) ||
+           std::find(o.render.aovs.begin(), o.render.aovs.end(), shade::Aov::albedo) != o.render.aovs.end();
+}
+
+std::string saidOf(const CLI::App& app) {
+    // Where the picture goes, who waits for it and on how many threads changes nothing of it.
+    constexpr std::array<std::string_view, 6> kOther = {"output", "checkpoint", "threads", "stats", "quiet", "IN"};
+    std::string said;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_single_name();
+        if (option->count() == 0 || std::find(kOther.begin(), kOther.end(), name) != kOther.end()) continue;
+        said += fmt::format("{} {}\n", name, fmt::join(option->results(), " "));
+    }
+    return said;
+}
+
+std::string sourceOf(const TraceCommand& o, const std::string& files) {
+    std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
+    for (const std::string& name : {o.scene.brdf, o.scene.env}) text += identityOf(name) + "\n";
+    for (const shade::ObjectOptions& object : o.objects) text += identityOf(object.material.brdf) + "\n";
+    if (!o.scene_text.empty()) text += o.scene_text;
+    return sha256Hex(text).substr(0, 32);
 }
 
 void applyText(TraceCommand& o) {
@@ -255,6 +302,12 @@ void applyText(TraceCommand& o) {
         o.scene.camera.focus_point.reset();
         if (o.focus.size() == 1) o.scene.camera.focus_distance = o.focus[0];
         if (o.focus.size() == 3) o.scene.camera.focus_point = toVector(o.focus);
+    }
+    if (!o.color.empty()) {
+        if (!shade::parseNamedColor(o.color))
+            throw UsageError(
+                fmt::format("--color {}: is no colour; write '#rrggbb', or a name as in CSS, e.g. orange", o.color));
+        o.scene.brdf = o.color;
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
     if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);

@@ -26,7 +26,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 void run(tools::TraceCommand& o, int argc, char** argv) {
+    const std::string said = o.said;
     tools::readScene(o, argc, argv);
+    o.said = said;
     if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
     tools::applyText(o);
     if (o.march != "auto" && o.march != "brick") tools::useHugePages(argv);  // bricks have their own
@@ -40,17 +42,21 @@ void run(tools::TraceCommand& o, int argc, char** argv) {
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
+    if (o.legend && linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
     if (o.denoise) shade::addDenoisingGuides(o.render);
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
-    tools::TraceOptions reading{.march = o.march,
-                                .values = o.values,
-                                .brdf = o.scene.brdf,
-                                .color_by = o.scene.color_by,
-                                .smooth_normals = o.scene.smooth_normals,
-                                .labels = shade::labelsOf(o.render.aovs),
-                                .prints = o.prints};
+    tools::TraceOptions reading{
+        .march = o.march,
+        .values = o.values,
+        .brdf = o.scene.brdf,
+        .file_colors = o.scene.brdf.empty() && o.scene.color_by.empty() && tools::showsMaterial(o),
+        .color_by = o.scene.color_by,
+        .smooth_normals = o.scene.smooth_normals,
+        .labels = shade::labelsOf(o.render.aovs),
+        .prints = o.prints};
     reading.prints.quiet = o.common.quiet;
+    reading.prints.hash = !o.render.checkpoint.empty();
     if (!o.prints.brick_cache.empty()) {
         if (o.march != "auto" && o.march != "brick")
             throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
@@ -63,11 +69,15 @@ void run(tools::TraceCommand& o, int argc, char** argv) {
     }
     const auto turns = static_cast<std::size_t>(o.turntable);
     std::optional<shade::SceneDescription> scene;
-    reading.prints.pixel_spread = [&](const voxelize::Bounds& print) {
+    reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
         if (!o.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        const march::Box box{{print.min[0], print.min[1], print.min[2]}, {print.max[0], print.max[1], print.max[2]}};
-        const shade::Camera camera =
-            scene ? scene->camera : shade::Camera::make(o.scene.camera, box, o.render.width, o.render.height);
+        const auto boxOf = [](const voxelize::Bounds& b) {
+            return march::Box{{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}};
+        };
+        const march::Box box = boxOf(print);
+        const shade::Camera camera = scene ? scene->camera
+                                           : shade::Camera::make(o.scene.camera, o.frame == "all" ? box : boxOf(part),
+                                                                 o.render.width, o.render.height);
         return shade::pixelSpread(camera, box, o.turntable);
     };
     glm::dvec3 middle(0.0);
@@ -90,18 +100,23 @@ void run(tools::TraceCommand& o, int argc, char** argv) {
         if (!o.prints.brick_picture.empty() && !objects.writeBrickPicture)
             throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
         for (const std::string& line : objects.lines) tools::say(o.common, line);
+        if (o.legend && objects.legends.empty())
+            tools::say(o.common, "  no legend: nothing is coloured by an attribute");
         tools::Stopwatch watch;
         if (!scene) {
             shade::SceneOptions seen = o.scene;
             seen.mm_per_unit = objects.mm_per_unit;
+            seen.brdf = objects.brdf;
+            if (o.frame != "all") seen.frame = objects.part;
             // What is not seen costs nothing.
             if (!shade::needsLight(o.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";
             scene = shade::makeScene(seen, *objects.intersector, o.render.width, o.render.height);
-            const march::Box box = objects.intersector->bounds();
+            const march::Box box = seen.frame.value_or(objects.intersector->bounds());
             middle = 0.5 * (box.min + box.max);
             for (const std::string& note : scene->material->notes()) tools::say(o.common, "  material: " + note);
             if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene->material);
         }
+        if (!o.render.checkpoint.empty()) o.render.source = tools::sourceOf(o, objects.source);
         scene->objects = objects.materials;
         scene->labels = objects.labels;
         double before_seconds = watch.lap();
@@ -137,5 +152,8 @@ int main(int argc, char** argv) {
     CLI::App app("Ray-traces an OpenVDB level set into a picture.", "vdbtrace");
     tools::TraceCommand command;
     tools::addTraceOptions(app, command);
-    return tools::runTool(app, argc, argv, [&] { run(command, argc, argv); });
+    return tools::runTool(app, argc, argv, [&] {
+        command.said = tools::saidOf(app);
+        run(command, argc, argv);
+    });
 }

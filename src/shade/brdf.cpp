@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "shade/brdf_file.h"
+#include "shade/filament_color.h"
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/preset.h"
@@ -49,9 +50,10 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     const bool plain = text.find_first_of(":/.") == std::string_view::npos && !text.empty();
     const std::filesystem::path path = tableFolder() / (std::string(text) + ".bsdf.gz");
     if (plain && std::filesystem::is_regular_file(path, error)) return readBrdfFile(path);
+    if (const auto color = parseNamedColor(text)) return std::make_shared<Plastic>(bodyOf(*color), kFilamentAlpha);
     throw UsageError(
         fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-                    "a file, or one of: {}",
+                    "a colour (#ff6600, teal), a file, or one of: {}",
                     text, namesIn(tableFolder())));
 }
 
@@ -71,6 +73,7 @@ const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";
+    if (text.empty()) text = kDefaultBrdf;
     const std::string_view name = text.substr(0, text.find(':'));
     if (name != "lambert" && name != "plastic") return readNamed(text);
     const Preset preset = parsePreset(text, kOption);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace stratum::voxelize {
@@ -20,8 +21,11 @@ struct Provenance {
     std::string up = "z";       ///< "up": axis of world space that points away from the bed, z or y
     std::string snapshot;       ///< "snapshot": label of a partial print, left out if empty
     std::string selection;      ///< "selection": --layers and --features, left out if empty
-    bool culled = false;        ///< "enclosed": whether surfaces that the outside can't reach are there
-    bool swept = false;         ///< "interior": whether negative values are distances
+    /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without what is printed beside it; see
+    /// partBounds(). Left out if empty.
+    std::optional<Bounds> part;
+    bool culled = false;  ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool swept = false;   ///< "interior": whether negative values are distances
 };
 
 enum class Compression : std::uint8_t { blosc, zip, none };
