@@ -22,6 +22,7 @@
 #include "voxelize/attributes.h"
 #include "voxelize/interior_distance.h"
 #include "voxelize/mesh_file.h"
+#include "voxelize/part_bounds.h"
 #include "voxelize/selection.h"
 #include "voxelize/solid_check.h"
 #include "voxelize/surface_mesh.h"
@@ -326,6 +327,8 @@ Json convert(const Options& o, const std::string& input, const fs::path& output,
             const tools::ProgressNote note("writing", o.common.quiet);
             voxelize::writeMesh(*mesh, job.path);
         } else {
+            const auto printed = std::span<const std::uint32_t>(selection).first(job.beads);
+            provenance.part = voxelize::placed(voxelize::partBounds(toolpath, printed), options.placement);
             const tools::ProgressNote note("writing", o.common.quiet);
             voxelize::describe(*grid, lattice, provenance);
             grids.insert(grids.begin(), grid);

@@ -47,7 +47,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
                              {"Integrator", o.render.integrator.name},
                              {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
                              {"Seed", std::to_string(o.render.seed)},
-                             {"Brdf", o.scene.brdf},
+                             {"Brdf", objects.brdf},
                              {"Environment", o.scene.env}};
     if (!scene.material->notes().empty())
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
@@ -56,7 +56,8 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
         metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
     {
         const ProgressNote note("writing", o.common.quiet);
-        picture.write(result.film, metadata, o.tone);
+        picture.write(result.film, metadata, o.tone,
+                      o.legend && !objects.legends.empty() ? &objects.legends.front() : nullptr);
     }
     if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
     const double write_seconds = watch.lap();
@@ -68,11 +69,15 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
     say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", frame.output,
                               o.render.width, o.render.height, result.mean_spp,
                               humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
+    Json material = objects.material;
+    material["notes"] = scene.material->notes();
     Json skipped = Json::array();
     const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
         skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
     };
     if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
+    if (!objects.no_color_lookup.empty())
+        skip("colour of each place", objects.no_color_lookup.c_str(), "an attribute lookup a hit");
     if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
     if (result.film.content() != shade::FilmContent::radiance)
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
@@ -91,7 +96,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
             {"march_bytes", objects.intersector->bytes()},
             {"on_demand", objects.on_demand ? objects.on_demand() : Json::array()},
             {"integrator", o.render.integrator.name},
-            {"material", {{"brdf", o.scene.brdf}, {"notes", scene.material->notes()}}},
+            {"material", material},
             {"notes", o.notes},
             {"seconds",
              {{"load", frame.load_seconds},

@@ -2,7 +2,9 @@
 
 #include "brick_picture.h"
 #include "command_line.h"
+#include "file_facts.h"
 #include "progress.h"
+#include "trace_materials.h"
 
 #include "io/error.h"
 #include "march/annotation.h"
@@ -10,7 +12,6 @@
 #include "march/brick_grid.h"
 #include "march/brick_intersector.h"
 #include "march/detail_intersector.h"
-#include "march/grid_axes.h"
 #include "march/level_set_file.h"
 #include "march/sdf_grid.h"
 #include "march/sdf_intersector.h"
@@ -18,13 +19,19 @@
 #include "march/vdb_intersector.h"
 #include "march/wide_intersector.h"
 #include "ondemand/print_attributes.h"
+#include "shade/filament_color.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -34,18 +41,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Want = std::tuple<std::string, std::string, std::string>;  // file, grid, attribute
 using IntersectorPtr = std::shared_ptr<const march::Intersector>;
-
-// What the file says its world unit is; other programs' files don't say.
-std::string unitOf(const openvdb::FloatGrid& grid) {
-    const auto unit = grid.getMetadata<openvdb::StringMetadata>("unit");
-    return unit ? unit->value() : "world units";
-}
-
-// Which axis the file says points up; files of other programs don't say.
-std::string upOf(const openvdb::FloatGrid& grid) {
-    const auto up = grid.getMetadata<openvdb::StringMetadata>("up");
-    return up ? up->value() : "z";
-}
 
 // Space of the file -> that space with z up -> world.
 march::Placement upright(const march::Placement& placement) {
@@ -60,16 +55,6 @@ IntersectorPtr intersectorOf(const openvdb::FloatGrid::ConstPtr& grid, const Tra
     if (options.march == "vdb") return march::makeVdbIntersector(grid);
     if (options.march == "sphere") return march::makeSphereIntersector(grid);
     return march::makeBrickIntersector(*grid, options.values);
-}
-
-void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
-    const double half_width = static_cast<double>(grid.background()) / march::GridAxes(grid.transform()).shortest();
-    // Rounding of the background to a float is no reason to warn.
-    if (half_width >= 2.999) return;
-    fmt::print(stderr,
-               "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
-               "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
-               path, half_width);
 }
 
 Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, std::size_t limit) {
@@ -155,15 +140,36 @@ struct Shape {
     double mm_per_unit = 1.0;
     IntersectorPtr intersector;
     std::map<std::string, march::AttributeSummary> summaries;
+    std::optional<march::Box> part;  // own space, without what is printed beside it
+    PrintColors colors;              // if somebody wants to know
+    std::string source;              // what tells the file from others
     Json report;
     std::string line;
 };
 
+// Makes the box of all parts larger by that of a shape where it stands: of all of it, if its file doesn't say more.
+void include(std::optional<march::Box>& parts, const Shape& shape, const march::Placement& placement) {
+    const march::Box own = shape.part.value_or(shape.intersector->bounds());
+    if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
+                               (corner & 4) != 0 ? own.max.z : own.min.z);
+        const glm::dvec3 world = placement.linear * place + placement.offset;
+        if (!parts) parts = march::Box{world, world};
+        parts->min = glm::min(parts->min, world);
+        parts->max = glm::max(parts->max, world);
+    }
+}
+
 class Reader {
 public:
     Reader(const TraceOptions& options, std::vector<std::string> attributes, std::vector<Want> wants,
-           TraceObjects& result)
-        : options_(options), attributes_(std::move(attributes)), wants_(std::move(wants)), result_(result) {}
+           std::set<std::pair<std::string, std::string>> by_file, TraceObjects& result)
+        : options_(options),
+          attributes_(std::move(attributes)),
+          wants_(std::move(wants)),
+          by_file_(std::move(by_file)),
+          result_(result) {}
 
     const Shape& shapeOf(const shade::ObjectOptions& object) {
         if (object.sdf) {
@@ -224,6 +230,8 @@ private:
         shape.y_up = upOf(head) == "y";
         shape.mm_per_unit = millimetresIn(unitOf(head));
         warnOfThinBand(object.vdb, head);
+        shape.part = partOf(head);
+        if (options_.prints.hash) shape.source = identityOf(object.vdb);
         march::Annotation annotation;
         for (const std::string& name : attributes_) {
             openvdb::GridBase::ConstPtr attribute;
@@ -232,6 +240,10 @@ private:
                 shape.summaries[name] = march::summarize(*attribute);
             }
             annotation.attributes.push_back(march::makeAttributeSource(attribute));
+        }
+        if (asksFile(object)) {
+            shape.colors = colorsOf(object.vdb, head);
+            if (shape.colors.by_place) addColorGrid(object, head, shape, annotation);
         }
         if (options_.smooth_normals) annotation.smooth = grid;
         result_.load_seconds += watch_.lap();
@@ -243,6 +255,30 @@ private:
         shape.intersector = march::annotate(plain, std::move(annotation));
         result_.build_seconds += watch_.lap();
         return shape;
+    }
+
+    // The grid of colours that lies beside a level set, unless all of it is of one: then that is enough.
+    void addColorGrid(const shade::ObjectOptions& object, const openvdb::FloatGrid& head, Shape& shape,
+                      march::Annotation& annotation) const {
+        shape.colors.by_place = false;
+        openvdb::GridBase::ConstPtr grid;
+        try {
+            grid = march::readAttributeGrid(object.vdb, "color", head);
+        } catch (const InputError&) {
+            return;  // another program's, of another kind: nobody asked for it
+        }
+        march::AttributeSummary summary = march::summarize(*grid);
+        if (summary.kind != march::AttributeSummary::Kind::color) return;
+        for (const glm::vec3& color : summary.colors) {
+            if (color == march::kNoColor) continue;
+            shape.colors.stated.push_back(shade::hexOf(color));
+            shape.colors.report.push_back({{"color", shape.colors.stated.back()}, {"from", "the grid color"}});
+        }
+        if (summary.colors.size() < 2 || shape.colors.stated.empty()) return;
+        shape.colors.by_place = true;
+        const auto place = std::find(attributes_.begin(), attributes_.end(), "color") - attributes_.begin();
+        annotation.attributes[static_cast<std::size_t>(place)] = march::makeAttributeSource(grid);
+        shape.summaries["color"] = std::move(summary);
     }
 
     Shape fromPrint(const shade::ObjectOptions& object) {
@@ -259,6 +295,13 @@ private:
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;
+        shape.part = march::Box{{print.part.min[0], print.part.min[1], print.part.min[2]},
+                                {print.part.max[0], print.part.max[1], print.part.max[2]}};
+        shape.source = print.content;
+        if (asksFile(object)) {
+            shape.colors = colorsOf(*print.toolpath, print.selection);
+            if (shape.colors.by_place) wants_.emplace_back(object.vdb, object.grid, "color");
+        }
         for (const std::string& name : attributes_)
             if (wanted(object, name))
                 shape.summaries[name] =
@@ -319,9 +362,13 @@ private:
         return std::find(wants_.begin(), wants_.end(), Want(object.vdb, object.grid, name)) != wants_.end();
     }
 
+    // Whether nobody says what it is made of, so that its file may.
+    bool asksFile(const shade::ObjectOptions& object) const { return by_file_.contains({object.vdb, object.grid}); }
+
     const TraceOptions& options_;
     std::vector<std::string> attributes_;
     std::vector<Want> wants_;
+    std::set<std::pair<std::string, std::string>> by_file_;
     TraceObjects& result_;
     Stopwatch watch_;
     std::vector<std::unique_ptr<Shape>> shapes_;
@@ -342,43 +389,61 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
         for (const shade::ObjectOptions& object : objects)
             if (!object.sdf) wants.emplace_back(object.vdb, object.grid, attributes.back());
     }
-    bool own_materials = false;
+    std::set<std::pair<std::string, std::string>> by_file;
+    const auto number = [&attributes](const std::string& name) {
+        const auto found = std::find(attributes.begin(), attributes.end(), name);
+        const auto place = static_cast<std::size_t>(found - attributes.begin());
+        if (found == attributes.end()) attributes.push_back(name);
+        return place;
+    };
     for (const shade::ObjectOptions& object : objects) {
         shade::MaterialOptions material = object.material;
-        if (material.by.empty() && material.brdf.empty() && !object.sdf) material.by = options.color_by;
+        if (material.by.empty() && material.brdf.empty() && !object.sdf) {
+            material.by = options.color_by;
+            if (options.file_colors && material.by.empty()) {
+                by_file.emplace(object.vdb, object.grid);
+                (void)number("color");
+            }
+        }
         if (!material.by.empty()) {
-            if (std::find(attributes.begin(), attributes.end(), material.by) == attributes.end())
-                attributes.push_back(material.by);
+            (void)number(material.by);
             wants.emplace_back(object.vdb, object.grid, material.by);
         }
-        own_materials = own_materials || !material.by.empty() || !material.brdf.empty();
         materials.push_back(std::move(material));
     }
-    Reader reader(options, attributes, std::move(wants), result);
-    std::map<std::string, std::shared_ptr<const shade::Brdf>> brdfs;
+    Reader reader(options, attributes, std::move(wants), by_file, result);
+    TraceMaterials made(options.brdf);
     std::vector<march::SceneObject> scene;
+    std::optional<march::Box> parts;
+    bool any_part = false;
     result.reports = Json::array();
     for (std::size_t n = 0; n < objects.size(); ++n) {
         const Shape& shape = reader.shapeOf(objects[n]);
         const bool y_up = objects[n].up.empty() ? shape.y_up : objects[n].up == "y";
         scene.push_back({shape.intersector, y_up ? upright(objects[n].placement) : objects[n].placement});
+        include(parts, shape, scene.back().placement);
+        any_part = any_part || shape.part.has_value();
         if (n == 0) result.mm_per_unit = shape.mm_per_unit;
         result.reports.push_back(shape.report);
+        if (!shape.source.empty()) result.source += " " + shape.source;
         if (std::find(result.lines.begin(), result.lines.end(), shape.line) == result.lines.end())
             result.lines.push_back(shape.line);
-        if (!own_materials) continue;
         const shade::MaterialOptions& material = materials[n];
-        if (material.by.empty()) {
-            const std::string& text = material.brdf.empty() ? options.brdf : material.brdf;
-            auto& brdf = brdfs[text];  // baking a table takes a second
-            if (!brdf) brdf = shade::makeBrdf(text);
-            result.materials.emplace_back(brdf);
-            continue;
-        }
-        const auto number = std::find(attributes.begin(), attributes.end(), material.by) - attributes.begin();
-        result.materials.push_back(shade::makeObjectMaterial(material, options.brdf, static_cast<std::size_t>(number),
-                                                             shape.summaries.at(material.by)));
+        const bool asks = material.by.empty() && material.brdf.empty() && !objects[n].sdf && options.file_colors;
+        const std::string by = asks ? "color" : material.by;
+        const auto summary = shape.summaries.find(by);
+        const march::AttributeSummary* const known = summary == shape.summaries.end() ? nullptr : &summary->second;
+        if (asks)
+            made.add(shape.colors, number(by), shape.colors.by_place ? known : nullptr);
+        else
+            made.add(material, by.empty() ? 0 : number(by), by.empty() ? nullptr : known);
     }
+    if (any_part) result.part = parts;
+    result.materials = made.materials();
+    result.brdf = made.brdf();
+    result.material = made.report();
+    result.legends = made.legends();
+    result.no_color_lookup = made.noLookup();
     result.intersector = march::makeSceneIntersector(std::move(scene));
     return result;
 }

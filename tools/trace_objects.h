@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,9 @@ namespace stratum::tools {
 struct TraceOptions {
     std::string march = "auto";  ///< --march, of level sets
     march::BrickValues values = march::BrickValues::Int16;
-    std::string brdf;      ///< --brdf, of objects that have none of their own
-    std::string color_by;  ///< --color-by, of level sets that have no material of their own
+    std::string brdf;          ///< --brdf, of objects that have none of their own; empty: nobody said
+    bool file_colors = false;  ///< objects of which nobody says the material have the colours that their files state
+    std::string color_by;      ///< --color-by, of level sets that have no material of their own
     bool smooth_normals = false;
     std::size_t brick_cache = march::BrickGrid::kNoBound;  ///< --brick-cache, bytes
     std::vector<shade::Label> labels;                      ///< that the picture shows; every level set must have them
@@ -35,7 +37,14 @@ struct TraceObjects {
     std::shared_ptr<const march::Intersector> intersector;
     std::vector<shade::ObjectMaterial> materials;  ///< by march::Hit::object; empty if all are of the scene's
     decltype(shade::SceneDescription::labels) labels;
-    nlohmann::ordered_json reports;  ///< of each object, for --stats
+    nlohmann::ordered_json reports;   ///< of each object, for --stats
+    std::string brdf;                 ///< the scene's material, see TraceMaterials::brdf()
+    nlohmann::ordered_json material;  ///< for --stats
+    std::vector<shade::Legend> legends;
+    std::string no_color_lookup;  ///< why hits don't look for a colour; empty if that is no matter
+    /// World-space box of the parts without what is printed beside them, if a file knows it.
+    std::optional<march::Box> part;
+    std::string source;  ///< what tells the files from others, for checkpoints
     /// How many pictures a growing print makes, and what brings it to one of them; see TracePrintOptions::series.
     std::size_t moments = 1;
     std::function<void(std::size_t)> showMoment;

@@ -1,13 +1,16 @@
 #include "trace_options.h"
 
 #include "choices.h"
+#include "file_facts.h"
 
 #include "io/error.h"
 #include "io/mapped_file.h"
+#include "shade/filament_color.h"
 #include "shade/preset_names.h"
 #include "shade/scene_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -161,6 +164,15 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("N")
         ->group(camera);
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
+    app.add_option("--frame", o.frame,
+                   "What a named view is fitted to: part, without skirts, prime towers and start lines, or all that is "
+                   "there (default part)")
+        ->check(CLI::IsMember({"part", "all"}))
+        ->type_name("NAME")
+        ->group(camera);
+    app.add_option("--zoom", o.scene.camera.zoom, "All F times larger, from the same place (default 1)")
+        ->type_name("F")
+        ->group(camera);
 
     const char* light = "Light and material";
     completes(app.add_option("--integrator", o.render.integrator.name,
@@ -189,9 +201,14 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option(
                   "--brdf", o.scene.brdf,
                   "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, "
-                  "MERL, EXR), or the name of one in data/brdf, e.g. pla-blue"),
+                  "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
+                  "the file states them)"),
               Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
+        ->group(light);
+    app.add_option("--color", o.color, "Plastic of this colour: '#ff6600', or a name as in CSS, e.g. teal")
+        ->excludes("--brdf")
+        ->type_name("COLOR")
         ->group(light);
     completes(app.add_option("--color-by", o.scene.color_by,
                              "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
@@ -199,6 +216,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
               Completion::word, {"tool", "feature", "layer", "object", "speed", "width", "time", "color"})
         ->type_name("NAME")
         ->group(light);
+    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(light);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
         ->check(oneOf({"geometric", "smooth"}))
         ->type_name("NAME")
@@ -216,7 +234,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--light", o.scene.lights,
                              "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
                              "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
-                             "half edges, radiance), ambient:R,G,B; may be repeated"),
+                             "half edges, radiance; both sides shine), ambient:R,G,B; may be repeated"),
               Completion::word, {"directional:", "sun:", "point:", "rectangle:", "ambient:"})
         ->allow_extra_args(false)
         ->type_name("SPEC")
@@ -272,6 +290,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     // With objects only its name is used.
     over.inputs = {file.objects.empty() ? file.print : path.string()};
     over.objects = file.objects;
+    over.scene_text = sha256Hex(MappedFile(path).bytes());
     over.notes = file.notes;
     if (over.grid.empty()) over.grid = file.grid;
     if (!over.objects.empty() && !over.grid.empty())
@@ -279,6 +298,31 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     if (over.output.empty())
         over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
     o = std::move(over);
+}
+
+bool showsMaterial(const TraceCommand& o) {
+    return shade::needsLight(o.render.integrator) ||
+           std::find(o.render.aovs.begin(), o.render.aovs.end(), shade::Aov::albedo) != o.render.aovs.end();
+}
+
+std::string saidOf(const CLI::App& app) {
+    // Where the picture goes, who waits for it and on how many threads changes nothing of it.
+    constexpr std::array<std::string_view, 6> kOther = {"output", "checkpoint", "threads", "stats", "quiet", "IN"};
+    std::string said;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_single_name();
+        if (option->count() == 0 || std::find(kOther.begin(), kOther.end(), name) != kOther.end()) continue;
+        said += fmt::format("{} {}\n", name, fmt::join(option->results(), " "));
+    }
+    return said;
+}
+
+std::string sourceOf(const TraceCommand& o, const std::string& files) {
+    std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
+    for (const std::string& name : {o.scene.brdf, o.scene.env}) text += identityOf(name) + "\n";
+    for (const shade::ObjectOptions& object : o.objects) text += identityOf(object.material.brdf) + "\n";
+    if (!o.scene_text.empty()) text += o.scene_text;
+    return sha256Hex(text).substr(0, 32);
 }
 
 void applyText(TraceCommand& o) {
@@ -307,6 +351,12 @@ void applyText(TraceCommand& o) {
         o.scene.camera.focus_point.reset();
         if (focus.size() == 1) o.scene.camera.focus_distance = focus[0];
         if (focus.size() == 3) o.scene.camera.focus_point = glm::dvec3(focus[0], focus[1], focus[2]);
+    }
+    if (!o.color.empty()) {
+        if (!shade::parseNamedColor(o.color))
+            throw UsageError(
+                fmt::format("--color {}: is no colour; write '#rrggbb', or a name as in CSS, e.g. orange", o.color));
+        o.scene.brdf = o.color;
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
     if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);

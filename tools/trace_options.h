@@ -24,6 +24,10 @@ struct TraceCommand {
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
     std::string eye, look_at, up, focus, phong;
     bool each = false;
+    std::string color, frame = "part";  // --color, --frame
+    std::string scene_text;             // hash of the scene file, or empty
+    std::string said;                   // the options that are given, for checkpoints
+    bool legend = false;
     int turntable = 1;
     bool spp_given = false, denoise = false;
     march::BrickValues values = march::BrickValues::Int16;
@@ -40,6 +44,16 @@ void addTraceOptions(CLI::App& app, TraceCommand& command);
 /// If the input is a scene, its values become the defaults and the command line is read once more over them. Throws
 /// UsageError or InputError.
 void readScene(TraceCommand& command, int argc, char** argv);
+
+/// Whether the picture or one of its layers shows what things are made of.
+bool showsMaterial(const TraceCommand& command);
+
+/// The options that were given and may change a picture, as text: the same for any order of them.
+std::string saidOf(const CLI::App& app);
+
+/// A hash of what a picture is made from: those options, the input files (`files` says what they hold), and the files
+/// that the options name.
+std::string sourceOf(const TraceCommand& command, const std::string& files);
 
 /// Parses the options that are kept as text, and checks all of them. Throws UsageError.
 void applyText(TraceCommand& command);

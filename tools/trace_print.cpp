@@ -6,8 +6,10 @@
 #include "gcode/input_bytes.h"
 #include "gcode/reader.h"
 #include "io/error.h"
+#include "io/mapped_file.h"
 #include "motion/print_times.h"
 #include "ondemand/detail_levels.h"
+#include "voxelize/part_bounds.h"
 #include "voxelize/selection.h"
 #include "voxelize/voxel_choice.h"
 
@@ -227,6 +229,7 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
         const gcode::InputBytes file(path);
         bytes = file.bytes().size();
         name = file.name();
+        if (options.hash) result.content = sha256Hex(file.bytes());
         gcode::ReadOptions read = options.print.read;
         ProgressBar bar("reading", options.quiet);
         read.progress = bar.callback();
@@ -238,7 +241,9 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     std::vector<std::uint32_t> selection = voxelize::selectBeads(*toolpath, selectionOf(options.print, *toolpath));
     if (!options.printed.empty()) cut(selection, options.printed, *toolpath);
     const voxelize::Bounds bounds = voxelize::boundsOf(*toolpath, selection);
-    const shade::PixelSpread pixels = options.print.voxel_auto ? options.pixel_spread(bounds) : shade::PixelSpread();
+    const voxelize::Bounds part = voxelize::partBounds(*toolpath, selection);
+    const shade::PixelSpread pixels =
+        options.print.voxel_auto ? options.pixel_spread(bounds, part) : shade::PixelSpread();
     const double pixel = pixels.smallest;
     const voxelize::Lattice lattice =
         latticeFor(options.print, *toolpath, selection, bounds, voxelize::Interior::keep, pixel);
@@ -290,6 +295,8 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
                                    result.levels[n].from);
     result.selection = std::move(selection);
     result.moments = momentsOf(options.series, options.series_by_time, *toolpath);
+    result.toolpath = std::move(toolpath);
+    result.part = part;
     return result;
 }
 

@@ -27,8 +27,10 @@ struct TracePrintOptions {
     std::string brick_picture;  ///< --brick-picture: a file, or empty
     int secondary_voxel = 1;    ///< --secondary-voxel: voxels of wide rays, in those of others; 1: the same
     bool quiet = false;
-    /// What a pixel spans of what lies in a box, mm, for --voxel-size auto.
-    std::function<shade::PixelSpread(const voxelize::Bounds&)> pixel_spread;
+    bool hash = false;  ///< fill in TracedPrint::content
+    /// What a pixel spans of what lies in a box, mm, for --voxel-size auto; also the part's box, see
+    /// voxelize::partBounds().
+    std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
 };
 
 /// Adds those of a print: how to take it, what of it, and how to keep its bricks.
@@ -47,8 +49,11 @@ struct TracedPrint {
     glm::dvec3 eye{0.0};                   ///< if there are several levels
     std::vector<std::uint32_t> moments;    ///< of the series: what lies before these beads is printed; the last is all
     std::vector<std::uint32_t> selection;  ///< its beads
-    nlohmann::ordered_json report;         ///< for --stats
-    std::string line;                      ///< for people
+    std::shared_ptr<const gcode::Toolpath> toolpath;
+    voxelize::Bounds part;          ///< of its beads without what is printed beside the part
+    std::string content;            ///< SHA-256 of the file, if asked for
+    nlohmann::ordered_json report;  ///< for --stats
+    std::string line;               ///< for people
     double parse_seconds = 0;
 };
 

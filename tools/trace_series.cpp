@@ -27,11 +27,13 @@ TraceOptions readingOf(const TraceCommand& o) {
     TraceOptions reading{.march = o.march,
                          .values = o.values,
                          .brdf = o.scene.brdf,
+                         .file_colors = o.scene.brdf.empty() && o.scene.color_by.empty() && showsMaterial(o),
                          .color_by = o.scene.color_by,
                          .smooth_normals = o.scene.smooth_normals,
                          .labels = shade::labelsOf(o.render.aovs),
                          .prints = o.prints};
     reading.prints.quiet = o.common.quiet;
+    reading.prints.hash = !o.render.checkpoint.empty();
     if (!o.prints.brick_cache.empty()) {
         if (o.march != "auto" && o.march != "brick")
             throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
@@ -48,7 +50,9 @@ TraceOptions readingOf(const TraceCommand& o) {
 class Series {
 public:
     Series(const TraceCommand& o, int threads) : o_(o), threads_(threads), reading_(readingOf(o)) {
-        reading_.prints.pixel_spread = [this](const voxelize::Bounds& print) { return spread(print); };
+        reading_.prints.pixel_spread = [this](const voxelize::Bounds& print, const voxelize::Bounds& part) {
+            return spread(print, part);
+        };
     }
 
     /// Frames of one input, which all have the camera, the bed and the light of the first that is traced.
@@ -66,6 +70,7 @@ public:
         if (!o_.prints.brick_picture.empty() && !objects.writeBrickPicture)
             throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
         for (const std::string& line : objects.lines) say(o_.common, line);
+        if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");
         Stopwatch watch;
         if (!scene_) begin(objects);
         scene_->objects = objects.materials;
@@ -77,24 +82,31 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    shade::PixelSpread spread(const voxelize::Bounds& print) const {
+    static march::Box boxOf(const voxelize::Bounds& b) {
+        return {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}};
+    }
+
+    shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part) const {
         if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        const march::Box box{{print.min[0], print.min[1], print.min[2]}, {print.max[0], print.max[1], print.max[2]}};
-        const shade::Camera camera =
-            scene_ ? scene_->camera : shade::Camera::make(o_.scene.camera, box, o_.render.width, o_.render.height);
+        const march::Box box = boxOf(print);
+        const shade::Camera camera = scene_ ? scene_->camera
+                                            : shade::Camera::make(o_.scene.camera, o_.frame == "all" ? box : boxOf(part),
+                                                                  o_.render.width, o_.render.height);
         return shade::pixelSpread(camera, box, o_.turntable);
     }
 
     void begin(const TraceObjects& objects) {
         shade::SceneOptions seen = o_.scene;
         seen.mm_per_unit = objects.mm_per_unit;
+        seen.brdf = objects.brdf;
+        if (o_.frame != "all") seen.frame = objects.part;
         // What is not seen costs nothing.
         if (!shade::needsLight(o_.render.integrator) && seen.env == "studio") seen.env = "constant:0,0,0";
         {
             const ProgressNote note("preparing", o_.common.quiet);
             scene_ = shade::makeScene(seen, *objects.intersector, o_.render.width, o_.render.height);
         }
-        const march::Box box = objects.intersector->bounds();
+        const march::Box box = seen.frame.value_or(objects.intersector->bounds());
         middle_ = 0.5 * (box.min + box.max);
         for (const std::string& note : scene_->material->notes()) say(o_.common, "  material: " + note);
         if (!o_.write_brdf.empty()) shade::writeBrdfFile(o_.write_brdf, *scene_->material);

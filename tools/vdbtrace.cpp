@@ -53,6 +53,7 @@ void check(const tools::TraceCommand& o, const std::vector<std::string>& given_o
         throw UsageError("--progress-series is of one print alone");
     if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
+    if (o.legend && linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
     if (given_of_prints.empty()) return;
     if (o.objects.empty()) {
         for (const std::string& input : o.inputs)
@@ -84,7 +85,9 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
 
 // The scene, if the input is one, and everything that is kept as text.
 void prepare(tools::TraceCommand& o, int argc, char** argv) {
+    const std::string said = o.said;
     tools::readScene(o, argc, argv);
+    o.said = said;
     if ((o.render.noise > 0.0 || o.render.seconds > 0.0) && !o.spp_given) o.render.spp = 4096;
     tools::applyText(o);
 }
@@ -170,5 +173,8 @@ int main(int argc, char** argv) {
     CLI::App app("Ray-traces an OpenVDB level set into a picture.", "vdbtrace");
     tools::TraceCommand command;
     tools::addTraceOptions(app, command);
-    return tools::runTool(app, argc, argv, [&] { run(app, command, argc, argv); });
+    return tools::runTool(app, argc, argv, [&] {
+        command.said = tools::saidOf(app);
+        run(app, command, argc, argv);
+    });
 }

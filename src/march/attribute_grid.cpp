@@ -135,6 +135,10 @@ AttributeSummary summarize(const openvdb::GridBase& grid) {
             openvdb::Vec3f last(-1.0F);
             for (auto it = typed.cbeginValueOn(); it; ++it) {
                 if (*it == last) continue;
+                if (!it->isFinite()) {
+                    ++summary.not_finite;
+                    continue;
+                }
                 last = *it;
                 colors.insert(toGlm(last));
                 if (colors.size() > AttributeSummary::kMostColors)
@@ -146,13 +150,20 @@ AttributeSummary summarize(const openvdb::GridBase& grid) {
             summary.kind =
                 std::is_same_v<Value, std::int32_t> ? AttributeSummary::Kind::integer : AttributeSummary::Kind::number;
             bool any = false;
+            std::set<int> values;
             for (auto it = typed.cbeginValueOn(); it; ++it) {
                 const auto v = static_cast<double>(*it);
-                if (!std::isfinite(v)) continue;
+                if (!std::isfinite(v)) {
+                    ++summary.not_finite;
+                    continue;
+                }
                 summary.least = any ? std::min(summary.least, v) : v;
                 summary.most = any ? std::max(summary.most, v) : v;
                 any = true;
+                if constexpr (std::is_same_v<Value, std::int32_t>)
+                    if (values.size() <= AttributeSummary::kMostValues) values.insert(*it);
             }
+            if (values.size() <= AttributeSummary::kMostValues) summary.values.assign(values.begin(), values.end());
         }
     });
     return summary;

@@ -113,6 +113,19 @@ std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, 
     return file;
 }
 
+bool hasGrid(const std::filesystem::path& path, const std::string& name) {
+    const std::string where = path.string();
+    const MappedFile mapped(path);
+    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
+    try {
+        openvdb::io::File file(where);
+        file.open(/*delayLoad=*/false);
+        return file.hasGrid(name);
+    } catch (const std::exception& error) {
+        throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
+    }
+}
+
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {
     requireTraceable(grid, grid.tree().leafCount(), where);
 }

@@ -22,6 +22,9 @@ openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const st
 /// finds.
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
+/// Whether a .vdb holds a grid of that name, of whatever type. Throws InputError for a missing or damaged file.
+bool hasGrid(const std::filesystem::path& path, const std::string& name);
+
 /// Throws InputError, beginning with `where`, unless the grid is a level set that rays can be traced through: class,
 /// not empty, a linear transform without shear (voxels may be turned boxes of any edges), half-width of at least 2 of
 /// the shortest edges.

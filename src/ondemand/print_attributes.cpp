@@ -157,20 +157,29 @@ march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute a
     std::set<glm::vec3, decltype(before)> colors(before);
     glm::vec3 last(-1.0F);
     bool any = false;
+    std::set<int> integers;
     for (const std::uint32_t bead : selection) {
         const glm::vec3 value = valueOf(values, attribute, bead);
         if (value == last) continue;
+        if (!(std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z))) {
+            ++summary.not_finite;
+            continue;
+        }
         last = value;
         if (summary.kind == march::AttributeSummary::Kind::color) {
             colors.insert(value);
             continue;
         }
         const auto number = static_cast<double>(value.x);
-        if (!std::isfinite(number)) continue;
         summary.least = any ? std::min(summary.least, number) : number;
         summary.most = any ? std::max(summary.most, number) : number;
         any = true;
+        if (summary.kind == march::AttributeSummary::Kind::integer &&
+            integers.size() <= march::AttributeSummary::kMostValues)
+            integers.insert(static_cast<int>(number));
     }
+    if (integers.size() <= march::AttributeSummary::kMostValues)
+        summary.values.assign(integers.begin(), integers.end());
     if (colors.size() > march::AttributeSummary::kMostColors)
         throw InputError(fmt::format("{} has more than {} colours; a print has a few", field.name(),
                                      march::AttributeSummary::kMostColors));

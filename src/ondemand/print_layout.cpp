@@ -1,5 +1,6 @@
 #include "ondemand/print_layout.h"
 
+#include "io/memory.h"
 #include "voxelize/estimate.h"
 
 #include <algorithm>

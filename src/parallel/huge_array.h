@@ -13,8 +13,9 @@
 
 namespace stratum {
 
-/// A fixed number of T, all bits zero, aligned to a cache line or better. One more than asked for is there, so that
-/// vector code may read a little past the end, and index 0 always.
+/// A fixed number of T, all bits zero, aligned to a cache line or better. After the end there is room for one T and for
+/// kReadAhead bytes, all zero too: vector code may read that many bytes from any element on, and index 0 is always
+/// there.
 template <typename T>
 class HugeArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -22,12 +23,14 @@ class HugeArray {
 public:
     /// Whether whole huge pages come and go, or small ones: for tables of which little is ever written, here and there.
     enum class Pages { huge, small };
+    /// Bytes that one lane of a gather reads, however small a T is.
+    static constexpr std::size_t kReadAhead = 8;
 
     HugeArray() = default;
     /// Throws std::bad_alloc if there is no room in the address space.
     explicit HugeArray(std::size_t size, Pages pages = Pages::huge) : size_(size) {
         constexpr std::size_t kHugePage = std::size_t{1} << 21;
-        const std::size_t wanted = (size + 1) * sizeof(T);
+        const std::size_t wanted = (size + 1) * sizeof(T) + kReadAhead;
         const bool large = wanted >= kHugePage;
         // Maps are aligned to small pages; the spare part of a longer one is never touched.
         const std::size_t mapped = large ? wanted + kHugePage : wanted;

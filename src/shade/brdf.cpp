@@ -3,6 +3,7 @@
 #include "io/error.h"
 #include "io/nearest_name.h"
 #include "shade/brdf_file.h"
+#include "shade/filament_color.h"
 #include "shade/lambert.h"
 #include "shade/plastic.h"
 #include "shade/preset.h"
@@ -57,12 +58,13 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     std::error_code error;
     if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
         return readBrdfFile(text);
+    if (const auto color = parseNamedColor(text)) return std::make_shared<Plastic>(bodyOf(*color), kFilamentAlpha);
     const std::vector<std::string> tables = namesIn(tableFolder());
     std::vector<std::string_view> names(tables.begin(), tables.end());
     names.insert(names.end(), {"lambert", "plastic"});
     throw UsageError(
         fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-                    "a file, or one of: {}{}",
+                    "a colour (#ff6600, teal), a file, or one of: {}{}",
                     text,
                     tables.empty() ? fmt::format("none; {} has no tables", tableFolder().string())
                                    : fmt::format("{}", fmt::join(tables, ", ")),
@@ -94,6 +96,7 @@ const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";
+    if (text.empty()) text = kDefaultBrdf;
     if (!isFormula(text)) return readNamed(text);
     const Preset preset = parsePreset(text, kOption);
     const auto colour = [&] {

@@ -53,9 +53,10 @@ extern const char* const kDefaultBrdf;
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
-///   FILE                 a measured table, see readBrdfFile
-///   NAME                 a table of data/brdf, e.g. pla-blue; looked for in $STRATUM_DATA/brdf, or where
-///                        it was installed or built
+///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
+///   in
+///                        $STRATUM_DATA/brdf, or where it was installed or built
+///   COLOR                "#ff6600" or a colour's name: plastic of it, see filament_color.h; nothing: kDefaultBrdf
 /// Throws UsageError, InputError.
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text);
 

@@ -92,6 +92,7 @@ void CameraOptions::validate() const {
         throw UsageError(fmt::format("--fov {}: must be above 0 and at most 170 degrees", fov));
     if (!(margin >= 0.0 && margin <= 0.45))
         throw UsageError(fmt::format("the margin is {}; it must be from 0 to 0.45 of the frame", margin));
+    if (!(zoom >= 0.05 && zoom <= 50.0)) throw UsageError(fmt::format("--zoom {}: must be from 0.05 to 50", zoom));
     if (look_at && !eye) throw UsageError("--look-at needs --eye; give both, or choose a --view");
     if ((eye && !allFinite(*eye)) || (look_at && !allFinite(*look_at)) || (up && !allFinite(*up)))
         throw UsageError("--eye, --look-at and --up must be finite numbers");
@@ -129,7 +130,7 @@ Camera focused(const Camera& camera, const CameraOptions& options, const march::
     if (options.f_number > 0.0) {
         constexpr double kPictureHeight = 24.0;  // mm, as on film
         const double focal = 0.5 * kPictureHeight / std::tan(0.5 * camera.fov() * std::numbers::pi / 180.0);
-        radius = 0.5 * focal / options.f_number;
+        radius = 0.5 * focal / options.f_number / options.mm_per_unit;
     }
     if (!(radius > 0.0)) return camera;
     const glm::dvec3 target = options.focus_point.value_or(0.5 * (box.min + box.max));
@@ -144,7 +145,7 @@ Camera focused(const Camera& camera, const CameraOptions& options, const march::
 
 Camera Camera::make(const CameraOptions& options, const march::Box& box, int width, int height) {
     options.validate();
-    return focused(fitted(options, box, width, height), options, box);
+    return focused(fitted(options, box, width, height).zoomed(options.zoom), options, box);
 }
 
 Camera Camera::fitted(const CameraOptions& options, const march::Box& box, int width, int height) {
@@ -184,6 +185,14 @@ Camera Camera::fitted(const CameraOptions& options, const march::Box& box, int w
     // A box without any size has no distance of its own.
     if (glm::length(box.max - box.min) <= 0.0) back = -1.0;
     camera.eye_ = middle + back * camera.forward_ + x.centred(back) * camera.right_ + y.centred(back) * camera.up_;
+    return camera;
+}
+
+Camera Camera::zoomed(double factor) const {
+    if (factor == 1.0) return *this;
+    Camera camera = *this;
+    camera.tan_half_ /= factor;
+    camera.fov_ = 2.0 * std::atan(camera.tan_half_) * 180.0 / std::numbers::pi;
     return camera;
 }
 

@@ -25,10 +25,12 @@ struct CameraOptions {
     std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
     double fov = 28.0;             ///< degrees, vertical, whole angle, in (0, 170]
     double aperture = 0.0;         ///< diameter of the lens, world units, >= 0; 0 is a pinhole: all is sharp
-    double f_number = 0.0;  ///< or the same as on a camera with a picture 24 mm high, world units being mm; 0: none
+    double f_number = 0.0;         ///< or the same as on a camera with a picture 24 mm high; 0: none
+    double mm_per_unit = 1.0;      ///< millimetres a world unit: how large that camera's lens is here; > 0
     std::optional<double> focus_distance;   ///< world units before the eye, along the line of sight; > 0
     std::optional<glm::dvec3> focus_point;  ///< or this world-space point is sharp; default: the middle of the box
     bool all_around = false;                ///< fit a named view so that the box fits from all sides, for turntables
+    double zoom = 1.0;     ///< how many times larger all is seen from the same place, in [0.05, 50]; narrows the fov
     double margin = 0.05;  ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
 
     /// Throws UsageError.
@@ -66,6 +68,8 @@ public:
     march::Ray ray(const glm::dvec2& pixel, const glm::vec2& u) const;
     /// The same camera with a lens. World units; focus is along forward(), > 0.
     Camera withLens(double radius, double focus) const;
+    /// The same camera with a longer (factor above 1) or shorter focal length: the middle stays, all is seen larger.
+    Camera zoomed(double factor) const;
     /// The same camera turned counter-clockwise, as seen from above, about a vertical axis.
     Camera turned(double degrees, const glm::dvec3& about) const;
     /// Where a world-space point is seen, in pixels; nothing if it is not in front of the camera.

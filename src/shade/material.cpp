@@ -1,6 +1,7 @@
 #include "shade/material.h"
 
 #include "io/error.h"
+#include "shade/filament_color.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -20,6 +21,7 @@ namespace {
 constexpr double kMostCategories = 32;
 constexpr std::size_t kRampSteps = 256;
 constexpr float kBrightest = 0.95f;  // no filament reflects all
+const Color kNeutral(0.18f);         // of values that are no numbers
 
 Color fromSrgb(std::uint32_t hex) {
     const auto channel = [](std::uint32_t v) {
@@ -63,6 +65,27 @@ int valueOf(const std::string& key, const MaterialOptions& options, const march:
                                      options.by, key, known.empty() ? "the file has none" : known));
     }
     return static_cast<int>(found - summary.labels.begin());
+}
+
+/// Which colour a whole number has where nothing else is said: a feature its own, others one of a palette.
+Color colorOfInteger(int value, const march::AttributeSummary& summary) {
+    const auto id = static_cast<std::size_t>(value);
+    if (id < summary.labels.size())
+        for (const Named& named : kFeatureColors)
+            if (named.name == summary.labels[id]) return fromSrgb(named.color);
+    return categoryColor(id);
+}
+
+/// Whether each whole number has a colour of its own, and not a place on a ramp.
+bool isPalette(const MaterialOptions& options, const march::AttributeSummary& summary) {
+    return summary.kind == march::AttributeSummary::Kind::integer && options.by != "layer" &&
+           summary.most - summary.least < kMostCategories;
+}
+
+std::string nameOf(int value, const MaterialOptions& options, const march::AttributeSummary& summary) {
+    const auto id = static_cast<std::size_t>(value);
+    if (id < summary.labels.size() && !summary.labels[id].empty()) return summary.labels[id];
+    return fmt::format("{} {}", options.by, value);
 }
 
 std::shared_ptr<const Brdf> recolored(const Brdf& base, const Color& color, const std::string& text) {
@@ -119,13 +142,16 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
             place[valueOf(key, options, summary)] = brdfs.size();
             brdfs.push_back(makeBrdf(brdf));
         }
+        brdfs.push_back(base);
         return {attribute, brdfs, [place](const glm::vec3& v) {
                     const auto found = place.find(static_cast<int>(v.x));
                     return found == place.end() ? std::size_t{0} : found->second;
                 }};
     }
     if (summary.kind == Kind::color) {
-        for (const glm::vec3& color : summary.colors) brdfs.push_back(recolored(*base, color, text));
+        for (const glm::vec3& color : summary.colors)
+            brdfs.push_back(color == march::kNoColor ? base : recolored(*base, bodyOf(color), text));
+        brdfs.push_back(recolored(*base, kNeutral, text));
         return {attribute, brdfs, [colors = summary.colors](const glm::vec3& v) {
                     const auto before = [](const glm::vec3& a, const glm::vec3& b) {
                         return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
@@ -137,16 +163,10 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
     }
     const double least = summary.least;
     const double span = summary.most - least;
-    if (summary.kind == Kind::integer && span < kMostCategories && options.by != "layer") {
-        for (int n = 0; n <= static_cast<int>(span); ++n) {
-            const int value = static_cast<int>(least) + n;
-            const auto id = static_cast<std::size_t>(value);
-            Color color = categoryColor(id);
-            if (id < summary.labels.size())
-                for (const Named& named : kFeatureColors)
-                    if (named.name == summary.labels[id]) color = fromSrgb(named.color);
-            brdfs.push_back(recolored(*base, color, text));
-        }
+    if (isPalette(options, summary)) {
+        for (int n = 0; n <= static_cast<int>(span); ++n)
+            brdfs.push_back(recolored(*base, colorOfInteger(static_cast<int>(least) + n, summary), text));
+        brdfs.push_back(recolored(*base, kNeutral, text));
         return {attribute, brdfs, [least, span](const glm::vec3& v) {
                     const double n = static_cast<double>(v.x) - least;
                     return n >= 0 && n <= span ? static_cast<std::size_t>(n) + 1 : std::size_t{0};
@@ -154,10 +174,38 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
     }
     for (std::size_t n = 0; n < kRampSteps; ++n)
         brdfs.push_back(recolored(*base, rampColor(static_cast<double>(n) / (kRampSteps - 1)), text));
+    brdfs.push_back(recolored(*base, kNeutral, text));
     return {attribute, brdfs, [least, span](const glm::vec3& v) {
                 const double t = span > 0 ? (static_cast<double>(v.x) - least) / span : 0.0;
                 return 1 + static_cast<std::size_t>(std::lround(std::clamp(t, 0.0, 1.0) * (kRampSteps - 1)));
             }};
+}
+
+Legend makeLegend(const MaterialOptions& options, const march::AttributeSummary& summary,
+                  const ObjectMaterial& material) {
+    using Kind = march::AttributeSummary::Kind;
+    Legend legend;
+    legend.title = options.by;
+    if (!options.each.empty()) {
+        for (const auto& [key, text] : options.each) {
+            const int value = valueOf(key, options, summary);
+            legend.entries.push_back({nameOf(value, options, summary),
+                                      material.of(glm::vec3(static_cast<float>(value), 0.0f, 0.0f)).albedo});
+        }
+    } else if (summary.kind == Kind::color) {
+        for (const glm::vec3& color : summary.colors)
+            legend.entries.push_back({color == march::kNoColor ? "not stated" : hexOf(color), color});
+    } else if (isPalette(options, summary)) {
+        for (const int value : summary.values)
+            legend.entries.push_back({nameOf(value, options, summary), colorOfInteger(value, summary)});
+    } else {
+        legend.unit = unitOfAttribute(options.by);
+        legend.least = summary.least;
+        legend.most = summary.most;
+        for (std::size_t n = 0; n < kRampSteps; ++n)
+            legend.ramp.push_back(rampColor(static_cast<double>(n) / (kRampSteps - 1)));
+    }
+    return legend;
 }
 
 }  // namespace stratum::shade

@@ -4,6 +4,7 @@
 #include "march/attribute.h"
 #include "shade/brdf.h"
 #include "shade/color.h"
+#include "shade/legend.h"
 
 #include <glm/vec3.hpp>
 
@@ -35,15 +36,19 @@ class ObjectMaterial {
 public:
     explicit ObjectMaterial(std::shared_ptr<const Brdf> brdf);
     /// @param attribute  number of the attribute, see Tracer::attribute()
-    /// @param brdfs      at least one; the first is for places without a value
-    /// @param choose     value -> index into brdfs
+    /// @param brdfs      at least one; the first is for places without a value, the last for values that are no finite
+    ///                   numbers
+    /// @param choose     finite value -> index into brdfs
     ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
                    std::function<std::size_t(const glm::vec3&)> choose);
 
     bool single() const { return !choose_; }
     std::size_t attribute() const { return attribute_; }
     const Material& only() const { return materials_.front(); }
-    const Material& of(const std::optional<glm::vec3>& value) const { return materials_[value ? choose_(*value) : 0]; }
+    const Material& of(const std::optional<glm::vec3>& value) const {
+        if (!value) return materials_.front();
+        return isFinite(*value) ? materials_[choose_(*value)] : materials_.back();
+    }
 
 private:
     std::size_t attribute_ = 0;
@@ -54,10 +59,14 @@ private:
 /// The material of `options` for an object whose attribute `options.by` has this number and summary.
 /// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colours: of the attribute itself if it
 /// holds colours, of a palette for up to 32 whole numbers (features have colours of their own), else of a ramp from the
-/// least value to the most. Throws UsageError: a BRDF that can't be coloured (a table), a name that the attribute
-/// doesn't have.
+/// least value to the most; gray where a value is no finite number. Throws UsageError: a BRDF that can't be coloured (a
+/// table), a name that the attribute doesn't have.
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const march::AttributeSummary& summary);
+
+/// What the colours of that material mean: values that the attribute has, or its ramp.
+Legend makeLegend(const MaterialOptions& options, const march::AttributeSummary& summary,
+                  const ObjectMaterial& material);
 
 /// The n-th of a set of colours that are easy to tell apart; they repeat. Linear RGB.
 Color categoryColor(std::size_t n);

@@ -27,12 +27,15 @@ bool isExr(const std::filesystem::path& path) {
 
 PictureFile::PictureFile(const std::filesystem::path& path) : exr_(isExr(path)), file_(path) {}
 
-void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone) {
+void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone, const Legend* legend) {
     file_.write([&](const std::filesystem::path& to) {
-        if (exr_)
+        if (exr_) {
             writeExr(to, film, metadata);
-        else
-            writePng(to, film.width(), film.height(), toDisplay(film, tone), metadata);
+            return;
+        }
+        std::vector<std::uint8_t> rgb = toDisplay(film, tone);
+        if (legend) draw(*legend, film.width(), film.height(), rgb);
+        writePng(to, film.width(), film.height(), rgb, metadata);
     });
 }
 

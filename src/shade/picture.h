@@ -3,6 +3,7 @@
 
 #include "io/atomic_file.h"
 #include "shade/film.h"
+#include "shade/legend.h"
 #include "shade/tonemap.h"
 
 #include <filesystem>
@@ -23,7 +24,9 @@ public:
     /// Whether it keeps linear values and layers: an EXR.
     bool linear() const { return exr_; }
     /// Writes all of it and puts it in its place. `tone` is for PNG only. Throws OutputError.
-    void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {});
+    /// @param legend  drawn into a PNG's upper left corner, if given
+    void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
+               const Legend* legend = nullptr);
 
 private:
     bool exr_;

@@ -10,7 +10,8 @@ namespace stratum::shade {
 
 /// The spherical rectangle as a point sees it, in the names of the paper.
 struct RectangleLight::View {
-    double x0, x1, y0, y1, z0;  // of the corners, about the point; z0 < 0
+    double x0, x1, y0, y1, z0;  // of the corners, about the point; z0 < 0, or 0 in its plane
+    double side;                // 1, or -1 if the point is behind it: then z points the other way
     double b0, b1, k;
     double solid_angle;
 };
@@ -34,8 +35,10 @@ RectangleLight::View RectangleLight::viewFrom(const glm::dvec3& point) const {
     v.x1 = v.x0 + 2.0 * half_x_;
     v.y0 = glm::dot(d, y_) - half_y_;
     v.y1 = v.y0 + 2.0 * half_y_;
-    v.z0 = glm::dot(d, z_);
-    if (!(v.z0 < 0.0)) return v;  // it shines the other way
+    const double z = glm::dot(d, z_);
+    v.side = z > 0.0 ? -1.0 : 1.0;
+    v.z0 = -std::abs(z);
+    if (!(v.z0 < 0.0)) return v;
     // z of the unit normals of the four sides, and the inner angles between them.
     const auto across = [&v](double a) { return -a / std::hypot(v.z0, a); };
     const double n0 = across(v.y0);
@@ -78,7 +81,7 @@ std::optional<LightSample> RectangleLight::sample(const glm::dvec3& point, const
         const double r2 = x * x + y * y + v.z0 * v.z0;
         pdf = r2 * std::sqrt(r2) / (-v.z0 * 4.0 * half_x_ * half_y_);
     }
-    const glm::dvec3 way = x * x_ + y * y_ + v.z0 * z_;
+    const glm::dvec3 way = x * x_ + y * y_ + v.side * v.z0 * z_;
     const double distance = glm::length(way);
     const auto density = static_cast<float>(pdf);
     if (!(distance > 0.0) || !std::isfinite(density)) return std::nullopt;
@@ -87,13 +90,14 @@ std::optional<LightSample> RectangleLight::sample(const glm::dvec3& point, const
 
 std::optional<LightMeeting> RectangleLight::meet(const march::Ray& ray) const {
     const double facing = glm::dot(ray.direction, z_);
-    if (!(facing < 0.0)) return std::nullopt;
+    if (facing == 0.0) return std::nullopt;
     const double t = glm::dot(centre_ - ray.origin, z_) / facing;
     if (!(t > 0.0)) return std::nullopt;
     const glm::dvec3 p = ray.origin + t * ray.direction - centre_;
     if (std::abs(glm::dot(p, x_)) > half_x_ || std::abs(glm::dot(p, y_)) > half_y_) return std::nullopt;
     const View v = viewFrom(ray.origin);
-    const double pdf = v.solid_angle > 1e-7 ? 1.0 / v.solid_angle : t * t / (-facing * 4.0 * half_x_ * half_y_);
+    const double pdf =
+        v.solid_angle > 1e-7 ? 1.0 / v.solid_angle : t * t / (std::abs(facing) * 4.0 * half_x_ * half_y_);
     return LightMeeting{t, radiance_, static_cast<float>(pdf)};
 }
 

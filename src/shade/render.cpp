@@ -89,8 +89,8 @@ private:
     RenderState state_;
 };
 
-/// What the picture depends on: the options as text, and what the print and the scene look like to a few thousand
-/// samples. Where files lie and what they are called doesn't matter.
+/// What the picture depends on: the options as text, what the print and the scene were made from if the caller says so,
+/// and what they look like to a few thousand samples.
 std::string Renderer::identity() const {
     constexpr int kProbes = 4096;
     TileWorker worker = makeWorker();
@@ -122,7 +122,7 @@ std::string Renderer::identity() const {
         box.max.z, i.name, i.bounces, i.phong.ambient, i.phong.diffuse, i.phong.specular, i.phong.shininess,
         i.phong.reflective, i.environment_rows, i.ao_distance);
     for (const FilmLayer& layer : state_.film.layers()) text += " " + layer.name;
-    return text + fmt::format(" look {:08x}", look);
+    return text + fmt::format(" look {:08x} source {}", look, options_.source);
 }
 
 /// Every tile from its first sample to its last, and then the next one.

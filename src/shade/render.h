@@ -28,6 +28,9 @@ struct RenderOptions {
     /// --checkpoint: empty, or a file that keeps the finished tiles. If it is there already, they are not rendered
     /// again, and the film has the bytes of a render without interruption. Not with `seconds`.
     std::filesystem::path checkpoint;
+    /// What print and scene were made from, as a line of text, e.g. hashes of files and options: a checkpoint of
+    /// another is refused. What isn't said here is told apart by what a few thousand samples see.
+    std::string source;
     double checkpoint_interval = 20.0;  ///< seconds between writings of that file
     std::vector<Aov> aovs;              ///< --aov: layers of the film
     std::uint32_t seed = 0;             ///< another seed, another noise

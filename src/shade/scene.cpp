@@ -5,6 +5,7 @@
 #include "shade/sampling.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -70,7 +71,9 @@ double restingHeight(const march::Intersector& print) {
 
 SceneDescription makeScene(const SceneOptions& options, const march::Intersector& print, int width, int height) {
     const march::Box box = print.bounds();
-    SceneDescription scene{.camera = Camera::make(options.camera, box, width, height),
+    CameraOptions camera = options.camera;
+    camera.mm_per_unit = options.mm_per_unit;
+    SceneDescription scene{.camera = Camera::make(camera, options.frame.value_or(box), width, height),
                            .material = makeBrdf(options.brdf),
                            .objects = {},
                            .smooth_normals = options.smooth_normals,
@@ -101,9 +104,12 @@ SceneDescription makeScene(const SceneOptions& options, const march::Intersector
     scene.environment = makeEnvironment(options.env, placement);
     if (auto sun = scene.environment->sun()) scene.lights.push_back(std::move(sun));
 
-    bed.centre = {0.5 * (box.min.x + box.max.x), 0.5 * (box.min.y + box.max.y)};
+    const march::Box subject = options.frame.value_or(box);
+    const glm::dvec3 middle = 0.5 * (subject.min + subject.max);
+    bed.centre = {middle.x, middle.y};
     if (placement.bed) {
-        const double reach = 0.5 * glm::length(box.max - box.min);
+        // As far as the farthest corner of all that stands on it.
+        const double reach = glm::length(glm::max(box.max - middle, middle - box.min));
         bed.fade_begin = 1.0 * reach;
         bed.fade_end = 7.0 * reach;
         scene.bed = bed;

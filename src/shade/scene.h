@@ -21,7 +21,7 @@ namespace stratum::shade {
 
 /// A scene in the words of the command line. The defaults make a product photo.
 struct SceneOptions {
-    std::string brdf = kDefaultBrdf;  ///< --brdf, see makeBrdf
+    std::string brdf;                 ///< --brdf, see makeBrdf; empty: nobody said
     std::string color_by;             ///< --color-by: an attribute of all level sets without a material of their own
     bool smooth_normals = false;      ///< --normals smooth: shade with Tracer::shadingNormal()
     std::string env = "studio";       ///< --env, see makeEnvironment
@@ -33,6 +33,8 @@ struct SceneOptions {
     double mm_per_unit = 1.0;                    ///< millimetres a world unit: beds have grains and lines of a size
     bool backdrop = true;                        ///< false: nothing behind the print, alpha 0 there
     CameraOptions camera;
+    /// What a named view is fitted to, world space: the part without what is printed beside it. Empty: all there is.
+    std::optional<march::Box> frame;
 };
 
 /// The whole numbers that tell apart what was printed.

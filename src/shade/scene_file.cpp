@@ -59,6 +59,7 @@ void readCamera(JsonSection section, CameraOptions& camera, std::vector<std::str
     section.read("look_at", camera.look_at);
     section.read("up", camera.up);
     section.read("fov", camera.fov);
+    section.read("zoom", camera.zoom);
     section.read("aperture", camera.aperture);
     section.read("f_number", camera.f_number);
     readFocus(section, camera);

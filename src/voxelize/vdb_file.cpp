@@ -39,6 +39,10 @@ void describe(openvdb::FloatGrid& grid, const Lattice& lattice, const Provenance
     text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");
     text("interior", provenance.swept ? "distance" : "negative bound, not a distance");
     text("enclosed", provenance.culled ? "filled: only what the outside can reach is there" : "kept");
+    if (const auto& part = provenance.part) {
+        grid.insertMeta("part_bbox_min", openvdb::Vec3DMetadata(openvdb::Vec3d(part->min)));
+        grid.insertMeta("part_bbox_max", openvdb::Vec3DMetadata(openvdb::Vec3d(part->max)));
+    }
     number("voxel_size_mm", lattice.voxel_size);
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);

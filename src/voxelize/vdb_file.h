@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace stratum::voxelize {
@@ -21,6 +22,9 @@ struct Provenance {
     std::string snapshot;        ///< "snapshot": label of a partial print, left out if empty
     std::string filament_color;  ///< "filament_color": "#RRGGBB", sRGB, if all beads have one and it is stated
     std::string selection;       ///< "selection": --layers and --features, left out if empty
+    /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without what is printed beside it; see
+    /// partBounds(). Left out if empty.
+    std::optional<Bounds> part;
     bool culled = false;         ///< "enclosed": whether surfaces that the outside can't reach are there
     bool swept = false;          ///< "interior": whether negative values are distances
 };

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace stratum::march {
 namespace {
 
@@ -75,6 +77,21 @@ TEST_F(AttributeGrid, IsSummarized) {
     const AttributeSummary colors = summarize(*color);
     ASSERT_EQ(colors.colors.size(), 2u);
     EXPECT_EQ(colors.colors[0], glm::vec3(0, 0.5F, 1));
+}
+
+TEST_F(AttributeGrid, CountsWhatIsNoNumber) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    const AttributeSummary before = summarize(*number);
+    EXPECT_EQ(before.not_finite, 0u);
+    number->tree().setValueOn(openvdb::Coord(0, 0, 0), kNan);
+    number->tree().setValueOn(openvdb::Coord(0, 0, 1), std::numeric_limits<float>::infinity());
+    color->tree().setValueOn(openvdb::Coord(0, 0, 0), openvdb::Vec3f(0, kNan, 0));
+    const AttributeSummary numbers = summarize(*number);
+    EXPECT_EQ(numbers.not_finite, 2u);
+    EXPECT_EQ(numbers.most, before.most);
+    const AttributeSummary colors = summarize(*color);
+    EXPECT_EQ(colors.not_finite, 1u);
+    EXPECT_EQ(colors.colors.size(), 2u);
 }
 
 TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {

@@ -148,7 +148,30 @@ TEST(Camera, ALensIsSharpWhereItIsFocused) {
     options.f_number = 2.8;
     const Camera photo = Camera::make(options, box, 400, 300);
     const march::Ray edge = photo.ray({0, 0}, {0.9999999f, 0.0f});
-    EXPECT_NEAR(glm::length(edge.origin - photo.eye()), 0.5 * 12 / std::tan(14 * std::acos(-1.0) / 180) / 2.8, 1e-4);
+    const double radius = 0.5 * 12 / std::tan(14 * std::acos(-1.0) / 180) / 2.8;
+    EXPECT_NEAR(glm::length(edge.origin - photo.eye()), radius, 1e-4);
+    // The same thing in metres has the same picture.
+    options.mm_per_unit = 1000;
+    const Camera metres = Camera::make(options, {1e-3 * box.min, 1e-3 * box.max}, 400, 300);
+    EXPECT_NEAR(glm::length(metres.ray({0, 0}, {0.9999999f, 0.0f}).origin - metres.eye()), 1e-3 * radius, 1e-7);
+}
+
+TEST(Camera, ZoomMagnifiesFromTheSamePlace) {
+    const march::Box box{{-10, -10, 0}, {10, 10, 20}};
+    CameraOptions options;
+    const Camera plain = Camera::make(options, box, 400, 300);
+    options.zoom = 2;
+    const Camera zoomed = Camera::make(options, box, 400, 300);
+    EXPECT_EQ(plain.eye(), zoomed.eye());
+    const glm::dvec2 middle(200, 150);
+    for (const glm::dvec3 place : {glm::dvec3(10, 3, 20), glm::dvec3(-4, 8, 1)}) {
+        const glm::dvec2 before = *plain.project(place) - middle;
+        const glm::dvec2 after = *zoomed.project(place) - middle;
+        EXPECT_NEAR(after.x, 2 * before.x, 1e-9);
+        EXPECT_NEAR(after.y, 2 * before.y, 1e-9);
+    }
+    options.zoom = 0;
+    EXPECT_THROW(Camera::make(options, box, 400, 300), UsageError);
 }
 
 TEST(Camera, RefusesLensesThatAreNone) {

@@ -26,7 +26,7 @@ TEST(ParseLight, EveryKindLightsASheet) {
     EXPECT_NEAR(lit("sun:0,0,-1,5,5,5,60"), 5.0f, 1e-2f);
     EXPECT_FLOAT_EQ(lit("point:0,0,2,12,12,12"), 3.0f);
     EXPECT_GT(lit("rectangle:0,0,10,1,0,0,0,-1,0,5,5,5"), 0.0f);
-    EXPECT_EQ(lit("rectangle:0,0,10,1,0,0,0,1,0,5,5,5"), 0.0f);  // shines up
+    EXPECT_EQ(lit("rectangle:0,0,10,1,0,0,0,1,0,5,5,5"), lit("rectangle:0,0,10,1,0,0,0,-1,0,5,5,5"));
     EXPECT_EQ(lit("point:0,0,-2,12,12,12"), 0.0f);
 }
 

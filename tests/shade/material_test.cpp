@@ -2,6 +2,7 @@
 
 #include "io/error.h"
 #include "shade/analytic_prints.h"
+#include "shade/filament_color.h"
 #include "shade/lambert.h"
 #include "shade/render.h"
 #include "shade/scene.h"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace stratum {
@@ -88,11 +90,84 @@ TEST(Material, ColoursOfTheFilament) {
     MaterialOptions options;
     options.by = "color";
     const auto material = makeObjectMaterial(options, kBase, 0, colors);
-    EXPECT_NEAR(material.of(glm::vec3(0.0f, 0.5f, 0.25f)).albedo.g, 0.5f, 1e-5f);
-    EXPECT_NEAR(material.of(glm::vec3(1.0f, 0.0f, 0.0f)).albedo.r, 0.95f, 1e-5f);
+    EXPECT_NEAR(material.of(glm::vec3(0.0f, 0.5f, 0.25f)).albedo.g, shade::bodyOf(Color(0.5f)).g, 1e-5f);
+    EXPECT_NEAR(material.of(glm::vec3(1.0f, 0.0f, 0.0f)).albedo.r, shade::kWhitest, 1e-5f);
     EXPECT_NEAR(material.of(glm::vec3(0.3f)).albedo.r, 0.5f, 1e-5f);  // not in the list
     options.each = {{"0", kBase}};
     EXPECT_THROW(makeObjectMaterial(options, kBase, 0, colors), UsageError);
+}
+
+// Once, a NaN became an index far behind the last material.
+TEST(Material, ValuesThatAreNoNumbersAreGray) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    MaterialOptions options;
+    options.by = "width";
+    AttributeSummary widths;
+    widths.kind = AttributeSummary::Kind::number;
+    widths.least = 0.4;
+    widths.most = 0.5;
+    AttributeSummary colors;
+    colors.kind = AttributeSummary::Kind::color;
+    colors.colors = {{0.0f, 0.5f, 0.25f}};
+    for (const AttributeSummary& summary : {widths, integers(0, 3), colors}) {
+        const auto material = makeObjectMaterial(options, kBase, 0, summary);
+        for (const float bad : {kNan, kInfinity, -kInfinity}) {
+            const Color albedo = material.of(glm::vec3(bad, 0, 0)).albedo;
+            EXPECT_NEAR(albedo.r, 0.18f, 1e-5f);
+            EXPECT_EQ(albedo.r, albedo.b);
+        }
+    }
+    options.by = "tool";
+    options.each = {{"1", "lambert:0,1,0"}};
+    const auto material = makeObjectMaterial(options, kBase, 0, integers(0, 3));
+    EXPECT_NEAR(material.of(glm::vec3(kNan, 0, 0)).albedo.r, 0.5f, 1e-5f);  // the scene's, as without a value
+}
+
+TEST(Material, PlacesWithoutAStatedColourAreOfTheScenesMaterial) {
+    AttributeSummary colors;
+    colors.kind = AttributeSummary::Kind::color;
+    colors.colors = {{0.0f, 0.5f, 0.25f}, march::kNoColor};
+    MaterialOptions options;
+    options.by = "color";
+    const auto material = makeObjectMaterial(options, "lambert:0.3,0.2,0.1", 0, colors);
+    EXPECT_NEAR(material.of(march::kNoColor).albedo.r, 0.3f, 1e-5f);
+    const shade::Legend legend = shade::makeLegend(options, colors, material);
+    ASSERT_EQ(legend.entries.size(), 2u);
+    EXPECT_EQ(legend.entries[0].name, "#00bc89");
+    EXPECT_EQ(legend.entries[1].name, "not stated");
+}
+
+TEST(Material, LegendsNameWhatIsThere) {
+    AttributeSummary features = integers(1, 3);
+    features.labels = {"unknown", "perimeter", "infill", "skirt"};
+    features.values = {1, 3};
+    MaterialOptions options;
+    options.by = "feature";
+    const auto by_feature = makeObjectMaterial(options, kBase, 0, features);
+    const shade::Legend legend = shade::makeLegend(options, features, by_feature);
+    EXPECT_EQ(legend.title, "feature");
+    ASSERT_EQ(legend.entries.size(), 2u);
+    EXPECT_EQ(legend.entries[0].name, "perimeter");
+    EXPECT_EQ(shade::hexOf(legend.entries[0].color), "#e8cf3d");
+    EXPECT_EQ(legend.entries[1].name, "skirt");
+    AttributeSummary speeds;
+    speeds.least = 10;
+    speeds.most = 60;
+    options.by = "speed";
+    const shade::Legend ramp = shade::makeLegend(options, speeds, makeObjectMaterial(options, kBase, 0, speeds));
+    EXPECT_TRUE(ramp.entries.empty());
+    EXPECT_EQ(ramp.unit, "mm/s");
+    EXPECT_EQ(ramp.least, 10);
+    EXPECT_EQ(ramp.most, 60);
+    EXPECT_GT(shade::luminance(ramp.ramp.back()), shade::luminance(ramp.ramp.front()));
+    options.by = "tool";
+    options.each = {{"1", "lambert:0,1,0"}};
+    const shade::Legend tools =
+        shade::makeLegend(options, integers(0, 1), makeObjectMaterial(options, kBase, 0, integers(0, 1)));
+    ASSERT_EQ(tools.entries.size(), 1u);
+    EXPECT_EQ(tools.entries[0].name, "tool 1");
+    EXPECT_NEAR(tools.entries[0].color.g, 1.0f, 1e-5f);
 }
 
 TEST(Material, TablesKeepTheirColour) {

@@ -76,13 +76,35 @@ TEST(RectangleLight, SamplesAndMeetingsAgree) {
     }
     EXPECT_GT(solid_angle, 0.0);
     EXPECT_LT(solid_angle, 2.0 * std::numbers::pi);
-    // From behind, from beside and away.
-    EXPECT_FALSE(light.sample({0, 0, 4}, {0.5f, 0.5f}));
+    // From beside and away.
     EXPECT_FALSE(light.sample({0, 0, 3}, {0.5f, 0.5f}));
     march::Ray away;
     away.origin = point;
     away.direction = {0, 0, -1};
     EXPECT_FALSE(light.meet(away));
+}
+
+// Which half edge is named first is no way to say where a lamp shines.
+TEST(RectangleLight, ShinesToBothSides) {
+    const RectangleLight light({1, 0.5, 3}, {0, 1, 0}, {2, 0, 0}, Color(3.0f));
+    for (const double side : {-1.0, 1.0}) {
+        const glm::dvec3 point(0.2, 0.4, 3 + side);
+        for (const glm::vec2 u : {glm::vec2(0.1f, 0.8f), glm::vec2(0.5f, 0.5f), glm::vec2(0.9f, 0.2f)}) {
+            const auto s = light.sample(point, u);
+            ASSERT_TRUE(s) << side;
+            const glm::dvec3 met = point + s->distance * glm::dvec3(s->direction);
+            EXPECT_NEAR(met.z, 3, 1e-6);
+            EXPECT_LE(std::abs(met.x - 1), 2 + 1e-6);
+            EXPECT_LE(std::abs(met.y - 0.5), 1 + 1e-6);
+            march::Ray ray;
+            ray.origin = point;
+            ray.direction = glm::normalize(glm::dvec3(s->direction));
+            const auto meeting = light.meet(ray);
+            ASSERT_TRUE(meeting) << side;
+            EXPECT_NEAR(meeting->pdf, s->pdf, 1e-5f * s->pdf);
+        }
+    }
+    EXPECT_FLOAT_EQ(light.sample({0.2, 0.4, 2}, {0.5f, 0.5f})->pdf, light.sample({0.2, 0.4, 4}, {0.5f, 0.5f})->pdf);
 }
 
 }  // namespace

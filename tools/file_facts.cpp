@@ -1,0 +1,56 @@
+#include "file_facts.h"
+
+#include "io/mapped_file.h"
+#include "march/grid_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+
+namespace stratum::tools {
+namespace fs = std::filesystem;
+
+std::string unitOf(const openvdb::FloatGrid& grid) {
+    const auto unit = grid.getMetadata<openvdb::StringMetadata>("unit");
+    return unit ? unit->value() : "world units";
+}
+
+std::string upOf(const openvdb::FloatGrid& grid) {
+    const auto up = grid.getMetadata<openvdb::StringMetadata>("up");
+    return up ? up->value() : "z";
+}
+
+std::optional<march::Box> partOf(const openvdb::FloatGrid& grid) {
+    const auto low = grid.getMetadata<openvdb::Vec3DMetadata>("part_bbox_min");
+    const auto high = grid.getMetadata<openvdb::Vec3DMetadata>("part_bbox_max");
+    if (!low || !high) return std::nullopt;
+    const openvdb::Vec3d& a = low->value();
+    const openvdb::Vec3d& b = high->value();
+    if (!a.isFinite() || !b.isFinite() || a[0] > b[0] || a[1] > b[1] || a[2] > b[2]) return std::nullopt;
+    return march::Box{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+}
+
+void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
+    const double half_width = static_cast<double>(grid.background()) / march::GridAxes(grid.transform()).shortest();
+    // Rounding of the background to a float is no reason to warn.
+    if (half_width >= 2.999) return;
+    fmt::print(stderr,
+               "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
+               "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
+               path, half_width);
+}
+
+std::string identityOf(const std::string& path) {
+    std::error_code missing;
+    if (!fs::is_regular_file(path, missing)) return {};
+    const auto changed = fs::last_write_time(path, missing).time_since_epoch().count();
+    const MappedFile file(path);
+    constexpr std::size_t kEnd = std::size_t{1} << 16;
+    const std::string_view bytes = file.bytes();
+    return fmt::format("{} {} {} {}", bytes.size(), changed, sha256Hex(bytes.substr(0, kEnd)),
+                       sha256Hex(bytes.substr(bytes.size() - std::min(bytes.size(), kEnd))));
+}
+
+}  // namespace stratum::tools

@@ -1,0 +1,29 @@
+// What a file says of itself, besides its shape.
+#pragma once
+
+#include "march/intersector.h"
+
+#include <openvdb/openvdb.h>
+
+#include <optional>
+#include <string>
+
+namespace stratum::tools {
+
+/// "mm", "cm" or "m", if the file says what its world unit is; other programs' files don't.
+std::string unitOf(const openvdb::FloatGrid& grid);
+
+/// Which axis the file says points up, "z" or "y"; "z" if it doesn't say.
+std::string upOf(const openvdb::FloatGrid& grid);
+
+/// The part's box without what is printed beside it, in the file's world space; nothing if the file doesn't say.
+std::optional<march::Box> partOf(const openvdb::FloatGrid& grid);
+
+/// Says so on stderr if the narrow band is thinner than OpenVDB's tools expect.
+void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid);
+
+/// Tells a file from others without reading all of it: its size, the time of its last change, and a hash of how it
+/// begins and ends (a .vdb begins with an identifier of its own). Empty if there is no such file.
+std::string identityOf(const std::string& path);
+
+}  // namespace stratum::tools
