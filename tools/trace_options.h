@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct TraceCommand {
     std::vector<double> eye, look_at, up, focus;
     int turntable = 1;
     std::vector<float> phong;
-    bool spp_given = false, denoise = false;
+    bool spp_given = false, exposure_given = false;
+    std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
     TracePrintOptions prints;
     std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs

@@ -7,6 +7,7 @@
 #include "io/error.h"
 #include "shade/brdf_file.h"
 #include "shade/denoise.h"
+#include "shade/exposure.h"
 #include "shade/picture.h"
 #include "shade/pixel_size.h"
 #include "voxelize/voxel_choice.h"
@@ -40,7 +41,13 @@ void run(tools::TraceCommand& o, int argc, char** argv) {
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
-    if (o.denoise) shade::addDenoisingGuides(o.render);
+    // A picture to look at is clean; numbers to measure are unbiased.
+    if (!o.denoise) o.denoise = !linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
+    if (*o.denoise) {
+        constexpr int kEnough = 8;  // what a denoised picture needs
+        if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) o.render.spp = kEnough;
+        shade::addDenoisingGuides(o.render);
+    }
     for (const std::string& note : o.notes) tools::say(o.common, note);
 
     tools::TraceOptions reading{.march = o.march,
@@ -99,6 +106,9 @@ void run(tools::TraceCommand& o, int argc, char** argv) {
             scene = shade::makeScene(seen, *objects.intersector, o.render.width, o.render.height);
             const march::Box box = objects.intersector->bounds();
             middle = 0.5 * (box.min + box.max);
+            const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is
+            if (!linear && !o.exposure_given && !studio && shade::needsLight(o.render.integrator))
+                o.tone.exposure = shade::automaticExposure(*scene, middle);
             for (const std::string& note : scene->material->notes()) tools::say(o.common, "  material: " + note);
             if (!o.write_brdf.empty()) shade::writeBrdfFile(o.write_brdf, *scene->material);
         }

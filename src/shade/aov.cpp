@@ -3,6 +3,7 @@
 #include "io/error.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,11 +19,12 @@ struct Kind {
     std::vector<std::string> channels;
 };
 
-const std::array<Kind, 10>& kinds() {
-    static const std::array<Kind, 10> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
+const std::array<Kind, 11>& kinds() {
+    static const std::array<Kind, 11> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
                                               {Aov::depth, "depth", {"Z"}},
                                               {Aov::position, "position", {"X", "Y", "Z"}},
                                               {Aov::albedo, "albedo", {"R", "G", "B"}},
+                                              {Aov::shading, "shading", {"M", "G"}},
                                               {Aov::mask, "mask", {"V"}},
                                               {Aov::variance, "variance", {"V"}},
                                               {Aov::samples, "samples", {"V"}},
@@ -53,10 +55,11 @@ std::vector<Aov> parseAovs(std::string_view text) {
         const auto found =
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
         if (found == kinds().end())
-            throw UsageError(fmt::format(
-                "--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, samples, layer, "
-                "tool, feature",
-                word));
+            throw UsageError(
+                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, shading, mask, "
+                            "variance, samples, layer, "
+                            "tool, feature",
+                            word));
         if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
     }
     return aovs;
@@ -82,9 +85,15 @@ AovRecorder::AovRecorder(const SceneDescription& scene, const march::Intersector
     : surfaces_(scene, print), aovs_(std::move(aovs)) {
     for (const Aov aov : aovs_)
         if (geometric(aov)) size_ += kindOf(aov).channels.size();
+    if (std::find(aovs_.begin(), aovs_.end(), Aov::shading) != aovs_.end()) {
+        const march::Box box = print.bounds();
+        const glm::dvec3 middle = 0.5 * (box.min + box.max);
+        const bool endless = !std::isfinite(middle.x + middle.y + middle.z);
+        bare_light_.emplace(scene, endless ? scene.camera.eye() : middle);
+    }
 }
 
-void AovRecorder::add(const SurfacePoint& point, double* sums) const {
+void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const {
     if (size_ == 0 || !std::isfinite(point.t)) return;
     const auto add3 = [&sums](const glm::dvec3& v) {
         for (int k = 0; k < 3; ++k) *sums++ += v[k];
@@ -104,6 +113,12 @@ void AovRecorder::add(const SurfacePoint& point, double* sums) const {
             case Aov::albedo:
                 add3(share * glm::dvec3(point.albedo));
                 break;
+            case Aov::shading: {
+                const glm::dvec3 mirror = direction - 2.0 * glm::dot(direction, point.normal) * point.normal;
+                *sums++ += share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal)));
+                *sums++ += share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror)));
+                break;
+            }
             case Aov::mask:
                 *sums++ += point.bed ? 0.0 : 1.0;
                 break;
