@@ -51,7 +51,8 @@ std::string describeSelection(const PrintOptions& options);
 
 /// The lattice: --tolerance and --memory-budget become voxels a layer, and so does `pixel`, the least that a pixel
 /// spans (mm), if the voxel size is to follow from the picture; everything else is the lattice's own choice. Where
-/// fewer than two voxels a layer were asked for, its warning says what share of the beads that loses. Throws UsageError.
+/// fewer than two voxels a layer were asked for, its warning says what share of the beads that loses. Throws
+/// UsageError.
 voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
                              const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
                              voxelize::Interior interior, double pixel = 0);

@@ -10,9 +10,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // 0 where the file is silent.
-double secondsOf(const gcode::StatedFacts& stated) {
-    return stated.model_seconds.value_or(stated.seconds.value_or(0));
-}
+double secondsOf(const gcode::StatedFacts& stated) { return stated.model_seconds.value_or(stated.seconds.value_or(0)); }
 
 std::string clock(double seconds) {
     const auto whole = static_cast<long long>(seconds + 0.5);

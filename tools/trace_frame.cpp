@@ -15,6 +15,17 @@ namespace stratum::tools {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+shade::Progress progressOf(ProgressBar& bar) {
+    const auto show = bar.callback();
+    if (!show) return {};
+    return
+        [show](std::uint64_t done, std::uint64_t all) { show(static_cast<double>(done) / static_cast<double>(all)); };
+}
+
+}  // namespace
+
 std::string numbered(const std::string& output, std::size_t number, std::size_t count) {
     if (count == 1) return output;
     const fs::path path(output);
@@ -31,15 +42,15 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
     shade::RenderResult result;
     {
         ProgressBar bar("rendering", o.common.quiet);
-        shade::Progress progress;
-        if (const auto show = bar.callback())
-            progress = [show](std::uint64_t done, std::uint64_t all) {
-                show(static_cast<double>(done) / static_cast<double>(all));
-            };
-        result = shade::render(*objects.intersector, scene, o.render, progress);
+        result = shade::render(*objects.intersector, scene, o.render, progressOf(bar));
     }
     const double render_seconds = watch.lap();
-    if (o.denoise) shade::denoise(result.film);
+    const bool denoised = o.denoise.value_or(false);
+    if (denoised) {
+        ProgressBar bar("denoising", o.common.quiet);
+        shade::denoise(result.film, progressOf(bar));
+        if (o.render.crop && result.film.region() != *o.render.crop) result.film = result.film.part(*o.render.crop);
+    }
     const double denoise_seconds = watch.lap();
 
     shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
@@ -51,9 +62,11 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
                              {"Environment", o.scene.env}};
     if (!scene.material->notes().empty())
         metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
-    if (o.denoise) metadata.insert({"Denoised", shade::kDenoiserLabel});
+    if (denoised) metadata.insert({"Denoised", shade::kDenoiserLabel});
     if (o.render.seconds > 0.0)
         metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
+    const bool shown = !picture.linear() && result.film.content() == shade::FilmContent::radiance;
+    if (shown) metadata.insert({"Exposure", fmt::format("{:.3f} stops", o.tone.exposure)});
     {
         const ProgressNote note("writing", o.common.quiet);
         picture.write(result.film, metadata, o.tone,
@@ -69,6 +82,9 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
     say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", frame.output,
                               o.render.width, o.render.height, result.mean_spp,
                               humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
+    if (shown && !o.exposure_given && o.tone.exposure != 0.0)
+        say(o.common,
+            fmt::format("  exposure {:+.2f} stops, found from the light; --exposure sets it", o.tone.exposure));
     Json material = objects.material;
     material["notes"] = scene.material->notes();
     Json skipped = Json::array();
@@ -89,7 +105,9 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
              {{"width", o.render.width},
               {"height", o.render.height},
               {"spp", o.render.spp},
-              {"mean_spp", result.mean_spp}}},
+              {"mean_spp", result.mean_spp},
+              {"exposure", o.tone.exposure},
+              {"denoised", denoised}}},
             {"rays",
              {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
             {"march", objects.intersector->name()},

@@ -110,7 +110,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
 
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
-    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16)")
+    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; 8 if denoised)")
         ->each([&o](const std::string&) { o.spp_given = true; })
         ->type_name("N")
         ->group(picture);
@@ -133,11 +133,19 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
               {"normal", "depth", "position", "albedo", "mask", "variance", "samples", "layer", "tool", "feature"})
         ->type_name("NAME,...")
         ->group(picture);
-    app.add_flag("--denoise", o.denoise, "Takes noise out of the finished picture, guided by normals, depth and albedo")
+    app.add_flag_callback(
+           "--denoise", [&o] { o.denoise = true; },
+           "Takes noise out of the finished picture, guided by its geometry (the default for .png)")
+        ->group(picture);
+    app.add_flag_callback(
+           "--no-denoise", [&o] { o.denoise = false; }, "The mean of the samples as it is (the default for .exr)")
         ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
     app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
-    app.add_option("--exposure", o.tone.exposure, "Stops, for .png")->type_name("EV")->group(picture);
+    app.add_option("--exposure", o.tone.exposure, "Stops, for .png (default: found from the light)")
+        ->each([&o](const std::string&) { o.exposure_given = true; })
+        ->type_name("EV")
+        ->group(picture);
 
     const char* camera = "Camera";
     completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
@@ -198,12 +206,13 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->group(light);
     std::vector<std::string> materials = shade::brdfNames();
     materials.insert(materials.end(), {"lambert:", "plastic:"});
-    completes(app.add_option(
-                  "--brdf", o.scene.brdf,
-                  "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, "
-                  "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
-                  "the file states them)"),
-              Completion::preset, materials)
+    completes(
+        app.add_option(
+            "--brdf", o.scene.brdf,
+            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, "
+            "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
+            "the file states them)"),
+        Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
         ->group(light);
     app.add_option("--color", o.color, "Plastic of this colour: '#ff6600', or a name as in CSS, e.g. teal")
@@ -230,7 +239,10 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
         ->type_name("DEG")
         ->group(light);
-    app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps")->type_name("EV")->group(light);
+    app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps; then --exposure is 0 by default")
+        ->each([&o](const std::string&) { o.exposure_given = true; })
+        ->type_name("EV")
+        ->group(light);
     completes(app.add_option("--light", o.scene.lights,
                              "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
                              "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
@@ -282,6 +294,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     over.render = file.render;
     over.tone = file.tone;
     over.spp_given = file.spp_given;
+    over.exposure_given = file.exposure_given;
     over.denoise = file.denoise;
     over.file_up = file.file_up;
     CLI::App app;

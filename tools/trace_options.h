@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct TraceCommand {
     std::string said;                   // the options that are given, for checkpoints
     bool legend = false;
     int turntable = 1;
-    bool spp_given = false, denoise = false;
+    bool spp_given = false, exposure_given = false;
+    std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
     TracePrintOptions prints;
     std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs

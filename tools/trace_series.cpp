@@ -6,6 +6,8 @@
 
 #include "io/error.h"
 #include "shade/brdf_file.h"
+#include "shade/exposure.h"
+#include "shade/picture.h"
 #include "shade/pixel_size.h"
 #include "voxelize/voxel_choice.h"
 
@@ -73,6 +75,7 @@ public:
         if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");
         Stopwatch watch;
         if (!scene_) begin(objects);
+        if (!o_.render.checkpoint.empty()) o_.render.source = sourceOf(o_, objects.source);
         scene_->objects = objects.materials;
         scene_->labels = objects.labels;
         frames(n, objects, watch);
@@ -89,9 +92,10 @@ private:
     shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part) const {
         if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
         const march::Box box = boxOf(print);
-        const shade::Camera camera = scene_ ? scene_->camera
-                                            : shade::Camera::make(o_.scene.camera, o_.frame == "all" ? box : boxOf(part),
-                                                                  o_.render.width, o_.render.height);
+        const shade::Camera camera = scene_
+                                         ? scene_->camera
+                                         : shade::Camera::make(o_.scene.camera, o_.frame == "all" ? box : boxOf(part),
+                                                               o_.render.width, o_.render.height);
         return shade::pixelSpread(camera, box, o_.turntable);
     }
 
@@ -108,6 +112,10 @@ private:
         }
         const march::Box box = seen.frame.value_or(objects.intersector->bounds());
         middle_ = 0.5 * (box.min + box.max);
+        const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is
+        if (!shade::PictureFile(o_.output).linear() && !o_.exposure_given && !studio &&
+            shade::needsLight(o_.render.integrator))
+            o_.tone.exposure = shade::automaticExposure(*scene_, middle_);
         for (const std::string& note : scene_->material->notes()) say(o_.common, "  material: " + note);
         if (!o_.write_brdf.empty()) shade::writeBrdfFile(o_.write_brdf, *scene_->material);
     }
@@ -139,7 +147,7 @@ private:
         }
     }
 
-    const TraceCommand& o_;
+    TraceCommand o_;  // with what is found on the way: exposure, what the files are
     int threads_;
     TraceOptions reading_;
     std::optional<shade::SceneDescription> scene_;

@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "shade/denoise.h"
+#include "shade/exposure.h"
 #include "shade/picture.h"
 #include "shade/preset_names.h"
 
@@ -63,6 +64,16 @@ void check(const tools::TraceCommand& o, const std::vector<std::string>& given_o
                })) {
         tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
     }
+}
+
+// A picture to look at is clean; numbers to measure are unbiased.
+void chooseDenoising(tools::TraceCommand& o) {
+    const bool linear = shade::PictureFile(o.output).linear();
+    if (!o.denoise) o.denoise = !linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
+    if (!*o.denoise) return;
+    constexpr int kEnough = 8;  // what a denoised picture needs
+    if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) o.render.spp = kEnough;
+    shade::addDenoisingGuides(o.render);
 }
 
 void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::string& option) {
@@ -151,7 +162,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
         for (const Json& report : some) reports.push_back(report);
     };
     for (tools::TraceCommand& o : commands) {
-        if (o.denoise) shade::addDenoisingGuides(o.render);
+        chooseDenoising(o);
         for (const std::string& note : o.notes) tools::say(o.common, note);
         if (!whole.each) {
             keep(tools::traceSeries(o, limit.threads(), batch));

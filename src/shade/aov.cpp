@@ -4,6 +4,7 @@
 #include "io/nearest_name.h"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,11 +20,12 @@ struct Kind {
     std::vector<std::string> channels;
 };
 
-const std::array<Kind, 10>& kinds() {
-    static const std::array<Kind, 10> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
+const std::array<Kind, 11>& kinds() {
+    static const std::array<Kind, 11> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
                                               {Aov::depth, "depth", {"Z"}},
                                               {Aov::position, "position", {"X", "Y", "Z"}},
                                               {Aov::albedo, "albedo", {"R", "G", "B"}},
+                                              {Aov::shading, "shading", {"M", "G"}},
                                               {Aov::mask, "mask", {"V"}},
                                               {Aov::variance, "variance", {"V"}},
                                               {Aov::samples, "samples", {"V"}},
@@ -57,8 +59,8 @@ std::vector<Aov> parseAovs(std::string_view text) {
             std::vector<std::string_view> names;
             for (const Kind& kind : kinds()) names.push_back(kind.name);
             throw UsageError(
-                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, mask, variance, "
-                            "samples, layer, tool, feature{}",
+                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, shading, mask, "
+                            "variance, samples, layer, tool, feature{}",
                             word, didYouMean(word, names)));
         }
         if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
@@ -86,9 +88,15 @@ AovRecorder::AovRecorder(const SceneDescription& scene, const march::Intersector
     : surfaces_(scene, print), aovs_(std::move(aovs)) {
     for (const Aov aov : aovs_)
         if (geometric(aov)) size_ += kindOf(aov).channels.size();
+    if (std::find(aovs_.begin(), aovs_.end(), Aov::shading) != aovs_.end()) {
+        const march::Box box = print.bounds();
+        const glm::dvec3 middle = 0.5 * (box.min + box.max);
+        const bool endless = !std::isfinite(middle.x + middle.y + middle.z);
+        bare_light_.emplace(scene, endless ? scene.camera.eye() : middle);
+    }
 }
 
-void AovRecorder::add(const SurfacePoint& point, double* sums) const {
+void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const {
     if (size_ == 0 || !std::isfinite(point.t)) return;
     const auto add3 = [&sums](const glm::dvec3& v) {
         for (int k = 0; k < 3; ++k) *sums++ += v[k];
@@ -108,6 +116,12 @@ void AovRecorder::add(const SurfacePoint& point, double* sums) const {
             case Aov::albedo:
                 add3(share * glm::dvec3(point.albedo));
                 break;
+            case Aov::shading: {
+                const glm::dvec3 mirror = direction - 2.0 * glm::dot(direction, point.normal) * point.normal;
+                *sums++ += share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal)));
+                *sums++ += share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror)));
+                break;
+            }
             case Aov::mask:
                 *sums++ += point.bed ? 0.0 : 1.0;
                 break;

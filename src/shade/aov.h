@@ -1,10 +1,12 @@
 // What else a pixel can hold besides its light: layers for compositing, denoising and computer vision.
 #pragma once
 
+#include "shade/bare_light.h"
 #include "shade/film.h"
 #include "shade/integrator.h"
 #include "shade/surface.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +20,7 @@ enum class Aov {
     depth,     ///< Z: world units along the ray
     position,  ///< X, Y, Z: world space
     albedo,    ///< R, G, B: reflectanceFactor of the material
+    shading,   ///< M, G: what BareLight says of the surface's direction, matt and gloss
     mask,      ///< V: share of the pixel that the print covers
     variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
                ///< stratified samples do better, so it is an upper estimate
@@ -43,8 +46,8 @@ public:
     AovRecorder(const SceneDescription& scene, const march::Intersector& print, std::vector<Aov> aovs);
     /// Numbers that one pixel needs: those of all geometric layers.
     std::size_t size() const { return size_; }
-    /// Adds one sample, what a camera ray met first (t infinite: nothing), to size() sums.
-    void add(const SurfacePoint& point, double* sums) const;
+    /// Adds one sample, what a camera ray of that direction met first (t infinite: nothing), to size() sums.
+    void add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const;
     /// What only the renderer knows.
     struct PixelStatistics {
         double variance = 0.0;
@@ -57,6 +60,7 @@ public:
 private:
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
+    std::optional<BareLight> bare_light_;  // if a layer asks for it
     std::size_t size_ = 0;
 };
 

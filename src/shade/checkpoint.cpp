@@ -73,7 +73,7 @@ bool Checkpoint::read(RenderState& state) const {
     return true;
 }
 
-void Checkpoint::write(const RenderState& state) const {
+std::string Checkpoint::bytesOf(const RenderState& state) const {
     std::string bytes(kMagic);
     bytes += identity_;
     const auto append = [&bytes](const void* data, std::size_t size) {
@@ -84,6 +84,10 @@ void Checkpoint::write(const RenderState& state) const {
     eachBlock(state, [&](const auto& block) { append(block.data(), block.size() * sizeof block[0]); });
     const std::uint32_t crc = crcOf(bytes);
     append(&crc, sizeof crc);
+    return bytes;
+}
+
+void Checkpoint::write(const std::string& bytes) const {
     AtomicFile file(path_);
     std::ofstream out(file.temporary(), std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

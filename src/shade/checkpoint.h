@@ -27,8 +27,11 @@ public:
     /// Fills `state`, whose film and tiles have their sizes, from the file. Returns false if there is no file yet.
     /// Throws InputError if the file is damaged or belongs to another picture.
     bool read(RenderState& state) const;
-    /// Replaces the file: a process that is killed meanwhile leaves the one before. Throws OutputError.
-    void write(const RenderState& state) const;
+    /// What the file is to hold.
+    std::string bytesOf(const RenderState& state) const;
+    /// Replaces the file: a process that is killed meanwhile leaves the one before. Not for two threads at once. Throws
+    /// OutputError.
+    void write(const std::string& bytes) const;
 
 private:
     std::filesystem::path path_;

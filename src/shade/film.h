@@ -66,6 +66,8 @@ public:
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width()) +
                static_cast<std::size_t>(x - region_.x0);
     }
+    /// What a film of a smaller region would hold; `region` lies inside this one's.
+    Film part(const PixelBox& region) const;
     std::vector<FilmLayer>& layers() { return layers_; }
     const std::vector<FilmLayer>& layers() const { return layers_; }
 

@@ -22,8 +22,11 @@ namespace {
 
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
-/// Of a pixel, before anybody asks how noisy it is: with its neighbours in the tile enough to tell.
-constexpr int kFirstSamples = 4;
+/// Of a pixel, before anybody asks how noisy it is (RenderOptions::noise): of fewer, a highlight that is met by one
+/// sample in ten is often not seen at all, and its tile taken for good enough.
+constexpr int kFirstSamples = 16;
+/// The same by the clock, which comes back to every tile.
+constexpr int kClockSamples = 4;
 
 /// What all tiles of a render share.
 class Renderer {
@@ -36,7 +39,8 @@ public:
           progress_(progress),
           integrator_(makeIntegrator(options.integrator, scene, print)),
           recorder_(scene, print, options.aovs),
-          region_(options.crop.value_or(PixelBox{0, 0, options.width, options.height})),
+          // How many samples a tile gets depends on all of its pixels: without the rest of it, a crop would differ.
+          region_(options.noise > 0.0 ? wholeTiles(options.region(), options.width, options.height) : options.region()),
           boxes_(tilesOf(region_)),
           pixels_(static_cast<std::uint64_t>(region_.width()) * static_cast<std::uint64_t>(region_.height())),
           workers_([this] { return makeWorker(); }) {
@@ -50,8 +54,9 @@ public:
             byTheClock();
         else
             tileByTile();
-        return {std::move(state_.film), static_cast<double>(state_.samples) / static_cast<double>(pixels_),
-                state_.rays};
+        const bool more = region_ != options_.region();
+        return {more ? state_.film.part(options_.region()) : std::move(state_.film),
+                static_cast<double>(state_.samples) / static_cast<double>(pixels_), state_.rays};
     }
 
 private:
@@ -130,7 +135,8 @@ void Renderer::tileByTile() {
     std::optional<Checkpoint> checkpoint;
     if (!options_.checkpoint.empty()) {
         checkpoint.emplace(options_.checkpoint, identity());
-        if (!checkpoint->read(state_)) checkpoint->write(state_);  // a file that can't be written fails now
+        if (!checkpoint->read(state_))
+            checkpoint->write(checkpoint->bytesOf(state_));  // a file that can't be written fails now
     }
     std::vector<std::size_t> todo;
     for (std::size_t n = 0; n < boxes_.size(); ++n)
@@ -140,6 +146,7 @@ void Renderer::tileByTile() {
     std::uint64_t done = pixels_;
     for (const std::size_t n : todo) done -= Tile(boxes_[n], recorder_).pixels();
     auto written = Clock::now();
+    bool writing = false;
     parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
         TileWorker& worker = workers_.local();
         for (std::size_t n = first; n != last; ++n) {
@@ -150,18 +157,26 @@ void Renderer::tileByTile() {
                 target = std::min(2 * target, options_.spp);
                 sample(tile, target, worker);
             }
+            std::string bytes;
+            {
+                const std::lock_guard lock(mutex);
+                finish(todo[n], tile);
+                done += tile.pixels();
+                if (progress_) progress_(done, pixels_);
+                if (!checkpoint || writing) continue;
+                const std::chrono::duration<double> since = Clock::now() - written;
+                if (since.count() < options_.checkpoint_interval) continue;
+                bytes = checkpoint->bytesOf(state_);
+                writing = true;
+            }
+            // A disc may take long; the other threads go on meanwhile.
+            checkpoint->write(bytes);
             const std::lock_guard lock(mutex);
-            finish(todo[n], tile);
-            done += tile.pixels();
-            if (progress_) progress_(done, pixels_);
-            if (!checkpoint) continue;
-            const std::chrono::duration<double> since = Clock::now() - written;
-            if (since.count() < options_.checkpoint_interval) continue;
-            checkpoint->write(state_);
             written = Clock::now();
+            writing = false;
         }
     });
-    if (checkpoint && !todo.empty()) checkpoint->write(state_);
+    if (checkpoint && !todo.empty()) checkpoint->write(checkpoint->bytesOf(state_));
 }
 
 /// All tiles a little, and then the worst ones more, until the time is over.
@@ -182,7 +197,7 @@ void Renderer::byTheClock() {
                 Tile& tile = tiles[todo[n]];
                 // The first samples are taken whatever the clock says: every pixel needs some.
                 if (tile.samples() > 0 && elapsed() >= options_.seconds) return;
-                sample(tile, std::min(std::max(kFirstSamples, 2 * tile.samples()), options_.spp), worker);
+                sample(tile, std::min(std::max(kClockSamples, 2 * tile.samples()), options_.spp), worker);
                 if (!progress_) continue;
                 const std::lock_guard lock(mutex);
                 const double part = std::min(1.0, elapsed() / options_.seconds);
@@ -206,6 +221,12 @@ void Renderer::byTheClock() {
 }
 
 }  // namespace
+
+PixelBox RenderOptions::region() const {
+    if (!crop) return {0, 0, width, height};
+    return {std::max(crop->x0 - margin, 0), std::max(crop->y0 - margin, 0), std::min(crop->x1 + margin, width),
+            std::min(crop->y1 + margin, height)};
+}
 
 void RenderOptions::validate() const {
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)

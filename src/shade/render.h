@@ -35,14 +35,17 @@ struct RenderOptions {
     std::vector<Aov> aovs;              ///< --aov: layers of the film
     std::uint32_t seed = 0;             ///< another seed, another noise
     std::optional<PixelBox> crop;       ///< --crop: only this part of the same picture; must lie in the frame
+    int margin = 0;                     ///< pixels about the crop that are rendered and kept, too, inside the frame
     IntegratorOptions integrator;
 
+    /// The crop with its margin, or the whole frame.
+    PixelBox region() const;
     /// Throws UsageError.
     void validate() const;
 };
 
 struct RenderResult {
-    Film film;
+    Film film;              ///< of options.region()
     double mean_spp = 0.0;  ///< samples a pixel
     RayCounts rays;         ///< the same for any number of threads
 };

@@ -129,7 +129,11 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     std::string checkpoint;
     top.read("checkpoint", checkpoint);
     file.render.checkpoint = checkpoint;
-    top.read("denoise", file.denoise);
+    if (bool denoise = false; top.find("denoise") != nullptr) {
+        top.read("denoise", denoise);
+        file.denoise = denoise;
+    }
+    file.exposure_given = top.find("exposure") != nullptr;
     top.read("exposure", file.tone.exposure);
     std::string aov;
     top.read("aov", aov);
@@ -146,6 +150,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
         section.read("map", file.scene.env);
         section.read("rotation", file.scene.env_rotation);
         section.read("exposure", file.scene.env_exposure);
+        file.exposure_given |= section.find("exposure") != nullptr;
         section.finish();
         if (!isEnvironmentPreset(file.scene.env)) file.scene.env = beside(folder, file.scene.env);
     }

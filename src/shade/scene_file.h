@@ -7,6 +7,7 @@
 #include "shade/tonemap.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +23,10 @@ struct SceneFile {
     std::vector<std::string> notes;      ///< what a report must say, e.g. the residual of a solved pose
     SceneOptions scene;
     RenderOptions render;
-    std::string file_up;  ///< of `print`: "y", "z", or empty for what the file says
-    bool denoise = false;
-    bool spp_given = false;  ///< whether the file says how many samples, or leaves them to the default
+    std::string file_up;          ///< of `print`: "y", "z", or empty for what the file says
+    std::optional<bool> denoise;  ///< empty: left to the default
+    bool spp_given = false;       ///< whether the file says how many samples, or leaves them to the default
+    bool exposure_given = false;  ///< whether it says how bright the picture or the map is to be
     ToneOptions tone;
 };
 

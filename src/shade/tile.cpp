@@ -16,10 +16,17 @@ constexpr std::size_t kStream = 4096;  // samples on the way at a time: enough t
 
 std::vector<PixelBox> tilesOf(const PixelBox& region) {
     std::vector<PixelBox> tiles;
-    for (int y = region.y0; y < region.y1; y += kTile)
-        for (int x = region.x0; x < region.x1; x += kTile)
-            tiles.push_back({x, y, std::min(x + kTile, region.x1), std::min(y + kTile, region.y1)});
+    for (int y = region.y0 / kTile * kTile; y < region.y1; y += kTile)
+        for (int x = region.x0 / kTile * kTile; x < region.x1; x += kTile)
+            tiles.push_back({std::max(x, region.x0), std::max(y, region.y0), std::min(x + kTile, region.x1),
+                             std::min(y + kTile, region.y1)});
     return tiles;
+}
+
+PixelBox wholeTiles(const PixelBox& region, int width, int height) {
+    const auto up = [](int n) { return (n + kTile - 1) / kTile * kTile; };
+    return {region.x0 / kTile * kTile, region.y0 / kTile * kTile, std::min(up(region.x1), width),
+            std::min(up(region.y1), height)};
 }
 
 void Tile::Sums::add(const Pixel& sample) {
@@ -64,7 +71,7 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
                                   std::span(worker.pixels).first(waiting));
         for (std::size_t n = 0; n < waiting; ++n) {
             sums_[pixel].add(worker.pixels[n]);
-            recorder.add(worker.points[n], layers_.data() + pixel * layer_size_);
+            recorder.add(worker.points[n], worker.rays[n].direction, layers_.data() + pixel * layer_size_);
             if (++taken < each) continue;
             taken = 0;
             ++pixel;

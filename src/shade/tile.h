@@ -61,7 +61,10 @@ private:
     RayCounts rays_;
 };
 
-/// The tiles of a region, row by row. The last of a row or column may be smaller.
+/// The tiles of a region, row by row. They lie on the frame's grid; those at the region's edges are cut off there.
 std::vector<PixelBox> tilesOf(const PixelBox& region);
+
+/// The smallest region of whole tiles about another, in a frame of that size.
+PixelBox wholeTiles(const PixelBox& region, int width, int height);
 
 }  // namespace stratum::shade

@@ -2,12 +2,15 @@
 
 #include "io/error.h"
 #include "shade/analytic_prints.h"
+#include "shade/denoise_oracle.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 namespace stratum {
 namespace {
@@ -31,6 +34,7 @@ Film vase(int spp, std::uint32_t seed) {
     shade::SceneOptions scene;
     scene.camera.eye = glm::dvec3(3, -26, 8);  // layers are four pixels high
     scene.camera.look_at = glm::dvec3(0, -15, 6);
+    options.margin = 0;
     return shade::render(print, shade::makeScene(scene, print, options.width, options.height), options).film;
 }
 
@@ -76,6 +80,62 @@ TEST(Denoise, LessErrorAndTheSameLayerLines) {
             ASSERT_TRUE(shade::isFinite(film.pixels()[n].rgb));
         }
     }
+}
+
+TEST(Denoise, IsTheEstimatorThatItSays) {
+    const Film noisy = vase(8, 1);
+    const test::DenoiseOracle oracle(noisy);
+    Film film = noisy;
+    shade::denoise(film);
+    double worst = 0.0;
+    for (int y = 0; y < film.height(); y += 3)
+        for (int x = 0; x < film.width(); x += 3) {
+            const std::array<double, 3> expected = oracle.pixel(x, y);
+            const shade::Color& c = film.at(film.region().x0 + x, film.region().y0 + y).rgb;
+            for (std::size_t k = 0; k < 3; ++k)
+                worst = std::max(worst, std::abs(double(c[int(k)]) - expected[k]) / (expected[k] + 0.01));
+        }
+    std::printf("largest difference from the plain estimator: %.1e\n", worst);
+    EXPECT_LT(worst, 2e-3);
+}
+
+/// A matt ball on a bed, whole or in part.
+Film ball(std::optional<shade::PixelBox> crop, double noise) {
+    const auto print = test::sphere({0, 0, 1}, 1.0);
+    shade::RenderOptions options;
+    options.width = 150;
+    options.height = 110;
+    options.spp = noise > 0.0 ? 64 : 4;
+    options.noise = noise;
+    options.crop = crop;
+    shade::addDenoisingGuides(options);
+    Film film = shade::render(print, shade::makeScene({}, print, options.width, options.height), options).film;
+    shade::denoise(film);
+    return crop ? film.part(*crop) : film;
+}
+
+TEST(Denoise, CropIsAPartOfTheSamePicture) {
+    const shade::PixelBox box{45, 37, 101, 70};
+    for (const double noise : {0.0, 0.08}) {
+        const Film whole = ball(std::nullopt, noise).part(box);
+        const Film part = ball(box, noise);
+        ASSERT_EQ(part.region(), box);
+        ASSERT_EQ(whole.pixels().size(), part.pixels().size());
+        EXPECT_EQ(0,
+                  std::memcmp(whole.pixels().data(), part.pixels().data(), part.pixels().size() * sizeof(shade::Pixel)))
+            << noise;
+    }
+}
+
+TEST(Denoise, ReportsProgressUpToTheEnd) {
+    Film film = vase(2, 1);
+    std::uint64_t last = 0;
+    shade::denoise(film, [&](std::uint64_t done, std::uint64_t total) {
+        EXPECT_GT(done, last);
+        EXPECT_EQ(total, film.pixels().size());
+        last = done;
+    });
+    EXPECT_EQ(last, film.pixels().size());
 }
 
 TEST(Denoise, SameBytesForAnyNumberOfThreads) {

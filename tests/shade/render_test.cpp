@@ -77,6 +77,19 @@ TEST(Render, CropIsAPartOfTheSamePicture) {
         }
 }
 
+TEST(Render, CropIsAPartOfTheSamePictureWhenTilesDecide) {
+    RenderOptions options = small();
+    options.spp = 64;
+    options.noise = 0.05;
+    const RenderResult whole = renderWith(2, options);
+    options.crop = shade::PixelBox{20, 10, 50, 40};  // across four tiles, none of them whole
+    options.margin = 3;
+    const RenderResult part = renderWith(2, options);
+    const shade::PixelBox kept{17, 7, 53, 43};
+    ASSERT_EQ(part.film.region(), kept);
+    EXPECT_TRUE(sameBytes(part.film, whole.film.part(kept)));
+}
+
 TEST(Render, EveryIntegratorIsFinite) {
     for (const char* name : {"path", "direct", "ao", "normal", "depth"}) {
         RenderOptions options = small();
