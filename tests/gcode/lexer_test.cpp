@@ -141,7 +141,10 @@ TEST(Lexer, TooManyCommandsInALineAreBounded) {
 }
 
 TEST(Lexer, ALineOfAMegabyte) {
-    const auto lines = lex("; " + std::string(1 << 20, 'x') + "\nG1 X1");
+    std::string text = "; ";
+    text.append(1 << 20, 'x');
+    text.append("\nG1 X1");
+    const auto lines = lex(text);
     ASSERT_EQ(lines.size(), 2U);
     EXPECT_EQ(lines[1], "<G1 X1>");
 }

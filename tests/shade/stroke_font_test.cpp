@@ -20,8 +20,11 @@ std::vector<std::uint8_t> written(const std::string& text, float capital) {
 }
 
 TEST(StrokeFont, EveryCharacterLooksDifferent) {
-    std::set<std::vector<std::uint8_t>> seen;
-    for (char c = '!'; c <= '~'; ++c) EXPECT_TRUE(seen.insert(written(std::string(1, c), 12)).second) << c;
+    std::set<std::string> seen;
+    for (char c = '!'; c <= '~'; ++c) {
+        const std::vector<std::uint8_t> rgb = written(std::string(1, c), 12);
+        EXPECT_TRUE(seen.emplace(rgb.begin(), rgb.end()).second) << c;
+    }
 }
 
 TEST(StrokeFont, StaysWithinItsWidth) {

@@ -1,0 +1,46 @@
+// One file of gcode2vdb, from G-code to the files that are made of it and its report.
+#pragma once
+
+#include "command_line.h"
+#include "print_options.h"
+#include "run_files.h"
+
+#include "voxelize/vdb_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace stratum::tools {
+
+/// As the command line gives it.
+struct ConvertCommand {
+    CommonOptions common;
+    std::vector<std::string> inputs;
+    std::string output;
+    std::string dump_toolpath;
+    bool summary = false;
+    PrintOptions print;
+    std::string interior;  // empty: what the output wants
+    double mesh_error = 0.25;
+    bool forecast = false;
+    bool interior_distance = false;
+    bool usda = false;
+    std::string grids;
+    std::string up = "z";
+    std::string snapshots;
+    std::string unit = "mm", origin = "bed";
+    voxelize::FileOptions file;
+};
+
+/// The .usda beside a .vdb.
+std::filesystem::path usdaOf(std::filesystem::path vdb);
+
+/// Converts one input, snapshots included. `files` learns what is written. Returns the report of --stats. Throws
+/// InputError, UsageError, OutputError.
+nlohmann::ordered_json convert(const ConvertCommand& command, const std::string& input,
+                               const std::filesystem::path& output, RunFiles& files, int threads);
+
+}  // namespace stratum::tools
