@@ -210,7 +210,10 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
         write_seconds += watch.lap();
         const double deposited =
             voxelize::depositedVolume(toolpath, std::span<const std::uint32_t>(selection).first(job.beads));
-        const double volume = enclosedMm3(*grid, lattice);
+        const double volume = [&] {
+            const ProgressNote note("measuring", o.common.quiet);
+            return enclosedMm3(*grid, lattice);
+        }();
         const std::string doubt = doubtOf(volume, deposited, provenance.culled);
         if (!doubt.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, doubt);
         check_seconds += watch.lap();

@@ -16,6 +16,7 @@
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -179,9 +180,21 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
                                      o.usda ? "--usda" : "--snapshots", output.string()));
 }
 
+// a/part.gcode and b/part.gcode would be one file in a folder.
+void refuseEqualNames(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs) {
+    std::map<fs::path, std::string> sources;
+    for (std::size_t n = 0; n < outputs.size(); ++n) {
+        const auto [known, fresh] = sources.emplace(outputs[n], o.inputs[n]);
+        if (!fresh)
+            throw UsageError(fmt::format("{} and {} would both be {}; convert them one by one, with -o", known->second,
+                                         o.inputs[n], outputs[n].string()));
+    }
+}
+
 void run(tools::ConvertCommand& o) {
     const std::vector<fs::path> outputs = outputsOf(o);
     check(o, outputs);
+    refuseEqualNames(o, outputs);
     tools::RunFiles files;
     for (const std::string& input : o.inputs) files.reads(input);
     for (const fs::path& output : outputs) {

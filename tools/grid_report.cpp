@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -32,6 +33,7 @@ Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& latti
         {"bytes", grid.memUsage()},
         {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
         {"volume_mm3", volume_mm3},
+        {"volume_leaves", std::min<std::size_t>(grid.tree().leafCount(), voxelize::kVolumeSample)},
         {"deposited_mm3", deposited_mm3}};
 }
 

@@ -12,7 +12,7 @@
 
 namespace stratum::tools {
 
-/// The grid's section. `volume_mm3` and `deposited_mm3`: see below.
+/// The grid's section. `volume_mm3` and `deposited_mm3`: see below; `volume_leaves` says of how many leaves.
 nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, double volume_mm3,
                                     double deposited_mm3);
 /// What --interior cull would save of it: floods it.

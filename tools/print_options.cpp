@@ -160,10 +160,11 @@ voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath&
         const double per_layer = lattice.layer_height / lattice.voxel_size;
         if (lost > 0 || per_layer < 1.01)
             lattice.warning = fmt::format(
-                "{:.2g} voxel{} a layer of {:g} mm: {:.1f} % of a sample of beads have no solid in their middle; take "
-                "{} a layer, {:g} mm",
-                per_layer, per_layer == 1 ? "" : "s", lattice.layer_height, 100 * lost, voxelize::kFewestVoxelsPerLayer,
-                lattice.layer_height / voxelize::kFewestVoxelsPerLayer);
+                "{:.2g} voxel{} a layer of {:g} mm: {:.1f} % of a sample of beads have no solid in their middle; layer "
+                "lines "
+                "need {} a layer, {:g} mm",
+                per_layer, per_layer < 1.01 ? "" : "s", lattice.layer_height, 100 * lost,
+                voxelize::kFewestVoxelsPerLayer, lattice.layer_height / voxelize::kFewestVoxelsPerLayer);
     }
     return lattice;
 }

@@ -60,7 +60,7 @@ refused([GCODE2VDB, make("model.stl", "solid part\n facet normal 0 0 1\n  outer 
 refused([GCODE2VDB, make("binary.stl", b"exported model".ljust(80) + (12).to_bytes(4, "little") + bytes(600)), "-o", OUT], 3)
 refused([GCODE2VDB, make("travel.gcode", "G28\nG1 X10 Y10 F3000\nG1 X20\n"), "-o", OUT], 3, "travel.gcode")
 refused([GCODE2VDB, make("prose.gcode", "Dear printer, please print a boat.\n"), "-o", OUT], 3, "prose.gcode")
-refused([GCODE2VDB, make("nan.gcode", "G1 X0 Y0 Z0.2\nG1 XNaN E1\n"), "-o", OUT], 3, "nan.gcode:2")
+refused([GCODE2VDB, make("nan.gcode", "G1 X0 Y0 Z0.2\nG1 XNaN E1\n"), "-o", OUT], 3, "nan.gcode")
 refused([GCODE2VDB, make("absurd.gcode", "G1 X0 Y0 Z0.2\nG1 X1e9 E1\nG1 X1000000000 E2\n"), "-o", OUT], 3, "absurd.gcode:")
 
 # --- options that make no sense -------------------------------------------------------------------------------------
