@@ -50,8 +50,8 @@ struct Softbox {
 /// Azimuth is clockwise from "away from the camera": -90 is left, 90 right, 180 the camera. All angles in degrees.
 const std::array<Softbox, 4>& softboxes() {
     static const std::array<Softbox, 4> boxes = {
-        Softbox(-128.0f, 46.0f, 34.0f, 38.0f, 0.20f, Color(15.0f, 14.7f, 14.2f)),  // key
-        Softbox(118.0f, 24.0f, 56.0f, 44.0f, 0.50f, Color(1.20f, 1.25f, 1.34f)),   // fill
+        Softbox(-116.0f, 47.0f, 34.0f, 38.0f, 0.20f, Color(15.0f, 14.7f, 14.2f)),  // key
+        Softbox(118.0f, 24.0f, 56.0f, 44.0f, 0.50f, Color(1.00f, 1.05f, 1.13f)),   // fill
         Softbox(52.0f, 32.0f, 18.0f, 60.0f, 0.15f, Color(7.0f, 7.2f, 7.6f)),       // rim, right
         Softbox(-42.0f, 36.0f, 18.0f, 50.0f, 0.15f, Color(6.0f, 6.1f, 6.4f)),      // rim, left
     };

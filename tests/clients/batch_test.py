@@ -100,8 +100,8 @@ for tool, more, kind in ((GCODE2VDB, [], "vdb"), (VDBTRACE, [*SMALL, "--each"], 
     check(len(reports) == 4 and sorted(r["exit_status"] for r in reports if "error" in r) == [3, 3], "  --stats has them, too")
 done = call(VDBTRACE, "in/a.gcode", "in/gear.gcode", "in/bad.gcode", *SMALL, "--voxel-size", "0.3", "-o", "film.png")
 check(done.returncode == 3 and names("film_*.png") == ["film_000.png", "film_001.png"], f"a series goes on: {done.stderr.strip()}")
-done = call(VDBTRACE, "in/a.gcode", "in/gear.gcode", *SMALL, "--voxel-size", "0.3", "--brdf", "chocolate")
-check(done.returncode == 2 and done.stderr.count("chocolate: is neither") <= 2, f"what is wrong for all is said once: {done.stderr}")
+done = call(VDBTRACE, "in/a.gcode", "in/gear.gcode", *SMALL, "--voxel-size", "0.3", "--brdf", "nougatine")
+check(done.returncode == 2 and done.stderr.count("nougatine: is neither") <= 2, f"what is wrong for all is said once: {done.stderr}")
 
 # --- streams -----------------------------------------------------------------------------------------------------------------
 def fed(*command, text=False):
