@@ -35,14 +35,17 @@ std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center
     constexpr std::size_t kColumns = 2 * std::size_t{kRows};
     std::vector<Part> parts(kRows * kColumns);
     parallelFor(kRows, 1, [&](std::size_t first, std::size_t last) {
-        std::vector<glm::vec3> ways(std::size_t{kFine} * kFine);
-        std::vector<Color> colors(ways.size());
+        std::vector<glm::vec3> directions(std::size_t{kFine} * kFine);
+        std::vector<Color> colors(directions.size());
         for (std::size_t row = first; row != last; ++row)
             for (std::size_t column = 0; column < kColumns; ++column) {
-                for (std::size_t n = 0; n < ways.size(); ++n)
-                    ways[n] = direction(static_cast<double>(row) + (static_cast<double>(n / kFine) + 0.5) / kFine,
-                                        static_cast<double>(column) + (static_cast<double>(n % kFine) + 0.5) / kFine);
-                scene.environment->radianceStream(ways, colors);
+                for (std::size_t n = 0; n < directions.size(); ++n) {
+                    const std::size_t i = n / kFine;
+                    const std::size_t j = n % kFine;
+                    directions[n] = direction(static_cast<double>(row) + (static_cast<double>(i) + 0.5) / kFine,
+                                              static_cast<double>(column) + (static_cast<double>(j) + 0.5) / kFine);
+                }
+                scene.environment->radianceStream(directions, colors);
                 Part& part = parts[row * kColumns + column];
                 part.direction = direction(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5);
                 float sum = 0.0f;

@@ -82,6 +82,7 @@ View parseView(std::string_view text) {
     for (const NamedView& v : kViews)
         if (v.name == text) return v.view;
     std::vector<std::string_view> names;
+    names.reserve(kViews.size());
     for (const NamedView& v : kViews) names.push_back(v.name);
     throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom{}", text,
                                  didYouMean(text, names)));

@@ -48,7 +48,7 @@ DenoisePlanes planesOf(const Film& film) {
     const auto fill = [&](int x, int y) {
         const std::size_t n = index(x, y);
         const Color& color = film.pixels()[n].rgb;
-        *planes.at(DenoisePlanes::luminance, x, y) = luminance(color);
+        *planes.at(DenoisePlanes::brightness, x, y) = luminance(color);
         // The variance of a few samples is itself noisy: a mean over 3 x 3 pixels.
         const int column = mirrored(x, film.width());
         const int row = mirrored(y, film.height());
@@ -71,7 +71,7 @@ DenoisePlanes planesOf(const Film& film) {
             0.3f * albedo[3 * n] + 0.5f * albedo[3 * n + 1] + 0.2f * albedo[3 * n + 2];
     };
     constexpr int kMargin = DenoisePlanes::kMargin;
-    parallelFor(static_cast<std::size_t>(planes.endY() + kMargin), 16, [&](std::size_t first, std::size_t last) {
+    parallelFor(static_cast<std::size_t>(planes.endY()) + kMargin, 16, [&](std::size_t first, std::size_t last) {
         for (std::size_t row = first; row != last; ++row)
             for (int x = -kMargin; x < planes.endX(); ++x) fill(x, static_cast<int>(row) - kMargin);
     });
@@ -123,7 +123,7 @@ void denoise(Film& film, const Progress& progress) {
                         const int height = std::min(kHeight, film.height() - y0);
                         for (int y = 0; y < height; ++y)
                             for (int x = 0; x < width; ++x) {
-                                const auto from = static_cast<std::size_t>(y * kWidth + x);
+                                const auto from = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
                                 film.at(film.region().x0 + x0 + x, film.region().y0 + y0 + y).rgb = {
                                     scratch.colors[0][from], scratch.colors[1][from], scratch.colors[2][from]};
                             }

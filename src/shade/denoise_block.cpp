@@ -63,9 +63,9 @@ void lightDistances(const DenoisePlanes& in, int x0, int y0, const Neighbor& to,
     for (std::size_t y = 0; y < kTall; ++y) {
         const int row = y0 + static_cast<int>(y) - Denoising::kPatch;
         const int column = x0 - Denoising::kPatch;
-        const float* lp = in.at(DenoisePlanes::luminance, column, row);
+        const float* lp = in.at(DenoisePlanes::brightness, column, row);
         const float* vp = in.at(DenoisePlanes::variance, column, row);
-        const float* lq = in.at(DenoisePlanes::luminance, column + to.dx, row + to.dy);
+        const float* lq = in.at(DenoisePlanes::brightness, column + to.dx, row + to.dy);
         const float* vq = in.at(DenoisePlanes::variance, column + to.dx, row + to.dy);
         for (std::size_t x = 0; x < kWidth + kPatchSide - 1; x += hn::Lanes(f)) {
             const auto d = hn::LoadU(f, lp + x) - hn::LoadU(f, lq + x);

@@ -23,7 +23,7 @@ struct Denoising {
 class DenoisePlanes {
 public:
     enum Plane {
-        luminance,
+        brightness,
         variance,   // of the mean luminance
         closeness,  // kCloseness planes: the squared differences of all are the distance of two pixels in guides
         terms = closeness + 7,  // kTerms planes: what the light is taken to be a linear function of, beside the place
