@@ -6,7 +6,10 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -28,6 +31,13 @@ std::string identityOf(const std::string& path) {
     return failed ? path : whole.string();
 }
 
+// No tool writes such files.
+bool namesPrint(const std::string& path) {
+    constexpr std::array<std::string_view, 8> kEndings = {".gcode",  ".gco", ".g",   ".gx",
+                                                          ".bgcode", ".3mf", ".ufp", ".nc"};
+    return std::any_of(kEndings.begin(), kEndings.end(), [&path](std::string_view end) { return path.ends_with(end); });
+}
+
 }  // namespace
 
 void RunFiles::reads(const std::string& path) {
@@ -42,7 +52,14 @@ void RunFiles::writes(const std::string& path, std::string_view option) {
     const std::string identity = standard ? "-" : identityOf(path);
     if (identity.empty()) return;
     const auto [found, fresh] = uses_.try_emplace(identity, Use{path, std::string(option), false});
-    if (fresh) return;
+    if (fresh) {
+        // "--stats a.gcode b.gcode" means two prints, and takes the first for the report's name.
+        if (!standard && namesPrint(path) && fs::exists(path))
+            throw UsageError(fmt::format(
+                "{} {}: is there already, and a print by its name; it would be overwritten, give another name", option,
+                path));
+        return;
+    }
     const Use& before = found->second;
     const std::string what = option.empty() ? path : fmt::format("{} {}", option, path);
     if (before.read)
