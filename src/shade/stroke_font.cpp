@@ -212,6 +212,7 @@ void drawText(Canvas& canvas, float x, float baseline, float capital_height, std
             low = {std::min(low.x, p.x), std::min(low.y, p.y)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         }
+        if (low.x > high.x) return;  // a blank
         for (int py = static_cast<int>(std::floor(low.y - pen)); static_cast<float>(py) <= high.y + pen; ++py)
             for (int px = static_cast<int>(std::floor(low.x - pen)); static_cast<float>(px) <= high.x + pen; ++px) {
                 const glm::vec2 p(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
