@@ -28,12 +28,14 @@ const CLI::Validator* checkOf(const CLI::Option& option, int n) {
 
 CLI::Validator oneOf(std::vector<std::string> names) {
     std::vector<std::pair<std::string, int>> values;
+    values.reserve(names.size());
     for (std::string& name : names) values.emplace_back(std::move(name), -1);
     return enumeration(std::move(values));
 }
 
 CLI::Validator enumeration(std::vector<std::pair<std::string, int>> values) {
     std::vector<std::string> names;
+    names.reserve(values.size());
     for (const auto& value : values) names.push_back(value.first);
     const std::string all = fmt::format("{}", fmt::join(names, ", "));
     const std::string description = fmt::format("{{{}}}", fmt::join(names, ","));
