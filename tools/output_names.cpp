@@ -21,6 +21,7 @@ std::string stemOf(const std::string& input) {
 
 std::string commonStem(const std::vector<std::string>& inputs) {
     std::vector<std::string> stems;
+    stems.reserve(inputs.size());
     for (const std::string& input : inputs) stems.push_back(stemOf(input));
     std::string common = stems.front();
     for (const std::string& stem : stems)
