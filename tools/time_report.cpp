@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace stratum::tools {
 namespace {
 
@@ -13,7 +15,7 @@ using Json = nlohmann::ordered_json;
 double secondsOf(const gcode::StatedFacts& stated) { return stated.model_seconds.value_or(stated.seconds.value_or(0)); }
 
 std::string clock(double seconds) {
-    const auto whole = static_cast<long long>(seconds + 0.5);
+    const auto whole = std::llround(seconds);
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
