@@ -167,7 +167,7 @@ private:
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
     MotionRecorder* moves_ = nullptr;  // nullptr: nobody asks how it moves
-    double drive_per_extrusion_ = 0;    // what E moves by what leaves the nozzle, of the move that is run
+    double drive_per_extrusion_ = 0;   // what E moves by what leaves the nozzle, of the move that is run
 
     MoveCounts counts_;
     double filament_mm_ = 0;

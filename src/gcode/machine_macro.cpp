@@ -87,11 +87,11 @@ void Machine::executeMacro(const Command& command) {
 
 void Machine::setVelocityLimit(std::string_view text) {
     moves_->velocityLimit({.velocity = numberArgument(text, "VELOCITY"),
-                            .acceleration = numberArgument(text, "ACCEL"),
-                            .to_deceleration = numberArgument(text, "ACCEL_TO_DECEL"),
-                            .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
-                            .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
-                           line_);
+                           .acceleration = numberArgument(text, "ACCEL"),
+                           .to_deceleration = numberArgument(text, "ACCEL_TO_DECEL"),
+                           .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
+                           .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
+                          line_);
 }
 
 void Machine::setMacroOffset(std::string_view text) {

@@ -25,8 +25,8 @@ struct Provenance {
     /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without what is printed beside it; see
     /// partBounds(). Left out if empty.
     std::optional<Bounds> part;
-    bool culled = false;         ///< "enclosed": whether surfaces that the outside can't reach are there
-    bool swept = false;          ///< "interior": whether negative values are distances
+    bool culled = false;  ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool swept = false;   ///< "interior": whether negative values are distances
 };
 
 enum class Compression : std::uint8_t { blosc, zip, none };
