@@ -25,7 +25,6 @@
 namespace {
 
 using namespace stratum;
-namespace fs = std::filesystem;
 
 constexpr const char* kExamples = R"(
 Each study writes NAME.csv, row by row, and NAME.html, one page that holds all it shows. A study that was stopped goes
