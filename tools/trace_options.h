@@ -29,6 +29,7 @@ struct TraceCommand {
     std::string scene_text;             // hash of the scene file, or empty
     std::string said;                   // the options that are given, for checkpoints
     bool legend = false;
+    bool linear = false;  // the output keeps linear values: an .exr. Set when its name is checked
     int turntable = 1;
     bool spp_given = false, exposure_given = false;
     std::optional<bool> denoise;  // empty: as fits the picture

@@ -7,7 +7,6 @@
 #include "io/error.h"
 #include "shade/brdf_file.h"
 #include "shade/exposure.h"
-#include "shade/picture.h"
 #include "shade/pixel_size.h"
 #include "voxelize/voxel_choice.h"
 
@@ -113,8 +112,7 @@ private:
         const march::Box box = seen.frame.value_or(objects.intersector->bounds());
         middle_ = 0.5 * (box.min + box.max);
         const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is
-        if (!shade::PictureFile(o_.output).linear() && !o_.exposure_given && !studio &&
-            shade::needsLight(o_.render.integrator))
+        if (!o_.linear && !o_.exposure_given && !studio && shade::needsLight(o_.render.integrator))
             o_.tone.exposure = shade::automaticExposure(*scene_, middle_);
         for (const std::string& note : scene_->material->notes()) say(o_.common, "  material: " + note);
         if (!o_.write_brdf.empty()) shade::writeBrdfFile(o_.write_brdf, *scene_->material);

@@ -10,7 +10,6 @@
 #include "io/atomic_file.h"
 #include "io/error.h"
 #include "shade/denoise.h"
-#include "shade/exposure.h"
 #include "shade/picture.h"
 #include "shade/preset_names.h"
 
@@ -41,9 +40,9 @@ bool isLevelSet(const std::string& path) {
 }
 
 // What is asked of the pictures fits together, and what is asked of G-code has some. Before the work.
-void check(const tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
-    const bool linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
-    if (!o.render.aovs.empty() && !linear)
+void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
+    o.linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
+    if (!o.render.aovs.empty() && !o.linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
     if (isStandardOutput(o.output) && pictures(o) > 1)
         throw UsageError(fmt::format("-o {}: only one picture can go to standard output; name a file for the {}",
@@ -54,7 +53,7 @@ void check(const tools::TraceCommand& o, const std::vector<std::string>& given_o
         throw UsageError("--progress-series is of one print alone");
     if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
-    if (o.legend && linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
+    if (o.legend && o.linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
     if (given_of_prints.empty()) return;
     if (o.objects.empty()) {
         for (const std::string& input : o.inputs)
@@ -68,8 +67,7 @@ void check(const tools::TraceCommand& o, const std::vector<std::string>& given_o
 
 // A picture to look at is clean; numbers to measure are unbiased.
 void chooseDenoising(tools::TraceCommand& o) {
-    const bool linear = shade::PictureFile(o.output).linear();
-    if (!o.denoise) o.denoise = !linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
+    if (!o.denoise) o.denoise = !o.linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
     if (!*o.denoise) return;
     constexpr int kEnough = 8;  // what a denoised picture needs
     if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) o.render.spp = kEnough;

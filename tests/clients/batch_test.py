@@ -85,7 +85,7 @@ for name in ("a", "gear"):
 
 # --- one bad file ----------------------------------------------------------------------------------------------------------
 with open(path("in/bad.gcode"), "w", encoding="utf-8") as file:
-    file.write("G1 X0 Y0 Z0.2\nG1 XNaN E1\n")
+    file.write("G1 X0 Y0 Z0.2\nG1 X1000000000 E1\n")
 for tool, more, kind in ((GCODE2VDB, [], "vdb"), (VDBTRACE, [*SMALL, "--each"], "png")):
     out = "kept_" + kind
     done = call(tool, "in/bad.gcode", "in/a.gcode", "in/missing.gcode", "in/gear.gcode", "-o", out, "--voxel-size", "0.3",
@@ -94,7 +94,7 @@ for tool, more, kind in ((GCODE2VDB, [], "vdb"), (VDBTRACE, [*SMALL, "--each"], 
     check(names(out + "/*") == [f"{out}/a.{kind}", f"{out}/gear.{kind}"], "  the good ones are made")
     last = done.stderr.strip().splitlines()[-1]
     check("2 of 4 inputs failed: " in last and "in/bad.gcode" in last and "in/missing.gcode" in last, f"  the end names them: {last}")
-    check("bad.gcode" in done.stderr and "missing.gcode" in done.stderr, "  and why was said")
+    check("bad.gcode:2" in done.stderr and "missing.gcode" in done.stderr, "  and why was said")
     with open(path("kept.json"), encoding="utf-8") as file:
         reports = json.load(file)
     check(len(reports) == 4 and sorted(r["exit_status"] for r in reports if "error" in r) == [3, 3], "  --stats has them, too")
