@@ -26,7 +26,7 @@ HWY_INLINE void store(hn::Vec<Floats> v, float scale, std::int16_t* out) {
     const auto most = hn::Set(d, static_cast<float>(kMostQuanta));
     const auto quanta = hn::NearestInt(hn::Min(hn::Max(v * hn::Set(d, scale), hn::Neg(most)), most));
     const auto below = hn::RebindMask(di, hn::Lt(v, hn::Zero(d)));
-    const auto kept = hn::IfThenElse(below, hn::Min(quanta, hn::Set(di, -1)), quanta);
+    const auto kept = hn::IfThenElse(below, quanta - hn::Set(di, 1), quanta);
     const hn::Rebind<std::int16_t, Whole> narrow;
     hn::StoreU(hn::DemoteTo(narrow, kept), narrow, out);
 }
@@ -120,7 +120,7 @@ float convert(float sample, float, float) { return sample; }
 std::int16_t convert(float sample, float scale, std::int16_t) {
     constexpr float kMost = kMostQuanta;
     const float quanta = std::nearbyint(std::clamp(sample * scale, -kMost, kMost));
-    return static_cast<std::int16_t>(sample < 0 ? std::min(quanta, -1.0F) : quanta);
+    return static_cast<std::int16_t>(sample < 0 ? quanta - 1.0F : quanta);
 }
 
 template <typename T>

@@ -12,11 +12,18 @@ namespace stratum::march {
 /// How bricks keep samples.
 enum class BrickValues {
     Float32,  ///< as the grid has them, world units
-    Int16,    ///< whole multiples of a 32767th of the narrow band's half-width; signs stay exact
+    Int16,    ///< whole multiples of a 32767th of the narrow band's half-width; signs stay exact, see sampleOf()
 };
 
 /// Of Int16, half of the band: a sample at its edge.
 inline constexpr int kMostQuanta = 32767;
+/// Of Int16, a sample below zero that is nearer to it than to one quantum below: inside, and as good as on the surface.
+/// Flats on voxel planes have such samples everywhere, by the rounding of floats; a whole quantum would lift them.
+inline constexpr double kLeastInside = -1.0 / 1024;
+
+/// What is kept as a sample's value in quanta: those below zero are kept one lower, so that -1 is kLeastInside.
+constexpr double sampleOf(std::int16_t kept) { return kept < 0 ? (kept == -1 ? kLeastInside : kept + 1) : kept; }
+constexpr double sampleOf(float kept) { return static_cast<double>(kept); }
 
 /// The samples of a leaf as bricks keep them, x slowest, and which of them are inside (below zero; zero is outside):
 /// bit 8 y + z of word x.
@@ -34,7 +41,7 @@ struct CapSamples {
 };
 
 /// Converts 512 samples in world units. `scale` is in quanta a world unit; floats are kept and it is ignored. Nearest
-/// quantum, but samples below zero stay below zero; what is beyond the band is put at its edge. Returns false if one is
+/// quantum, and samples below zero stay below zero; what is beyond the band is put at its edge. Returns false if one is
 /// no finite number.
 bool convert(const float* samples, float scale, LeafSamples<float>& out);
 bool convert(const float* samples, float scale, LeafSamples<std::int16_t>& out);

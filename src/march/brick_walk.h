@@ -192,7 +192,7 @@ struct Block {
     const auto first =
         static_cast<std::ptrdiff_t>(grid.firstSample(brick)) + (cell.x & 7) * kX + (cell.y & 7) * kY + (cell.z & 7);
     const auto from = [](const auto* v) -> Corners {
-        const auto at = [v](std::ptrdiff_t n) { return static_cast<double>(v[n]); };
+        const auto at = [v](std::ptrdiff_t n) { return sampleOf(v[n]); };
         return {at(0), at(1), at(kY), at(kY + 1), at(kX), at(kX + 1), at(kX + kY), at(kX + kY + 1)};
     };
     return grid.values() == BrickValues::Float32 ? from(grid.floats() + first) : from(grid.quanta() + first);

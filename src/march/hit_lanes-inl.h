@@ -68,9 +68,16 @@ private:
         } else {
             const hn::RebindToSigned<DHalfU32> whole32;
             const auto both = hn::BitCast(whole32, hn::TruncateTo(half, eight(quanta_, hn::ShiftLeft<1>(index))));
-            here = hn::PromoteTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(both)));
-            next = hn::PromoteTo(D(), hn::ShiftRight<16>(both));
+            here = sampleOf(hn::PromoteTo(D(), hn::ShiftRight<16>(hn::ShiftLeft<16>(both))));
+            next = sampleOf(hn::PromoteTo(D(), hn::ShiftRight<16>(both)));
         }
+    }
+    // march::sampleOf().
+    static HWY_INLINE V sampleOf(V kept) {
+        const D d;
+        const V above = kept + hn::Set(d, 1.0);
+        const V inside = hn::Min(above, hn::Set(d, kLeastInside));
+        return hn::IfThenElse(hn::Lt(kept, hn::Zero(d)), inside, kept);
     }
 
     const float* floats_;

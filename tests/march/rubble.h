@@ -38,7 +38,7 @@ inline openvdb::FloatGrid::Ptr quantized(const openvdb::FloatGrid& grid) {
     const double quantum = static_cast<double>(grid.background()) / 32767;
     const auto round = [quantum](float value) {
         const double n = std::nearbyint(std::clamp(static_cast<double>(value) / quantum, -32767.0, 32767.0));
-        return static_cast<float>((value < 0 ? std::min(n, -1.0) : n) * quantum);
+        return static_cast<float>((value < 0 ? std::min(n, -1.0 / 1024) : n) * quantum);
     };
     for (auto it = copy->beginValueAll(); it; ++it) it.setValue(round(*it));
     return copy;
