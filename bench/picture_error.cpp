@@ -1,5 +1,8 @@
 // How far pictures are from a reference: the figures of docs/benchmarks.md, "Pictures".
 #include "shade/exr_reader.h"
+#include "shade/film.h"
+#include "study/flip.h"
+#include "study/image_error.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -57,6 +60,13 @@ Error compare(const ExrImage& reference, const ExrImage& picture) {
     return e;
 }
 
+// As a PNG shows it, at the studio's exposure.
+stratum::study::DisplayPicture shown(const ExrImage& image) {
+    stratum::shade::Film film(image.width, image.height, {0, 0, image.width, image.height});
+    for (std::size_t n = 0; n < image.rgb.size(); ++n) film.pixels()[n].rgb = image.rgb[n];
+    return stratum::study::displayed(film);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -68,7 +78,9 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     try {
         const ExrImage truth = stratum::shade::readExr(reference, kMostPixels);
-        fmt::print("{:>11} {:>11} {:>10} {:>10} {:>10}  picture\n", "relMSE", "RMSE", "bias", "mean |d|", "99.9 %");
+        fmt::print("{:>11} {:>11} {:>10} {:>10} {:>10} {:>8}  picture\n", "relMSE", "RMSE", "bias", "mean |d|",
+                   "99.9 %", "FLIP");
+        const auto truth_shown = shown(truth);
         for (const std::string& name : pictures) {
             const ExrImage picture = stratum::shade::readExr(name, kMostPixels);
             if (picture.width != truth.width || picture.height != truth.height) {
@@ -76,8 +88,8 @@ int main(int argc, char** argv) {
                 return 3;
             }
             const Error e = compare(truth, picture);
-            fmt::print("{:11.3e} {:11.3e} {:+10.5f} {:10.5f} {:10.4f}  {}\n", e.rel_mse, e.rmse, e.bias, e.relative,
-                       e.worst, name);
+            fmt::print("{:11.3e} {:11.3e} {:+10.5f} {:10.5f} {:10.4f} {:8.4f}  {}\n", e.rel_mse, e.rmse, e.bias,
+                       e.relative, e.worst, stratum::study::meanFlip(truth_shown, shown(picture)), name);
         }
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());

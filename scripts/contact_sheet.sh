@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Default pictures of twenty real files on one sheet: many slicers, colours, sizes. Each is "vdbtrace FILE" without an
 # option (one is half printed). Files of the corpus that are not there are left out and named.
-# scripts/contact_sheet.sh SHEET.png [FOLDER for the single pictures, 1280 x 960]
+# scripts/contact_sheet.sh SHEET.jpg [FOLDER for the single pictures, 1280 x 960; those that are there are kept]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
-install_packages imagemagick
+install_packages imagemagick fonts-dejavu-core
 sheet=${1:?which file to write}
 folder=${2:-$(mktemp -d)}
 mkdir -p "$folder"
@@ -22,7 +22,7 @@ picture() {
     fi
     local name
     name=$(printf '%s/%02d.png' "$folder" "$((${#tiles[@]} / 3))")
-    "$bin/vdbtrace" "$file" "$@" -o "$name"
+    [[ -f "$name" ]] || "$bin/vdbtrace" "$file" "$@" -o "$name"
     tiles+=(-label "$label" "$name")
 }
 picture "PrusaSlicer, defaults" data/gcode/hull.gcode
@@ -45,4 +45,4 @@ picture "PrusaSlicer, supports" data/gcode/knot.gcode
 picture "FlashPrint, .gx" "$corpus/slicer-meta-FlashPrint.gx"
 picture "PrusaSlicer, 1000 cm3" "$corpus/spot_1000cc_0.1mm_grid.gcode.gz"
 picture "by hand, one square" "$corpus/gcode-preview-square.gcode"
-montage "${tiles[@]}" -tile 4x -geometry 400x300+6+4 -pointsize 15 -background white "$sheet"
+montage "${tiles[@]}" -tile 4x -geometry 400x300+6+4 -font DejaVu-Sans -pointsize 15 -quality 88 -background white "$sheet"

@@ -110,7 +110,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
 
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
-    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; 8 if denoised)")
+    app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; if denoised 8, small pictures up to 32)")
         ->each([&o](const std::string&) { o.spp_given = true; })
         ->type_name("N")
         ->group(picture);

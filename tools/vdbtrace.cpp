@@ -69,8 +69,15 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
 void chooseDenoising(tools::TraceCommand& o) {
     if (!o.denoise) o.denoise = !o.linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
     if (!*o.denoise) return;
-    constexpr int kEnough = 8;  // what a denoised picture needs
-    if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) o.render.spp = kEnough;
+    if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) {
+        // Enough where a layer line takes some pixels. In a small picture many of them share one, and each pixel has
+        // more to average.
+        constexpr int kEnough = 8, kMost = 32;
+        constexpr std::int64_t kLarge = 1280 * 960;
+        const std::int64_t pixels = std::int64_t{o.render.width} * o.render.height;
+        o.render.spp = kEnough;
+        while (o.render.spp < kMost && pixels * o.render.spp * 2 <= kLarge * kEnough * 11 / 10) o.render.spp *= 2;
+    }
     shade::addDenoisingGuides(o.render);
 }
 

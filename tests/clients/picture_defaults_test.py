@@ -42,6 +42,16 @@ tile = report(gcode("tile.gcode"), *G)
 check(colors(tile) == ["#d8563b"] and tile["material"]["brdf"] == "#d8563b", f"one colour: {tile['material']}")
 check("settings" in tile["material"]["colors"][0]["from"] and skips_lookup(tile), "where it is from, and no lookup")
 
+# --- samples: a small picture gets more, an .exr is not denoised ---------------------------------------------------------
+def samples(size, output="p.png"):
+    done = call(VDBTRACE, gcode("tile.gcode"), *G, "-o", path(output), "--size", size, "--integrator", "direct", "--stats", "-", "--quiet")
+    return json.loads(done.stdout)["image"]["spp"]
+
+
+for size, spp in (("1280x960", 8), ("900x675", 16), ("64x48", 32)):
+    check(samples(size) == spp, f"{size}: {spp} samples a pixel")
+check(samples("64x48", "p.exr") == 16, "an .exr has 16")
+
 # --- two of them: by place ------------------------------------------------------------------------------------------------
 for name in ("two_tone.gcode", "two_tone_mmu.gcode"):
     two = report(gcode(name), *G)

@@ -84,11 +84,7 @@ class Session:
             else:
                 self._take(report)
         except FAILURES as error:
-            if self._colored and "--grids" in str(error):  # gcode2vdb 0.1.0 writes no colors into meshes
-                self._colored = False
-                self._convert(self._settings.command_options(self._voxels))
-            else:
-                self.failures.append(str(error))
+            self.failures.append(str(error))
         finally:
             conversion.close()
 

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# The pictures of README.md, docs/gallery.md and docs/shading.md, made anew with the tools of this tree. Those of files
+# of the corpus are left as they are where it is not there. Minutes.
+# scripts/doc_pictures.sh [NAME...]   only these, e.g. gallery_gear
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/packages.sh
+install_packages imagemagick
+bin=${STRATUM_BIN:-build/release/bin}
+corpus=${STRATUM_CORPUS:-../shared/corpus}
+out=docs/pictures
+wanted=("$@")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+asked() {
+    [[ ${#wanted[@]} -eq 0 || " ${wanted[*]} " == *" $1 "* ]]
+}
+# picture NAME FILE [OPTION...]: one that vdbtrace makes by itself
+picture() {
+    local name=$1
+    shift
+    asked "$name" || return 0
+    if [[ ! -f "$1" ]]; then
+        echo "not there: $1"
+        return 0
+    fi
+    "$bin/vdbtrace" "$@" -o "$out/$name.png"
+}
+# tiles NAME COLUMNS FILE 'OPTIONS' 'OPTIONS'...: several of one file, side by side
+tiles() {
+    local name=$1 columns=$2 file=$3 n=0
+    shift 3
+    asked "$name" || return 0
+    if [[ ! -f "$file" ]]; then
+        echo "not there: $file"
+        return 0
+    fi
+    rm -f "$work"/*.png
+    local options
+    for options in "$@"; do
+        # shellcheck disable=SC2086 # words
+        "$bin/vdbtrace" "$file" $options -o "$(printf '%s/%02d.png' "$work" "$n")"
+        n=$((n + 1))
+    done
+    montage "$work"/*.png -tile "${columns}x" -geometry +0+0 "$out/$name.png"
+}
+
+boat=$corpus/gcode/gcode-preview-benchy_slic3r.gcode
+picture hull data/gcode/hull.gcode --size 900x675
+for percent in 25 50 75 100; do
+    picture "benchy_$percent" "$boat" --printed "$percent%" --frame all --size 720x540
+done
+shown=(--size 640x480)
+picture gallery_gear data/gcode/gear.gcode "${shown[@]}" --brdf pla-yellow
+picture gallery_vase data/gcode/vase.gcode "${shown[@]}" --brdf silk-pink
+picture gallery_ripple "$corpus/gcode/gcode-preview-ripple_vase.gcode" "${shown[@]}" --brdf petg-orange
+picture gallery_knot data/gcode/knot.gcode "${shown[@]}" --brdf petg-black
+picture gallery_tile data/gcode/tile.gcode "${shown[@]}" --brdf pla-white --view top --env sky:25,30
+picture gallery_two_tone data/gcode/two_tone_mmu.gcode "${shown[@]}"
+picture gallery_bridges data/gcode/bridges.gcode "${shown[@]}" --brdf pla-green --env sky
+picture gallery_tug data/gcode/hull.gcode "${shown[@]}" --brdf pla-blue --bed-surface pei
+picture hills "$boat" --size 400x300 --brdf petg-orange --env "$corpus/env/golden_gate_hills_1k.hdr" --env-rotation 200
+tiles beds 2 data/gcode/hull.gcode "--size 480x360 --bed-surface pei" "--size 480x360 --bed-surface grid"
+filaments=()
+for filament in pla-blue pla-green pla-red pla-white pla-yellow petg-black petg-orange silk-pink; do
+    filaments+=("--size 360x300 --features -skirt --zoom 1.15 --brdf $filament")
+done
+tiles filaments 4 "$boat" "${filaments[@]}"
