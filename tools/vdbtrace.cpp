@@ -13,6 +13,7 @@
 #include "shade/picture.h"
 #include "shade/preset_names.h"
 
+#include <cstdint>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,7 +74,7 @@ void chooseDenoising(tools::TraceCommand& o) {
         // Enough where a layer line takes some pixels. In a small picture many of them share one, and each pixel has
         // more to average.
         constexpr int kEnough = 8, kMost = 32;
-        constexpr std::int64_t kLarge = 1280 * 960;
+        constexpr std::int64_t kLarge = std::int64_t{1280} * 960;
         const std::int64_t pixels = std::int64_t{o.render.width} * o.render.height;
         o.render.spp = kEnough;
         while (o.render.spp < kMost && pixels * o.render.spp * 2 <= kLarge * kEnough * 11 / 10) o.render.spp *= 2;
