@@ -13,10 +13,10 @@
 #include "shade/picture.h"
 #include "shade/preset_names.h"
 
-#include <cstdint>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
