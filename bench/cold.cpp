@@ -3,12 +3,12 @@
 // Each is a process of its own that first maps, writes and unmaps the same amount: on a virtual machine a page that the
 // host has taken back costs ten times one that it has not, and both should find the machine in the same state. They
 // take turns. Set GLIBC_TUNABLES=glibc.malloc.hugetlb=1, as the tools do for themselves, to build in huge pages.
-#include "parallel/parallel_for.h"
+#include "base/parallel_for.h"
 #include "study/own_process.h"
 #include "study/print.h"
 #include "study/times.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <sys/mman.h>

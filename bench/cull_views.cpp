@@ -2,13 +2,13 @@
 //
 // Views all around it, views from beside the surface (which look into whatever is concave), and cosine rays from every
 // hit, as ambient occlusion has them. Counts rays that end elsewhere and says where.
-#include "march/brick_intersector.h"
-#include "parallel/parallel_for.h"
+#include "base/parallel_for.h"
+#include "march/brick/brick_intersector.h"
 #include "study/print.h"
 #include "study/times.h"
-#include "voxelize/bead_field.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -43,8 +43,8 @@ glm::dvec3 onSphere(double a, double b) {
 }
 
 // Compares one ray; `normal` and `from` are of the kept grid's hit.
-bool compare(march::Tracer& kept, march::Tracer& culled, const march::Ray& ray, Tally& tally, march::Hit& hit) {
-    march::Hit other;
+bool compare(trace::Tracer& kept, trace::Tracer& culled, const trace::Ray& ray, Tally& tally, trace::Hit& hit) {
+    trace::Hit other;
     const bool a = kept.intersect(ray, hit);
     const bool b = culled.intersect(ray, other);
     ++tally.rays;
@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
     std::vector<std::uint32_t> beads = voxelize::selectBeads(toolpath, {});
     beads.resize(static_cast<std::size_t>(static_cast<double>(beads.size()) * percent / 100));
     const auto lattice = study::latticeOf(toolpath, beads, voxel);
-    std::unique_ptr<march::Intersector> intersectors[2];
+    std::unique_ptr<trace::Intersector> intersectors[2];
     for (int cull = 0; cull < 2; ++cull) {
         voxelize::VoxelizeOptions options;
         options.interior = cull != 0 ? voxelize::Interior::cull : voxelize::Interior::keep;
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
                    grid->tree().leafCount());
         intersectors[cull] = march::makeBrickIntersector(*grid);
     }
-    const march::Box box = intersectors[0]->bounds();
+    const trace::Box box = intersectors[0]->bounds();
     const glm::dvec3 centre = 0.5 * (box.min + box.max);
     const double radius = 0.5 * glm::length(box.max - box.min);
     const double offset = intersectors[0]->surfaceOffset();
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
         // Beside the surface: a millimetre off where the ray to the middle meets it, looking everywhere.
         glm::dvec3 eye{0.0};
         if (!outer) {
-            march::Hit hit;
+            trace::Hit hit;
             if (!intersectors[0]->makeTracer()->intersect({centre + from * (2 * radius), -from}, hit)) continue;
             eye = hit.position + hit.normal;
         }
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
                 for (int x = 0; x < size; ++x) {
                     const double u = (x + unit(random)) / size;
                     const double v = (static_cast<double>(row) + unit(random)) / size;
-                    march::Ray ray;
+                    trace::Ray ray;
                     if (outer) {
                         ray.origin =
                             centre + from * (2 * radius) + (2 * u - 1) * radius * side + (2 * v - 1) * radius * up;
@@ -136,14 +136,14 @@ int main(int argc, char** argv) {
                         ray.origin = eye;
                         ray.direction = onSphere(u, v);
                     }
-                    march::Hit hit;
+                    trace::Hit hit;
                     if (!compare(*kept, *culled, ray, direct, hit)) continue;
                     for (int s = 0; s < cosine_rays; ++s) {
-                        march::Ray bounce;
+                        trace::Ray bounce;
                         bounce.direction =
                             glm::normalize(hit.normal + onSphere(unit(random), unit(random)) * (1 - 1e-9));
                         bounce.origin = hit.position + hit.normal * offset;
-                        march::Hit unused;
+                        trace::Hit unused;
                         compare(*kept, *culled, bounce, bounced, unused);
                     }
                 }

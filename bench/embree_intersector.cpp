@@ -11,9 +11,9 @@
 namespace stratum::bench {
 namespace {
 
-using march::Box;
-using march::Hit;
-using march::Ray;
+using trace::Box;
+using trace::Hit;
+using trace::Ray;
 
 constexpr std::size_t kPacket = 16;
 
@@ -38,7 +38,7 @@ Part clip(const Ray& ray, const Box& box) {
     return part;
 }
 
-class EmbreeTracer final : public march::Tracer {
+class EmbreeTracer final : public trace::Tracer {
 public:
     EmbreeTracer(RTCScene scene, const Box& box, const std::vector<std::uint32_t>& objects)
         : scene_(scene), box_(box), objects_(objects) {}
@@ -152,7 +152,7 @@ private:
     const std::vector<std::uint32_t>& objects_;
 };
 
-class EmbreeIntersector final : public march::Intersector {
+class EmbreeIntersector final : public trace::Intersector {
 public:
     EmbreeIntersector(std::unique_ptr<EmbreeScene> scene, std::vector<std::uint32_t> objects)
         : scene_(std::move(scene)), objects_(std::move(objects)) {
@@ -166,7 +166,7 @@ public:
         box_.min -= offset_;
         box_.max += offset_;
     }
-    std::unique_ptr<march::Tracer> makeTracer() const override {
+    std::unique_ptr<trace::Tracer> makeTracer() const override {
         return std::make_unique<EmbreeTracer>(scene_->handle(), box_, objects_);
     }
     std::string_view name() const override { return "embree"; }
@@ -184,7 +184,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<march::Intersector> embreeIntersector(std::unique_ptr<EmbreeScene> scene,
+std::unique_ptr<trace::Intersector> embreeIntersector(std::unique_ptr<EmbreeScene> scene,
                                                       std::vector<std::uint32_t> objects) {
     return std::make_unique<EmbreeIntersector>(std::move(scene), std::move(objects));
 }

@@ -1,7 +1,7 @@
 // Embree's scenes: a mesh, or beads, analytic or tessellated.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <embree3/rtcore.h>
 

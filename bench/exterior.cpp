@@ -1,12 +1,12 @@
 // What culling saves: a print with all its inner surfaces against the same print as the outside sees it.
 //
 // The peer is OpenVDB's extractEnclosedRegion, which finds the enclosed voids of a grid that has been built whole.
+#include "export/vdb_file.h"
 #include "study/print.h"
 #include "study/times.h"
-#include "voxelize/bead_field.h"
-#include "voxelize/selection.h"
-#include "voxelize/vdb_file.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/Composite.h>
@@ -40,7 +40,7 @@ void writeHalf(const openvdb::FloatGrid& grid, const std::string& path) {
         openvdb::BBoxd(low, high), grid.transform(), grid.background() / grid.voxelSize()[0]);
     const auto half = openvdb::tools::csgIntersectionCopy(grid, *knife);
     half->setName("surface");
-    voxelize::writeVdb({half}, path);
+    exporter::writeVdb({half}, path);
 }
 
 }  // namespace

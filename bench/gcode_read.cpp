@@ -5,10 +5,10 @@
 // FILE is text or any container; it is unpacked first, and the text alone is measured. Rounds alternate between the
 // three, and CPU seconds of one thread are counted, so that other work on the machine disturbs all alike. The text is
 // mapped and warm. Prints a row of docs/benchmarks.md for each.
-#include "gcode/container.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "gcode/container/container.h"
 #include "gcode/reader.h"
-#include "io/error.h"
-#include "io/mapped_file.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

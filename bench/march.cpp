@@ -6,13 +6,13 @@
 #include "march_peer.h"
 #include "march_rays.h"
 
+#include "base/mapped_file.h"
+#include "base/parallel_for.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "march/brick_intersector.h"
-#include "march/level_set_file.h"
-#include "march/sphere_intersector.h"
-#include "march/vdb_intersector.h"
-#include "parallel/parallel_for.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/level_set_file.h"
+#include "march/reference/sphere_intersector.h"
+#include "march/reference/vdb_intersector.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -106,8 +106,8 @@ void run(const Options& o) {
     const auto wanted = [&](const std::string& name) {
         return o.peers.empty() || std::find(o.peers.begin(), o.peers.end(), name) != o.peers.end();
     };
-    std::shared_ptr<const march::Intersector> brick;  // exact: what the others' answers are compared with
-    std::shared_ptr<const march::Intersector> quanta;
+    std::shared_ptr<const trace::Intersector> brick;  // exact: what the others' answers are compared with
+    std::shared_ptr<const trace::Intersector> quanta;
     double brick_cpu = 0;
     double quanta_cpu = 0;
     const auto build = [&grid](auto& made, march::BrickValues values, double& cpu) {

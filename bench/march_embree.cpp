@@ -21,7 +21,7 @@ constexpr std::size_t kPacket = 16;
 // Rays in Embree's packets. Which form is best for them, packets of 16 or one by one, is tried out first.
 class EmbreeRays final : public Prepared {
 public:
-    EmbreeRays(RTCScene scene, std::span<const march::Ray> rays, bool coherent) : scene_(scene), count_(rays.size()) {
+    EmbreeRays(RTCScene scene, std::span<const trace::Ray> rays, bool coherent) : scene_(scene), count_(rays.size()) {
         flags_ = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         packets_.resize((count_ + kPacket - 1) / kPacket);
         for (std::size_t n = 0; n < count_; ++n) {
@@ -158,7 +158,7 @@ public:
     explicit EmbreePeer(std::unique_ptr<EmbreeScene> scene) : scene_(std::move(scene)) {
         bytes = static_cast<double>(scene_->bytes());
     }
-    std::unique_ptr<Prepared> prepare(std::span<const march::Ray> rays, bool coherent) override {
+    std::unique_ptr<Prepared> prepare(std::span<const trace::Ray> rays, bool coherent) override {
         return std::make_unique<EmbreeRays>(scene_->handle(), rays, coherent);
     }
 

@@ -1,7 +1,7 @@
 // Embree as a peer: on the mesh of a level set, and on beads, analytic or tessellated.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 #include "march_peer.h"
 
 #include <openvdb/openvdb.h>

@@ -10,13 +10,13 @@ namespace stratum::bench {
 namespace {
 
 struct Worker {
-    std::unique_ptr<march::Tracer> tracer;
-    std::vector<march::Hit> hits;
+    std::unique_ptr<trace::Tracer> tracer;
+    std::vector<trace::Hit> hits;
 };
 
 class MarchRays final : public Prepared {
 public:
-    MarchRays(const march::Intersector& intersector, std::span<const march::Ray> rays, bool streams)
+    MarchRays(const trace::Intersector& intersector, std::span<const trace::Ray> rays, bool streams)
         : rays_(rays), streams_(streams), workers_([&intersector] {
               return Worker{intersector.makeTracer(), {}};
           }) {}
@@ -41,27 +41,27 @@ public:
     }
 
 private:
-    std::span<const march::Ray> rays_;
+    std::span<const trace::Ray> rays_;
     bool streams_;
     tbb::enumerable_thread_specific<Worker> workers_;
 };
 
 class MarchPeer final : public Peer {
 public:
-    MarchPeer(std::shared_ptr<const march::Intersector> intersector, bool streams)
+    MarchPeer(std::shared_ptr<const trace::Intersector> intersector, bool streams)
         : intersector_(std::move(intersector)), streams_(streams) {}
-    std::unique_ptr<Prepared> prepare(std::span<const march::Ray> rays, bool) override {
+    std::unique_ptr<Prepared> prepare(std::span<const trace::Ray> rays, bool) override {
         return std::make_unique<MarchRays>(*intersector_, rays, streams_);
     }
 
 private:
-    std::shared_ptr<const march::Intersector> intersector_;
+    std::shared_ptr<const trace::Intersector> intersector_;
     bool streams_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const march::Intersector> intersector, bool streams,
+std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const trace::Intersector> intersector, bool streams,
                                 double build_seconds) {
     const double bytes = static_cast<double>(intersector->bytes());
     auto peer = std::make_unique<MarchPeer>(std::move(intersector), streams);

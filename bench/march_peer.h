@@ -1,7 +1,7 @@
 // What bench/march compares: something that finds the nearest hit of many rays, or whether there is one.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +24,14 @@ public:
 struct Peer {
     virtual ~Peer() = default;
     /// Keeps a reference to `rays`. `coherent`: neighbours run side by side.
-    virtual std::unique_ptr<Prepared> prepare(std::span<const march::Ray> rays, bool coherent) = 0;
+    virtual std::unique_ptr<Prepared> prepare(std::span<const trace::Ray> rays, bool coherent) = 0;
     std::string name;
     double build_seconds = 0;
     double bytes = 0;  ///< besides what it was built from
 };
 
 /// An intersector of src/march; `streams` by its stream forms, else ray by ray.
-std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const march::Intersector> intersector, bool streams,
+std::unique_ptr<Peer> marchPeer(std::string name, std::shared_ptr<const trace::Intersector> intersector, bool streams,
                                 double build_seconds);
 
 }  // namespace stratum::bench

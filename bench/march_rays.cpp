@@ -11,13 +11,13 @@
 namespace stratum::bench {
 namespace {
 
-using march::Hit;
-using march::Ray;
+using trace::Hit;
+using trace::Ray;
 
 constexpr int kTile = 32;
 constexpr double kShort = 5;  // mm
 
-std::vector<Ray> primaryRays(const march::Box& box, int side) {
+std::vector<Ray> primaryRays(const trace::Box& box, int side) {
     const glm::dvec3 centre = 0.5 * (box.min + box.max);
     const double radius = 0.5 * glm::length(box.max - box.min);
     const glm::dvec3 forward = glm::normalize(glm::dvec3(0.6, 0.75, -0.45));
@@ -59,7 +59,7 @@ glm::dvec3 cosineDirection(const glm::dvec3& n, std::mt19937& random) {
 
 }  // namespace
 
-std::vector<RaySet> makeRaySets(const march::Intersector& exact, int side, double offset) {
+std::vector<RaySet> makeRaySets(const trace::Intersector& exact, int side, double offset) {
     std::vector<RaySet> sets;
     sets.push_back({"primary", primaryRays(exact.bounds(), side), false, true});
     std::vector<std::pair<Ray, Hit>> seen;

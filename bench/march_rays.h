@@ -1,7 +1,7 @@
 // The rays that a renderer sends at a print.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <cstddef>
 #include <string>
@@ -11,7 +11,7 @@ namespace stratum::bench {
 
 struct RaySet {
     std::string name;
-    std::vector<march::Ray> rays;
+    std::vector<trace::Ray> rays;
     bool any = false;       ///< only whether there is a hit is asked
     bool coherent = false;  ///< neighbours run side by side
 };
@@ -19,6 +19,6 @@ struct RaySet {
 /// Primary rays of a picture of `side` x `side` pixels from an oblique view, in tiles of 32 x 32; then, from their hits
 /// found by `exact`: one and eight cosine-distributed rays a hit, unlimited and of 5 mm, and mirror bounces. Secondary
 /// rays leave by `offset` along the normal, far enough for the least exact of the peers.
-std::vector<RaySet> makeRaySets(const march::Intersector& exact, int side, double offset);
+std::vector<RaySet> makeRaySets(const trace::Intersector& exact, int side, double offset);
 
 }  // namespace stratum::bench

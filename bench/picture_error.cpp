@@ -1,6 +1,6 @@
 // How far pictures are from a reference: the figures of docs/benchmarks.md, "Pictures".
-#include "shade/exr_reader.h"
-#include "shade/film.h"
+#include "shade/film/exr_reader.h"
+#include "shade/film/film.h"
 #include "study/flip.h"
 #include "study/image_error.h"
 

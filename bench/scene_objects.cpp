@@ -3,9 +3,9 @@
 // Both in one process, run by run in turn; every answer of one is compared with the other's, to the bit.
 #include "march_rays.h"
 
-#include "march/brick_intersector.h"
-#include "march/level_set_file.h"
-#include "march/scene_intersector.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/level_set_file.h"
+#include "trace/scene_intersector.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -26,12 +26,12 @@ namespace {
 constexpr std::size_t kStream = 1024;
 
 /// On a square plate, or in a cube; a fifth of the part's size apart.
-std::vector<march::SceneObject> manyOf(const std::shared_ptr<const march::Intersector>& part, int count, bool cube) {
-    const march::Box box = part->bounds();
+std::vector<trace::SceneObject> manyOf(const std::shared_ptr<const trace::Intersector>& part, int count, bool cube) {
+    const trace::Box box = part->bounds();
     const glm::dvec3 pitch = 1.2 * (box.max - box.min);
     const double power = cube ? 1.0 / 3.0 : 0.5;
     const int side = static_cast<int>(std::ceil(std::pow(count, power) - 1e-9));
-    std::vector<march::SceneObject> objects;
+    std::vector<trace::SceneObject> objects;
     for (int n = 0; n < count; ++n) {
         const glm::dvec3 place(n % side, n / side % side, n / (side * side));
         const glm::dvec3 flat(n % side, n / side, 0);
@@ -41,12 +41,12 @@ std::vector<march::SceneObject> manyOf(const std::shared_ptr<const march::Inters
 }
 
 struct Answers {
-    std::vector<march::Hit> hits;
+    std::vector<trace::Hit> hits;
     std::vector<std::uint8_t> blocked;
 };
 
 /// Returns seconds.
-double trace(march::Tracer& tracer, const bench::RaySet& set, Answers& answers) {
+double trace(trace::Tracer& tracer, const bench::RaySet& set, Answers& answers) {
     answers.hits.resize(set.any ? 0 : set.rays.size());
     answers.blocked.resize(set.any ? set.rays.size() : 0);
     const auto begin = std::chrono::steady_clock::now();
@@ -62,7 +62,7 @@ double trace(march::Tracer& tracer, const bench::RaySet& set, Answers& answers) 
 }
 
 bool same(const Answers& a, const Answers& b) {
-    const auto equal = [](const march::Hit& x, const march::Hit& y) {
+    const auto equal = [](const trace::Hit& x, const trace::Hit& y) {
         return x.t == y.t && (!std::isfinite(x.t) || (x.object == y.object && x.normal == y.normal));
     };
     return a.blocked == b.blocked && std::equal(a.hits.begin(), a.hits.end(), b.hits.begin(), b.hits.end(), equal);
@@ -88,13 +88,13 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     openvdb::initialize();
     const auto grid = march::readLevelSet(input, "");
-    const auto part = std::shared_ptr<const march::Intersector>(march::makeBrickIntersector(*grid));
+    const auto part = std::shared_ptr<const trace::Intersector>(march::makeBrickIntersector(*grid));
     fmt::print("| objects | rays | Mrays/s, one by one | with the tree | ratio |\n|---|---|---|---|---|\n");
     for (const bool cube : {false, true})
         for (const int count : counts) {
             const auto objects = manyOf(part, count, cube);
-            const auto plain = march::makeSceneIntersector(objects, objects.size() + 1);
-            const auto treed = march::makeSceneIntersector(objects, 0);
+            const auto plain = trace::makeSceneIntersector(objects, objects.size() + 1);
+            const auto treed = trace::makeSceneIntersector(objects, 0);
             const auto loop = plain->makeTracer();
             const auto tree = treed->makeTracer();
             auto sets = bench::makeRaySets(*treed, side, plain->surfaceOffset());

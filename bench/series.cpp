@@ -3,8 +3,8 @@
 // Both in memory that the process has used before; nothing is written.
 #include "study/print.h"
 #include "study/times.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>

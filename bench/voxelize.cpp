@@ -5,10 +5,10 @@
 // active voxel of the grid that this project makes.
 #include "study/print.h"
 #include "study/times.h"
-#include "voxelize/bead_field.h"
-#include "voxelize/leaf_kernels.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
+#include "voxelize/leaf/leaf_kernels.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/MeshToVolume.h>

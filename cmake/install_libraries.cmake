@@ -1,8 +1,8 @@
-# The libraries for other projects, by add_subdirectory or installed and found by find_package(stratum): the rooms as
-# stratum::io, stratum::gcode, stratum::motion, stratum::voxelize, stratum::march, stratum::ondemand and stratum::shade.
+# The libraries for other projects, by add_subdirectory or installed and found by find_package(stratum): each room of src/
+# as stratum::ROOM.
 include(CMakePackageConfigHelpers)
 
-set(rooms io parallel gcode motion voxelize shapes march ondemand shade)
+set(rooms base gcode motion voxelize export trace march ondemand shade assemble)
 foreach(room ${rooms})
   add_library(stratum::${room} ALIAS stratum_${room})
   set_target_properties(stratum_${room} PROPERTIES EXPORT_NAME ${room})
@@ -11,7 +11,7 @@ endforeach()
 set_target_properties(stratum_options PROPERTIES EXPORT_NAME options)
 install(TARGETS stratum_options ${targets} EXPORT stratum
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-foreach(room io parallel gcode motion voxelize march ondemand shade)
+foreach(room ${rooms})
   # Not the -inl.h: they are parts of .cpp files.
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/stratum COMPONENT dev
     FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)

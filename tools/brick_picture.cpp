@@ -1,9 +1,9 @@
 #include "brick_picture.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "march/brick_projection.h"
-#include "shade/png_writer.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "march/brick/brick_projection.h"
+#include "shade/film/png_writer.h"
 
 #include <fmt/format.h>
 

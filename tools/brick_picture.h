@@ -1,7 +1,7 @@
 // Which bricks of a print a picture asked for, as a picture.
 #pragma once
 
-#include "march/brick_grid.h"
+#include "march/brick/brick_grid.h"
 
 #include <string>
 

@@ -3,9 +3,9 @@
 #include "build_facts.h"
 #include "manual.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "io/nearest_name.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/nearest_name.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,25 +5,25 @@
 #include "time_report.h"
 #include "toolpath_report.h"
 
-#include "gcode/bead_colors.h"
-#include "gcode/input_bytes.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "export/mesh_file.h"
+#include "export/surface_mesh.h"
+#include "export/usd_file.h"
+#include "export/vdb_file.h"
+#include "gcode/container/input_bytes.h"
 #include "gcode/reader.h"
+#include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
-#include "gcode/toolpath_csv.h"
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "io/mapped_file.h"
+#include "gcode/toolpath/toolpath_csv.h"
 #include "motion/print_times.h"
-#include "voxelize/attributes.h"
-#include "voxelize/interior_distance.h"
-#include "voxelize/mesh_file.h"
-#include "voxelize/part_bounds.h"
-#include "voxelize/selection.h"
-#include "voxelize/solid_check.h"
-#include "voxelize/surface_mesh.h"
-#include "voxelize/usd_file.h"
-#include "voxelize/vdb_file.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/attributes.h"
+#include "voxelize/grid/interior_distance.h"
+#include "voxelize/grid/solid_check.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 
@@ -119,7 +119,7 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
     std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, selectionOf(o.print, toolpath));
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
-    const bool as_mesh = voxelize::isMeshPath(output);
+    const bool as_mesh = exporter::isMeshPath(output);
     const auto interior =
         o.interior == "cull" || (o.interior.empty() && as_mesh) ? voxelize::Interior::cull : voxelize::Interior::keep;
     std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
@@ -133,7 +133,7 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
                               lattice.reason, lattice.aligned_share * 100));
     if (!lattice.warning.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, lattice.warning);
 
-    voxelize::Provenance provenance;
+    exporter::Provenance provenance;
     provenance.source_file = fs::path(name).filename().string();
     provenance.source_sha256 = sha256Hex(file.bytes());
     provenance.slicer = toolpath.slicer;
@@ -186,25 +186,25 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
         voxelize_seconds += watch.lap();
         cull_seconds += voxelizer.report().exterior_seconds;
         provenance.snapshot = job.label;
-        std::optional<voxelize::SurfaceMesh> mesh;
+        std::optional<exporter::SurfaceMesh> mesh;
         if (as_mesh) {
             const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
             {
                 const ProgressNote note("meshing", o.common.quiet);
-                mesh = voxelize::meshSurface(*grid, {provenance.culled, o.mesh_error, color});
+                mesh = exporter::meshSurface(*grid, {provenance.culled, o.mesh_error, color});
             }
             mesh_seconds += watch.lap();
             const ProgressNote note("writing", o.common.quiet);
-            voxelize::writeMesh(*mesh, job.path);
+            exporter::writeMesh(*mesh, job.path);
         } else {
             const auto printed = std::span<const std::uint32_t>(selection).first(job.beads);
             provenance.part = voxelize::placed(voxelize::partBounds(toolpath, printed), options.placement);
             const ProgressNote note("writing", o.common.quiet);
-            voxelize::describe(*grid, lattice, provenance);
+            exporter::describe(*grid, lattice, provenance);
             grids.insert(grids.begin(), grid);
-            voxelize::writeVdb(grids, job.path, o.file);
+            exporter::writeVdb(grids, job.path, o.file);
             if (o.usda) {
-                voxelize::writeUsda(grids, job.path, usdaOf(job.path), {0.001 * millimetresIn(o.unit), o.up == "y"});
+                exporter::writeUsda(grids, job.path, usdaOf(job.path), {0.001 * millimetresIn(o.unit), o.up == "y"});
             }
         }
         write_seconds += watch.lap();

@@ -5,7 +5,7 @@
 #include "print_options.h"
 #include "run_files.h"
 
-#include "voxelize/vdb_file.h"
+#include "export/vdb_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,7 +32,7 @@ struct ConvertCommand {
     std::string up = "z";
     std::string snapshots;
     std::string unit = "mm", origin = "bed";
-    voxelize::FileOptions file;
+    exporter::FileOptions file;
 };
 
 /// The .usda beside a .vdb.

@@ -1,7 +1,7 @@
 #include "file_facts.h"
 
-#include "io/mapped_file.h"
-#include "march/grid_axes.h"
+#include "base/mapped_file.h"
+#include "march/file/grid_axes.h"
 
 #include <fmt/format.h>
 
@@ -22,14 +22,14 @@ std::string upOf(const openvdb::FloatGrid& grid) {
     return up ? up->value() : "z";
 }
 
-std::optional<march::Box> partOf(const openvdb::FloatGrid& grid) {
+std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid) {
     const auto low = grid.getMetadata<openvdb::Vec3DMetadata>("part_bbox_min");
     const auto high = grid.getMetadata<openvdb::Vec3DMetadata>("part_bbox_max");
     if (!low || !high) return std::nullopt;
     const openvdb::Vec3d& a = low->value();
     const openvdb::Vec3d& b = high->value();
     if (!a.isFinite() || !b.isFinite() || a[0] > b[0] || a[1] > b[1] || a[2] > b[2]) return std::nullopt;
-    return march::Box{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+    return trace::Box{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
 }
 
 void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {

@@ -1,7 +1,7 @@
 // What a file says of itself, besides its shape.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <openvdb/openvdb.h>
 
@@ -17,7 +17,7 @@ std::string unitOf(const openvdb::FloatGrid& grid);
 std::string upOf(const openvdb::FloatGrid& grid);
 
 /// The part's box without what is printed beside it, in the file's world space; nothing if the file doesn't say.
-std::optional<march::Box> partOf(const openvdb::FloatGrid& grid);
+std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid);
 
 /// Says so on stderr if the narrow band is thinner than OpenVDB's tools expect.
 void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid);

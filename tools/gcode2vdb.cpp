@@ -7,10 +7,10 @@
 #include "print_options.h"
 #include "run_files.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "voxelize/attributes.h"
-#include "voxelize/mesh_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "export/mesh_file.h"
+#include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -92,11 +92,11 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->check(tools::oneOf({"float", "half"}))
         ->type_name("KIND")
         ->group(writing);
-    const auto compression = [](voxelize::Compression value) { return static_cast<int>(value); };
+    const auto compression = [](exporter::Compression value) { return static_cast<int>(value); };
     app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
-        ->transform(tools::enumeration({{"blosc", compression(voxelize::Compression::blosc)},
-                                        {"zip", compression(voxelize::Compression::zip)},
-                                        {"none", compression(voxelize::Compression::none)}}))
+        ->transform(tools::enumeration({{"blosc", compression(exporter::Compression::blosc)},
+                                        {"zip", compression(exporter::Compression::zip)},
+                                        {"none", compression(exporter::Compression::none)}}))
         ->type_name("KIND")
         ->group(writing);
     app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
@@ -152,7 +152,7 @@ std::vector<fs::path> outputsOf(const tools::ConvertCommand& o) {
 void refuseGridsOfMeshes(const tools::ConvertCommand& o, const fs::path& output) {
     const auto grids = voxelize::parseGrids(o.grids);
     if (grids.empty()) return;
-    const bool ply = voxelize::meshHasColors(output);
+    const bool ply = exporter::meshHasColors(output);
     if (!ply || grids.size() > 1 || grids.front() != voxelize::Attribute::color)
         throw UsageError(fmt::format("--grids {}: a mesh has no voxels; write a .vdb, not {}{}", o.grids,
                                      output.string(),
@@ -169,7 +169,7 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
         if (!o.dump_toolpath.empty()) throw UsageError("--dump-toolpath takes one input");
     }
     const fs::path& output = outputs.front();
-    const bool mesh = voxelize::isMeshPath(output);
+    const bool mesh = exporter::isMeshPath(output);
     const bool standard = isStandardOutput(output);
     if (!mesh && output != "-" && output.extension() != ".vdb")
         throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));

@@ -1,8 +1,8 @@
 #include "grid_report.h"
 
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/estimate.h"
-#include "voxelize/solid_check.h"
+#include "voxelize/beads/estimate.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
 
 #include <fmt/format.h>
 
@@ -45,7 +45,7 @@ Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid
             {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
 }
 
-Json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+Json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
     const double unit = grid.voxelSize()[0] / lattice.voxel_size;
     return {{"vertices", mesh.points.size()},
             {"triangles", mesh.triangleCount()},

@@ -1,9 +1,9 @@
 // What --stats says of a level set and of its mesh, and whether the level set holds what was extruded.
 #pragma once
 
-#include "voxelize/lattice.h"
-#include "voxelize/surface_mesh.h"
-#include "voxelize/voxelizer.h"
+#include "export/surface_mesh.h"
+#include "voxelize/beads/lattice.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <openvdb/openvdb.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxeli
                                     double deposited_mm3);
 /// What --interior cull would save of it: floods it.
 nlohmann::ordered_json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid);
-nlohmann::ordered_json describeMesh(const voxelize::SurfaceMesh& mesh, const openvdb::FloatGrid& grid,
+nlohmann::ordered_json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid,
                                     const voxelize::Lattice& lattice);
 
 /// The volume that the grid encloses, mm^3; of a sample of its leaves if they are many (see voxelize::kVolumeSample).

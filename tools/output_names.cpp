@@ -1,6 +1,6 @@
 #include "output_names.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

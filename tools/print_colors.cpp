@@ -1,6 +1,6 @@
 #include "print_colors.h"
 
-#include "shade/filament_color.h"
+#include "shade/brdf/filament_color.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>

@@ -1,8 +1,8 @@
 // Which colours a print's filament has, by its own file.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "march/level_set_file.h"
+#include "gcode/toolpath/toolpath.h"
+#include "march/file/level_set_file.h"
 
 #include <nlohmann/json.hpp>
 

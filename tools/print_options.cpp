@@ -3,8 +3,8 @@
 #include "choices.h"
 #include "command_line.h"
 
-#include "voxelize/solid_check.h"
-#include "voxelize/voxel_choice.h"
+#include "voxelize/grid/solid_check.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "gcode/reader.h"
-#include "gcode/toolpath.h"
-#include "voxelize/lattice.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/lattice.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 #include "run_files.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 #include "time_report.h"
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // The part of reports that is about how long a print takes.
 #pragma once
 
-#include "gcode/stated.h"
+#include "gcode/toolpath/stated.h"
 #include "motion/print_times.h"
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // The part of --stats that is about the G-code.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,8 +2,8 @@
 
 #include "progress.h"
 
-#include "shade/denoise.h"
-#include "shade/picture.h"
+#include "shade/film/picture.h"
+#include "shade/post/denoise.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

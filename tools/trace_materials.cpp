@@ -1,7 +1,7 @@
 #include "trace_materials.h"
 
-#include "shade/brdf.h"
-#include "shade/filament_color.h"
+#include "shade/brdf/brdf.h"
+#include "shade/brdf/filament_color.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json reportOf(const shade::Legend& legend, const march::AttributeSummary& summary) {
+Json reportOf(const shade::Legend& legend, const trace::AttributeSummary& summary) {
     Json report{{"attribute", legend.title}};
     if (legend.ramp.empty()) {
         Json names = Json::array();
@@ -36,7 +36,7 @@ std::shared_ptr<const shade::Brdf> TraceMaterials::brdfOf(const std::string& tex
     return brdf;
 }
 
-void TraceMaterials::explain(const shade::MaterialOptions& material, const march::AttributeSummary& summary) {
+void TraceMaterials::explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary) {
     lookup_ = true;
     shade::Legend legend = shade::makeLegend(material, summary, materials_.back());
     Json report = reportOf(legend, summary);
@@ -46,7 +46,7 @@ void TraceMaterials::explain(const shade::MaterialOptions& material, const march
 }
 
 void TraceMaterials::add(const shade::MaterialOptions& material, std::size_t attribute,
-                         const march::AttributeSummary* summary) {
+                         const trace::AttributeSummary* summary) {
     own_ = own_ || !material.by.empty() || !material.brdf.empty();
     if (summary == nullptr) {
         materials_.emplace_back(brdfOf(material.brdf.empty() ? brdf_ : material.brdf));
@@ -56,7 +56,7 @@ void TraceMaterials::add(const shade::MaterialOptions& material, std::size_t att
     explain(material, *summary);
 }
 
-void TraceMaterials::add(const PrintColors& colors, std::size_t attribute, const march::AttributeSummary* summary) {
+void TraceMaterials::add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary) {
     for (const Json& color : colors.report)
         if (std::find(colors_.begin(), colors_.end(), color) == colors_.end()) colors_.push_back(color);
     if (summary != nullptr) {

@@ -3,9 +3,9 @@
 
 #include "print_colors.h"
 
-#include "march/attribute.h"
-#include "shade/legend.h"
-#include "shade/material.h"
+#include "shade/film/legend.h"
+#include "shade/scene/material.h"
+#include "trace/attribute.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,11 +26,11 @@ public:
     /// One of a material that somebody asked for.
     /// @param attribute  number of `material.by`
     /// @param summary    of that attribute; null without `by`
-    void add(const shade::MaterialOptions& material, std::size_t attribute, const march::AttributeSummary* summary);
+    void add(const shade::MaterialOptions& material, std::size_t attribute, const trace::AttributeSummary* summary);
     /// One of the colours that its file states; of the default material where it states none.
     /// @param attribute  number of "color"
     /// @param summary    of it; null unless colors.by_place
-    void add(const PrintColors& colors, std::size_t attribute, const march::AttributeSummary* summary);
+    void add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary);
 
     /// By object; empty if all of them are of the scene's material.
     std::vector<shade::ObjectMaterial> materials() const;
@@ -45,7 +45,7 @@ public:
 
 private:
     std::shared_ptr<const shade::Brdf> brdfOf(const std::string& text);
-    void explain(const shade::MaterialOptions& material, const march::AttributeSummary& summary);
+    void explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary);
 
     const std::string brdf_;
     std::map<std::string, std::shared_ptr<const shade::Brdf>> made_;  // baking a table takes a second

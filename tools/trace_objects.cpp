@@ -6,20 +6,19 @@
 #include "progress.h"
 #include "trace_materials.h"
 
-#include "io/error.h"
-#include "march/annotation.h"
-#include "march/attribute_grid.h"
-#include "march/brick_grid.h"
-#include "march/brick_intersector.h"
-#include "march/detail_intersector.h"
-#include "march/level_set_file.h"
-#include "march/sdf_grid.h"
-#include "march/sdf_intersector.h"
-#include "march/sphere_intersector.h"
-#include "march/vdb_intersector.h"
-#include "march/wide_intersector.h"
+#include "base/error.h"
+#include "march/attribute/annotation.h"
+#include "march/attribute/attribute_grid.h"
+#include "march/brick/brick_grid.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/level_set_file.h"
+#include "march/file/sdf_grid.h"
+#include "march/reference/sphere_intersector.h"
+#include "march/reference/vdb_intersector.h"
 #include "ondemand/print_attributes.h"
-#include "shade/filament_color.h"
+#include "shade/brdf/filament_color.h"
+#include "trace/detail_intersector.h"
+#include "trace/sdf_intersector.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -40,12 +39,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Want = std::tuple<std::string, std::string, std::string>;  // file, grid, attribute
-using IntersectorPtr = std::shared_ptr<const march::Intersector>;
+using IntersectorPtr = std::shared_ptr<const trace::Intersector>;
 
 // Space of the file -> that space with z up -> world.
-march::Placement upright(const march::Placement& placement) {
-    march::Placement result = placement;
-    result.linear *= march::Placement::of(glm::dvec3(1.0), {90.0, 0.0, 0.0}, glm::dvec3(0.0)).linear;
+trace::Placement upright(const trace::Placement& placement) {
+    trace::Placement result = placement;
+    result.linear *= trace::Placement::of(glm::dvec3(1.0), {90.0, 0.0, 0.0}, glm::dvec3(0.0)).linear;
     return result;
 }
 
@@ -72,7 +71,7 @@ Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, st
 /// A print at one voxel size, ready for rays.
 struct LateBricks {
     std::shared_ptr<ondemand::PrintField> field;
-    std::shared_ptr<march::Intersector> rays;
+    std::shared_ptr<trace::Intersector> rays;
 
     march::BrickGrid& grid() const { return *march::bricksOf(*rays); }
 };
@@ -139,8 +138,8 @@ struct Shape {
     bool y_up = false;
     double mm_per_unit = 1.0;
     IntersectorPtr intersector;
-    std::map<std::string, march::AttributeSummary> summaries;
-    std::optional<march::Box> part;  // own space, without what is printed beside it
+    std::map<std::string, trace::AttributeSummary> summaries;
+    std::optional<trace::Box> part;  // own space, without what is printed beside it
     PrintColors colors;              // if somebody wants to know
     std::string source;              // what tells the file from others
     Json report;
@@ -148,14 +147,14 @@ struct Shape {
 };
 
 // Makes the box of all parts larger by that of a shape where it stands: of all of it, if its file doesn't say more.
-void include(std::optional<march::Box>& parts, const Shape& shape, const march::Placement& placement) {
-    const march::Box own = shape.part.value_or(shape.intersector->bounds());
+void include(std::optional<trace::Box>& parts, const Shape& shape, const trace::Placement& placement) {
+    const trace::Box own = shape.part.value_or(shape.intersector->bounds());
     if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 place((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
                                (corner & 4) != 0 ? own.max.z : own.min.z);
         const glm::dvec3 world = placement.linear * place + placement.offset;
-        if (!parts) parts = march::Box{world, world};
+        if (!parts) parts = trace::Box{world, world};
         parts->min = glm::min(parts->min, world);
         parts->max = glm::max(parts->max, world);
     }
@@ -171,7 +170,7 @@ public:
           by_file_(std::move(by_file)),
           result_(result) {}
 
-    const Shape& shapeOf(const shade::ObjectOptions& object) {
+    const Shape& shapeOf(const assemble::ObjectOptions& object) {
         if (object.sdf) {
             watch_.lap();
             shapes_.push_back(std::make_unique<Shape>(fromSdf(object)));
@@ -187,7 +186,7 @@ public:
     }
 
 private:
-    Shape fromSdf(const shade::ObjectOptions& object) const {
+    Shape fromSdf(const assemble::ObjectOptions& object) const {
         Shape shape;
         shape.report = {{"sdf", true}};
         if (object.voxel_size > 0.0) {
@@ -199,14 +198,14 @@ private:
             if (options_.smooth_normals) annotation.smooth = grid;
             shape.intersector = march::annotate(intersectorOf(grid, options_), std::move(annotation));
         } else {
-            shape.intersector = march::makeSdfIntersector(object.sdf, object.tolerance);
+            shape.intersector = trace::makeSdfIntersector(object.sdf, object.tolerance);
             shape.report["tolerance"] = object.tolerance;
             shape.line = fmt::format("shape: traced by its formula, tolerance {:g}", object.tolerance);
         }
         return shape;
     }
 
-    Shape fromFile(const shade::ObjectOptions& object) {
+    Shape fromFile(const assemble::ObjectOptions& object) {
         if (!isVdbFile(object.vdb)) return fromPrint(object);
         watch_.lap();
         Shape shape;
@@ -258,7 +257,7 @@ private:
     }
 
     // The grid of colours that lies beside a level set, unless all of it is of one: then that is enough.
-    void addColorGrid(const shade::ObjectOptions& object, const openvdb::FloatGrid& head, Shape& shape,
+    void addColorGrid(const assemble::ObjectOptions& object, const openvdb::FloatGrid& head, Shape& shape,
                       march::Annotation& annotation) const {
         shape.colors.by_place = false;
         openvdb::GridBase::ConstPtr grid;
@@ -267,10 +266,10 @@ private:
         } catch (const InputError&) {
             return;  // another program's, of another kind: nobody asked for it
         }
-        march::AttributeSummary summary = march::summarize(*grid);
-        if (summary.kind != march::AttributeSummary::Kind::color) return;
+        trace::AttributeSummary summary = march::summarize(*grid);
+        if (summary.kind != trace::AttributeSummary::Kind::color) return;
         for (const glm::vec3& color : summary.colors) {
-            if (color == march::kNoColor) continue;
+            if (color == trace::kNoColor) continue;
             shape.colors.stated.push_back(shade::hexOf(color));
             shape.colors.report.push_back({{"color", shape.colors.stated.back()}, {"from", "the grid color"}});
         }
@@ -281,7 +280,7 @@ private:
         shape.summaries["color"] = std::move(summary);
     }
 
-    Shape fromPrint(const shade::ObjectOptions& object) {
+    Shape fromPrint(const assemble::ObjectOptions& object) {
         if (!marchesBricks(options_))
             throw UsageError(
                 fmt::format("--march {}: needs a level set; make one of {} with gcode2vdb, or take --march "
@@ -295,7 +294,7 @@ private:
         Shape shape;
         shape.report = print.report;
         shape.line = print.line;
-        shape.part = march::Box{{print.part.min[0], print.part.min[1], print.part.min[2]},
+        shape.part = trace::Box{{print.part.min[0], print.part.min[1], print.part.min[2]},
                                 {print.part.max[0], print.part.max[1], print.part.max[2]}};
         shape.source = print.content;
         if (asksFile(object)) {
@@ -308,12 +307,9 @@ private:
                     ondemand::summarize(*print.levels.back().field, ondemand::attributeNamed(name), print.selection);
         // Each has its share of what they may take together.
         std::size_t cache = options_.brick_cache;
-        if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size() + print.wide.size();
+        if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size();
         std::vector<LateBricks> bricks;
         shape.intersector = raysOf(object, print.levels, print.eye, cache, bricks);
-        if (!print.wide.empty())
-            shape.intersector = march::makeWideIntersector(
-                shape.intersector, raysOf(object, print.wide, print.eye, cache, bricks), print.wide_from);
         const double seconds = watch_.lap();
         result_.load_seconds += print.parse_seconds;
         result_.build_seconds += seconds - print.parse_seconds;
@@ -332,11 +328,11 @@ private:
     }
 
     // All levels of a print as one; what is behind each is added to `bricks`.
-    IntersectorPtr raysOf(const shade::ObjectOptions& object, const std::vector<TracedLevel>& levels,
+    IntersectorPtr raysOf(const assemble::ObjectOptions& object, const std::vector<TracedLevel>& levels,
                           const glm::dvec3& eye, std::size_t cache, std::vector<LateBricks>& bricks) const {
-        std::vector<march::DetailLevel> shapes;
+        std::vector<trace::DetailLevel> shapes;
         for (const TracedLevel& level : levels) {
-            std::shared_ptr<march::Intersector> plain = march::makeBrickIntersector(
+            std::shared_ptr<trace::Intersector> plain = march::makeBrickIntersector(
                 std::shared_ptr<const march::LeafField>(level.field), options_.values, cache);
             march::Annotation annotation;
             for (const std::string& name : attributes_)
@@ -347,7 +343,7 @@ private:
             shapes.push_back({march::annotate(plain, std::move(annotation)), level.from});
             bricks.push_back({level.field, std::move(plain)});
         }
-        return march::makeDetailIntersector(std::move(shapes), eye);
+        return trace::makeDetailIntersector(std::move(shapes), eye);
     }
 
     // The picture's name with the level's number, the finest first.
@@ -358,12 +354,12 @@ private:
     }
 
     // Another object of the same file may want it, too: then it is read for both.
-    bool wanted(const shade::ObjectOptions& object, const std::string& name) const {
+    bool wanted(const assemble::ObjectOptions& object, const std::string& name) const {
         return std::find(wants_.begin(), wants_.end(), Want(object.vdb, object.grid, name)) != wants_.end();
     }
 
     // Whether nobody says what it is made of, so that its file may.
-    bool asksFile(const shade::ObjectOptions& object) const { return by_file_.contains({object.vdb, object.grid}); }
+    bool asksFile(const assemble::ObjectOptions& object) const { return by_file_.contains({object.vdb, object.grid}); }
 
     const TraceOptions& options_;
     std::vector<std::string> attributes_;
@@ -377,7 +373,7 @@ private:
 
 }  // namespace
 
-TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, const TraceOptions& options) {
+TraceObjects readTraceObjects(const std::vector<assemble::ObjectOptions>& objects, const TraceOptions& options) {
     openvdb::initialize();
     TraceObjects result;
     std::vector<shade::MaterialOptions> materials;
@@ -386,7 +382,7 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
     for (const shade::Label label : options.labels) {
         result.labels[static_cast<std::size_t>(label)] = attributes.size();
         attributes.emplace_back(shade::labelName(label));
-        for (const shade::ObjectOptions& object : objects)
+        for (const assemble::ObjectOptions& object : objects)
             if (!object.sdf) wants.emplace_back(object.vdb, object.grid, attributes.back());
     }
     std::set<std::pair<std::string, std::string>> by_file;
@@ -396,7 +392,7 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
         if (found == attributes.end()) attributes.push_back(name);
         return place;
     };
-    for (const shade::ObjectOptions& object : objects) {
+    for (const assemble::ObjectOptions& object : objects) {
         shade::MaterialOptions material = object.material;
         if (material.by.empty() && material.brdf.empty() && !object.sdf) {
             material.by = options.color_by;
@@ -413,8 +409,8 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
     }
     Reader reader(options, attributes, std::move(wants), by_file, result);
     TraceMaterials made(options.brdf);
-    std::vector<march::SceneObject> scene;
-    std::optional<march::Box> parts;
+    std::vector<trace::SceneObject> scene;
+    std::optional<trace::Box> parts;
     bool any_part = false;
     result.reports = Json::array();
     for (std::size_t n = 0; n < objects.size(); ++n) {
@@ -432,7 +428,7 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
         const bool asks = material.by.empty() && material.brdf.empty() && !objects[n].sdf && options.file_colors;
         const std::string by = asks ? "color" : material.by;
         const auto summary = shape.summaries.find(by);
-        const march::AttributeSummary* const known = summary == shape.summaries.end() ? nullptr : &summary->second;
+        const trace::AttributeSummary* const known = summary == shape.summaries.end() ? nullptr : &summary->second;
         if (asks)
             made.add(shape.colors, number(by), shape.colors.by_place ? known : nullptr);
         else
@@ -444,7 +440,7 @@ TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, 
     result.material = made.report();
     result.legends = made.legends();
     result.no_color_lookup = made.noLookup();
-    result.intersector = march::makeSceneIntersector(std::move(scene));
+    result.intersector = trace::makeSceneIntersector(std::move(scene));
     return result;
 }
 

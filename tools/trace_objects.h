@@ -3,11 +3,11 @@
 
 #include "trace_print.h"
 
-#include "march/brick_grid.h"
-#include "march/brick_layout.h"
-#include "march/scene_intersector.h"
-#include "shade/object_file.h"
-#include "shade/scene.h"
+#include "assemble/object_file.h"
+#include "march/brick/brick_grid.h"
+#include "march/brick/brick_layout.h"
+#include "shade/scene/scene.h"
+#include "trace/scene_intersector.h"
 
 #include <nlohmann/json.hpp>
 
@@ -34,8 +34,8 @@ struct TraceOptions {
 };
 
 struct TraceObjects {
-    std::shared_ptr<const march::Intersector> intersector;
-    std::vector<shade::ObjectMaterial> materials;  ///< by march::Hit::object; empty if all are of the scene's
+    std::shared_ptr<const trace::Intersector> intersector;
+    std::vector<shade::ObjectMaterial> materials;  ///< by trace::Hit::object; empty if all are of the scene's
     decltype(shade::SceneDescription::labels) labels;
     nlohmann::ordered_json reports;   ///< of each object, for --stats
     std::string brdf;                 ///< the scene's material, see TraceMaterials::brdf()
@@ -43,7 +43,7 @@ struct TraceObjects {
     std::vector<shade::Legend> legends;
     std::string no_color_lookup;  ///< why hits don't look for a colour; empty if that is no matter
     /// World-space box of the parts without what is printed beside them, if a file knows it.
-    std::optional<march::Box> part;
+    std::optional<trace::Box> part;
     std::string source;  ///< what tells the files from others, for checkpoints
     /// How many pictures a growing print makes, and what brings it to one of them; see TracePrintOptions::series.
     std::size_t moments = 1;
@@ -58,6 +58,6 @@ struct TraceObjects {
 };
 
 /// Reads every file once, whatever the number of objects that stand for it. Throws InputError, UsageError.
-TraceObjects readTraceObjects(const std::vector<shade::ObjectOptions>& objects, const TraceOptions& options);
+TraceObjects readTraceObjects(const std::vector<assemble::ObjectOptions>& objects, const TraceOptions& options);
 
 }  // namespace stratum::tools

@@ -3,11 +3,11 @@
 #include "choices.h"
 #include "file_facts.h"
 
-#include "io/error.h"
-#include "io/mapped_file.h"
-#include "shade/filament_color.h"
-#include "shade/preset_names.h"
-#include "shade/scene_file.h"
+#include "assemble/scene_file.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "shade/brdf/filament_color.h"
+#include "shade/brdf/preset_names.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,7 +80,7 @@ std::optional<glm::dvec3> parseVector(const std::string& text, const char* optio
 bool isScene(const fs::path& path, bool alone) {
     if (path == "-") return false;
     try {
-        return shade::isSceneFile(MappedFile(path).bytes());
+        return assemble::isSceneFile(MappedFile(path).bytes());
     } catch (const InputError&) {
         if (alone) throw;
         return false;
@@ -288,7 +288,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     if (o.inputs.size() > 1)
         throw UsageError(fmt::format("{}: a scene stands alone; series are of level sets, but --each takes scenes, too",
                                      o.inputs.front()));
-    const shade::SceneFile file = shade::readSceneFile(path);
+    const assemble::SceneFile file = assemble::readSceneFile(path);
     TraceCommand over;
     over.scene = file.scene;
     over.render = file.render;
@@ -333,7 +333,7 @@ std::string saidOf(const CLI::App& app) {
 std::string sourceOf(const TraceCommand& o, const std::string& files) {
     std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
     for (const std::string& name : {o.scene.brdf, o.scene.env}) text += identityOf(name) + "\n";
-    for (const shade::ObjectOptions& object : o.objects) text += identityOf(object.material.brdf) + "\n";
+    for (const assemble::ObjectOptions& object : o.objects) text += identityOf(object.material.brdf) + "\n";
     if (!o.scene_text.empty()) text += o.scene_text;
     return sha256Hex(text).substr(0, 32);
 }

@@ -4,11 +4,11 @@
 #include "command_line.h"
 #include "trace_print.h"
 
-#include "march/brick_layout.h"
-#include "shade/object_file.h"
-#include "shade/render.h"
-#include "shade/scene.h"
-#include "shade/tonemap.h"
+#include "assemble/object_file.h"
+#include "march/brick/brick_layout.h"
+#include "shade/film/tonemap.h"
+#include "shade/integrator/render.h"
+#include "shade/scene/scene.h"
 
 #include <CLI/CLI.hpp>
 
@@ -35,7 +35,7 @@ struct TraceCommand {
     std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
     TracePrintOptions prints;
-    std::vector<shade::ObjectOptions> objects;  // of a scene file; empty: the inputs
+    std::vector<assemble::ObjectOptions> objects;  // of a scene file; empty: the inputs
     shade::SceneOptions scene;
     shade::RenderOptions render;
     shade::ToneOptions tone;

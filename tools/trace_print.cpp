@@ -3,15 +3,15 @@
 #include "command_line.h"
 #include "progress.h"
 
-#include "gcode/input_bytes.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "gcode/container/input_bytes.h"
 #include "gcode/reader.h"
-#include "io/error.h"
-#include "io/mapped_file.h"
 #include "motion/print_times.h"
 #include "ondemand/detail_levels.h"
-#include "voxelize/part_bounds.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxel_choice.h"
+#include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -102,18 +102,6 @@ std::vector<TracedLevel> fieldsOf(const Source& source, const std::vector<voxeli
     return fields;
 }
 
-// Those of wide rays: of the same places.
-std::vector<voxelize::Lattice> coarser(const Source& source, const std::vector<voxelize::Lattice>& lattices) {
-    std::vector<voxelize::Lattice> result;
-    voxelize::LatticeRequest request = source.options.print.lattice;
-    request.voxels_per_layer.reset();
-    for (const voxelize::Lattice& lattice : lattices) {
-        request.voxel_size = source.options.secondary_voxel * lattice.voxel_size;
-        result.push_back(voxelize::chooseLattice(*source.toolpath, source.selection, source.bounds, request));
-    }
-    return result;
-}
-
 Json reportOf(const std::vector<TracedLevel>& levels, double per_distance) {
     Json report = Json::array();
     for (std::size_t n = 0; n < levels.size(); ++n) {
@@ -161,12 +149,6 @@ void addTracePrintOptions(CLI::App& app, TracePrintOptions& options) {
                    "brick: also write which of a print's bricks rays came to, from the front and from above")
         ->type_name("FILE.png")
         ->group("Tracing");
-    app.add_option("--secondary-voxel", options.secondary_voxel,
-                   "G-code: diffuse light and ambient occlusion are blocked by voxels N times as large, 8 of those and "
-                   "more away: fewer bricks, seldom faster (default 1)")
-        ->check(CLI::Range(1, 8))
-        ->type_name("N")
-        ->group("Tracing");
     addPrintOptions(app, options.print, true);
     app.add_option("--printed", options.printed,
                    "G-code: what is printed by then: 25%, layer:40, time:90 (minutes; 5400s, 1.5h), or time:50%")
@@ -189,7 +171,7 @@ std::vector<std::string> givenPrintOptions(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_name();
         const bool of_prints = std::find(kGroups.begin(), kGroups.end(), option->get_group()) != kGroups.end() ||
-                               name == "--brick-picture" || name == "--secondary-voxel";
+                               name == "--brick-picture";
         if (of_prints && option->count() > 0) given.push_back(name);
     }
     return given;
@@ -199,7 +181,7 @@ void refusePrintOptions(const std::vector<std::string>& given, const std::string
     if (given.empty()) return;
     const std::string& first = given.front();
     const bool in_time = first == "--printed" || first == "--progress-series";
-    const bool of_rays = first == "--brick-picture" || first == "--secondary-voxel";
+    const bool of_rays = first == "--brick-picture";
     throw UsageError(fmt::format(
         "{}: needs G-code, and {} is a level set, whose voxels are made; {}give vdbtrace the "
         "print itself",
@@ -259,13 +241,6 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
     const std::vector<voxelize::Lattice> lattices = latticesOf(source, lattice, levels);
     result.eye = pixels.eye;
     result.levels = fieldsOf(source, lattices, levels, result.eye);
-    if (options.secondary_voxel > 1) {
-        // Nearer than that the grooves between layers shade each other.
-        constexpr double kExactVoxels = 8;
-        const std::vector<voxelize::Lattice> coarse = coarser(source, lattices);
-        result.wide = fieldsOf(source, coarse, levels, result.eye);
-        result.wide_from = kExactVoxels * coarse.back().voxel_size;
-    }
     result.report = {{"path", path},
                      {"bytes", bytes},
                      {"format", toolpath->format},
@@ -285,8 +260,6 @@ TracedPrint readTracedPrint(const std::string& path, const TracePrintOptions& op
             {"largest_error_pixels",
              pixel > 0 ? Json(voxelize::kLargestErrorVoxels * lattice.voxel_size / pixel) : Json(nullptr)}};
     if (result.levels.size() > 1) result.report["voxel_auto"]["levels"] = reportOf(result.levels, pixels.per_distance);
-    if (!result.wide.empty())
-        result.report["secondary"] = {{"from_mm", result.wide_from}, {"levels", reportOf(result.wide, 0)}};
     if (!options.printed.empty()) result.report["printed"] = options.printed;
     result.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", name, selection.size(), toolpath->beads.size(),
                               lattice.voxel_size, lattice.reason);

@@ -4,7 +4,7 @@
 #include "print_options.h"
 
 #include "ondemand/print_field.h"
-#include "shade/pixel_size.h"
+#include "shade/camera/pixel_size.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +25,6 @@ struct TracePrintOptions {
     int series = 1;             ///< --progress-series: as many moments, the last one the end
     std::string brick_cache;    ///< --brick-cache, also of large level sets; empty: no bound
     std::string brick_picture;  ///< --brick-picture: a file, or empty
-    int secondary_voxel = 1;    ///< --secondary-voxel: voxels of wide rays, in those of others; 1: the same
     bool quiet = false;
     bool hash = false;  ///< fill in TracedPrint::content
     /// What a pixel spans of what lies in a box, mm, for --voxel-size auto; also the part's box, see
@@ -44,8 +43,6 @@ struct TracedLevel {
 
 struct TracedPrint {
     std::vector<TracedLevel> levels;       ///< from the nearest and finest outwards; the last one is of all beads
-    std::vector<TracedLevel> wide;         ///< the same for --secondary-voxel, or empty
-    double wide_from = 0;                  ///< mm from a wide ray's origin from which on it meets those
     glm::dvec3 eye{0.0};                   ///< if there are several levels
     std::vector<std::uint32_t> moments;    ///< of the series: what lies before these beads is printed; the last is all
     std::vector<std::uint32_t> selection;  ///< its beads

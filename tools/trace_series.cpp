@@ -4,11 +4,11 @@
 #include "trace_frame.h"
 #include "trace_objects.h"
 
-#include "io/error.h"
-#include "shade/brdf_file.h"
-#include "shade/exposure.h"
-#include "shade/pixel_size.h"
-#include "voxelize/voxel_choice.h"
+#include "base/error.h"
+#include "shade/camera/pixel_size.h"
+#include "shade/measured/brdf_file.h"
+#include "shade/post/exposure.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ public:
 
     /// Frames of one input, which all have the camera, the bed and the light of the first that is traced.
     void trace(std::size_t n) {
-        std::vector<shade::ObjectOptions> wanted = o_.objects;
+        std::vector<assemble::ObjectOptions> wanted = o_.objects;
         if (wanted.empty()) {
             wanted.emplace_back();
             wanted.back().vdb = o_.inputs[n];
@@ -84,13 +84,13 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    static march::Box boxOf(const voxelize::Bounds& b) {
+    static trace::Box boxOf(const voxelize::Bounds& b) {
         return {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}};
     }
 
     shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part) const {
         if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        const march::Box box = boxOf(print);
+        const trace::Box box = boxOf(print);
         const shade::Camera camera = scene_
                                          ? scene_->camera
                                          : shade::Camera::make(o_.scene.camera, o_.frame == "all" ? box : boxOf(part),
@@ -109,7 +109,7 @@ private:
             const ProgressNote note("preparing", o_.common.quiet);
             scene_ = shade::makeScene(seen, *objects.intersector, o_.render.width, o_.render.height);
         }
-        const march::Box box = seen.frame.value_or(objects.intersector->bounds());
+        const trace::Box box = seen.frame.value_or(objects.intersector->bounds());
         middle_ = 0.5 * (box.min + box.max);
         const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is
         if (!o_.linear && !o_.exposure_given && !studio && shade::needsLight(o_.render.integrator))

@@ -6,7 +6,7 @@
 #include "progress.h"
 #include "run_files.h"
 
-#include "io/error.h"
+#include "base/error.h"
 #include "study/geometry.h"
 #include "study/memory.h"
 #include "study/need.h"

@@ -7,11 +7,11 @@
 #include "trace_options.h"
 #include "trace_series.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "shade/denoise.h"
-#include "shade/picture.h"
-#include "shade/preset_names.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "shade/brdf/preset_names.h"
+#include "shade/film/picture.h"
+#include "shade/post/denoise.h"
 
 #include <fmt/format.h>
 
@@ -59,7 +59,7 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
     if (o.objects.empty()) {
         for (const std::string& input : o.inputs)
             if (isLevelSet(input)) tools::refusePrintOptions(given_of_prints, input);
-    } else if (std::none_of(o.objects.begin(), o.objects.end(), [](const shade::ObjectOptions& object) {
+    } else if (std::none_of(o.objects.begin(), o.objects.end(), [](const assemble::ObjectOptions& object) {
                    return !object.sdf && !isLevelSet(object.vdb);
                })) {
         tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
@@ -87,7 +87,7 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
         if (!shade::isBrdfPreset(text)) files.reads(text);
     };
     for (const std::string& input : o.inputs) files.reads(input);
-    for (const shade::ObjectOptions& object : o.objects) {
+    for (const assemble::ObjectOptions& object : o.objects) {
         files.reads(object.vdb);
         material(object.material.brdf);
         for (const auto& each : object.material.each) material(each.second);

@@ -2,10 +2,10 @@
 // Sources: CuraEngine gcodeExport.cpp (Griffin headers state volumes, E is length); measured from files (filament.cpp).
 #pragma once
 
-#include "gcode/footer.h"
-#include "gcode/machine.h"
-#include "gcode/toolpath.h"
-#include "gcode/warning_log.h"
+#include "gcode/machine/machine.h"
+#include "gcode/slicer/footer.h"
+#include "gcode/toolpath/toolpath.h"
+#include "gcode/toolpath/warning_log.h"
 
 namespace stratum::gcode {
 

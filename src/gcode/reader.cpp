@@ -1,16 +1,16 @@
 #include "gcode/reader.h"
 
-#include "gcode/bead_recorder.h"
-#include "gcode/container.h"
+#include "base/error.h"
+#include "gcode/container/container.h"
+#include "gcode/container/sniff.h"
 #include "gcode/filament.h"
-#include "gcode/lexer.h"
-#include "gcode/machine.h"
-#include "gcode/motion_recorder.h"
-#include "gcode/sections.h"
-#include "gcode/settings.h"
-#include "gcode/sniff.h"
-#include "gcode/warning_log.h"
-#include "io/error.h"
+#include "gcode/machine/bead_recorder.h"
+#include "gcode/machine/machine.h"
+#include "gcode/machine/motion_recorder.h"
+#include "gcode/slicer/settings.h"
+#include "gcode/text/lexer.h"
+#include "gcode/toolpath/sections.h"
+#include "gcode/toolpath/warning_log.h"
 
 #include <fmt/format.h>
 

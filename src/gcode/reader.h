@@ -1,35 +1,12 @@
 // bytes -> Toolpath: the one entrance of this room.
 #pragma once
 
-#include "gcode/motion.h"
-#include "gcode/toolpath.h"
+#include "gcode/machine/read_options.h"
+#include "gcode/toolpath/toolpath.h"
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace stratum::gcode {
-
-/// How E words count when the file and its settings leave it open.
-enum class ExtruderMode : std::uint8_t { automatic, absolute, relative };
-
-/// Whose rules hold where firmwares differ (does G90/G91 touch E: Marlin yes, Klipper and RepRapFirmware no).
-enum class Firmware : std::uint8_t { automatic, marlin, klipper, reprap };
-
-struct ReadOptions {
-    ExtruderMode extruder_mode = ExtruderMode::automatic;
-    Firmware firmware = Firmware::automatic;
-    std::vector<double> filament_diameters;  ///< mm by tool, the last one also beyond; overrides the file's settings
-    std::optional<double> layer_height;      ///< mm; used where neither tags nor Z moves tell
-    std::optional<int> plate;                ///< which program of a .gcode.3mf; needed only if it has several
-    MotionSink* motion = nullptr;            ///< is told everything that moves; nullptr: nobody asks
-    CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
-    /// Called now and then with the fraction done, 0..1, from the reading thread. May be empty.
-    std::function<void(double)> progress;
-};
 
 /// Reads one G-code program, out of its container if it has one (container.h). `name` stands in messages. Throws
 /// InputError (with "name:line: ...") for bytes that are not G-code, unusable numbers, or a program that deposits

@@ -1,7 +1,7 @@
 // What a person wants to know about a toolpath, as a few lines of text.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <array>
 #include <cstddef>

@@ -7,7 +7,7 @@
 // extruder's.
 #pragma once
 
-#include "gcode/motion.h"
+#include "gcode/machine/motion.h"
 #include "motion/segment.h"
 
 namespace stratum::motion {

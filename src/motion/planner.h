@@ -8,7 +8,7 @@
 // "smoothed look-ahead") for minimum_cruise_ratio.
 #pragma once
 
-#include "gcode/motion.h"
+#include "gcode/machine/motion.h"
 #include "motion/corner.h"
 #include "motion/segment.h"
 #include "motion/trapezoid.h"

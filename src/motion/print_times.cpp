@@ -1,6 +1,6 @@
 #include "motion/print_times.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gcode/reader.h"
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 #include "motion/planner.h"
 
 #include <array>

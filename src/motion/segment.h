@@ -1,7 +1,7 @@
 // A straight piece of motion with the limits of its axes worked in: what a planner sees of a move.
 #pragma once
 
-#include "gcode/motion.h"
+#include "gcode/machine/motion.h"
 
 #include <array>
 #include <cstdint>

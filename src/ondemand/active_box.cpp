@@ -1,7 +1,7 @@
 #include "ondemand/active_box.h"
 
-#include "parallel/parallel_for.h"
-#include "voxelize/bead_field.h"
+#include "base/parallel_for.h"
+#include "voxelize/beads/bead_field.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #include "ondemand/brick_map.h"
 
-#include "io/error.h"
-#include "parallel/parallel_for.h"
-#include "voxelize/bead_field.h"
-#include "voxelize/footprint.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/footprint.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "ondemand/detail_levels.h"
 
-#include "voxelize/bead_field.h"
-#include "voxelize/voxel_choice.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <algorithm>
 

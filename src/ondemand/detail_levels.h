@@ -1,7 +1,7 @@
 // Voxel sizes by distance from the eye, for pictures whose pixels span more of some places than of others.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <glm/vec3.hpp>
 

@@ -1,6 +1,6 @@
 #include "ondemand/print_attributes.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 
@@ -142,14 +142,14 @@ std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr
     return std::make_shared<const PrintAttribute>(std::move(field), attribute);
 }
 
-march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
+trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
                                   std::span<const std::uint32_t> selection) {
     // The empty grid of that attribute knows its kind and the names.
     const gcode::Toolpath& toolpath = *field.layout().toolpath;
     const auto nothing = openvdb::FloatGrid::create();
     const std::array<Attribute, 1> wanted{attribute};
     const auto grids = voxelize::makeAttributeGrids(toolpath, wanted, *nothing);
-    march::AttributeSummary summary = march::summarize(*grids.front());
+    trace::AttributeSummary summary = march::summarize(*grids.front());
     const voxelize::BeadAttributes values(toolpath, wanted);
     const auto before = [](const glm::vec3& a, const glm::vec3& b) {
         return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
@@ -166,7 +166,7 @@ march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute a
             continue;
         }
         last = value;
-        if (summary.kind == march::AttributeSummary::Kind::color) {
+        if (summary.kind == trace::AttributeSummary::Kind::color) {
             colors.insert(value);
             continue;
         }
@@ -174,15 +174,15 @@ march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute a
         summary.least = any ? std::min(summary.least, number) : number;
         summary.most = any ? std::max(summary.most, number) : number;
         any = true;
-        if (summary.kind == march::AttributeSummary::Kind::integer &&
-            integers.size() <= march::AttributeSummary::kMostValues)
+        if (summary.kind == trace::AttributeSummary::Kind::integer &&
+            integers.size() <= trace::AttributeSummary::kMostValues)
             integers.insert(static_cast<int>(number));
     }
-    if (integers.size() <= march::AttributeSummary::kMostValues)
+    if (integers.size() <= trace::AttributeSummary::kMostValues)
         summary.values.assign(integers.begin(), integers.end());
-    if (colors.size() > march::AttributeSummary::kMostColors)
+    if (colors.size() > trace::AttributeSummary::kMostColors)
         throw InputError(fmt::format("{} has more than {} colours; a print has a few", field.name(),
-                                     march::AttributeSummary::kMostColors));
+                                     trace::AttributeSummary::kMostColors));
     summary.colors.assign(colors.begin(), colors.end());
     return summary;
 }

@@ -1,10 +1,10 @@
 // What the beads of a print are, asked where rays hit: attributes without their grids.
 #pragma once
 
-#include "march/attribute.h"
-#include "march/attribute_grid.h"
+#include "march/attribute/attribute_grid.h"
 #include "ondemand/print_field.h"
-#include "voxelize/attributes.h"
+#include "trace/attribute.h"
+#include "voxelize/grid/attributes.h"
 
 #include <cstdint>
 #include <memory>
@@ -25,7 +25,7 @@ std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr
 
 /// What march::summarize() would say of that grid, from the selected beads: also from those that no voxel is nearest
 /// to.
-march::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
+trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
                                   std::span<const std::uint32_t> selection);
 
 }  // namespace stratum::ondemand

@@ -1,7 +1,7 @@
 #include "ondemand/print_field.h"
 
 #include "ondemand/active_box.h"
-#include "voxelize/footprint.h"
+#include "voxelize/beads/footprint.h"
 
 #include <tbb/enumerable_thread_specific.h>
 

@@ -1,11 +1,11 @@
 // Toolpath -> a level set that is sampled where rays come: pictures without a grid.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "march/leaf_field.h"
+#include "gcode/toolpath/toolpath.h"
+#include "march/file/leaf_field.h"
 #include "ondemand/brick_map.h"
 #include "ondemand/print_layout.h"
-#include "voxelize/placement.h"
+#include "voxelize/beads/placement.h"
 
 #include <chrono>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "ondemand/print_layout.h"
 
-#include "io/memory.h"
-#include "voxelize/estimate.h"
+#include "base/memory.h"
+#include "voxelize/beads/estimate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // Toolpath -> what it takes to sample the print anywhere: layers, bins, and a thread's way to one leaf.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "voxelize/lattice.h"
-#include "voxelize/layer_stack.h"
-#include "voxelize/leaf_column.h"
-#include "voxelize/plan_bins.h"
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/lattice.h"
+#include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/leaf/leaf_column.h"
 
 #include <openvdb/openvdb.h>
 

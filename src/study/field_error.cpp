@@ -1,7 +1,7 @@
 #include "study/field_error.h"
 
 #include "study/handmade.h"
-#include "voxelize/bead_field.h"
+#include "voxelize/beads/bead_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // How far the voxels of a grid are from the exact field of the beads.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "voxelize/lattice.h"
-#include "voxelize/voxelizer.h"
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/lattice.h"
+#include "voxelize/grid/voxelizer.h"
 
 namespace stratum::study {
 

@@ -1,6 +1,6 @@
 #include "study/flip.h"
 
-#include "parallel/parallel_for.h"
+#include "base/parallel_for.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,15 +1,15 @@
 #include "study/geometry.h"
 
-#include "march/brick_intersector.h"
-#include "parallel/parallel_for.h"
+#include "base/parallel_for.h"
+#include "march/brick/brick_intersector.h"
 #include "study/page.h"
 #include "study/power_law.h"
 #include "study/print.h"
 #include "study/result_table.h"
 #include "study/times.h"
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/Interpolation.h>

@@ -4,7 +4,7 @@
 #include "study/study.h"
 #include "study/union_field.h"
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <span>
 #include <string>
@@ -36,11 +36,11 @@ struct SurfaceError {
 /// For each point the nearest zero of the trilinear field: along the normal, both ways, and along 24 more directions,
 /// then towards its foot point in three steps. An upper bound of the distance; exact where the surface is smooth.
 /// Parallel. @param search  how far zeros are looked for, mm
-SurfaceError surfaceError(const march::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
+SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
                           double search);
 
 /// The way back: absolute distances of the union at the hits of rays from outside, mm.
-Spread backwardError(const march::Intersector& level_set, const UnionField& exact, std::size_t rays);
+Spread backwardError(const trace::Intersector& level_set, const UnionField& exact, std::size_t rays);
 
 /// geometry.csv and geometry.html: errors against voxel size, on lattices aligned with the layers and half a voxel off,
 /// for several half-widths, as floats and halves; and against run time. Level beads only. Throws InputError,

@@ -1,7 +1,7 @@
 // Toolpaths made by hand.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // How far a picture is from a reference.
 #pragma once
 
-#include "shade/film.h"
+#include "shade/film/film.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,18 +1,18 @@
 #include "study/memory.h"
 
-#include "io/error.h"
-#include "march/brick_intersector.h"
+#include "base/error.h"
+#include "export/vdb_file.h"
+#include "march/brick/brick_intersector.h"
 #include "study/own_process.h"
 #include "study/page.h"
 #include "study/power_law.h"
 #include "study/print.h"
 #include "study/result_table.h"
 #include "study/times.h"
-#include "voxelize/selection.h"
-#include "voxelize/solid_check.h"
-#include "voxelize/vdb_file.h"
-#include "voxelize/voxel_choice.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/solid_check.h"
+#include "voxelize/grid/voxel_choice.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -66,9 +66,9 @@ double availableBytes() {
 }
 
 std::size_t writtenBytes(const openvdb::FloatGrid::Ptr& grid, const fs::path& path, bool half, double& seconds) {
-    voxelize::FileOptions options;
+    exporter::FileOptions options;
     options.half = half;
-    seconds = timesOf([&] { voxelize::writeVdb({grid}, path, options); }).wall;
+    seconds = timesOf([&] { exporter::writeVdb({grid}, path, options); }).wall;
     const auto bytes = fs::file_size(path);
     fs::remove(path);
     return bytes;

@@ -16,7 +16,7 @@ struct Face {
 };
 
 // Distance to a face, or infinite.
-double meet(const Face& face, const march::Ray& ray) {
+double meet(const Face& face, const trace::Ray& ray) {
     constexpr double kNothing = std::numeric_limits<double>::infinity();
     const glm::dvec3 p = glm::cross(ray.direction, face.across);
     const double determinant = glm::dot(face.along, p);
@@ -31,10 +31,10 @@ double meet(const Face& face, const march::Ray& ray) {
     return t >= ray.t_min && t <= ray.t_max ? t : kNothing;
 }
 
-class MeshTracer final : public march::Tracer {
+class MeshTracer final : public trace::Tracer {
 public:
     explicit MeshTracer(const std::vector<Face>& faces) : faces_(faces) {}
-    bool intersect(const march::Ray& ray, march::Hit& hit) override {
+    bool intersect(const trace::Ray& ray, trace::Hit& hit) override {
         const Face* nearest = nullptr;
         double least = std::numeric_limits<double>::infinity();
         for (const Face& face : faces_) {
@@ -50,7 +50,7 @@ public:
         hit.object = nearest->object;
         return true;
     }
-    bool occluded(const march::Ray& ray) override {
+    bool occluded(const trace::Ray& ray) override {
         return std::any_of(faces_.begin(), faces_.end(), [&](const Face& f) { return std::isfinite(meet(f, ray)); });
     }
 
@@ -58,7 +58,7 @@ private:
     const std::vector<Face>& faces_;
 };
 
-class MeshIntersector final : public march::Intersector {
+class MeshIntersector final : public trace::Intersector {
 public:
     explicit MeshIntersector(const TriangleMesh& mesh) {
         for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
@@ -76,22 +76,22 @@ public:
         }
         offset_ = 64 * 0x1p-53 * largest;  // a few units in the last place
     }
-    std::unique_ptr<march::Tracer> makeTracer() const override { return std::make_unique<MeshTracer>(faces_); }
+    std::unique_ptr<trace::Tracer> makeTracer() const override { return std::make_unique<MeshTracer>(faces_); }
     std::string_view name() const override { return "mesh"; }
-    march::Box bounds() const override { return box_; }
+    trace::Box bounds() const override { return box_; }
     double voxelSize() const override { return offset_; }
     std::size_t bytes() const override { return faces_.size() * sizeof(Face); }
     double surfaceOffset() const override { return offset_; }
 
 private:
     std::vector<Face> faces_;
-    march::Box box_;
+    trace::Box box_;
     double offset_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<march::Intersector> makeMeshIntersector(const TriangleMesh& mesh) {
+std::unique_ptr<trace::Intersector> makeMeshIntersector(const TriangleMesh& mesh) {
     return std::make_unique<MeshIntersector>(mesh);
 }
 

@@ -1,21 +1,21 @@
 #include "study/need.h"
 
-#include "io/error.h"
-#include "march/annotation.h"
-#include "march/brick_intersector.h"
-#include "march/scene_intersector.h"
-#include "shade/denoise.h"
-#include "shade/picture.h"
-#include "shade/render.h"
-#include "shade/scene.h"
+#include "base/error.h"
+#include "march/attribute/annotation.h"
+#include "march/brick/brick_intersector.h"
+#include "shade/film/picture.h"
+#include "shade/integrator/render.h"
+#include "shade/post/denoise.h"
+#include "shade/scene/scene.h"
 #include "study/own_process.h"
 #include "study/page.h"
 #include "study/print.h"
 #include "study/result_table.h"
 #include "study/times.h"
-#include "voxelize/interior_distance.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "trace/scene_intersector.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/interior_distance.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -113,7 +113,7 @@ std::string measure(const std::string& print, const Setup& setup, int threads) {
                                attributes = voxelizer.attributes(setup.attributes);
                                if (setup.interior_distance) voxelize::sweepInterior(*grid);
                            }).cpu;
-    std::shared_ptr<const march::Intersector> intersector;
+    std::shared_ptr<const trace::Intersector> intersector;
     std::optional<shade::SceneDescription> scene;
     const double build = timesOf([&] {
                              intersector = march::makeBrickIntersector(*grid);
@@ -124,8 +124,8 @@ std::string measure(const std::string& print, const Setup& setup, int threads) {
                                  shade::makeScene(setup.scene, *intersector, setup.render.width, setup.render.height);
                          }).cpu;
     if (setup.second_object)
-        intersector = march::makeSceneIntersector(
-            {{intersector, {}}, {intersector, march::Placement::of({1, 1, 1}, {0, 0, 0}, {1e4, 0, 0})}});
+        intersector = trace::makeSceneIntersector(
+            {{intersector, {}}, {intersector, trace::Placement::of({1, 1, 1}, {0, 0, 0}, {1e4, 0, 0})}});
     shade::RenderOptions options = setup.render;
     if (setup.denoise) shade::addDenoisingGuides(options);
     const double render = timesOf([&] {

@@ -1,8 +1,8 @@
 #include "study/page.h"
 
-#include "io/atomic_file.h"
-#include "io/error.h"
-#include "io/mapped_file.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,12 +1,12 @@
 #include "study/picture_subject.h"
 
-#include "io/error.h"
-#include "march/brick_intersector.h"
-#include "march/sphere_intersector.h"
-#include "march/vdb_intersector.h"
+#include "base/error.h"
+#include "march/brick/brick_intersector.h"
+#include "march/reference/sphere_intersector.h"
+#include "march/reference/vdb_intersector.h"
 #include "study/print.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ PictureSubject::PictureSubject(const std::string& print, int width, int height, 
 
 PictureSubject::~PictureSubject() = default;
 
-const march::Intersector& PictureSubject::intersector(int per_layer, const std::string& march) {
+const trace::Intersector& PictureSubject::intersector(int per_layer, const std::string& march) {
     auto& known = intersectors_[{per_layer, march}];
     if (known) return *known;
     const openvdb::FloatGrid::Ptr grid = print_->grid(per_layer);

@@ -1,9 +1,9 @@
 // One print as many level sets under one camera: what pictures that are to be compared are made of.
 #pragma once
 
-#include "march/intersector.h"
-#include "shade/render.h"
-#include "shade/scene.h"
+#include "shade/integrator/render.h"
+#include "shade/scene/scene.h"
+#include "trace/intersector.h"
 
 #include <map>
 #include <memory>
@@ -33,7 +33,7 @@ public:
     PictureSubject& operator=(const PictureSubject&) = delete;
 
     /// Throws UsageError for an unknown intersector.
-    const march::Intersector& intersector(int per_layer, const std::string& march);
+    const trace::Intersector& intersector(int per_layer, const std::string& march);
     /// A picture, with `spp` samples a pixel of this seed. `aovs` and the like are for `options` to say; its size and
     /// integrator are set here.
     shade::RenderResult render(const PictureKind& kind, int spp, std::uint32_t seed, shade::RenderOptions options = {});
@@ -46,7 +46,7 @@ private:
 
     std::unique_ptr<Print> print_;
     int width_, height_, scene_per_layer_;
-    std::map<std::pair<int, std::string>, std::unique_ptr<march::Intersector>> intersectors_;
+    std::map<std::pair<int, std::string>, std::unique_ptr<trace::Intersector>> intersectors_;
     std::map<std::string, shade::SceneDescription> scenes_;
 };
 

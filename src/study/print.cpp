@@ -1,9 +1,9 @@
 #include "study/print.h"
 
-#include "gcode/input_bytes.h"
+#include "base/mapped_file.h"
+#include "gcode/container/input_bytes.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "voxelize/bead_field.h"
+#include "voxelize/beads/bead_field.h"
 
 namespace stratum::study {
 

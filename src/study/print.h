@@ -1,8 +1,8 @@
 // What every measurement starts from: a print, and a lattice for it.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "voxelize/lattice.h"
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/lattice.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 #include "study/render.h"
 
-#include "io/error.h"
-#include "shade/denoise.h"
-#include "shade/exr_reader.h"
-#include "shade/picture.h"
+#include "base/error.h"
+#include "shade/film/exr_reader.h"
+#include "shade/film/picture.h"
+#include "shade/post/denoise.h"
 #include "study/flip.h"
 #include "study/image_error.h"
 #include "study/page.h"

@@ -1,6 +1,6 @@
 #include "study/result_table.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // Who polygons are traced with where marching is compared with them.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "march/intersector.h"
+#include "gcode/toolpath/toolpath.h"
 #include "study/triangle_mesh.h"
+#include "trace/intersector.h"
 
 #include <cstddef>
 #include <functional>
@@ -13,7 +13,7 @@ namespace stratum::study {
 
 /// A peer ready for rays.
 struct Traced {
-    std::unique_ptr<march::Intersector> intersector;
+    std::unique_ptr<trace::Intersector> intersector;
     std::size_t primitives = 0;
 };
 

@@ -1,17 +1,17 @@
 #include "study/seed_print_measurement.h"
 
-#include "march/brick_intersector.h"
+#include "march/brick/brick_intersector.h"
 #include "ondemand/print_field.h"
-#include "shade/picture.h"
-#include "shade/render.h"
+#include "shade/film/picture.h"
+#include "shade/integrator/render.h"
 #include "study/image_error.h"
 #include "study/own_process.h"
 #include "study/print.h"
 #include "study/thumbnail.h"
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/selection.h"
-#include "voxelize/solid_check.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/solid_check.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
@@ -106,7 +106,7 @@ double seriesSeconds(const Representation& r, const Print& print, const SeedPeer
 }
 
 // The same camera, bed and light for all ways to hold a print.
-shade::SceneDescription sceneOf(const Print& print, const march::Intersector& held, const Shot& shot) {
+shade::SceneDescription sceneOf(const Print& print, const trace::Intersector& held, const Shot& shot) {
     const voxelize::Bounds b = voxelize::boundsOf(*print.toolpath, print.beads);
     const shade::Camera camera = shade::Camera::make(
         {}, {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}, shot.width, shot.height);
@@ -131,7 +131,7 @@ shade::RenderOptions optionsOf(const Shot& shot, int spp) {
 }
 
 // Noise and bias of the middle of the frame, at its own resolution, beside uncut analytic beads.
-Separated separate(const Print& print, const march::Intersector& intersector, const shade::SceneDescription& scene,
+Separated separate(const Print& print, const trace::Intersector& intersector, const shade::SceneDescription& scene,
                    const SeedPeers& peers, const Shot& shot) {
     const int half_width = shot.width / 20;
     const int half_height = shot.height / 20;
@@ -139,7 +139,7 @@ Separated separate(const Print& print, const march::Intersector& intersector, co
     options.crop = shade::PixelBox{shot.width / 2 - half_width, shot.height / 2 - half_height,
                                    shot.width / 2 + half_width, shot.height / 2 + half_height};
     const Held exact = hold({"", 0, 0, 0}, print, peers);
-    const auto film = [&](const march::Intersector& of, std::uint32_t seed) {
+    const auto film = [&](const trace::Intersector& of, std::uint32_t seed) {
         options.seed = seed;
         return shade::render(of, scene, options).film;
     };

@@ -1,4 +1,4 @@
-#include "io/error.h"
+#include "base/error.h"
 #include "study/own_process.h"
 #include "study/print.h"
 #include "study/seed_print_measurement.h"

@@ -1,18 +1,18 @@
-#include "march/brick_intersector.h"
-#include "march/scene_intersector.h"
-#include "march/sdf_grid.h"
-#include "march/sdf_intersector.h"
-#include "march/sphere_intersector.h"
-#include "shade/picture.h"
-#include "shade/scene_file.h"
+#include "assemble/scene_file.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/sdf_grid.h"
+#include "march/reference/sphere_intersector.h"
+#include "shade/film/picture.h"
 #include "study/image_error.h"
 #include "study/mesh_intersector.h"
 #include "study/print.h"
 #include "study/seeds.h"
 #include "study/thumbnail.h"
 #include "study/times.h"
+#include "trace/scene_intersector.h"
+#include "trace/sdf_intersector.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -48,48 +48,49 @@ struct Representation {
     std::function<Traced()> make;
 };
 
-std::vector<Representation> representationsOf(const std::string& file, const shade::SceneFile& scene,
+std::vector<Representation> representationsOf(const std::string& file, const assemble::SceneFile& scene,
                                               const SeedPeers& peers, bool quick) {
-    using march::SceneObject;
+    using trace::SceneObject;
     const auto together = [&scene](const auto& shapeOf) {
         std::vector<SceneObject> objects;
-        for (const shade::ObjectOptions& object : scene.objects) objects.push_back({shapeOf(object), object.placement});
+        for (const assemble::ObjectOptions& object : scene.objects)
+            objects.push_back({shapeOf(object), object.placement});
         return objects;
     };
     const std::size_t count = scene.objects.size();
     // One owner for what makeSceneIntersector() shares.
-    class Held final : public march::Intersector {
+    class Held final : public trace::Intersector {
     public:
-        explicit Held(std::shared_ptr<const march::Intersector> held) : held_(std::move(held)) {}
-        std::unique_ptr<march::Tracer> makeTracer() const override { return held_->makeTracer(); }
+        explicit Held(std::shared_ptr<const trace::Intersector> held) : held_(std::move(held)) {}
+        std::unique_ptr<trace::Tracer> makeTracer() const override { return held_->makeTracer(); }
         std::string_view name() const override { return held_->name(); }
-        march::Box bounds() const override { return held_->bounds(); }
+        trace::Box bounds() const override { return held_->bounds(); }
         double voxelSize() const override { return held_->voxelSize(); }
         std::size_t bytes() const override { return held_->bytes(); }
         double surfaceOffset() const override { return held_->surfaceOffset(); }
 
     private:
-        std::shared_ptr<const march::Intersector> held_;
+        std::shared_ptr<const trace::Intersector> held_;
     };
     const auto traced = [count](std::vector<SceneObject> objects) {
-        return Traced{std::make_unique<Held>(march::makeSceneIntersector(std::move(objects))), count};
+        return Traced{std::make_unique<Held>(trace::makeSceneIntersector(std::move(objects))), count};
     };
     const double voxel = quick ? 5 * kVoxel : kVoxel;
     std::vector<Representation> all;
     all.push_back({kExact, false, true, [=] {
-                       return traced(together([](const shade::ObjectOptions& o) {
-                           return std::shared_ptr<const march::Intersector>(march::makeSdfIntersector(o.sdf));
+                       return traced(together([](const assemble::ObjectOptions& o) {
+                           return std::shared_ptr<const trace::Intersector>(trace::makeSdfIntersector(o.sdf));
                        }));
                    }});
     all.push_back({kLevelSet, false, true, [=] {
-                       return traced(together([voxel](const shade::ObjectOptions& o) {
-                           return std::shared_ptr<const march::Intersector>(
+                       return traced(together([voxel](const assemble::ObjectOptions& o) {
+                           return std::shared_ptr<const trace::Intersector>(
                                march::makeBrickIntersector(*march::makeSdfGrid(*o.sdf, voxel)));
                        }));
                    }});
     all.push_back({"level set, sphere traced", false, true, [=] {
-                       return traced(together([voxel](const shade::ObjectOptions& o) {
-                           return std::shared_ptr<const march::Intersector>(
+                       return traced(together([voxel](const assemble::ObjectOptions& o) {
+                           return std::shared_ptr<const trace::Intersector>(
                                march::makeSphereIntersector(march::makeSdfGrid(*o.sdf, voxel)));
                        }));
                    }});
@@ -112,9 +113,10 @@ std::vector<Representation> representationsOf(const std::string& file, const sha
     return all;
 }
 
-shade::SceneDescription describe(const shade::SceneFile& file, const march::Intersector& shape, int width, int height) {
+shade::SceneDescription describe(const assemble::SceneFile& file, const trace::Intersector& shape, int width,
+                                 int height) {
     shade::SceneDescription scene = shade::makeScene(file.scene, shape, width, height);
-    for (const shade::ObjectOptions& object : file.objects)
+    for (const assemble::ObjectOptions& object : file.objects)
         scene.objects.emplace_back(
             shade::makeBrdf(object.material.brdf.empty() ? file.scene.brdf : object.material.brdf));
     return scene;
@@ -168,7 +170,7 @@ struct SceneResult {
 
 SceneResult measureScene(const std::string& path, const SeedPeers& peers, int frames, ResultTable& table,
                          const StudyOptions& common, const std::function<void(double)>& progress) {
-    shade::SceneFile file = shade::readSceneFile(path);
+    assemble::SceneFile file = assemble::readSceneFile(path);
     if (file.objects.empty()) throw InputError(fmt::format("{}: has no objects", path));
     if (common.quick) {
         file.render.width /= 10;

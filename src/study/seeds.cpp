@@ -1,6 +1,6 @@
 #include "study/seeds.h"
 
-#include "io/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>

@@ -1,11 +1,11 @@
 // Lattices, bands, transforms and walls at the edge of what a grid can hold.
-#include "io/error.h"
-#include "march/brick_intersector.h"
-#include "march/level_set_file.h"
+#include "base/error.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/level_set_file.h"
 #include "study/field_error.h"
 #include "study/handmade.h"
 #include "study/stability_case.h"
-#include "voxelize/interior_distance.h"
+#include "voxelize/grid/interior_distance.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -59,9 +59,9 @@ double sidesOfAGap(double gap) {
     double largest = 0;
     for (int n = -20; n <= 20; ++n)
         for (const double side : {-1.0, 1.0}) {
-            march::Hit hit;
+            trace::Hit hit;
             // From the middle of the gap towards a wall, at the height of a bead's widest place.
-            const march::Ray ray{{n * 0.0713, 0, 2.5 * kHeight}, {0, side, 0}};
+            const trace::Ray ray{{n * 0.0713, 0, 2.5 * kHeight}, {0, side, 0}};
             if (!tracer->intersect(ray, hit)) return std::numeric_limits<double>::infinity();
             largest = std::max(largest, std::abs(hit.t - 0.5 * gap * kVoxel));
         }

@@ -2,14 +2,14 @@
 //
 // A mean of random samples is judged by its own standard error s, taken from the spread of blocks of pixels: a right
 // mean is off by more than 5 s once in a million.
-#include "march/brick_intersector.h"
-#include "shade/brdf.h"
-#include "shade/constant.h"
-#include "shade/directional.h"
-#include "shade/lambert.h"
-#include "shade/plastic.h"
-#include "shade/render.h"
-#include "shade/scene.h"
+#include "march/brick/brick_intersector.h"
+#include "shade/brdf/brdf.h"
+#include "shade/brdf/lambert.h"
+#include "shade/brdf/plastic.h"
+#include "shade/environment/constant.h"
+#include "shade/integrator/render.h"
+#include "shade/light/directional.h"
+#include "shade/scene/scene.h"
 #include "study/field_error.h"
 #include "study/handmade.h"
 #include "study/stability_case.h"
@@ -31,14 +31,14 @@ using shade::Color;
 
 constexpr int kSide = 96;  // pixels of the frame
 
-std::unique_ptr<march::Intersector> ball() {
+std::unique_ptr<trace::Intersector> ball() {
     openvdb::initialize();
     return march::makeBrickIntersector(
         *openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5, openvdb::Vec3f(0), 0.1F));
 }
 
 // A plate of lines with creases between them, where light goes to and fro; it fills the frame's middle.
-std::unique_ptr<march::Intersector> grooves() {
+std::unique_ptr<trace::Intersector> grooves() {
     openvdb::initialize();
     gcode::Toolpath toolpath;
     for (int n = -20; n <= 20; ++n) {
@@ -66,7 +66,7 @@ struct Picture {
 };
 
 // The middle of the frame: nothing but surface.
-shade::Film render(const march::Intersector& print, const Picture& picture) {
+shade::Film render(const trace::Intersector& print, const Picture& picture) {
     shade::RenderOptions options;
     options.width = options.height = kSide;
     options.spp = picture.spp;

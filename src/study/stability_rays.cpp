@@ -3,8 +3,8 @@
 // A plane's distances are linear, so that trilinear interpolation has its zero exactly there: what is left are
 // roundings of samples and of t. A ball's are not: its trilinear zero is off by at most voxel^2 / 8 times the sum of
 // the second derivatives, 2 / R.
-#include "march/brick_intersector.h"
-#include "march/sphere_intersector.h"
+#include "march/brick/brick_intersector.h"
+#include "march/reference/sphere_intersector.h"
 #include "study/stability_case.h"
 
 #include <fmt/format.h>
@@ -66,12 +66,12 @@ public:
     explicit TracedField(const openvdb::FloatGrid& grid)
         : intersector_(march::makeBrickIntersector(grid, march::BrickValues::Float32)),
           tracer_(intersector_->makeTracer()) {}
-    march::Tracer* operator->() const { return tracer_.get(); }
+    trace::Tracer* operator->() const { return tracer_.get(); }
     double surfaceOffset() const { return intersector_->surfaceOffset(); }
 
 private:
-    std::unique_ptr<march::Intersector> intersector_;
-    std::unique_ptr<march::Tracer> tracer_;
+    std::unique_ptr<trace::Intersector> intersector_;
+    std::unique_ptr<trace::Tracer> tracer_;
 };
 
 glm::dvec3 randomDirection(std::mt19937& random) {
@@ -87,7 +87,7 @@ double grazing(double angle, double offset) {
         const double turn = 0.031 * n;
         const glm::dvec3 d{std::cos(turn) * std::cos(angle), std::sin(turn) * std::cos(angle), -std::sin(angle)};
         const glm::dvec3 target{0.37 * std::sin(1.7 * n), 0.53 * std::cos(2.3 * n), offset};
-        march::Hit hit;
+        trace::Hit hit;
         if (!field->intersect({target - 2.0 * d, d}, hit)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(hit.position.z - offset));
     }
@@ -100,7 +100,7 @@ double downAt(double at) {
     double largest = 0;
     for (const double other : {0.0, 0.5, 1.0, at})
         for (const double zero : {0.0, -0.0, 1e-310, -5e-324}) {
-            march::Hit hit;
+            trace::Hit hit;
             if (!field->intersect({{at * kVoxel, other * kVoxel, 5}, {zero, zero, -1}}, hit))
                 return std::numeric_limits<double>::infinity();
             largest = std::max(largest, std::abs(hit.position.z - 0.034));
@@ -115,8 +115,8 @@ double fromAfar(double away) {
     double largest = 0;
     for (int n = 0; n < 500; ++n) {
         const glm::dvec3 out = randomDirection(random);
-        march::Hit near;
-        march::Hit far;
+        trace::Hit near;
+        trace::Hit far;
         if (!field->intersect({3.0 * out, -out}, near) || !field->intersect({away * out, -out}, far))
             return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs((far.t - away) - (near.t - 3)));
@@ -146,7 +146,7 @@ double leaks(bool on_lattice) {
     int out = 0;
     constexpr int kRays = 100000;
     for (int n = 0; n < kRays; ++n) {
-        march::Ray ray{{where(random), where(random), where(random)}, randomDirection(random)};
+        trace::Ray ray{{where(random), where(random), where(random)}, randomDirection(random)};
         if (on_lattice) {
             ray.origin = kVoxel * glm::round(ray.origin / kVoxel);
             ray.direction = glm::dvec3(0);
@@ -171,7 +171,7 @@ double meetingsAgain(double away) {
     constexpr int kRays = 20000;
     for (int n = 0; n < kRays; ++n) {
         const glm::dvec3 out = randomDirection(random);
-        march::Hit hit;
+        trace::Hit hit;
         if (!field->intersect({centre + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
         // Between the normal and nearly along the surface.
         const glm::dvec3 leave = glm::normalize(hit.normal + 0.95 * randomDirection(random));
@@ -185,15 +185,15 @@ double streamDiffers() {
     const TracedField field(*ball());
     std::mt19937 random(8);
     std::uniform_real_distribution<double> where(-2.5, 2.5);
-    std::vector<march::Ray> all;
+    std::vector<trace::Ray> all;
     all.reserve(5000);
     for (int n = 0; n < 5000; ++n)
         all.push_back({{where(random), where(random), where(random)}, randomDirection(random)});
-    std::vector<march::Hit> hits(all.size());
+    std::vector<trace::Hit> hits(all.size());
     field->intersectStream(all, hits);
     int other = 0;
     for (std::size_t n = 0; n < all.size(); ++n) {
-        march::Hit hit;
+        trace::Hit hit;
         if (!field->intersect(all[n], hit)) hit.t = std::numeric_limits<double>::infinity();
         other += std::bit_cast<std::uint64_t>(hit.t) != std::bit_cast<std::uint64_t>(hits[n].t) ? 1 : 0;
     }
@@ -204,12 +204,12 @@ double streamDiffers() {
 // of t: eight times 2^-53 of the way.
 double wrongIntervals() {
     const TracedField field(*plane({0, 0, 1}, 0.034));
-    const march::Ray down{{0.11, 0.23, 1}, {0, 0, -1}};
-    march::Hit hit;
+    const trace::Ray down{{0.11, 0.23, 1}, {0, 0, -1}};
+    trace::Hit hit;
     if (!field->intersect(down, hit)) return 99;
     int wrong = 0;
     const auto expect = [&](double t_min, double t_max, bool expected) {
-        march::Ray ray = down;
+        trace::Ray ray = down;
         ray.t_min = t_min;
         ray.t_max = t_max;
         wrong += field->occluded(ray) != expected ? 1 : 0;
@@ -232,7 +232,7 @@ double scaledBall(double scale) {
     double largest = 0;
     for (int n = 0; n < 1000; ++n) {
         const glm::dvec3 out = randomDirection(random);
-        march::Hit hit;
+        trace::Hit hit;
         if (!field->intersect({scale * 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(hit.t / scale - 3));
     }
@@ -247,7 +247,7 @@ double tiltedPlane() {
     for (int n = 0; n < 5000; ++n) {
         const glm::dvec3 d = randomDirection(random);
         if (std::abs(normal.dot(openvdb::Vec3d(d.x, d.y, d.z))) < 0.2) continue;
-        march::Hit hit;
+        trace::Hit hit;
         if (!field->intersect({-1.5 * d, d}, hit)) return std::numeric_limits<double>::infinity();
         const glm::dvec3& p = hit.position;
         largest = std::max(largest, std::abs(normal.dot(openvdb::Vec3d(p.x, p.y, p.z)) - 0.05));
@@ -260,8 +260,8 @@ double normalOfATiltedPlane() {
     const TracedField field(*plane(normal, 0.02));
     double largest = 0;
     for (int n = 0; n < 500; ++n) {
-        march::Hit hit;
-        const march::Ray ray{{0.9 * std::sin(3.1 * n), 0.9 * std::cos(1.3 * n), 3}, {0, 0, -1}};
+        trace::Hit hit;
+        const trace::Ray ray{{0.9 * std::sin(3.1 * n), 0.9 * std::cos(1.3 * n), 3}, {0, 0, -1}};
         if (!field->intersect(ray, hit)) return std::numeric_limits<double>::infinity();
         const glm::dvec3 exact(normal[0], normal[1], normal[2]);
         largest = std::max(largest, glm::length(hit.normal - exact));
@@ -280,8 +280,8 @@ double againstSphereTracing() {
     double largest = 0;
     for (int n = 0; n < 5000; ++n) {
         const glm::dvec3 out = randomDirection(random);
-        march::Hit exact;
-        march::Hit near;
+        trace::Hit exact;
+        trace::Hit near;
         if (!a->intersect({5.0 * out, -out}, exact) || !b->intersect({5.0 * out, -out}, near))
             return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(exact.t - near.t));

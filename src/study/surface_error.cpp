@@ -1,4 +1,4 @@
-#include "parallel/parallel_for.h"
+#include "base/parallel_for.h"
 #include "study/geometry.h"
 
 #include <glm/common.hpp>
@@ -31,7 +31,7 @@ std::array<glm::dvec3, kDirections> spreadDirections() {
 // The zero nearest to a point, as far as rays find it.
 class NearestZero {
 public:
-    NearestZero(march::Tracer& tracer, const glm::dvec3& p, double search)
+    NearestZero(trace::Tracer& tracer, const glm::dvec3& p, double search)
         : tracer_(tracer), p_(p), best_(search), skin_(1e-6 * search) {}
 
     // Along a line through the point, this way; it begins a skin before the point, so that a zero at the point itself
@@ -50,11 +50,11 @@ public:
 
     bool found() const { return found_; }
     double distance() const { return best_; }
-    const march::Hit& hit() const { return hit_; }
+    const trace::Hit& hit() const { return hit_; }
 
 private:
     void from(const glm::dvec3& origin, const glm::dvec3& direction, double reach) {
-        march::Hit hit;
+        trace::Hit hit;
         if (!tracer_.intersect({origin, direction, 0, reach}, hit)) return;
         const double distance = glm::length(hit.position - p_);
         if (distance >= best_) return;
@@ -63,10 +63,10 @@ private:
         found_ = true;
     }
 
-    march::Tracer& tracer_;
+    trace::Tracer& tracer_;
     glm::dvec3 p_;
     double best_, skin_;
-    march::Hit hit_;
+    trace::Hit hit_;
     bool found_ = false;
 };
 
@@ -87,7 +87,7 @@ Spread spreadOf(std::vector<double> values) {
     return spread;
 }
 
-SurfaceError surfaceError(const march::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
+SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
                           double search) {
     static const auto kSpread = spreadDirections();
     std::vector<double> distances(points.size(), -1);
@@ -116,8 +116,8 @@ SurfaceError surfaceError(const march::Intersector& level_set, std::span<const U
     return error;
 }
 
-Spread backwardError(const march::Intersector& level_set, const UnionField& exact, std::size_t rays) {
-    const march::Box box = level_set.bounds();
+Spread backwardError(const trace::Intersector& level_set, const UnionField& exact, std::size_t rays) {
+    const trace::Box box = level_set.bounds();
     const double radius = 0.5 * glm::length(box.max - box.min);
     std::vector<double> errors(rays, -1);
     parallelFor(rays, 256, [&](std::size_t first, std::size_t last) {
@@ -129,7 +129,7 @@ Spread backwardError(const march::Intersector& level_set, const UnionField& exac
             const glm::dvec3 from = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
             const glm::dvec3 target =
                 box.min + (box.max - box.min) * glm::dvec3(unit(random), unit(random), unit(random));
-            march::Hit hit;
+            trace::Hit hit;
             if (!tracer->intersect({target + from * (2 * radius), -from}, hit)) continue;
             errors[n] = std::abs(exact.distance(hit.position));
         }

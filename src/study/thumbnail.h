@@ -1,7 +1,7 @@
 // Pictures small enough for a page.
 #pragma once
 
-#include "shade/film.h"
+#include "shade/film/film.h"
 
 namespace stratum::study {
 

@@ -1,7 +1,7 @@
 #include "study/triangle_mesh.h"
 
-#include "io/error.h"
-#include "io/mapped_file.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 #include "study/union_field.h"
 
-#include "io/error.h"
-#include "parallel/parallel_for.h"
-#include "voxelize/layer_stack.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "voxelize/beads/layer_stack.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

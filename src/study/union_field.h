@@ -1,8 +1,8 @@
 // The exact union of a print's beads: how far a point is from it, and points on its surface.
 #pragma once
 
-#include "gcode/toolpath.h"
-#include "voxelize/bead_field.h"
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/bead_field.h"
 
 #include <glm/vec3.hpp>
 

@@ -162,20 +162,6 @@ _, found = automatic("a turntable", *CLOSE, "--crop", "0,0,9,9")
 done = call(VDBTRACE, "part", "-o", path("turn.png"), *SMALL, *AUTO, "--crop", "0,0,9,9", "--turntable", "2", "--stats", "-")
 check(done.returncode == 0 and "levels" not in json.loads(done.stdout)[0]["input"]["voxel_auto"], "a turntable has one size")
 
-# --- coarse voxels for diffuse light, far from where it arrives -----------------------------------------------------------
-exact = picture("part", "exact.exr", "--integrator", "ao", "--spp", "4", *TWO)
-check(picture("part", "more.exr", "--integrator", "ao", "--spp", "4", *TWO, "--secondary-voxel", "1") == exact, "off by default")
-wide = ["--integrator", "ao", "--spp", "4", *TWO, "--secondary-voxel", "2"]
-coarse = picture("part", "coarse.exr", *wide)
-check(coarse not in (None, exact), "other voxels, another picture")
-for threads in ("1", "8"):
-    check(picture("part", "more.exr", *wide, "--threads", threads) == coarse, f"coarse light, {threads} threads: the same bytes")
-for name in ("normal", "depth"):
-    direct = ["--integrator", name, "--spp", "1", *TWO]
-    check(picture("part", "more.exr", *direct, "--secondary-voxel", "2") == picture("part", "less.exr", *direct),
-          f"{name}: what the camera sees is the same")
-check(picture("part", "more.exr", *AUTO, "--secondary-voxel", "2") not in (None, several), "with voxels of several sizes")
-
 # --- the bricks that rays came to -----------------------------------------------------------------------------------------
 check(picture("part", "more.exr", "--spp", "2", "--brick-picture", path("bricks.png")) == one, "a picture of bricks beside it")
 with open(path("bricks.png"), "rb") as file:

@@ -5,11 +5,11 @@
 //
 // How to build it stands in gcode_fuzz.cpp. MERL tables have 35 MB, always; the bytes behind their head are repeated up
 // to that.
+#include "base/error.h"
 #include "fuzz/memory_file.h"
-#include "io/error.h"
-#include "shade/brdf_file.h"
-#include "shade/merl_file.h"
-#include "shade/scan_interpolant.h"
+#include "shade/measured/brdf_file.h"
+#include "shade/measured/merl_file.h"
+#include "shade/measured/scan_interpolant.h"
 
 #include <cmath>
 #include <cstddef>

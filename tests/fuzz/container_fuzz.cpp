@@ -10,11 +10,11 @@
 // and whose successor comes out of:
 //   container_fuzz -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW tests/fuzz/container FOLDER
 // Checksums are what a fuzzer can't guess, so the CRC32s of a binary G-code file are put right before it is read.
-#include "gcode/bgcode.h"
-#include "gcode/container.h"
-#include "gcode/little_endian.h"
+#include "base/error.h"
+#include "gcode/container/bgcode.h"
+#include "gcode/container/container.h"
+#include "gcode/container/little_endian.h"
 #include "gcode/reader.h"
-#include "io/error.h"
 
 #include <zlib.h>
 

@@ -8,9 +8,9 @@
 //
 // FOLDER collects the inputs that reach new code; tests/fuzz/gcode holds the smallest set of them so far. The first
 // byte chooses the options, so that one folder serves all firmwares.
+#include "base/error.h"
 #include "gcode/reader.h"
 #include "gcode/summary.h"
-#include "io/error.h"
 
 #include <cmath>
 #include <cstddef>

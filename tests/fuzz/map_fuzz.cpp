@@ -4,10 +4,10 @@
 //   build/fuzz/bin/map_fuzz -max_total_time=1900 -max_len=8192 FOLDER tests/fuzz/map
 //
 // How to build it stands in gcode_fuzz.cpp.
+#include "base/error.h"
 #include "fuzz/memory_file.h"
-#include "io/error.h"
-#include "shade/light_map.h"
-#include "shade/map_environment.h"
+#include "shade/environment/light_map.h"
+#include "shade/environment/map_environment.h"
 
 #include <cmath>
 #include <cstddef>

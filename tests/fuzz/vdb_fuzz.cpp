@@ -4,11 +4,11 @@
 //   build/fuzz/bin/vdb_fuzz -max_total_time=1900 -max_len=65536 FOLDER tests/fuzz/vdb
 //
 // How to build it stands in gcode_fuzz.cpp. OpenVDB itself is not instrumented, but for what its headers hold.
+#include "base/error.h"
 #include "fuzz/memory_file.h"
-#include "io/error.h"
-#include "march/attribute_grid.h"
-#include "march/brick_intersector.h"
-#include "march/level_set_file.h"
+#include "march/attribute/attribute_grid.h"
+#include "march/brick/brick_intersector.h"
+#include "march/file/level_set_file.h"
 
 #include <openvdb/openvdb.h>
 #include <glm/geometric.hpp>
@@ -30,20 +30,20 @@ void require(bool good) {
 
 constexpr std::size_t kRays = 27;
 
-std::array<march::Hit, kRays> trace(const march::Intersector& surface) {
-    const march::Box box = surface.bounds();
+std::array<trace::Hit, kRays> trace(const trace::Intersector& surface) {
+    const trace::Box box = surface.bounds();
     const glm::dvec3 middle = 0.5 * (box.min + box.max);
     const glm::dvec3 size = box.max - box.min;
-    std::array<march::Ray, kRays> rays;
+    std::array<trace::Ray, kRays> rays;
     for (std::size_t n = 0; n < kRays; ++n) {
         const glm::dvec3 way(static_cast<double>(n % 3) - 1.1, static_cast<double>(n / 3 % 3) - 0.9,
                              static_cast<double>(n / 9) - 0.7);
         rays[n].direction = glm::normalize(way);
         rays[n].origin = middle + 0.1 * static_cast<double>(n) / kRays * size - glm::length(size) * rays[n].direction;
     }
-    std::array<march::Hit, kRays> hits;
+    std::array<trace::Hit, kRays> hits;
     surface.makeTracer()->intersectStream(rays, hits);
-    for (const march::Hit& hit : hits) {
+    for (const trace::Hit& hit : hits) {
         require(!std::isnan(hit.t));
         if (std::isfinite(hit.t)) require(std::isfinite(glm::length(hit.normal)) && std::isfinite(hit.position.z));
     }

@@ -1,7 +1,7 @@
 // Containers made by the tests: tiny encoders that exist nowhere else, so that decoders are not tested with themselves.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 
 #include <gtest/gtest.h>
 #include <zip.h>

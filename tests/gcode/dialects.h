@@ -2,8 +2,8 @@
 #pragma once
 
 #include "corpus.h"
-#include "gcode/frame.h"
 #include "gcode/program.h"
+#include "gcode/toolpath/frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "gcode/filament.h"
 
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
-#include "io/mapped_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Small programs for the tests of this room.
 #pragma once
 
+#include "base/error.h"
 #include "gcode/reader.h"
-#include "io/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 #include "gcode/reader.h"
 
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
-#include "io/mapped_file.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // double precision, then halved. Knows nothing of bricks, masks or cubics.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <openvdb/openvdb.h>
 
@@ -22,7 +22,7 @@ public:
 
     /// The smallest t in [t_min, t_max] at which the sign of the trilinear field changes, to 1e-13 of the ray's length
     /// in a cell. Two crossings closer than a 200th of a cell's chord may be missed together.
-    std::optional<double> operator()(const march::Ray& ray) {
+    std::optional<double> operator()(const trace::Ray& ray) {
         const openvdb::Vec3d o = grid_.worldToIndex(openvdb::Vec3d(ray.origin.x, ray.origin.y, ray.origin.z));
         const openvdb::Vec3d e = grid_.worldToIndex(openvdb::Vec3d(
             ray.origin.x + ray.direction.x, ray.origin.y + ray.direction.y, ray.origin.z + ray.direction.z));

@@ -1,16 +1,16 @@
 // Millions of rays at a real print: the claims of exactness, watertightness and bounded work, at full length.
-#include "march/brick_intersector.h"
-#include "march/brick_walk.h"
+#include "march/brick/brick_intersector.h"
+#include "march/brick/brick_walk.h"
 
+#include "base/mapped_file.h"
+#include "base/parallel_for.h"
 #include "brute_march.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "parallel/parallel_for.h"
 #include "random_rays.h"
 #include "rubble.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -62,13 +62,13 @@ protected:
     static glm::dvec3 centre() { return 0.5 * (intersector_->bounds().min + intersector_->bounds().max); }
     static double radius() { return 0.5 * glm::length(intersector_->bounds().max - intersector_->bounds().min); }
     static glm::dvec3 anywhere(std::mt19937& random) {
-        const Box box = intersector_->bounds();
+        const trace::Box box = intersector_->bounds();
         std::uniform_real_distribution<double> unit(0, 1);
         return box.min + glm::dvec3(unit(random), unit(random), unit(random)) * (box.max - box.min);
     }
 
     static inline openvdb::FloatGrid::Ptr grid_;
-    static inline std::unique_ptr<Intersector> intersector_;
+    static inline std::unique_ptr<trace::Intersector> intersector_;
 };
 
 TEST_F(LongRuns, AMillionRaysMeetWhatTheBruteMarchMeets) {
@@ -79,20 +79,20 @@ TEST_F(LongRuns, AMillionRaysMeetWhatTheBruteMarchMeets) {
     std::atomic<std::size_t> extra{0};
     std::atomic<std::size_t> moved{0};
     std::atomic<std::size_t> crossings{0};  // that the brute march's steps jump over
-    inBlocks(kRays, [&](Tracer& tracer, std::mt19937& random, std::size_t count) {
+    inBlocks(kRays, [&](trace::Tracer& tracer, std::mt19937& random, std::size_t count) {
         test::BruteMarch brute(*held);
         for (std::size_t n = 0; n < count; ++n) {
-            Ray ray;
+            trace::Ray ray;
             const glm::dvec3 target = anywhere(random);
             ray.origin = n % 2 == 0 ? anywhere(random) : centre() + 3 * radius() * test::randomDirection(random);
             ray.direction = glm::normalize(target - ray.origin);
             const auto expected = brute(ray);
-            Hit hit;
+            trace::Hit hit;
             const bool found = tracer.intersect(ray, hit);
             if (found && (!expected || hit.t < *expected - 1e-4 * kVoxel)) {
                 // Two crossings within a 200th of a chord are one too many for the brute march. It is right to complain
                 // unless the field at the hit does change sign, looked at closely.
-                Ray close = ray;
+                trace::Ray close = ray;
                 close.t_min = hit.t - 1e-3 * kVoxel;
                 close.t_max = hit.t + 1e-3 * kVoxel;
                 const auto seen = brute(close);
@@ -126,9 +126,9 @@ TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) {
     ASSERT_GT(solid.size(), 1000000U);
     std::atomic<std::size_t> leaks{0};
     std::atomic<std::size_t> wrong{0};
-    inBlocks(kRays, [&](Tracer& tracer, std::mt19937& random, std::size_t count) {
-        std::vector<Ray> rays(count);
-        std::vector<Hit> hits(count);
+    inBlocks(kRays, [&](trace::Tracer& tracer, std::mt19937& random, std::size_t count) {
+        std::vector<trace::Ray> rays(count);
+        std::vector<trace::Hit> hits(count);
         std::vector<std::uint8_t> blocked(count);
         for (std::size_t n = 0; n < count; ++n) {
             const openvdb::Vec3d start = grid_->indexToWorld(solid[random() % solid.size()]);
@@ -162,12 +162,12 @@ TEST_F(LongRuns, TenMillionGrazingRaysEndWithFiniteAnswers) {
     std::atomic<std::size_t> bad{0};
     std::atomic<std::size_t> walked{0};
     std::atomic<std::size_t> longest{0};
-    inBlocks(kRays, [&](Tracer& tracer, std::mt19937& random, std::size_t count) {
-        std::vector<Ray> rays(count);
-        std::vector<Hit> found(count);
+    inBlocks(kRays, [&](trace::Tracer& tracer, std::mt19937& random, std::size_t count) {
+        std::vector<trace::Ray> rays(count);
+        std::vector<trace::Hit> found(count);
         std::uniform_real_distribution<double> unit(-1, 1);
         for (std::size_t n = 0; n < count; ++n) {
-            Ray& ray = rays[n];
+            trace::Ray& ray = rays[n];
             // Axis-parallel, tilted by 1e-7 to 1e-1 rad or not at all, with zeros of either sign.
             const auto axis = static_cast<glm::length_t>(n % 3);
             const double tilt = n % 9 == 0 ? 0.0 : std::pow(10.0, -7 + 3 * (1 + unit(random)));
@@ -194,7 +194,7 @@ TEST_F(LongRuns, TenMillionGrazingRaysEndWithFiniteAnswers) {
         tracer.intersectStream(rays, found);
         std::size_t good_hits = 0;
         for (std::size_t n = 0; n < count; ++n) {
-            const Hit& hit = found[n];
+            const trace::Hit& hit = found[n];
             if (std::isinf(hit.t)) continue;
             ++good_hits;
             const double length = glm::length(hit.normal);

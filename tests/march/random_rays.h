@@ -1,7 +1,7 @@
 // Rays of every kind that a scene sends, and of the kinds that it should not.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <glm/geometric.hpp>
 
@@ -18,12 +18,12 @@ inline glm::dvec3 randomDirection(std::mt19937& random) {
 
 /// Within +-reach of the origin and from five times as far; some with limits. A share of them runs along axes and
 /// planes of a lattice of `voxel`, with zero and tiny components.
-inline std::vector<march::Ray> randomRays(std::size_t count, double reach, double voxel, std::uint32_t seed) {
+inline std::vector<trace::Ray> randomRays(std::size_t count, double reach, double voxel, std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> where(-reach, reach);
-    std::vector<march::Ray> rays(count);
+    std::vector<trace::Ray> rays(count);
     for (std::size_t n = 0; n < count; ++n) {
-        march::Ray& ray = rays[n];
+        trace::Ray& ray = rays[n];
         ray.origin =
             n % 3 == 0 ? glm::dvec3(where(random), where(random), where(random)) : 5 * reach * randomDirection(random);
         ray.direction = glm::normalize(glm::dvec3(where(random), where(random), where(random)) - ray.origin);

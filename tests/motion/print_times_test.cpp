@@ -1,8 +1,8 @@
 #include "motion/print_times.h"
 
+#include "base/error.h"
 #include "corpus.h"
-#include "gcode/input_bytes.h"
-#include "io/error.h"
+#include "gcode/container/input_bytes.h"
 #include "motions.h"
 
 #include <gtest/gtest.h>

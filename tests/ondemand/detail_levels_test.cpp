@@ -1,13 +1,13 @@
 #include "ondemand/detail_levels.h"
 
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "march/brick_intersector.h"
-#include "march/detail_intersector.h"
+#include "march/brick/brick_intersector.h"
 #include "ondemand/print_field.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxel_choice.h"
+#include "trace/detail_intersector.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -135,22 +135,22 @@ TEST(DetailLevels, ShowInNoPicture) {
     const Gear& g = gear();
     const std::array<int, 3> per_layer{8, 4, 2};
     const std::array<double, 4> from{0.0, 12.0, 25.0, std::numeric_limits<double>::infinity()};
-    std::vector<march::DetailLevel> levels;
+    std::vector<trace::DetailLevel> levels;
     for (std::size_t n = 0; n < per_layer.size(); ++n)
         levels.push_back({march::makeBrickIntersector(g.field(g.lattice(per_layer[n]), from[n + 1])), from[n]});
-    const auto composite = march::makeDetailIntersector(levels, g.eye());
+    const auto composite = trace::makeDetailIntersector(levels, g.eye());
     const auto fine =
         march::makeBrickIntersector(g.field(g.lattice(per_layer[0]), std::numeric_limits<double>::infinity()));
-    std::vector<march::Ray> rays;
+    std::vector<trace::Ray> rays;
     for (int y = 0; y < 480; ++y)
         for (int x = 0; x < 640; ++x) {
-            march::Ray ray;
+            trace::Ray ray;
             ray.origin = g.eye();
             ray.direction = glm::normalize(glm::dvec3((x - 320) / 320.0, 1.0, (y - 240) / 400.0));
             rays.push_back(ray);
         }
-    std::vector<march::Hit> expected(rays.size());
-    std::vector<march::Hit> found(rays.size());
+    std::vector<trace::Hit> expected(rays.size());
+    std::vector<trace::Hit> found(rays.size());
     fine->makeTracer()->intersectStream(rays, expected);
     composite->makeTracer()->intersectStream(rays, found);
     const double layer = g.lattice(1).voxel_size;

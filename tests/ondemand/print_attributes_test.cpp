@@ -1,11 +1,11 @@
 #include "ondemand/print_attributes.h"
 
+#include "base/error.h"
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/error.h"
-#include "io/mapped_file.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 
@@ -61,8 +61,8 @@ TEST(PrintAttribute, SaysWhatTheGridSays) {
         if (varies) {
             EXPECT_GT(values.size(), 3U);
         }
-        const march::AttributeSummary seen = march::summarize(*grids[n]);
-        const march::AttributeSummary known = summarize(*field, kAll[n], selection);
+        const trace::AttributeSummary seen = march::summarize(*grids[n]);
+        const trace::AttributeSummary known = summarize(*field, kAll[n], selection);
         EXPECT_EQ(known.kind, seen.kind);
         EXPECT_EQ(known.labels, seen.labels);
         EXPECT_EQ(known.colors, seen.colors);

@@ -1,15 +1,15 @@
 #include "ondemand/print_field.h"
 
+#include "base/mapped_file.h"
+#include "base/parallel_for.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "march/brick_grid.h"
-#include "march/brick_intersector.h"
-#include "march/brick_walk.h"
-#include "parallel/parallel_for.h"
+#include "march/brick/brick_grid.h"
+#include "march/brick/brick_intersector.h"
+#include "march/brick/brick_walk.h"
 #include "toolpaths.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 
@@ -235,11 +235,11 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
 }
 
 // From around tangle(2) and from inside, in all directions.
-std::vector<march::Ray> raysThrough(std::size_t count) {
+std::vector<trace::Ray> raysThrough(std::size_t count) {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
-    std::vector<march::Ray> rays(count);
-    for (march::Ray& ray : rays) {
+    std::vector<trace::Ray> rays(count);
+    for (trace::Ray& ray : rays) {
         ray.origin = {3 * normal(random), 3 * normal(random), 1.2 + normal(random)};
         const glm::dvec3 way(normal(random), normal(random), normal(random));
         ray.direction = way / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
@@ -256,17 +256,17 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
     const auto grid = voxelize::voxelize(*toolpath, selection, lattice);
     const auto eager = march::makeBrickIntersector(*grid);
-    const std::unique_ptr<march::Intersector> late = march::makeBrickIntersector(
+    const std::unique_ptr<trace::Intersector> late = march::makeBrickIntersector(
         std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"));
     ASSERT_EQ(late->bounds().min, eager->bounds().min);
     ASSERT_EQ(late->bounds().max, eager->bounds().max);
-    const std::vector<march::Ray> rays = raysThrough(2000);
-    std::vector<march::Hit> expected(rays.size());
+    const std::vector<trace::Ray> rays = raysThrough(2000);
+    std::vector<trace::Hit> expected(rays.size());
     eager->makeTracer()->intersectStream(rays, expected);
     std::atomic<std::size_t> wrong{0};
     std::atomic<std::size_t> hits{0};
     parallelFor(8, 1, [&](std::size_t, std::size_t) {
-        std::vector<march::Hit> found(rays.size());
+        std::vector<trace::Hit> found(rays.size());
         late->makeTracer()->intersectStream(rays, found);
         for (std::size_t n = 0; n < rays.size(); ++n) {
             if (found[n].t != expected[n].t) ++wrong;
@@ -289,25 +289,25 @@ TEST(PrintField, IsTracedInLittleRoomAsTheGridIs) {
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
     const auto eager = march::makeBrickIntersector(*voxelize::voxelize(*toolpath, selection, lattice));
     const std::size_t brick = march::bricksOf(*eager)->brickBytes();
-    const std::vector<march::Ray> rays = raysThrough(600);
-    std::vector<march::Hit> expected(rays.size());
+    const std::vector<trace::Ray> rays = raysThrough(600);
+    std::vector<trace::Hit> expected(rays.size());
     eager->makeTracer()->intersectStream(rays, expected);
     for (const std::size_t room : {march::BrickSlots::kLeastBound, std::size_t{100}, std::size_t{500}}) {
         SCOPED_TRACE(room);
-        const std::unique_ptr<march::Intersector> late = march::makeBrickIntersector(
+        const std::unique_ptr<trace::Intersector> late = march::makeBrickIntersector(
             std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"),
             march::BrickValues::Int16, room * brick);
         std::atomic<std::size_t> wrong{0};
         parallelFor(4, 1, [&](std::size_t first, std::size_t) {
             const auto tracer = late->makeTracer();
-            std::vector<march::Hit> found(rays.size());
+            std::vector<trace::Hit> found(rays.size());
             std::vector<std::uint8_t> blocked(rays.size());
             if (first % 2 == 0) {
                 tracer->intersectStream(rays, found);
                 tracer->occludedStream(rays, blocked);
             } else {
-                tracer->march::Tracer::intersectStream(rays, found);  // one by one
-                tracer->march::Tracer::occludedStream(rays, blocked);
+                tracer->trace::Tracer::intersectStream(rays, found);  // one by one
+                tracer->trace::Tracer::occludedStream(rays, blocked);
             }
             for (std::size_t n = 0; n < rays.size(); ++n) {
                 if (found[n].t != expected[n].t) ++wrong;

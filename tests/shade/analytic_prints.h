@@ -1,7 +1,7 @@
 // Intersectors with an answer on paper, to test light without a level set.
 #pragma once
 
-#include "march/intersector.h"
+#include "trace/intersector.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -17,41 +17,41 @@
 namespace stratum::test {
 
 /// An Intersector whose rays are answered by a function. The function must be safe to call from many threads.
-class FunctionIntersector : public march::Intersector {
+class FunctionIntersector : public trace::Intersector {
 public:
-    using Nearest = std::function<bool(const march::Ray&, march::Hit&)>;
-    FunctionIntersector(march::Box box, double offset, Nearest nearest)
+    using Nearest = std::function<bool(const trace::Ray&, trace::Hit&)>;
+    FunctionIntersector(trace::Box box, double offset, Nearest nearest)
         : box_(box), offset_(offset), nearest_(std::move(nearest)) {}
 
-    std::unique_ptr<march::Tracer> makeTracer() const override { return std::make_unique<Rays>(nearest_); }
+    std::unique_ptr<trace::Tracer> makeTracer() const override { return std::make_unique<Rays>(nearest_); }
     std::string_view name() const override { return "function"; }
-    march::Box bounds() const override { return box_; }
+    trace::Box bounds() const override { return box_; }
     double voxelSize() const override { return 0.1; }
     std::size_t bytes() const override { return 0; }
     double surfaceOffset() const override { return offset_; }
 
 private:
-    struct Rays final : march::Tracer {
+    struct Rays final : trace::Tracer {
         explicit Rays(const Nearest& f) : nearest(f) {}
-        bool intersect(const march::Ray& ray, march::Hit& hit) override { return nearest(ray, hit); }
-        bool occluded(const march::Ray& ray) override {
-            march::Hit hit;
+        bool intersect(const trace::Ray& ray, trace::Hit& hit) override { return nearest(ray, hit); }
+        bool occluded(const trace::Ray& ray) override {
+            trace::Hit hit;
             return nearest(ray, hit);
         }
         const Nearest& nearest;
     };
-    march::Box box_;
+    trace::Box box_;
     double offset_;
     Nearest nearest_;
 };
 
 /// Nothing at all, in a box of this size about the origin.
 inline FunctionIntersector nothing(double half = 1.0) {
-    return {{glm::dvec3(-half), glm::dvec3(half)}, 1e-6, [](const march::Ray&, march::Hit&) { return false; }};
+    return {{glm::dvec3(-half), glm::dvec3(half)}, 1e-6, [](const trace::Ray&, trace::Hit&) { return false; }};
 }
 
 inline FunctionIntersector sphere(const glm::dvec3& centre, double radius) {
-    return {{centre - radius, centre + radius}, 1e-6 * radius, [=](const march::Ray& ray, march::Hit& hit) {
+    return {{centre - radius, centre + radius}, 1e-6 * radius, [=](const trace::Ray& ray, trace::Hit& hit) {
                 const glm::dvec3 m = ray.origin - centre;
                 const double b = glm::dot(m, ray.direction);
                 const double root = b * b - glm::dot(m, m) + radius * radius;
@@ -93,10 +93,10 @@ public:
         }
         return nearest;
     }
-    march::Box box() const { return {{-23.0, -23.0, -0.3}, {23.0, 23.0, layers * layer_height + 0.3}}; }
+    trace::Box box() const { return {{-23.0, -23.0, -0.3}, {23.0, 23.0, layers * layer_height + 0.3}}; }
 
-    bool nearest(const march::Ray& ray, march::Hit& hit) const {
-        const march::Box b = box();
+    bool nearest(const trace::Ray& ray, trace::Hit& hit) const {
+        const trace::Box b = box();
         double t = ray.t_min;
         double end = ray.t_max;
         for (int i = 0; i < 3; ++i) {
@@ -128,7 +128,7 @@ public:
                                          distance(p + glm::dvec3(0, 0, h)) - distance(p - glm::dvec3(0, 0, h))));
     }
     FunctionIntersector intersector() const {
-        return {box(), 1e-3, [vase = *this](const march::Ray& ray, march::Hit& hit) { return vase.nearest(ray, hit); }};
+        return {box(), 1e-3, [vase = *this](const trace::Ray& ray, trace::Hit& hit) { return vase.nearest(ray, hit); }};
     }
 };
 

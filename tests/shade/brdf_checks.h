@@ -1,9 +1,9 @@
 // What every BRDF must satisfy, as numbers that a test can compare.
 #pragma once
 
-#include "shade/brdf.h"
-#include "shade/sampler.h"
-#include "shade/sampling.h"
+#include "shade/brdf/brdf.h"
+#include "shade/camera/sampler.h"
+#include "shade/camera/sampling.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

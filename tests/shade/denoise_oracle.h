@@ -1,8 +1,8 @@
 // The estimator of denoise() written down plainly: in double, one pixel after the other, nothing shared between them.
 #pragma once
 
-#include "shade/denoise_block.h"
-#include "shade/film.h"
+#include "shade/film/film.h"
+#include "shade/post/denoise_block.h"
 
 #include <algorithm>
 #include <array>

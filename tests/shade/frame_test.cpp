@@ -1,6 +1,6 @@
 #include "shade/frame.h"
 
-#include "shade/sampling.h"
+#include "shade/camera/sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // What an integrator sees along one ray, averaged.
 #pragma once
 
-#include "shade/integrator.h"
+#include "shade/integrator/integrator.h"
 
 #include <cstdint>
 
 namespace stratum::test {
 
-inline shade::Color meanRadiance(const march::Intersector& print, const shade::Integrator& integrator,
-                                 const march::Ray& ray, std::uint32_t samples) {
+inline shade::Color meanRadiance(const trace::Intersector& print, const shade::Integrator& integrator,
+                                 const trace::Ray& ray, std::uint32_t samples) {
     const auto tracer = print.makeTracer();
     shade::Sampler sampler(1, samples);
     shade::RayCounts rays;
@@ -22,7 +22,7 @@ inline shade::Color meanRadiance(const march::Intersector& print, const shade::I
 }
 
 /// A scene of one material under one light, as the tests' options.
-inline shade::SceneDescription plainScene(const march::Intersector& print, const char* brdf, const char* env,
+inline shade::SceneDescription plainScene(const trace::Intersector& print, const char* brdf, const char* env,
                                           bool bed) {
     shade::SceneOptions options;
     options.brdf = brdf;

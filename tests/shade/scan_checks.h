@@ -1,8 +1,8 @@
 // Scans of a known surface, and the text files that a scatterometer would write of it.
 #pragma once
 
-#include "shade/brdf_scan.h"
-#include "shade/lobe_fit.h"
+#include "shade/brdf/brdf_scan.h"
+#include "shade/brdf/lobe_fit.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,14 +1,14 @@
 #include "study/geometry.h"
 
 #include "corpus.h"
-#include "march/brick_intersector.h"
+#include "march/brick/brick_intersector.h"
 #include "scratch_folder.h"
 #include "study/field_error.h"
 #include "study/handmade.h"
 #include "study/print.h"
 #include "study/result_table.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxel_choice.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxel_choice.h"
 
 #include <gtest/gtest.h>
 

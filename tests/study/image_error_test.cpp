@@ -1,6 +1,6 @@
 #include "study/image_error.h"
 
-#include "shade/tonemap.h"
+#include "shade/film/tonemap.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 #include "study/memory.h"
 
+#include "base/error.h"
 #include "corpus.h"
-#include "io/error.h"
 #include "scratch_folder.h"
 #include "study/print.h"
 #include "study/result_table.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 

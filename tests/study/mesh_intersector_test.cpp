@@ -1,6 +1,6 @@
 #include "study/mesh_intersector.h"
 
-#include "march/sdf_intersector.h"
+#include "trace/sdf_intersector.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -10,7 +10,7 @@
 namespace stratum::study {
 namespace {
 
-march::Ray randomRay(std::mt19937& random, double reach) {
+trace::Ray randomRay(std::mt19937& random, double reach) {
     std::normal_distribution<double> normal;
     const glm::dvec3 from = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
     const glm::dvec3 to(normal(random), normal(random), normal(random));
@@ -20,16 +20,16 @@ march::Ray randomRay(std::mt19937& random, double reach) {
 // A box is a box, whether by formula or by triangles.
 TEST(MeshIntersector, MeetsABoxWhereItsFormulaDoes) {
     const auto mesh = makeMeshIntersector(boxMesh({0.1, 0.2, 0.3}, {1, 0.7, 0.4}));
-    const auto formula = march::makeSdfIntersector(march::sdfBox({0.1, 0.2, 0.3}, {1, 0.7, 0.4}));
+    const auto formula = trace::makeSdfIntersector(trace::sdfBox({0.1, 0.2, 0.3}, {1, 0.7, 0.4}));
     const auto a = mesh->makeTracer();
     const auto b = formula->makeTracer();
     std::mt19937 random(1);
     int met = 0;
     int disagreed = 0;
     for (int n = 0; n < 20000; ++n) {
-        const march::Ray ray = randomRay(random, 5);
-        march::Hit p;
-        march::Hit q;
+        const trace::Ray ray = randomRay(random, 5);
+        trace::Hit p;
+        trace::Hit q;
         const bool one = a->intersect(ray, p);
         EXPECT_EQ(one, a->occluded(ray));
         // A formula's steps may pass over an edge by a hair.
@@ -51,7 +51,7 @@ TEST(MeshIntersector, HasNormalsAndObjectsOfItsTriangles) {
     two.append(sphereMesh({5, 0, 0}, 1, 14), 7);
     const auto mesh = makeMeshIntersector(two);
     const auto tracer = mesh->makeTracer();
-    march::Hit hit;
+    trace::Hit hit;
     ASSERT_TRUE(tracer->intersect({{0.2, 0.1, 9}, {0, 0, -1}}, hit));
     EXPECT_NEAR(hit.t, 8, 1e-12);
     EXPECT_NEAR(glm::distance(hit.normal, {0, 0, 1}), 0, 1e-12);

@@ -1,8 +1,8 @@
 #include "study/print.h"
 
+#include "base/error.h"
 #include "corpus.h"
-#include "io/error.h"
-#include "voxelize/selection.h"
+#include "voxelize/beads/selection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "study/result_table.h"
 
-#include "io/error.h"
+#include "base/error.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "study/seeds.h"
 
+#include "base/error.h"
 #include "corpus.h"
-#include "io/error.h"
 #include "scratch_folder.h"
 #include "study/mesh_intersector.h"
 #include "study/seed_print_rows.h"

@@ -1,7 +1,7 @@
 #include "study/triangle_mesh.h"
 
+#include "base/error.h"
 #include "corpus.h"
-#include "io/error.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>

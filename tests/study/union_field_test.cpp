@@ -1,10 +1,10 @@
 #include "study/union_field.h"
 
 #include "../voxelize/toolpaths.h"
+#include "base/error.h"
 #include "corpus.h"
-#include "io/error.h"
 #include "study/print.h"
-#include "voxelize/selection.h"
+#include "voxelize/beads/selection.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>

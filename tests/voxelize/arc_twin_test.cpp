@@ -1,11 +1,11 @@
 // One print twice: as its slicer cut it, and with arcs welded from its straight moves. The two level sets may differ by
 // the welder's tolerance, no more.
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "voxelize/enclosed_volume.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_reduce.h>

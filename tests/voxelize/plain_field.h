@@ -3,8 +3,8 @@
 #pragma once
 
 #include "toolpaths.h"
-#include "voxelize/bead_field.h"
-#include "voxelize/layer_stack.h"
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/layer_stack.h"
 
 #include <algorithm>
 #include <cmath>

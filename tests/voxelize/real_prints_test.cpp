@@ -1,10 +1,10 @@
 // The voxelizer on real prints, against brute force over all their beads.
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
 #include "toolpaths.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/tools/Diagnostics.h>

@@ -1,7 +1,7 @@
 // Small toolpaths made by hand, and the brute-force field that the voxelizer is held against.
 #pragma once
 
-#include "gcode/toolpath.h"
+#include "gcode/toolpath/toolpath.h"
 #include "study/handmade.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // One object of four tools, sliced by two slicers: the same box, the same volume.
+#include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
-#include "io/mapped_file.h"
-#include "voxelize/selection.h"
-#include "voxelize/voxelizer.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
 

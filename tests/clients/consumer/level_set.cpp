@@ -1,11 +1,11 @@
 // G-code -> level set -> one ray from above -> a material, through every library.
-#include <gcode/input_bytes.h>
+#include <gcode/container/input_bytes.h>
 #include <gcode/reader.h>
-#include <march/vdb_intersector.h>
-#include <shade/brdf.h>
-#include <voxelize/lattice.h>
-#include <voxelize/selection.h>
-#include <voxelize/voxelizer.h>
+#include <march/reference/vdb_intersector.h>
+#include <shade/brdf/brdf.h>
+#include <voxelize/beads/lattice.h>
+#include <voxelize/beads/selection.h>
+#include <voxelize/grid/voxelizer.h>
 
 #include <cstdio>
 
@@ -21,11 +21,11 @@ int main(int, char** argv) {
     voxelize::Voxelizer voxelizer(toolpath, beads, lattice, {});
     const auto grid = voxelizer.printUntil(static_cast<std::uint32_t>(toolpath.beads.size()));
     const auto scene = march::makeVdbIntersector(grid);
-    const march::Box box = scene->bounds();
-    march::Ray ray;
+    const trace::Box box = scene->bounds();
+    trace::Ray ray;
     ray.origin = {(box.min.x + box.max.x) / 2 + 0.013, (box.min.y + box.max.y) / 2 + 0.017, box.max.z + 1};
     ray.direction = {0, 0, -1};
-    march::Hit hit;
+    trace::Hit hit;
     const bool met = scene->makeTracer()->intersect(ray, hit);
     const bool material = shade::makeBrdf("lambert:0.5,0.5,0.5") != nullptr;
     std::printf("%zu %llu %d %d\n", toolpath.beads.size(), static_cast<unsigned long long>(grid->activeVoxelCount()),

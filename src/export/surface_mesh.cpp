@@ -1,0 +1,198 @@
+#include "export/surface_mesh.h"
+
+#include "base/parallel_for.h"
+#include "export/mesh_simplify.h"
+
+#include <openvdb/tools/VolumeToMesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stratum::exporter {
+namespace {
+
+constexpr double kClearance = 1e-3;  // voxels
+
+void clearSurface(openvdb::FloatGrid& grid) {
+    const auto least = static_cast<float>(kClearance * grid.voxelSize()[0]);
+    std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
+    grid.tree().getNodes(leaves);
+    parallelFor(leaves.size(), 64, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n)
+            for (auto value = leaves[n]->beginValueAll(); value; ++value)
+                if (*value > -least && *value < least) value.setValue(-least);
+    });
+}
+
+// Points that an edge of no length joins are one: union-find with path halving, the lowest index leads.
+class Merging {
+public:
+    explicit Merging(std::size_t points) : leader_(points) { std::iota(leader_.begin(), leader_.end(), 0U); }
+    std::uint32_t find(std::uint32_t p) {
+        while (leader_[p] != p) p = leader_[p] = leader_[leader_[p]];
+        return p;
+    }
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = find(a);
+        b = find(b);
+        if (a < b)
+            leader_[b] = a;
+        else
+            leader_[a] = b;
+    }
+
+private:
+    std::vector<std::uint32_t> leader_;
+};
+
+// Of the tetrahedron between a triangle and a point of the mesh, signed.
+double sixfoldVolume(const SurfaceMesh& mesh, std::uint32_t from, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const openvdb::Vec3d origin(mesh.points[from]);
+    return (openvdb::Vec3d(mesh.points[a]) - origin)
+        .dot((openvdb::Vec3d(mesh.points[b]) - origin).cross(openvdb::Vec3d(mesh.points[c]) - origin));
+}
+
+// What is left of a face when its corners are merged; false if it has no inside any more. A face that collapses to a
+// line takes away each of its edges in both directions, so its neighbours meet instead.
+bool reduce(SurfaceMesh::Face& face) {
+    std::array<std::uint32_t, 4> left{};
+    std::size_t count = 0;
+    const std::size_t corners = face[3] == SurfaceMesh::kNone ? 3 : 4;
+    for (std::size_t n = 0; n < corners; ++n)
+        if (face[n] != face[(n + 1) % corners]) left[count++] = face[n];
+    if (count < 3 || (count == 4 && (left[0] == left[2] || left[1] == left[3]))) return false;
+    if (count == 3) left[3] = SurfaceMesh::kNone;
+    face = left;
+    return true;
+}
+
+// The surface of a cavity is a part of its own, and its faces see the cavity's inside as outside.
+void dropCavities(SurfaceMesh& mesh) {
+    Merging parts(mesh.points.size());
+    for (const SurfaceMesh::Face& face : mesh.faces)
+        for (const std::uint32_t corner : face)
+            if (corner != SurfaceMesh::kNone) parts.join(face[0], corner);
+    // From a point of the same part, so that a small one far away keeps its digits.
+    std::vector<double> volume(mesh.points.size(), 0.0);
+    mesh.forEachTriangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        const std::uint32_t part = parts.find(a);
+        volume[part] += sixfoldVolume(mesh, part, a, b, c);
+    });
+    std::erase_if(mesh.faces, [&](const SurfaceMesh::Face& face) { return !(volume[parts.find(face[0])] > 0); });
+}
+
+// The others keep their order.
+void dropUnusedPoints(SurfaceMesh& mesh) {
+    std::vector<std::uint32_t> place(mesh.points.size(), SurfaceMesh::kNone);
+    for (const SurfaceMesh::Face& face : mesh.faces)
+        for (const std::uint32_t corner : face)
+            if (corner != SurfaceMesh::kNone) place[corner] = 0;
+    std::uint32_t next = 0;
+    for (std::size_t n = 0; n < place.size(); ++n) {
+        if (place[n] == SurfaceMesh::kNone) continue;
+        mesh.points[next] = mesh.points[n];
+        place[n] = next++;
+    }
+    mesh.points.resize(next);
+    for (SurfaceMesh::Face& face : mesh.faces)
+        for (std::uint32_t& corner : face)
+            if (corner != SurfaceMesh::kNone) corner = place[corner];
+}
+
+// IEC 61966-2-1, from linear light.
+std::uint32_t srgb(float linear) {
+    const double v = std::clamp(static_cast<double>(linear), 0.0, 1.0);
+    return static_cast<std::uint32_t>(
+        std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
+}
+
+// 0xRRGGBB by point, of the nearest active voxel among the eight around it and those beside them.
+std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3SGrid& grid) {
+    std::vector<std::uint32_t> colors(mesh.points.size());
+    parallelFor(colors.size(), 4096, [&](std::size_t first, std::size_t last) {
+        const auto voxels = grid.getConstAccessor();
+        // Few colors, many points: a power costs more than a comparison.
+        openvdb::Vec3f known(-1);
+        std::uint32_t packed = 0;
+        for (std::size_t n = first; n != last; ++n) {
+            const openvdb::Vec3d at = grid.worldToIndex(openvdb::Vec3d(mesh.points[n]));
+            const openvdb::Coord middle = openvdb::Coord::round(at);
+            double nearest = 1e300;
+            openvdb::Vec3f color(0.8F);
+            for (int k = 0; k < 27; ++k) {
+                const openvdb::Coord voxel = middle.offsetBy(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+                const double distance = (voxel.asVec3d() - at).lengthSqr();
+                openvdb::Vec3f value;
+                if (distance >= nearest || !voxels.probeValue(voxel, value)) continue;
+                nearest = distance;
+                color = value;
+            }
+            if (color != known) packed = srgb(color[0]) << 16 | srgb(color[1]) << 8 | srgb(color[2]);
+            known = color;
+            colors[n] = packed;
+        }
+    });
+    return colors;
+}
+
+}  // namespace
+
+SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options) {
+    const openvdb::FloatGrid::Ptr copy = grid.deepCopy();
+    clearSurface(*copy);
+    SurfaceMesh mesh;
+    std::vector<openvdb::Vec3I> triangles;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(*copy, mesh.points, triangles, quads, 0.0, 0.0);
+    // Corners come clockwise from outside.
+    mesh.faces.reserve(triangles.size() + quads.size());
+    for (const openvdb::Vec3I& t : triangles) mesh.faces.push_back({t[2], t[1], t[0], SurfaceMesh::kNone});
+    std::vector<openvdb::Vec3I>().swap(triangles);
+    for (const openvdb::Vec4I& q : quads) mesh.faces.push_back({q[3], q[2], q[1], q[0]});
+    std::vector<openvdb::Vec4I>().swap(quads);
+
+    Merging merging(mesh.points.size());
+    for (const SurfaceMesh::Face& face : mesh.faces) {
+        const std::size_t corners = face[3] == SurfaceMesh::kNone ? 3 : 4;
+        for (std::size_t n = 0; n < corners; ++n) {
+            const std::uint32_t a = face[n];
+            const std::uint32_t b = face[(n + 1) % corners];
+            if (mesh.points[a] == mesh.points[b]) merging.join(a, b);
+        }
+    }
+    std::size_t kept = 0;
+    for (SurfaceMesh::Face face : mesh.faces) {
+        for (std::uint32_t& corner : face)
+            if (corner != SurfaceMesh::kNone) corner = merging.find(corner);
+        if (reduce(face)) mesh.faces[kept++] = face;
+    }
+    mesh.faces.resize(kept);
+
+    if (options.outside_only) dropCavities(mesh);
+    dropUnusedPoints(mesh);
+    std::vector<std::uint32_t> labels;
+    if (options.color != nullptr) labels = colorsOf(mesh, *options.color);
+    if (options.error > 0) labels = simplify(mesh, options.error * grid.voxelSize()[0], labels);
+    for (const std::uint32_t label : labels)
+        mesh.colors.push_back({static_cast<std::uint8_t>(label >> 16), static_cast<std::uint8_t>(label >> 8 & 0xff),
+                               static_cast<std::uint8_t>(label & 0xff)});
+    return mesh;
+}
+
+std::size_t SurfaceMesh::triangleCount() const {
+    std::size_t count = faces.size();
+    for (const Face& face : faces) count += face[3] != kNone;
+    return count;
+}
+
+double SurfaceMesh::volume() const {
+    if (points.empty()) return 0;
+    // From a point of the surface: from the world's origin, large coordinates would cost digits.
+    double six = 0;
+    forEachTriangle(
+        [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { six += sixfoldVolume(*this, 0, a, b, c); });
+    return six / 6;
+}
+
+}  // namespace stratum::exporter

@@ -1,0 +1,63 @@
+#include "export/usd_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <string>
+
+namespace stratum::exporter {
+namespace {
+
+// USD's names of value types.
+std::string dataType(const openvdb::GridBase& grid) {
+    if (grid.isType<openvdb::Vec3SGrid>()) return "float3";
+    if (grid.isType<openvdb::Int32Grid>()) return "int";
+    return "float";
+}
+
+std::string field(const openvdb::GridBase& grid, const std::string& file) {
+    const std::string name = grid.getName();
+    std::string text = fmt::format(
+        "    def OpenVDBAsset \"{0}\"\n    {{\n        asset filePath = @./{1}@\n        token fieldName = \"{0}\"\n"
+        "        int fieldIndex = 0\n        token fieldDataType = \"{2}\"\n",
+        name, file, dataType(grid));
+    if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) text += "        token fieldClass = \"levelSet\"\n";
+    if (dataType(grid) == "float3") text += "        token vectorDataRoleHint = \"Color\"\n";
+    return text + "    }\n";
+}
+
+}  // namespace
+
+void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vdb, const std::filesystem::path& usda,
+               const UsdOptions& options) {
+    const std::string name = vdb.filename().string();
+    // USD would end the path there.
+    if (name.find('@') != std::string::npos)
+        throw OutputError(fmt::format("{}: a .usda can't name a file with @ in it; choose another -o", name));
+    openvdb::BBoxd box;
+    for (const auto& grid : grids)
+        box.expand(grid->transform().indexToWorld(openvdb::BBoxd(grid->evalActiveVoxelBoundingBox().min().asVec3d(),
+                                                                 grid->evalActiveVoxelBoundingBox().max().asVec3d())));
+    const auto low = box.min();
+    const auto high = box.max();
+    std::string text = fmt::format(
+        "#usda 1.0\n(\n    defaultPrim = \"print\"\n    metersPerUnit = {}\n    upAxis = \"{}\"\n)\n\n"
+        "def Volume \"print\" (\n    kind = \"component\"\n)\n{{\n"
+        "    float3[] extent = [({}, {}, {}), ({}, {}, {})]\n",
+        options.meters_per_unit, options.up_y ? "Y" : "Z", low[0], low[1], low[2], high[0], high[1], high[2]);
+    for (const auto& grid : grids) text += fmt::format("    rel field:{0} = </print/{0}>\n", grid->getName());
+    for (const auto& grid : grids) text += "\n" + field(*grid, name);
+    text += "}\n";
+
+    AtomicFile file(usda);
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", usda.string()));
+    file.commit();
+}
+
+}  // namespace stratum::exporter

@@ -1,0 +1,20 @@
+// A .usda beside a .vdb: how a USD scene (Houdini Solaris, Omniverse, Karma) refers to the grids of the file.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+
+namespace stratum::exporter {
+
+struct UsdOptions {
+    double meters_per_unit = 0.001;  ///< of world space
+    bool up_y = false;
+};
+
+/// Writes a UsdVol Volume with an OpenVDBAsset a grid (USD schema UsdVol), which names `vdb` relative to `usda`'s
+/// folder; both must be in the same one. Throws OutputError.
+void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vdb, const std::filesystem::path& usda,
+               const UsdOptions& options = {});
+
+}  // namespace stratum::exporter

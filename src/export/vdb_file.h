@@ -1,0 +1,47 @@
+// FloatGrid -> .vdb: metadata that says what the grid is and where it came from, written whole or not at all.
+#pragma once
+
+#include "voxelize/beads/lattice.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace stratum::exporter {
+
+/// What the file says about its origin. Written as grid metadata under the names given here.
+struct Provenance {
+    std::string source_file;     ///< "source_file": name without folders
+    std::string source_sha256;   ///< "source_sha256"
+    std::string slicer;          ///< "slicer", left out if empty
+    std::string unit = "mm";     ///< "unit": of world space
+    std::string up = "z";        ///< "up": axis of world space that points away from the bed, z or y
+    std::string snapshot;        ///< "snapshot": label of a partial print, left out if empty
+    std::string filament_color;  ///< "filament_color": "#RRGGBB", sRGB, if all beads have one and it is stated
+    std::string selection;       ///< "selection": --layers and --features, left out if empty
+    /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without what is printed beside it; see
+    /// partBounds(). Left out if empty.
+    std::optional<voxelize::Bounds> part;
+    bool culled = false;  ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool swept = false;   ///< "interior": whether negative values are distances
+};
+
+enum class Compression : std::uint8_t { blosc, zip, none };
+
+struct FileOptions {
+    bool half = false;  ///< 16-bit floats: half the file, values good to 2^-11 of the band
+    Compression compression = Compression::blosc;
+};
+
+/// Adds the metadata: provenance, "voxel_size_mm", "half_width_voxels", "layer_height_mm", "bead_model", "interior",
+/// "program", creator, and OpenVDB's own file statistics.
+void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const Provenance& provenance);
+
+/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old
+/// file then stays.
+void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options = {});
+
+}  // namespace stratum::exporter

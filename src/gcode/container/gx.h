@@ -1,0 +1,18 @@
+// FlashPrint's .gx: "xgcode 1.0\n", a little-endian header, thumbnails, then plain text to the end of the file.
+// No vendor document; the layout as others have read it from files: the README of github.com/ronoaldo/
+// FlashforgeFinderIntegration (text from byte 14512 on behind one BMP) and encoders by others that agree with it:
+// 0x10 offset of a BMP, 0x14 of a PNG (or of the text where there is none), 0x18 of the text, 0x20 and 0x24 filament of
+// the right and left nozzle in mm. Nothing in it is checksummed.
+#pragma once
+
+#include "gcode/container/container.h"
+
+namespace stratum::gcode {
+
+bool isGx(std::string_view bytes);
+
+/// Finds the text; it stays a view of `bytes`. Throws InputError if the header is cut off or its offset of the text
+/// can't be right.
+Program openGx(std::string_view bytes, std::string_view name);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,140 @@
+#include "gcode/machine/bead_recorder.h"
+
+#include "gcode/slicer/feature_names.h"
+#include "gcode/toolpath/color.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr double kSameZ = 1e-6;  // mm; what relative moves lose in rounding, far below what a file can write
+
+}  // namespace
+
+BeadRecorder::BeadRecorder(double nominal_height, std::size_t expected_beads, WarningLog& warnings)
+    : nominal_height_(nominal_height), warnings_(warnings) {
+    toolpath_.beads.reserve(expected_beads);
+}
+
+void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
+    switch (tag.kind) {
+        case Tag::Kind::none:
+            break;
+        case Tag::Kind::feature:
+            next_.feature = tag.feature;
+            if (tag.feature == Feature::unknown && !featureOfType(tag.text))
+                warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
+            break;
+        case Tag::Kind::height:
+            // Slicers print float noise (0.199999); a micrometre is finer than any of them means.
+            next_.height = static_cast<float>(std::max(std::round(tag.height * 1000), 1.0) / 1000);
+            break;
+        case Tag::Kind::layer_change:
+            markLayer(tag);
+            break;
+        case Tag::Kind::object_start:
+            startObject(tag.text, line);
+            break;
+        case Tag::Kind::object_stop:
+            stopObject();
+            break;
+        case Tag::Kind::color_change:
+            if (const auto color = parseColor(tag.text))
+                toolpath_.color_changes.push_back(
+                    {.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
+                     .tool = tag.tool < 0 ? next_.tool : static_cast<std::uint8_t>(tag.tool),
+                     .color = *color});
+            break;
+    }
+}
+
+void BeadRecorder::changeFilament(std::uint32_t line) {
+    const auto& changes = toolpath_.color_changes;
+    const bool named = !changes.empty() && changes.back().first_bead == toolpath_.beads.size();
+    if (!named && !toolpath_.empty())
+        warnings_.add("M600 changes the filament, and the file doesn't say to which colour; the colour before is kept",
+                      line);
+}
+
+void BeadRecorder::markLayer(const Tag& mark) {
+    if (!layer_marks_) {
+        // The file has marks, so what was counted by z until now came before the first layer.
+        layer_marks_ = true;
+        for (Run& run : toolpath_.runs) run.layer = 0;
+        next_.layer = 0;
+    }
+    // One layer, announced once for each process that prints in it.
+    if (!(mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ)) ++next_.layer;
+    mark_z_ = mark.z;
+    if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
+}
+
+void BeadRecorder::startObject(std::string_view name, std::uint32_t line) {
+    constexpr std::size_t kMaxObjects = std::numeric_limits<std::uint16_t>::max();
+    const auto [entry, added] = object_index_.try_emplace(std::string(name), std::uint16_t{0});
+    if (added) {
+        if (toolpath_.objects.size() > kMaxObjects) {
+            object_index_.erase(entry);
+            warnings_.add("more than 65535 objects; the rest is unlabelled", line);
+            return stopObject();
+        }
+        entry->second = static_cast<std::uint16_t>(toolpath_.objects.size());
+        toolpath_.objects.emplace_back(name);
+    }
+    next_.object = entry->second;
+}
+
+void BeadRecorder::renameObject(std::string_view name, std::uint32_t line) {
+    if (next_.object == 0 || object_index_.contains(std::string(name))) return startObject(name, line);
+    object_index_.erase(toolpath_.objects[next_.object]);
+    object_index_.emplace(name, next_.object);
+    toolpath_.objects[next_.object] = name;
+}
+
+void BeadRecorder::countLayer(const Point& from, const Point& to, bool sloped) {
+    const double z = std::max(from.z, to.z);
+    if (next_.layer == 0) {
+        next_.layer = 1;
+        first_z_ = layer_z_ = z;
+        return;
+    }
+    const bool rises = sloped ? z > layer_z_ + 0.999 * nominal_height_ : z > layer_z_ + kSameZ;
+    const bool starts_over = z < layer_z_ - kSameZ && z < first_z_ + kSameZ;
+    if (!rises && !starts_over) return;
+    ++next_.layer;
+    layer_z_ = z;
+}
+
+void BeadRecorder::add(const Point& from, const Point& to, const std::optional<Arc>& arc, double length, double volume,
+                       std::uint32_t line) {
+    const bool sloped = std::abs(to.z - from.z) > kSameZ;
+    if (!layer_marks_) countLayer(from, to, sloped);
+    // Where the height is yet to be found, a run is of one level, for the level decides.
+    const double run_z = sloped ? std::numeric_limits<double>::quiet_NaN() : to.z;
+    const bool same_level =
+        !run_z_.empty() && (next_.height > 0 || (sloped ? std::isnan(run_z_.back()) : run_z_.back() == run_z));
+    if (toolpath_.runs.empty() || !same_level || !(toolpath_.runs.back() == next_)) {
+        toolpath_.runs.push_back(next_);
+        run_z_.push_back(run_z);
+    }
+    Bead bead{.x0 = from.x, .y0 = from.y, .z0 = from.z, .x1 = to.x, .y1 = to.y, .z1 = to.z};
+    bead.width = static_cast<float>(volume / length);
+    bead.run = static_cast<std::uint32_t>(toolpath_.runs.size() - 1);
+    if (arc) {
+        // Room at once: growing would hold them twice, and pages that are never touched cost nothing.
+        if (toolpath_.arcs.empty()) toolpath_.arcs.reserve(toolpath_.beads.capacity() / 2);
+        bead.arc = static_cast<std::int32_t>(toolpath_.arcs.size());
+        toolpath_.arcs.push_back(*arc);
+        toolpath_.arcs.back().line = line;
+    } else {
+        bead.arc = -static_cast<std::int32_t>(std::min<std::uint32_t>(line, std::numeric_limits<std::int32_t>::max()));
+    }
+    toolpath_.beads.push_back(bead);
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,62 @@
+// Turns extruding moves and slicer tags into beads, runs, arcs, layers and objects. Knows no commands.
+#pragma once
+
+#include "gcode/slicer/slicer_tags.h"
+#include "gcode/toolpath/frame.h"
+#include "gcode/toolpath/toolpath.h"
+#include "gcode/toolpath/warning_log.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// Grows a Toolpath. Layers are counted by the slicer's marks; until the first mark comes, and in files without any,
+/// by the z at which material is laid: a new layer begins where z rises above the current layer's, or falls back to
+/// the first layer's (the next of several objects printed one after another). Travel never counts.
+class BeadRecorder {
+public:
+    /// `nominal_height` (mm) tells a spiral's layers apart.
+    BeadRecorder(double nominal_height, std::size_t expected_beads, WarningLog& warnings);
+
+    void tag(const Tag& tag, std::uint32_t line);
+    void setTool(std::uint8_t tool) { next_.tool = tool; }
+    void setSpeed(double speed) { next_.speed = static_cast<float>(speed); }
+    void startObject(std::string_view name, std::uint32_t line);
+    void stopObject() { next_.object = 0; }
+    /// Gives the object in force another name, unless one of that name exists: then that one is in force.
+    void renameObject(std::string_view name, std::uint32_t line);
+    /// M600: the filament is changed by hand. Remarks where no tag has named the new colour.
+    void changeFilament(std::uint32_t line);
+    /// mm, as tagged; 0 if it is yet to be found.
+    double height() const { return static_cast<double>(next_.height); }
+
+    /// Adds a bead of `volume` mm^3 whose path is `length` mm long (> 0).
+    void add(const Point& from, const Point& to, const std::optional<Arc>& arc, double length, double volume,
+             std::uint32_t line);
+
+    /// The toolpath so far, widths still areas and heights where tagged: input to resolveSections().
+    Toolpath& toolpath() { return toolpath_; }
+    /// By run: the z of its level beads, or NaN if they are sloped.
+    const std::vector<double>& runZ() const { return run_z_; }
+
+private:
+    void markLayer(const Tag& tag);
+    void countLayer(const Point& from, const Point& to, bool sloped);
+
+    Toolpath toolpath_;
+    std::vector<double> run_z_;
+    Run next_;
+    double nominal_height_;
+    bool layer_marks_ = false;
+    std::optional<double> mark_z_;  // of the layer mark in force, if it said so
+    double first_z_ = 0;
+    double layer_z_ = 0;
+    std::unordered_map<std::string, std::uint16_t> object_index_;
+    WarningLog& warnings_;
+};
+
+}  // namespace stratum::gcode

@@ -1,0 +1,380 @@
+#include "gcode/machine/machine.h"
+
+#include "base/error.h"
+#include "gcode/slicer/slicer_tags.h"
+#include "gcode/text/known_commands.h"
+#include "gcode/text/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
+
+Firmware chooseFirmware(const Settings& settings, const ReadOptions& options) {
+    if (options.firmware != Firmware::automatic) return options.firmware;
+    return settings.firmware != Firmware::automatic ? settings.firmware : Firmware::marlin;
+}
+
+bool hasAxis(const Command& command) { return command.has('X') || command.has('Y') || command.has('Z'); }
+
+std::string_view trim(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// G54..G59 and G59.1..G59.3 as Frame counts them.
+std::size_t workspaceOf(const Command& command) {
+    return static_cast<std::size_t>(command.code - 53 + (command.code == 59 ? std::clamp(command.subcode, 0, 3) : 0));
+}
+
+}  // namespace
+
+std::string_view firmwareName(Firmware firmware) {
+    switch (firmware) {
+        case Firmware::marlin:
+            return "marlin";
+        case Firmware::klipper:
+            return "klipper";
+        case Firmware::reprap:
+            return "reprap";
+        case Firmware::automatic:
+            break;
+    }
+    return "automatic";
+}
+
+Machine::Machine(const Settings& settings, const ReadOptions& options, std::string_view name, BeadRecorder& recorder,
+                 WarningLog& warnings)
+    : settings_(settings),
+      name_(name),
+      recorder_(recorder),
+      warnings_(warnings),
+      firmware_(chooseFirmware(settings, options)),
+      filament_override_(options.filament_diameters),
+      volumetric_reason_(settings.volumetric_reason),
+      nominal_height_(options.layer_height.value_or(settings.layer_height.value_or(0))),
+      // RepRapFirmware starts in G54, Marlin in the machine's own coordinates.
+      frame_(firmware_ == Firmware::reprap ? 1 : 0),
+      volumetric_(settings.volumetric_e.value_or(false)) {
+    flow_.fill(1);
+    if (options.extruder_mode != ExtruderMode::automatic) {
+        e_absolute_ = options.extruder_mode == ExtruderMode::absolute;
+        e_mode_known_ = true;
+    }
+    Toolpath& toolpath = recorder_.toolpath();
+    toolpath.tool_colors = settings.tool_colors;
+    toolpath.cut_short = settings.cut_short;
+    toolpath.firmware_reason = options.firmware != Firmware::automatic    ? "as asked for"
+                               : settings.firmware != Firmware::automatic ? settings.firmware_reason
+                                                                          : "the file doesn't say otherwise";
+    if (!settings.tool_offsets.empty()) useTool(0);
+}
+
+void Machine::refuse(std::string_view what) const { throw InputError(fmt::format("{}:{}: {}", name_, line_, what)); }
+
+void Machine::run(const Line& line) {
+    line_ = line.number;
+    // The comment first: Slic3r names a move's feature behind it.
+    if (!line.comment.empty()) {
+        const Tag tag = parseTag(line.comment);
+        if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
+        if (tag.kind != Tag::Kind::none) recorder_.tag(tag, line_);
+    }
+    std::optional<std::size_t> workspace;
+    for (std::size_t i = 0; i < line.count; ++i) {
+        const Command& command = line.commands[i];
+        const bool moves = command.kind == Command::Kind::words || command.letter == 'G';
+        if (line.unreadable && moves) warn("characters that are no G-code words; they are ignored");
+        // G53 before another command holds for that command only.
+        if (command.letter == 'G' && command.code == 53 && i + 1 < line.count) workspace = frame_.workspace();
+        execute(command);
+    }
+    if (workspace) frame_.select(*workspace);
+    if (line.deleted) warn("a line that begins with '/' (block delete) is left out");
+    if (line.unreadable && line.count == 0) warn("characters that are no G-code words; they are ignored");
+}
+
+void Machine::execute(const Command& command) {
+    switch (command.kind) {
+        case Command::Kind::words:
+            if (hasAxis(command) || command.has('E') || drivingLetter(command) != 0) move(command, motion_);
+            return;
+        case Command::Kind::foreign:
+            return remarkForeign(command);
+        case Command::Kind::extended:
+            return executeMacro(command);
+        case Command::Kind::numbered:
+            break;
+    }
+    ++counts_.commands;
+    if (moves_ != nullptr) moves_->command(command, unit_, line_);
+    if (command.letter == 'G') return executeG(command);
+    if (command.letter == 'M') return executeM(command);
+    selectTool(command);
+}
+
+void Machine::executeG(const Command& command) {
+    switch (command.code) {
+        case 0:
+        case 1:
+        case 2:
+        case 3:
+        case 5:
+            motion_ = command.code;
+            return move(command, motion_);
+        case 10:
+            return setOffsets(command);
+        case 17:
+            plane_ = {0, 1};
+            return;
+        case 18:
+            plane_ = {2, 0};
+            return;
+        case 19:
+            plane_ = {1, 2};
+            return;
+        case 20:
+            unit_ = 25.4;
+            return;
+        case 21:
+            unit_ = 1;
+            return;
+        case 28:
+            return home(command);
+        case 53:
+        case 54:
+        case 55:
+        case 56:
+        case 57:
+        case 58:
+        case 59:
+            return frame_.select(workspaceOf(command));
+        case 60:
+            return storePlace(command);
+        case 61:
+            return returnToPlace(command);
+        case 90:
+        case 91:
+            return setAbsolute(command);
+        case 92:
+            return setPosition(command);
+        default:
+            if (!isHarmless('G', command.code)) warn(fmt::format("unknown command G{}, ignored", command.code));
+    }
+}
+
+void Machine::executeM(const Command& command) {
+    switch (command.code) {
+        case 82:
+        case 83:
+            e_absolute_ = command.code == 82;
+            m83_ = !e_absolute_;
+            e_mode_known_ = true;
+            return;
+        case 101:
+        case 102:
+        case 103:
+            motor_on_ = command.code == 101;
+            return;
+        case 200:
+            return setVolumetric(command);
+        case 206:
+            return setHomeOffset(command);
+        case 220:
+            return setSpeedFactor(command);
+        case 221:
+            return setFlow(command);
+        case 486:
+            return labelObject(command);
+        case 600:
+            return recorder_.changeFilament(line_);
+        default:
+            if (!isHarmless('M', command.code)) warn(fmt::format("unknown command M{}, ignored", command.code));
+    }
+}
+
+void Machine::selectTool(const Command& command) {
+    // Numbers from 255 up are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
+    if (command.code < 0 || command.code >= 255) return;
+    constexpr int kToolChange = 2;  // the slot that RepRapFirmware fills itself
+    if (firmware_ == Firmware::reprap) stored_.insert_or_assign(kToolChange, Stored{frame_.position(), e_});
+    useTool(static_cast<std::size_t>(command.code));
+}
+
+void Machine::useTool(std::size_t tool) {
+    if (moves_ != nullptr) moves_->changeTool(tool_, tool);
+    tool_ = tool;
+    recorder_.setTool(static_cast<std::uint8_t>(tool));
+    // PrusaSlicer and its kin subtract a nozzle's offset themselves; offsets that the firmware knows (M218, G10 P) are
+    // its business: the program's numbers are where material goes.
+    const auto& offsets = settings_.tool_offsets;
+    if (!offsets.empty()) frame_.setToolOffset(tool < offsets.size() ? offsets[tool] : Point{});
+}
+
+double Machine::placeOf(const Command& command, char letter) const {
+    // As in Marlin, an axis without a number is set to 0.
+    const double value = command.hasValue(letter) ? command.value(letter) * unit_ : 0;
+    if (!(std::abs(value) <= kMaxCoordinate))
+        refuse(fmt::format("{}{} is no place on a printer (limit {} mm); is the file damaged?", letter,
+                           command.value(letter), kMaxCoordinate));
+    return value;
+}
+
+void Machine::setOffsets(const Command& command) {
+    // Without L a retraction, or with P a tool's offsets and temperatures: never a bead.
+    if (!command.hasValue('L')) return;
+    const double kind = command.value('L');
+    if (kind != 2 && kind != 20) return;
+    const double number = command.hasValue('P') ? command.value('P') : 0;
+    if (!(number >= 0 && number < static_cast<double>(Frame::kWorkspaces))) return warn("G10 of no known workspace");
+    const std::size_t workspace = number < 1 ? frame_.workspace() : static_cast<std::size_t>(number);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!command.hasValue(kAxes[axis])) continue;
+        const double value = placeOf(command, kAxes[axis]);
+        kind == 2 ? frame_.setOrigin(workspace, axis, value) : frame_.setPlace(workspace, axis, value);
+    }
+}
+
+void Machine::home(const Command& command) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!hasAxis(command) || command.has(kAxes[axis])) frame_.home(axis);
+}
+
+void Machine::setPosition(const Command& command) {
+    if (command.subcode == 1) return frame_.dropNames();
+    if (command.subcode == 2) return frame_.suspendNames();
+    if (command.subcode == 3) return frame_.resumeNames();
+    if (command.subcode != 0) return;
+    const char letter = drivingLetter(command);
+    const bool extruder = command.has('E') || letter != 0;
+    const bool bare = !hasAxis(command) && !extruder;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (bare || (command.has(kAxes[axis]) && !command.isExpression(kAxes[axis])))
+            frame_.rename(axis, placeOf(command, kAxes[axis]));
+    if ((!bare && !extruder) || (letter != 0 && command.isExpression(letter))) return;
+    const double value = letter != 0 && command.hasValue(letter) ? command.value(letter) * eUnit() : 0;
+    if (!std::isfinite(value)) refuse("the E of this G92 is no number; is the file damaged?");
+    e_ = value;
+}
+
+void Machine::setAbsolute(const Command& command) {
+    const bool absolute = command.code == 90;
+    if (command.subcode != 0) {  // of arcs' centres only: LinuxCNC's G90.1 and G91.1
+        if (command.subcode == 1 && absolute) warn("G90.1 is nothing that printers know; I and J count from the start");
+        return;
+    }
+    absolute_ = absolute;
+    if (firmware_ != Firmware::marlin) return;
+    // Marlin 2 lets G90 undo M83, Marlin 1 did not; slicers that set relative E count on the latter and send G90 after.
+    if (absolute && settings_.relative_e.value_or(false)) return;
+    if (absolute && m83_ && settings_.extrusion.relative_after_g90) {
+        e_absolute_ = false;
+        return warn(
+            "by Marlin's rules G90 makes E absolute again after M83, but E keeps falling back as only increments "
+            "do; it stays relative (M82 in the file if not)");
+    }
+    e_absolute_ = absolute;
+    e_follows_axes_ = true;
+}
+
+void Machine::remarkForeign(const Command& command) {
+    // FlashPrint states the print's box as Q603; O, S, D and H are a CNC program's number, spindle and tool.
+    const std::string_view name = command.name;
+    if (name == "Q603" || name.empty() || std::string_view("OSDHosdh").find(name.front()) != std::string_view::npos)
+        return;
+    warn(fmt::format("unknown command {}, ignored", name.substr(0, 60)));
+}
+
+void Machine::setHomeOffset(const Command& command) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (command.hasValue(kAxes[axis])) frame_.setShift(axis, placeOf(command, kAxes[axis]));
+}
+
+void Machine::setVolumetric(const Command& command) {
+    if (command.hasValue('S') && !command.has('D')) volumetric_ = command.value('S') > 0;  // Marlin 2's switch
+    if (!command.hasValue('D')) {
+        if (volumetric_) volumetric_reason_ = fmt::format("M200 in line {}", line_);
+        return;
+    }
+    const double diameter = command.value('D') * unit_;
+    if (!(diameter >= 0 && diameter <= kMaxFilament))
+        refuse(fmt::format("M200 D{} is no filament diameter in mm", command.value('D')));
+    volumetric_ = diameter > 0;
+    if (!volumetric_) return;
+    m200_diameter_ = diameter;
+    volumetric_reason_ = fmt::format("M200 in line {}", line_);
+}
+
+void Machine::setSpeedFactor(const Command& command) {
+    if (command.has('B')) speed_backup_ = speed_factor_;
+    if (command.has('R')) speed_factor_ = speed_backup_;
+    if (command.hasValue('S')) {
+        const double percent = command.value('S');
+        if (!(percent > 0 && percent <= kMaxFactor)) return warn("M220 with a speed that no printer has; ignored");
+        speed_factor_ = percent / 100;
+    }
+    recorder_.setSpeed(feed_ * speed_factor_);
+}
+
+void Machine::setFlow(const Command& command) {
+    if (!command.hasValue('S')) return;
+    const double percent = command.value('S');
+    if (!(percent >= 0 && percent <= kMaxFactor)) refuse(fmt::format("M221 S{} is no flow in per cent", percent));
+    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100);  // one factor, whatever the tool
+    std::size_t tool = tool_;
+    for (const char letter : {'T', 'D'})  // Marlin, RepRapFirmware
+        if (command.hasValue(letter) && command.value(letter) >= 0 && command.value(letter) < 255)
+            tool = static_cast<std::size_t>(command.value(letter));
+    flow_[tool] = percent / 100;
+}
+
+void Machine::labelObject(const Command& command) {
+    if (objects_by_comment_) return;
+    // "S3", "Acube one", "S3 A\"cube one\"": the name is the rest of the line, and its letters are no words.
+    std::string_view text = trim(command.text);
+    const auto at = text.find_first_of("Aa");
+    const bool named = at != std::string_view::npos && (at == 0 || text.substr(0, at).find_first_of("PUCT") > at);
+    if (command.hasValue('S') && !(named && at == 0)) {
+        const double number = command.value('S');
+        if (number < 0 || number > 65535) return recorder_.stopObject();
+        recorder_.startObject(fmt::format("object {}", static_cast<int>(number)), line_);
+    }
+    if (!named) return;
+    text = trim(text.substr(at + 1));
+    if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+    if (!text.empty()) recorder_.renameObject(text, line_);
+}
+
+bool Machine::filamentKnown() const {
+    return volumetric_ || !filament_override_.empty() || m200_diameter_ || !settings_.filament_diameters.empty();
+}
+
+std::string Machine::extrusionRule() const {
+    if (settings_.extrusion.drive == ExtrusionScan::Drive::switched) return "nothing: M101 and M103 switch the motor";
+    if (volumetric_) return fmt::format("mm^3 ({})", volumetric_reason_);
+    return fmt::format("mm of filament of {:g} mm ({})", filamentDiameter(0),
+                       !filament_override_.empty()             ? "as asked for"
+                       : !settings_.filament_diameters.empty() ? "the file's settings"
+                       : m200_diameter_                        ? "an earlier M200"
+                                                               : "assumed; the file doesn't say");
+}
+
+double Machine::filamentDiameter(std::size_t tool) const {
+    const auto& list = filament_override_.empty() ? settings_.filament_diameters : filament_override_;
+    if (!list.empty()) return list[std::min(tool, list.size() - 1)];
+    return m200_diameter_.value_or(1.75);
+}
+
+double Machine::filamentArea() const {
+    const double diameter = filamentDiameter(tool_);
+    return std::numbers::pi / 4 * diameter * diameter;
+}
+
+}  // namespace stratum::gcode

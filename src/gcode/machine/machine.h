@@ -1,0 +1,180 @@
+// The machine simulator: commands -> positions, extrusion, beads.
+//
+// Lengths are mm, E is mm of filament or mm^3, feed rates mm/s. Where nothing has been said the machine stands at 0.
+// Its methods live in machine.cpp (what commands set), machine_motion.cpp (moves and what they deposit) and
+// machine_macro.cpp (Klipper's named commands).
+// Sources: marlinfw.org/docs/gcode (G0-G5, G10, G17-G20, G28, G53-G61, G90, G92, M82, M200, M206, M218, M220, M221,
+// M486); docs.duet3d.com (G1 R, G10, G53, G60, G92, M221, M486) and klipper3d.org/G-Codes.html (G90/G91 leave E alone
+// there).
+#pragma once
+
+#include "gcode/machine/bead_recorder.h"
+#include "gcode/machine/motion_recorder.h"
+#include "gcode/machine/read_options.h"
+#include "gcode/slicer/settings.h"
+#include "gcode/text/lexer.h"
+#include "gcode/toolpath/arc.h"
+#include "gcode/toolpath/curve.h"
+#include "gcode/toolpath/frame.h"
+#include "gcode/toolpath/warning_log.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// What the machine did, for messages.
+struct MoveCounts {
+    std::uint64_t commands = 0;    ///< G, M and T commands
+    std::uint64_t travels = 0;     ///< moves without extrusion
+    std::uint64_t stationary = 0;  ///< extrusion without plan motion: primes and un-retractions
+    std::uint64_t beads = 0;
+};
+
+/// Executes lines one after another and hands extruding moves to a BeadRecorder. Print space is Frame's.
+class Machine {
+public:
+    /// `name` stands in messages. `settings` and `recorder` must outlive the machine.
+    Machine(const Settings& settings, const ReadOptions& options, std::string_view name, BeadRecorder& recorder,
+            WarningLog& warnings);
+
+    /// From now on the recorder, which must outlive the machine, is told everything that moves.
+    void recordMotion(MotionRecorder* moves) { moves_ = moves; }
+
+    /// Throws InputError "name:line: ..." for numbers that can't be meant.
+    void run(const Line& line);
+
+    const MoveCounts& counts() const { return counts_; }
+    Firmware firmware() const { return firmware_; }
+    double filamentDiameter(std::size_t tool) const;
+    /// False where neither an option, nor the settings, nor M200 told the diameter, and E's volume depends on it.
+    bool filamentKnown() const;
+    /// In words: what E counted at the end, and who said so.
+    std::string extrusionRule() const;
+    double filamentMm() const { return filament_mm_; }
+    double extrudedMm3() const { return extruded_mm3_; }
+
+private:
+    // What SAVE_GCODE_STATE keeps.
+    struct Saved {
+        Frame frame;
+        double e = 0;
+        double feed = 0;
+        double speed_factor = 1;
+        std::array<double, 256> flow{};
+        bool absolute = true;
+        bool e_absolute = true;
+    };
+
+    // What G60 keeps.
+    struct Stored {
+        Point place;
+        double e = 0;
+    };
+
+    void execute(const Command& command);
+    void executeG(const Command& command);
+    void executeM(const Command& command);
+    void executeMacro(const Command& command);
+    void selectTool(const Command& command);
+    void useTool(std::size_t tool);
+    void setOffsets(const Command& command);
+    void storePlace(const Command& command);
+    void returnToPlace(const Command& command);
+    void setPosition(const Command& command);
+    void setAbsolute(const Command& command);
+    void remarkForeign(const Command& command);
+    void setHomeOffset(const Command& command);
+    void setVolumetric(const Command& command);
+    void setSpeedFactor(const Command& command);
+    void setFlow(const Command& command);
+    void labelObject(const Command& command);
+    void home(const Command& command);
+    double placeOf(const Command& command, char letter) const;
+
+    void setMacroOffset(std::string_view text);
+    void saveState(std::string_view text);
+    void restoreState(std::string_view text);
+
+    void move(const Command& command, int motion);
+    /// Whether the firmware refuses a move with letters that have no number; remarks them in any case.
+    bool refusesLetters(const Command& command);
+    /// The straight or, in the bed plane, circular path to the target.
+    void runPath(const Point& target, const std::optional<Arc>& arc, double extrusion);
+    void runPieces(const std::vector<Point>& pieces, double extrusion);
+    void runTurns(const Point& target, const Arc& arc, int turns, double extrusion);
+    void runArc(const Command& command, const Point& target, bool clockwise, double extrusion);
+    void runBezier(const Command& command, const Point& target, double extrusion);
+    std::optional<Arc> arcOf(const Command& command, const Point& target, bool clockwise);
+    void deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion);
+    double switchedExtrusion(double length);
+    void recordTravel(const Command& command, const Point& target, int motion, double drive);
+    void recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before);
+
+    void setVelocityLimit(std::string_view text);
+
+    double takeAxis(const Command& command, char letter, std::size_t axis) const;
+    /// The stored place that RepRapFirmware's R word names, or nullptr.
+    const Point* restorePoint(const Command& command, int motion);
+    /// A stored place on the axes that are named, each moved by its number.
+    Point placeFrom(const Point& stored, const Command& command) const;
+    double takeExtrusion(const Command& command);
+    char drivingLetter(const Command& command);
+    void assumeExtruderMode();
+    /// The part of a push or pull of E that isn't spent on fetching unloaded filament back to the nozzle.
+    double leavesNozzle(double drive, bool in_place);
+    double eUnit() const { return volumetric_ ? unit_ * unit_ * unit_ : unit_; }
+    double filamentArea() const;
+    [[noreturn]] void refuse(std::string_view what) const;
+    void warn(std::string_view text) { warnings_.add(text, line_); }
+
+    const Settings& settings_;
+    std::string_view name_;
+    BeadRecorder& recorder_;
+    WarningLog& warnings_;
+    Firmware firmware_ = Firmware::marlin;
+    std::vector<double> filament_override_;
+    std::optional<double> m200_diameter_;
+    std::string volumetric_reason_;
+    double nominal_height_;
+
+    std::uint32_t line_ = 0;
+    Frame frame_;
+    Plane plane_;
+    double e_ = 0;
+    double unit_ = 1;  // mm in one unit of the program
+    int motion_ = 0;   // the G0..G3 or G5 in force, for lines without a command
+    bool absolute_ = true;
+    bool e_absolute_ = true;
+    bool e_mode_known_ = false;    // by M82, M83, an option, or assumed
+    bool e_follows_axes_ = false;  // G90 or G91 has set it by Marlin's rule
+    bool m83_ = false;             // of M82 and M83 the latter came last
+    bool volumetric_ = false;
+    bool motor_on_ = false;  // between M101 and M103, where those are all there is
+    std::size_t tool_ = 0;
+    double feed_ = 0;
+    double speed_factor_ = 1;
+    double speed_backup_ = 1;
+    std::array<double, 256> flow_;
+    std::array<double, 256> drawn_back_{};  // mm of filament, by tool
+    std::array<bool, 256> unloaded_{};
+    std::map<std::string, Saved, std::less<>> saved_;
+    std::map<int, Stored> stored_;  // by slot
+    bool objects_by_comment_ = false;
+    MotionRecorder* moves_ = nullptr;  // nullptr: nobody asks how it moves
+    double drive_per_extrusion_ = 0;   // what E moves by what leaves the nozzle, of the move that is run
+
+    MoveCounts counts_;
+    double filament_mm_ = 0;
+    double extruded_mm3_ = 0;
+};
+
+/// "marlin", "klipper" or "reprap"; "automatic" is none of them.
+std::string_view firmwareName(Firmware firmware);
+
+}  // namespace stratum::gcode

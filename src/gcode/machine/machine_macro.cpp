@@ -1,0 +1,149 @@
+// Klipper's named commands: those that move the frame or change state, those that label objects, and the rest.
+#include "gcode/machine/machine.h"
+#include "gcode/text/known_commands.h"
+#include "gcode/text/limits.h"
+#include "gcode/text/number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::gcode {
+namespace {
+
+char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; }
+
+bool same(std::string_view text, std::string_view upper_case) {
+    return std::equal(text.begin(), text.end(), upper_case.begin(), upper_case.end(),
+                      [](char a, char b) { return upper(a) == b; });
+}
+
+// The value behind "KEY=" in the arguments, without quotes; nullopt if there is none. `key` is upper case.
+std::optional<std::string_view> argument(std::string_view text, std::string_view key) {
+    while (!text.empty()) {
+        const auto start = std::min(text.find_first_not_of(" \t"), text.size());
+        text.remove_prefix(start);
+        const auto equals = text.find('=');
+        if (equals == std::string_view::npos) return std::nullopt;
+        const std::string_view name = text.substr(0, equals);
+        text.remove_prefix(equals + 1);
+        const char quote = text.empty() ? '\0' : text.front();
+        std::size_t end = 0;
+        if (quote == '"' || quote == '\'') {
+            text.remove_prefix(1);
+            end = std::min(text.find(quote), text.size());
+        } else {
+            end = std::min(text.find_first_of(" \t"), text.size());
+        }
+        if (same(name, key)) return text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return std::nullopt;
+}
+
+std::optional<double> numberArgument(std::string_view text, std::string_view key) {
+    const auto value = argument(text, key);
+    if (!value) return std::nullopt;
+    const char* p = value->data();
+    double number = 0;
+    if (!parseNumber(p, p + value->size(), number) || !(std::abs(number) <= kMaxCoordinate)) return std::nullopt;
+    return number;
+}
+
+// 12 of "extruder12", 0 of "extruder"; no more than a tool can be.
+std::size_t trailingNumber(std::string_view text) {
+    std::size_t number = 0;
+    for (const char c : text.substr(text.find_last_not_of("0123456789") + 1))
+        number = std::min<std::size_t>(number * 10 + static_cast<std::size_t>(c - '0'), 254);
+    return number;
+}
+
+}  // namespace
+
+void Machine::executeMacro(const Command& command) {
+    const std::string_view name = command.name;
+    if (same(name, "EXCLUDE_OBJECT_START")) {
+        const auto object = argument(command.text, "NAME");
+        if (object && !objects_by_comment_) recorder_.startObject(*object, line_);
+    } else if (same(name, "EXCLUDE_OBJECT_END")) {
+        if (!objects_by_comment_) recorder_.stopObject();
+    } else if (same(name, "SET_GCODE_OFFSET")) {
+        setMacroOffset(command.text);
+    } else if (same(name, "SAVE_GCODE_STATE")) {
+        saveState(command.text);
+    } else if (same(name, "RESTORE_GCODE_STATE")) {
+        restoreState(command.text);
+    } else if (same(name, "ACTIVATE_EXTRUDER")) {
+        // "extruder" is the first, "extruder1" the second.
+        useTool(trailingNumber(argument(command.text, "EXTRUDER").value_or("")));
+    } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
+        setVelocityLimit(command.text);
+    } else if (!isHarmlessMacro(name)) {
+        warn(fmt::format("macro {} is not in the file; what it prints or moves is not in the toolpath",
+                         name.substr(0, 60)));
+    }
+}
+
+void Machine::setVelocityLimit(std::string_view text) {
+    moves_->velocityLimit({.velocity = numberArgument(text, "VELOCITY"),
+                           .acceleration = numberArgument(text, "ACCEL"),
+                           .to_deceleration = numberArgument(text, "ACCEL_TO_DECEL"),
+                           .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
+                           .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
+                          line_);
+}
+
+void Machine::setMacroOffset(std::string_view text) {
+    constexpr std::array<std::string_view, 3> kAbsolute{"X", "Y", "Z"};
+    constexpr std::array<std::string_view, 3> kRelative{"X_ADJUST", "Y_ADJUST", "Z_ADJUST"};
+    const bool moves = numberArgument(text, "MOVE").value_or(0) != 0;
+    Point target = frame_.position();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double shift = frame_.shift(axis);
+        if (const auto value = numberArgument(text, kAbsolute[axis]))
+            shift = -*value;
+        else if (const auto change = numberArgument(text, kRelative[axis]))
+            shift -= *change;
+        const double program = frame_.program(axis);
+        frame_.setShift(axis, shift);
+        // The nozzle follows at once, so that the program's coordinate stays what it was.
+        target[axis] = moves ? program + frame_.offset()[axis] : frame_.position()[axis];
+    }
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.moveTo(target);
+}
+
+void Machine::saveState(std::string_view text) {
+    constexpr std::size_t kMostStates = 100;
+    const std::string name(argument(text, "NAME").value_or("default"));
+    if (saved_.size() >= kMostStates && !saved_.contains(name)) return warn("more saved states than are kept");
+    saved_.insert_or_assign(name, Saved{.frame = frame_,
+                                        .e = e_,
+                                        .feed = feed_,
+                                        .speed_factor = speed_factor_,
+                                        .flow = flow_,
+                                        .absolute = absolute_,
+                                        .e_absolute = e_absolute_});
+}
+
+void Machine::restoreState(std::string_view text) {
+    const auto found = saved_.find(argument(text, "NAME").value_or("default"));
+    if (found == saved_.end()) return warn("RESTORE_GCODE_STATE of a state that was never saved; ignored");
+    const Saved& saved = found->second;
+    absolute_ = saved.absolute;
+    e_absolute_ = saved.e_absolute;
+    e_ = saved.e;
+    flow_ = saved.flow;
+    feed_ = saved.feed;
+    speed_factor_ = saved.speed_factor;
+    recorder_.setSpeed(feed_ * speed_factor_);
+    frame_.takeNames(saved.frame);
+    if (numberArgument(text, "MOVE").value_or(0) == 0) return;
+    Point target;
+    for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = saved.frame.program(axis) + frame_.offset()[axis];
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.moveTo(target);
+}
+
+}  // namespace stratum::gcode

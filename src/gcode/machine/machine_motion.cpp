@@ -1,0 +1,345 @@
+// Moves: where they go, and what they leave behind.
+#include "gcode/machine/machine.h"
+#include "gcode/text/limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr double kNoMotion = 1e-9;  // mm
+constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr int kMostTurns = 100;  // Marlin's bound on P
+// Filament drawn back further than this, in mm, has left the nozzle: the longest retractions of Bowden printers are
+// 16 mm, unloading takes 50 and more.
+constexpr double kUnloaded = 25;
+constexpr double kSwitchedHeight = 0.25;  // mm, of the printers that switched their extruders on and off
+constexpr double kSwitchedAspect = 1.6;   // their usual width over height (Skeinforge's default)
+
+// Not std::hypot, which guards against overflow that kMaxCoordinate excludes, and costs a quarter of the reading time.
+double norm(double a, double b) { return std::sqrt(a * a + b * b); }
+
+// The number of a stored place; 0 where none is given, 255 for what is none.
+int slotOf(const Command& command, char letter) {
+    return command.hasValue(letter) ? static_cast<int>(std::clamp(command.value(letter), 0.0, 255.0)) : 0;
+}
+
+double distance(const Point& a, const Point& b) { return norm(norm(b.x - a.x, b.y - a.y), b.z - a.z); }
+
+}  // namespace
+
+double Machine::takeAxis(const Command& command, char letter, std::size_t axis) const {
+    const double current = frame_.position()[axis];
+    if (!command.hasValue(letter)) return current;
+    const double value = command.value(letter) * unit_;
+    const double target = absolute_ ? value + frame_.offset()[axis] : current + value;
+    if (!(std::abs(target) <= kMaxCoordinate))
+        refuse(fmt::format("{}{} is no place on a printer (limit {} mm); is the file damaged?", letter,
+                           command.value(letter), kMaxCoordinate));
+    return target;
+}
+
+char Machine::drivingLetter(const Command& command) {
+    if (command.has('E')) return 'E';
+    if (settings_.extrusion.drive != ExtrusionScan::Drive::axes_ab) return 0;
+    for (const char letter : {'A', 'B'}) {
+        if (!command.has(letter)) continue;
+        if (const std::size_t tool = letter == 'B' ? 1 : 0; tool != tool_) useTool(tool);
+        return letter;
+    }
+    return 0;
+}
+
+double Machine::takeExtrusion(const Command& command) {
+    const char letter = drivingLetter(command);
+    if (letter == 0 || !command.hasValue(letter)) return 0;
+    if (!e_mode_known_) assumeExtruderMode();
+    const double value = command.value(letter) * eUnit();
+    const double extrusion = e_absolute_ ? value - e_ : value;
+    if (!(std::abs(extrusion) <= kMaxExtrusion))
+        refuse(fmt::format("{}{} is no extrusion (limit {} in one move); is the file damaged?", letter,
+                           command.value(letter), kMaxExtrusion));
+    e_ = e_absolute_ ? value : e_ + value;
+    return extrusion;
+}
+
+void Machine::assumeExtruderMode() {
+    // No M82 or M83 before the first extrusion: a start macro of the printer may hold it. The slicer's settings know,
+    // or the numbers do. MakerBot's machines know absolute A and B only.
+    e_mode_known_ = true;
+    if (settings_.relative_e) {
+        e_absolute_ = !*settings_.relative_e;
+    } else if (settings_.extrusion.drive == ExtrusionScan::Drive::axes_ab) {
+        e_absolute_ = true;
+    } else if (settings_.extrusion.falls_back) {
+        e_absolute_ = false;
+        warn(
+            "neither M82 nor M83 before the first extrusion, and E keeps falling back as only increments do; E is "
+            "taken "
+            "as relative (--e-mode absolute if not)");
+    } else if (!e_follows_axes_) {
+        warn("neither M82 nor M83 before the first extrusion; E is taken as absolute (--e-mode relative if not)");
+    }
+}
+
+bool Machine::refusesLetters(const Command& command) {
+    bool missing = false;
+    for (const char letter : {'X', 'Y', 'Z', 'E', 'F', 'I', 'J', 'R'}) {
+        if (!command.has(letter) || command.hasValue(letter)) continue;
+        if (command.isExpression(letter)) {
+            warn(fmt::format("{}{{...}} is an expression, whose value isn't in the file; {}", letter,
+                             letter == 'F' ? "the speed is unknown from there on" : "it is left out"));
+        } else if (firmware_ == Firmware::marlin) {
+            warn(fmt::format("{} without a number in a move; it is left out, as Marlin does", letter));
+        } else {
+            missing = true;
+            warn(fmt::format("{} without a number: {} refuses such a move; it is left out", letter,
+                             firmwareName(firmware_)));
+        }
+    }
+    return missing;
+}
+
+void Machine::move(const Command& command, int motion) {
+    if (command.lacksNumbers() && refusesLetters(command)) return;
+    if (command.isExpression('F')) {
+        feed_ = 0;
+        recorder_.setSpeed(0);
+    }
+    if (command.hasValue('F') && command.value('F') > 0) {
+        feed_ = command.value('F') * unit_ / 60;
+        recorder_.setSpeed(feed_ * speed_factor_);
+    }
+    const Point& at = frame_.position();
+    Point target{takeAxis(command, 'X', 0), takeAxis(command, 'Y', 1), takeAxis(command, 'Z', 2)};
+    if (const Point* stored = restorePoint(command, motion)) target = placeFrom(*stored, command);
+    const double drive = takeExtrusion(command);
+    const bool in_place = target.x == at.x && target.y == at.y && motion < 2;
+    double extrusion = drive != 0 ? leavesNozzle(drive, in_place) : 0;
+    const bool switched = motor_on_ && motion > 0 && settings_.extrusion.drive == ExtrusionScan::Drive::switched;
+    if (extrusion > 0 || switched) {
+        drive_per_extrusion_ = extrusion > 0 ? drive / extrusion : 0;
+        if (motion < 2)
+            runPath(target, std::nullopt, extrusion);
+        else if (motion == 5)
+            runBezier(command, target, extrusion);
+        else
+            runArc(command, target, motion == 2, extrusion);
+    } else {
+        ++counts_.travels;
+        if (moves_ != nullptr) recordTravel(command, target, motion, drive);
+    }
+    frame_.moveTo(target);
+}
+
+Point Machine::placeFrom(const Point& stored, const Command& command) const {
+    constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
+    Point target = frame_.position();
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (command.has(kAxes[axis])) target[axis] = stored[axis] + placeOf(command, kAxes[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(std::abs(target[axis]) <= kMaxCoordinate))
+            refuse(fmt::format("{} = {} is no place on a printer (limit {} mm); is the file damaged?", kAxes[axis],
+                               target[axis], kMaxCoordinate));
+    return target;
+}
+
+const Point* Machine::restorePoint(const Command& command, int motion) {
+    if (firmware_ != Firmware::reprap || motion > 1 || !command.hasValue('R')) return nullptr;
+    const auto found = stored_.find(slotOf(command, 'R'));
+    if (found != stored_.end()) return &found->second.place;
+    warn("R names a place that was never stored; it is ignored");
+    return nullptr;
+}
+
+void Machine::storePlace(const Command& command) {
+    if (command.has('Q')) return returnToPlace(command);
+    if (!command.has('D')) {
+        stored_.insert_or_assign(slotOf(command, 'S'), Stored{frame_.position(), e_});
+    } else if (command.hasValue('D')) {
+        stored_.erase(slotOf(command, 'D'));
+    } else {
+        stored_.clear();
+    }
+}
+
+void Machine::returnToPlace(const Command& command) {
+    const auto found = stored_.find(slotOf(command, command.has('Q') ? 'Q' : 'S'));
+    if (found == stored_.end()) return warn("G61 to a place that was never stored; ignored");
+    const Stored& stored = found->second;
+    if (command.has('E')) e_ = stored.e;
+    ++counts_.travels;
+    const bool all = !command.has('X') && !command.has('Y') && !command.has('Z');
+    if (all && command.has('E')) return;
+    const Point target = all ? stored.place : placeFrom(stored.place, command);
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.moveTo(target);
+}
+
+void Machine::runPath(const Point& target, const std::optional<Arc>& arc, double extrusion) {
+    const Point& at = frame_.position();
+    const std::size_t beads_before = recorder_.toolpath().beads.size();
+    const double drive = extrusion * drive_per_extrusion_;
+    double plan = norm(target.x - at.x, target.y - at.y);
+    if (arc) {
+        const double radius = 0.5 * (norm(at.x - arc->center_x, at.y - arc->center_y) +
+                                     norm(target.x - arc->center_x, target.y - arc->center_y));
+        plan = radius * std::abs(arc->sweep);
+    }
+    if (plan > kNoMotion) {
+        const double length = target.z == at.z ? plan : norm(plan, target.z - at.z);
+        if (settings_.extrusion.drive == ExtrusionScan::Drive::switched) extrusion = switchedExtrusion(length);
+        deposit(target, arc, length, extrusion);
+    } else {
+        ++counts_.stationary;
+    }
+    if (moves_ != nullptr) recordPath(target, arc, drive, beads_before);
+    frame_.moveTo(target);
+}
+
+void Machine::runPieces(const std::vector<Point>& pieces, double extrusion) {
+    double total = 0;
+    const Point* from = &frame_.position();
+    for (const Point& to : pieces) {
+        total += distance(*from, to);
+        from = &to;
+    }
+    if (!(total > kNoMotion)) {
+        ++counts_.stationary;
+        if (moves_ != nullptr)
+            recordPath(frame_.position(), std::nullopt, extrusion * drive_per_extrusion_,
+                       recorder_.toolpath().beads.size());
+        return;
+    }
+    for (const Point& to : pieces) runPath(to, std::nullopt, extrusion * distance(frame_.position(), to) / total);
+}
+
+void Machine::runTurns(const Point& target, const Arc& arc, int turns, double extrusion) {
+    const Point start = frame_.position();
+    const double total = std::abs(arc.sweep) + turns * kFullTurn;
+    Arc circle = arc;
+    circle.sweep = std::copysign(kFullTurn, arc.sweep);
+    for (int i = 1; i <= turns; ++i) {
+        const double z = start.z + (target.z - start.z) * i * kFullTurn / total;
+        runPath({start.x, start.y, z}, circle, extrusion * kFullTurn / total);
+    }
+    runPath(target, arc, extrusion * std::abs(arc.sweep) / total);
+}
+
+void Machine::runArc(const Command& command, const Point& target, bool clockwise, double extrusion) {
+    const std::optional<Arc> arc = arcOf(command, target, clockwise);
+    if (!arc) return runPath(target, std::nullopt, extrusion);
+    const int turns =
+        command.hasValue('P') ? static_cast<int>(std::clamp(command.value('P'), 0.0, double{kMostTurns})) : 0;
+    if (plane_.normal() == 2)
+        return turns > 0 ? runTurns(target, *arc, turns, extrusion) : runPath(target, arc, extrusion);
+    const double sweep = arc->sweep + std::copysign(turns * kFullTurn, arc->sweep);
+    runPieces(flattenArc(frame_.position(), target, plane_, arc->center_x, arc->center_y, sweep), extrusion);
+}
+
+void Machine::runBezier(const Command& command, const Point& target, double extrusion) {
+    std::array<double, 4> offsets{};
+    constexpr std::array<char, 4> kLetters{'I', 'J', 'P', 'Q'};
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (!command.hasValue(kLetters[i])) continue;
+        offsets[i] = command.value(kLetters[i]) * unit_;
+        if (!(std::abs(offsets[i]) <= kMaxCoordinate))
+            refuse(fmt::format("{}{} is no curve on a printer (limit {} mm); is the file damaged?", kLetters[i],
+                               command.value(kLetters[i]), kMaxCoordinate));
+    }
+    const Point& start = frame_.position();
+    const Point control1{start.x + offsets[0], start.y + offsets[1], start.z};
+    const Point control2{target.x + offsets[2], target.y + offsets[3], target.z};
+    runPieces(flattenBezier(start, control1, control2, target), extrusion);
+}
+
+std::optional<Arc> Machine::arcOf(const Command& command, const Point& target, bool clockwise) {
+    constexpr std::array<char, 3> kOffsets{'I', 'J', 'K'};
+    const char first = kOffsets[plane_.first];
+    const char second = kOffsets[plane_.second];
+    for (const char letter : {first, second, 'R'}) {
+        if (!command.hasValue(letter)) continue;
+        if (!(std::abs(command.value(letter) * unit_) <= kMaxCoordinate))
+            refuse(fmt::format("{}{} is no arc on a printer (limit {} mm); is the file damaged?", letter,
+                               command.value(letter), kMaxCoordinate));
+    }
+    const PlanPoint start{frame_.position()[plane_.first], frame_.position()[plane_.second]};
+    const PlanPoint end{target[plane_.first], target[plane_.second]};
+    std::optional<Arc> arc;
+    if (command.hasValue('R')) {
+        arc = arcFromRadius(start, end, command.value('R') * unit_, clockwise);
+    } else {
+        const double i = command.hasValue(first) ? command.value(first) * unit_ : 0;
+        const double j = command.hasValue(second) ? command.value(second) * unit_ : 0;
+        arc = arcFromOffset(start, end, {i, j}, clockwise);
+    }
+    if (!arc) warn("arc whose centre, radius and end don't agree; drawn as a straight line");
+    return arc;
+}
+
+double Machine::leavesNozzle(double drive, bool in_place) {
+    // Multi-material units swap filament while the head travels over the wipe tower (PrusaSlicer's "CP TOOLCHANGE"):
+    // metres of E that only fetch the filament back. Ordinary retractions are taken at the file's word.
+    const double mm = volumetric_ ? drive / filamentArea() : drive;
+    const std::size_t nozzle = settings_.shared_nozzle ? 0 : tool_;
+    double& drawn_back = drawn_back_[nozzle];
+    bool& unloaded = unloaded_[nozzle];
+    if (drive < 0) {
+        drawn_back -= mm;
+        if (drawn_back > kUnloaded) unloaded = true;
+        return drive;
+    }
+    if (!unloaded) {
+        drawn_back = in_place ? std::max(0.0, drawn_back - mm) : 0;
+        return drive;
+    }
+    const double fetched = std::min(drawn_back, mm);
+    drawn_back -= fetched;
+    unloaded = drawn_back > 0;
+    return drive * (1 - fetched / mm);
+}
+
+void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before) {
+    const double filament = (volumetric_ ? drive / filamentArea() : drive) * flow_[tool_];
+    const std::size_t beads = recorder_.toolpath().beads.size();
+    const auto bead = beads > beads_before ? static_cast<std::uint32_t>(beads - 1) : Move::kNoBead;
+    moves_->move(frame_.position(), target, arc, filament, feed_ * speed_factor_, bead, line_);
+}
+
+void Machine::recordTravel(const Command& command, const Point& target, int motion, double drive) {
+    std::optional<Arc> arc;
+    if ((motion == 2 || motion == 3) && plane_.normal() == 2) arc = arcOf(command, target, motion == 2);
+    recordPath(target, arc, drive, recorder_.toolpath().beads.size());
+}
+
+double Machine::switchedExtrusion(double length) {
+    double height = recorder_.height();
+    if (!(height > 0)) height = nominal_height_ > 0 ? nominal_height_ : kSwitchedHeight;
+    const double width =
+        settings_.extrusion_width.value_or(settings_.nozzle_diameter.value_or(kSwitchedAspect * height));
+    warn(fmt::format("M101 without E: the file doesn't say how much is extruded; beads of {:g} x {:g} mm are assumed",
+                     width, height));
+    const double volume = sectionArea(width, height) * length;
+    return volumetric_ ? volume : volume / filamentArea();
+}
+
+void Machine::deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion) {
+    const double volume = volumetric_ ? extrusion : extrusion * filamentArea();
+    const double filament = volumetric_ ? extrusion / filamentArea() : extrusion;
+    filament_mm_ += filament;
+    std::vector<double>& by_tool = recorder_.toolpath().filament_by_tool;
+    if (by_tool.size() <= tool_) by_tool.resize(tool_ + 1);
+    by_tool[tool_] += filament;
+    ++counts_.beads;
+    frame_.settle();
+    const double flow = flow_[tool_];
+    if (!(flow > 0)) return;
+    extruded_mm3_ += volume * flow;
+    recorder_.add(frame_.position(), target, arc, length, volume * flow, line_);
+}
+
+}  // namespace stratum::gcode

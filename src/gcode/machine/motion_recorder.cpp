@@ -1,0 +1,221 @@
+#include "gcode/machine/motion_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr double kDefaultSpeed = 25;         // mm/s before the first F: Marlin's and Klipper's
+constexpr double kSlowest = 0.01;            // mm/s; no firmware goes slower
+constexpr double kNoMotion = 1e-12;          // mm
+constexpr double kLongestRetraction = 1000;  // mm
+constexpr std::array<char, kMotionAxes> kLetters{'X', 'Y', 'Z', 'E'};
+
+// Commands that let everything come to rest and take a time that no file can tell: homing, probing, heating, pauses.
+bool rests(const Command& command) {
+    if (command.letter == 'G') return command.code == 28 || command.code == 29 || command.code == 30;
+    switch (command.code) {
+        case 0:
+        case 1:
+        case 25:
+        case 109:
+        case 190:
+        case 226:
+        case 400:
+        case 600:
+            return true;
+        default:
+            return false;
+    }
+}
+
+}  // namespace
+
+MotionRecorder::MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings)
+    : sink_(sink), settings_(std::move(settings)), limits_(settings_.limits), warnings_(warnings) {
+    sink_.limits(limits_);
+}
+
+bool MotionRecorder::take(double& target, std::string_view what, double value, double least, double most,
+                          std::uint32_t line) {
+    if (value >= least && value <= most) {
+        target = value;
+        return true;
+    }
+    if (value > most && std::isfinite(value)) {
+        warnings_.add(fmt::format("{}{:g} is more than any machine has; {:g} is taken", what, value, most), line);
+        target = most;
+        return true;
+    }
+    warnings_.add(fmt::format("{}{:g} is no limit that a machine can move by; ignored", what, value), line);
+    return false;
+}
+
+void MotionRecorder::byAxis(const Command& command, std::array<double, kMotionAxes>& values, double scale, double least,
+                            double most, std::uint32_t line) {
+    for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
+        if (command.hasValue(kLetters[axis]))
+            take(values[axis], fmt::format("M{} {}", command.code, kLetters[axis]),
+                 command.value(kLetters[axis]) * scale, least, most, line);
+}
+
+void MotionRecorder::setAcceleration(const Command& command, std::uint32_t line) {
+    const auto bounded = [](double value, double most) { return most > 0 ? std::min(value, most) : value; };
+    const auto read = [&](char letter, double& target, double most) {
+        double value = 0;
+        if (command.hasValue(letter) &&
+            take(value, fmt::format("M204 {}", letter), command.value(letter), kWeakestAxis, kStrongestAxis, line))
+            target = bounded(value, most);
+    };
+    if (command.hasValue('S')) {
+        // The older form: printing and travel alike, and T is for retractions.
+        read('S', limits_.printing, settings_.most_printing);
+        read('S', limits_.travel, settings_.most_travel);
+        read('T', limits_.retracting, 0);
+    } else if (command.hasValue('P') || command.hasValue('R') || command.hasValue('T')) {
+        read('P', limits_.printing, settings_.most_printing);
+        read('R', limits_.retracting, 0);
+        read('T', limits_.travel, settings_.most_travel);
+    } else {
+        return warnings_.add("M204 without an acceleration (P, R, T or S); ignored", line);
+    }
+    if (limits_.rule == CornerRule::corner_velocity && !command.hasValue('S') && command.hasValue('P') &&
+        command.hasValue('T'))
+        limits_.printing = limits_.travel = std::min(limits_.printing, limits_.travel);  // Klipper has one
+}
+
+void MotionRecorder::suggest(CornerRule rule) {
+    if (!settings_.rule_chosen) limits_.rule = rule;
+}
+
+void MotionRecorder::setCorners(const Command& command, std::uint32_t line) {
+    byAxis(command, limits_.jerk, 1, 0, kFastestAxis, line);
+    // One X stands for the plane, as in legacy Marlin.
+    if (command.hasValue('X') && !command.hasValue('Y')) limits_.jerk[1] = limits_.jerk[0];
+    if (command.hasValue('S')) take(limits_.least_printing_speed, "M205 S", command.value('S'), 0, kFastestAxis, line);
+    if (command.hasValue('T')) take(limits_.least_travel_speed, "M205 T", command.value('T'), 0, kFastestAxis, line);
+    if (!command.hasValue('J')) return;
+    // J0 is what machines with classic jerk are told.
+    if (command.value('J') == 0) return suggest(settings_.limits.rule);
+    if (take(limits_.junction_deviation, "M205 J", command.value('J'), 1e-6, kLongestDeviation, line))
+        suggest(CornerRule::junction_deviation);
+}
+
+void MotionRecorder::setRetraction(const Command& command, Retraction& retraction, double unit) {
+    if (command.hasValue('S')) retraction.length = std::clamp(command.value('S') * unit, 0.0, kLongestRetraction);
+    if (command.hasValue('F')) retraction.speed = std::max(command.value('F') * unit / 60, 0.0);
+}
+
+void MotionRecorder::runRetraction(const Retraction& retraction, double sign, std::uint32_t line) {
+    if (!(retraction.length > 0)) return;
+    Move move;
+    move.delta[3] = sign * retraction.length;
+    move.speed = retraction.speed > 0 ? std::max(retraction.speed, kSlowest) : kDefaultSpeed;
+    move.line = line;
+    sink_.move(move);
+}
+
+void MotionRecorder::dwell(const Command& command, std::uint32_t line) {
+    double seconds = 0;
+    if (command.hasValue('P')) seconds = command.value('P') / 1000;
+    if (command.hasValue('S')) seconds = command.value('S');
+    if (!(seconds >= 0)) return warnings_.add("G4 with a time below zero; ignored", line);
+    if (seconds > kLongestWait) {
+        warnings_.add(fmt::format("G4 of {:g} s; {:g} are taken", seconds, kLongestWait), line);
+        seconds = kLongestWait;
+    }
+    sink_.wait(seconds);
+}
+
+void MotionRecorder::command(const Command& command, double unit, std::uint32_t line) {
+    if (command.letter == 'G') {
+        if (command.code == 4) return dwell(command, line);
+        // G10 with P or L sets offsets; both retract once only.
+        if (command.code == 10 && !command.hasValue('P') && !command.hasValue('L') && !retracted_) {
+            retracted_ = true;
+            return runRetraction(retract_, -1, line);
+        }
+        if (command.code == 11 && retracted_) {
+            retracted_ = false;
+            // Marlin's M208 S is what comes on top.
+            return runRetraction(
+                {retract_.length + recover_.length, recover_.speed > 0 ? recover_.speed : retract_.speed}, 1, line);
+        }
+        if (rests(command)) sink_.wait(0);
+        return;
+    }
+    if (command.letter != 'M') return;
+    const double per_second = settings_.feedrate_per_minute ? 1.0 / 60 : 1;
+    switch (command.code) {
+        case 201:
+            byAxis(command, limits_.acceleration, unit, kWeakestAxis, kStrongestAxis, line);
+            break;
+        case 203:
+            byAxis(command, limits_.speed, unit * per_second, 1e-3, kFastestAxis, line);
+            break;
+        case 204:
+            setAcceleration(command, line);
+            break;
+        case 205:
+            setCorners(command, line);
+            break;
+        case 207:
+            return setRetraction(command, retract_, unit);
+        case 208:
+            return setRetraction(command, recover_, unit);
+        case 566:
+            byAxis(command, limits_.jerk, 1.0 / 60, 0, kFastestAxis, line);
+            break;
+        default:
+            if (rests(command)) sink_.wait(0);
+            return;
+    }
+    sink_.limits(limits_);
+}
+
+void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t line) {
+    if (limit.velocity)
+        take(limits_.path_speed, "SET_VELOCITY_LIMIT VELOCITY=", *limit.velocity, 1e-3, kFastestAxis, line);
+    if (limit.acceleration &&
+        take(limits_.printing, "SET_VELOCITY_LIMIT ACCEL=", *limit.acceleration, kWeakestAxis, kStrongestAxis, line))
+        limits_.travel = limits_.printing;
+    if (limit.corner_velocity)
+        take(limits_.corner_velocity, "SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY=", *limit.corner_velocity, 0,
+             kFastestAxis, line);
+    if (limit.cruise_ratio)
+        take(limits_.cruise_ratio, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=", *limit.cruise_ratio, 0, 0.99, line);
+    if (limit.to_deceleration && *limit.to_deceleration > 0)
+        limits_.cruise_ratio = std::clamp(1 - *limit.to_deceleration / limits_.printing, 0.0, 0.99);
+    // Nobody else has this command.
+    if (!settings_.states_jerk) suggest(CornerRule::corner_velocity);
+    sink_.limits(limits_);
+}
+
+void MotionRecorder::changeTool(std::size_t from, std::size_t to) {
+    const auto at = [](const std::vector<double>& times, std::size_t tool) {
+        return times.empty() ? 0.0 : times[std::min(tool, times.size() - 1)];
+    };
+    if (from != to) sink_.wait(at(settings_.unload, from) + at(settings_.load, to) + settings_.change);
+}
+
+void MotionRecorder::move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament,
+                          double speed, std::uint32_t bead, std::uint32_t line) {
+    Move move;
+    move.delta = {to.x - from.x, to.y - from.y, to.z - from.z, filament};
+    if (arc) {
+        move.sweep = arc->sweep;
+        move.center = {arc->center_x - from.x, arc->center_y - from.y};
+    }
+    const auto moves = [](double delta) { return std::abs(delta) > kNoMotion; };
+    if (!arc && std::none_of(move.delta.begin(), move.delta.end(), moves)) return;
+    move.speed = speed > 0 ? std::max(speed, kSlowest) : kDefaultSpeed;
+    move.bead = bead;
+    move.line = line;
+    sink_.move(move);
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,67 @@
+// Turns what the machine simulator executes into limits, moves and waits for a MotionSink.
+// Sources: marlinfw.org/docs/gcode G004, M201, M203-M205, M207, M208; docs.duet3d.com M566; klipper3d.org/G-Codes.html
+// SET_VELOCITY_LIMIT; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)".
+#pragma once
+
+#include "gcode/machine/machine_limits.h"
+#include "gcode/machine/motion.h"
+#include "gcode/text/lexer.h"
+#include "gcode/toolpath/frame.h"
+#include "gcode/toolpath/warning_log.h"
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace stratum::gcode {
+
+/// SET_VELOCITY_LIMIT's arguments.
+struct VelocityLimit {
+    std::optional<double> velocity;         ///< mm/s
+    std::optional<double> acceleration;     ///< mm/s^2
+    std::optional<double> to_deceleration;  ///< mm/s^2
+    std::optional<double> cruise_ratio;
+    std::optional<double> corner_velocity;  ///< mm/s
+};
+
+/// Limits that are no machine's (negative, zero, absurd, no number) are left as they were, with a warning.
+class MotionRecorder {
+public:
+    /// The sink and the log must outlive it.
+    MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings);
+
+    /// A G or M command other than a move. `unit` is mm in a unit of the program.
+    void command(const Command& command, double unit, std::uint32_t line);
+    void velocityLimit(const VelocityLimit& limit, std::uint32_t line);
+    void changeTool(std::size_t from, std::size_t to);
+
+    /// A move in print space. `filament` is the mm that E moves; `speed` mm/s, 0 where none was ever named.
+    void move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament, double speed,
+              std::uint32_t bead, std::uint32_t line);
+
+private:
+    struct Retraction {
+        double length = 0;  // mm
+        double speed = 0;   // mm/s
+    };
+
+    void byAxis(const Command& command, std::array<double, kMotionAxes>& values, double scale, double least,
+                double most, std::uint32_t line);
+    void setAcceleration(const Command& command, std::uint32_t line);
+    void setCorners(const Command& command, std::uint32_t line);
+    void setRetraction(const Command& command, Retraction& retraction, double unit);
+    void runRetraction(const Retraction& retraction, double sign, std::uint32_t line);
+    void dwell(const Command& command, std::uint32_t line);
+    bool take(double& target, std::string_view what, double value, double least, double most, std::uint32_t line);
+    void suggest(CornerRule rule);
+
+    MotionSink& sink_;
+    MachineSettings settings_;
+    MachineLimits limits_;
+    WarningLog& warnings_;
+    Retraction retract_;
+    Retraction recover_;
+    bool retracted_ = false;
+};
+
+}  // namespace stratum::gcode

@@ -1,0 +1,105 @@
+#include "gcode/slicer/footer.h"
+
+#include "gcode/text/number.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::size_t kMostTools = 256;
+
+std::string_view trim(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+bool take(std::string_view& text, std::string_view prefix) {
+    if (!text.starts_with(prefix)) return false;
+    text = trim(text.substr(prefix.size()));
+    return true;
+}
+
+// Numbers separated by commas, with or without a unit behind each, times `scale`. Empty if one is no amount.
+std::vector<double> amounts(std::string_view text, double scale) {
+    std::vector<double> values;
+    while (!text.empty() && values.size() < kMostTools) {
+        const auto cut = std::min(text.find(','), text.size());
+        const std::string_view one = trim(text.substr(0, cut));
+        const char* p = one.data();
+        double value = 0;
+        if (!parseNumber(p, p + one.size(), value) || !(value >= 0 && value < 1e9)) return {};
+        values.push_back(value * scale);
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return values;
+}
+
+// The number at the start of the text, which it removes; kMostTools if there is none.
+std::size_t takeIndex(std::string_view& text) {
+    const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    if (digits == 0 || digits > 3) return kMostTools;
+    std::size_t value = 0;
+    for (const char c : text.substr(0, digits)) value = value * 10 + static_cast<std::size_t>(c - '0');
+    text.remove_prefix(digits);
+    return std::min(value, kMostTools);
+}
+
+void setLengths(std::string_view text, double scale, Footer& footer) {
+    if (auto list = amounts(text, scale); !list.empty()) footer = {.length = std::move(list), .volume = {}};
+}
+
+void setAt(std::vector<double>& list, std::size_t tool, std::string_view text) {
+    const std::vector<double> value = amounts(text, 1);
+    if (value.empty()) return;
+    if (list.size() <= tool) list.resize(tool + 1);
+    list[tool] = value[0];
+}
+
+}  // namespace
+
+bool readFooter(std::string_view text, Footer& footer) {
+    if (take(text, "filament used [mm] =") || take(text, "filament used =") || take(text, "Filament length:") ||
+        take(text, "--- filament used:")) {
+        setLengths(text, 1, footer);
+        return true;
+    }
+    if (take(text, "Filament used:")) {  // Cura: metres, or mm3 where its E is
+        if (text.find("mm3") == std::string_view::npos)
+            setLengths(text, 1000, footer);
+        else
+            footer = {.length = {}, .volume = amounts(text, 1)};
+        return true;
+    }
+    if (take(text, "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
+        const std::vector<double> list = amounts(text, 1);
+        if (!list.empty()) footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}};
+        return true;
+    }
+    if (take(text, "filament_length_m =")) {  // Slic3r 1.3.1
+        setLengths(text, 1000, footer);
+        return true;
+    }
+    if (take(text, "Ext ")) {  // KISSlicer: "Ext 1 =    53.49 mm  (0.378 cm^3)"
+        const std::size_t number = takeIndex(text);
+        if (number == 0 || number >= kMostTools || !take(text, " =")) return false;
+        setAt(footer.length, number - 1, text);
+        return true;
+    }
+    if (take(text, "EXTRUDER_TRAIN.")) {
+        const std::size_t tool = takeIndex(text);
+        if (tool < kMostTools && take(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text);
+        return true;
+    }
+    if (take(text, "Material#")) {
+        const std::size_t number = takeIndex(text);
+        if (number == 0 || number >= kMostTools || !take(text, " Used:")) return false;
+        setAt(footer.length, number - 1, text);
+        return true;
+    }
+    return false;
+}
+
+}  // namespace stratum::gcode

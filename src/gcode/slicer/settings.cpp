@@ -1,0 +1,241 @@
+#include "gcode/slicer/settings.h"
+
+#include "gcode/slicer/ending.h"
+#include "gcode/text/number.h"
+#include "gcode/toolpath/color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stratum::gcode {
+namespace {
+
+// Thumbnails and Cura's SETTING_3 lines can push what matters this far from the ends.
+constexpr std::size_t kReach = std::size_t{1} << 18;
+constexpr double kFarthestNozzle = 1000;  // mm from the first one
+
+std::string_view trim(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+std::optional<double> positive(std::string_view text, double most) {
+    text = trim(text);
+    const char* p = text.data();
+    double value = 0;
+    if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
+    return value;
+}
+
+std::optional<bool> flag(std::string_view text) {
+    if (text == "1" || text == "true" || text == "True") return true;
+    if (text == "0" || text == "false" || text == "False") return false;
+    return std::nullopt;
+}
+
+// Diameters by tool, separated by any of `separators`. A list that isn't all numbers is no list.
+std::vector<double> diameters(std::string_view text, std::string_view separators) {
+    std::vector<double> values;
+    while (!text.empty()) {
+        const auto cut = std::min(text.find_first_of(separators), text.size());
+        const auto value = positive(text.substr(0, cut), 100);
+        if (!value) return {};
+        values.push_back(*value);
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return values;
+}
+
+// "#FF8000;#DB5182", with or without quotes; of an empty place nothing is known.
+std::vector<std::optional<Rgb>> colors(std::string_view text) {
+    std::vector<std::optional<Rgb>> values;
+    while (!text.empty() && values.size() < 256) {
+        const auto cut = std::min(text.find_first_of(";,"), text.size());
+        values.push_back(parseColor(trim(text.substr(0, cut))));
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return values;
+}
+
+// "0x0,18x0": the nozzles' places by tool.
+std::vector<Point> offsets(std::string_view text) {
+    std::vector<Point> values;
+    bool any = false;
+    while (!text.empty() && values.size() < 256) {
+        const auto cut = std::min(text.find(','), text.size());
+        const std::string_view one = trim(text.substr(0, cut));
+        Point point;
+        const char* p = one.data();
+        const char* const end = p + one.size();
+        if (!parseNumber(p, end, point.x) || p == end || *p != 'x' || !parseNumber(++p, end, point.y)) return {};
+        if (!(std::abs(point.x) <= kFarthestNozzle && std::abs(point.y) <= kFarthestNozzle)) return {};
+        any = any || point.x != 0 || point.y != 0;
+        values.push_back(point);
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return any ? values : std::vector<Point>{};
+}
+
+// The firmware of a flavour's name. PrusaSlicer's and Slic3r's "reprap" means RepRap/Sprinter, Marlin's forebear;
+// Cura's "RepRap" means RepRapFirmware and is handled where it is read.
+Firmware firmwareOfFlavor(std::string_view flavor) {
+    if (flavor == "klipper") return Firmware::klipper;
+    if (flavor == "reprapfirmware") return Firmware::reprap;
+    return Firmware::marlin;
+}
+
+bool take(std::string_view& text, std::string_view prefix) {
+    if (!text.starts_with(prefix)) return false;
+    text = trim(text.substr(prefix.size()));
+    return true;
+}
+
+// "PrusaSlicer 2.5.0+win64 on 2022-09-06" -> "PrusaSlicer 2.5.0+win64"
+std::string_view upTo(std::string_view text, std::string_view stop) { return trim(text.substr(0, text.find(stop))); }
+
+class SettingsReader {
+public:
+    void comment(std::string_view text) {
+        text = trim(text);
+        stated_.comment(text);
+        if (readFooter(text, settings.footer)) return;
+        const auto equals = text.find(" = ");
+        if (equals != std::string_view::npos && text.find(' ') == equals)
+            pair(text.substr(0, equals), trim(text.substr(equals + 3)));
+        else
+            sentence(text);
+    }
+
+    // Skeinforge: "(<layerHeight> 0.3 </layerHeight>)".
+    void markup(std::string_view text) {
+        if (take(text, "<layerHeight>") || take(text, "<layerThickness>")) {
+            settings.layer_height = positive(text, 100);
+        } else if (take(text, "<edgeWidth>") || take(text, "<perimeterWidth>")) {
+            settings.extrusion_width = positive(text, 100);
+        } else if (text.starts_with("<creator>") || text.starts_with("<version>")) {
+            name("Skeinforge");
+        }
+    }
+
+    Settings finish() {
+        // The filament is what is seen; the extruder's colour is a mark in the slicer's own views.
+        std::vector<std::optional<Rgb>>& tools = settings.tool_colors;
+        tools = std::move(filament_colors_);
+        tools.resize(std::max(tools.size(), extruder_colors_.size()));
+        for (std::size_t tool = 0; tool < extruder_colors_.size(); ++tool)
+            if (!tools[tool]) tools[tool] = extruder_colors_[tool];
+        while (!tools.empty() && !tools.back()) tools.pop_back();
+        settings.stated = stated_.finish();
+        return std::move(settings);
+    }
+
+    Settings settings;
+
+private:
+    StatedReader stated_;
+    std::vector<std::optional<Rgb>> filament_colors_;
+    std::vector<std::optional<Rgb>> extruder_colors_;
+
+    void pair(std::string_view key, std::string_view value) {
+        if (key == "filament_diameter") {
+            if (auto list = diameters(value, ","); !list.empty()) settings.filament_diameters = std::move(list);
+        } else if (key == "layer_height" || key == "sliceHeight" ||  // Kiri:Moto's
+                   key == "layer_thickness_mm") {                    // KISSlicer's
+            if (const auto height = positive(value, 100)) settings.layer_height = height;
+        } else if (key == "use_relative_e_distances") {
+            settings.relative_e = flag(value);
+        } else if (key == "use_volumetric_e") {
+            settings.volumetric_e = flag(value);
+            settings.volumetric_reason = "the file's use_volumetric_e is 1";
+        } else if (key == "single_extruder_multi_material") {
+            settings.shared_nozzle = flag(value).value_or(false);
+        } else if (key == "extruder_colour") {
+            extruder_colors_ = colors(value);
+        } else if (key == "filament_colour") {
+            filament_colors_ = colors(value);
+        } else if (key == "extruder_offset") {
+            settings.tool_offsets = offsets(value);
+        } else if (key == "nozzle_diameter") {
+            settings.nozzle_diameter = positive(value, 100);
+        } else if (key == "extrusion_width" || key == "line_width") {
+            if (value.find('%') == std::string_view::npos) settings.extrusion_width = positive(value, 100);
+        } else if (key == "gcode_flavor") {
+            settings.firmware = firmwareOfFlavor(value);
+            settings.firmware_reason = std::string("the file's gcode_flavor is ").append(value);
+        }
+    }
+
+    void sentence(std::string_view text) {
+        if (take(text, "generated by ") || take(text, "Generated by ") || take(text, "G-Code generated by ")) {
+            name(upTo(upTo(text, " on "), " (Build"));
+        } else if (take(text, "Generated with ") || take(text, "GCode created with ") ||
+                   text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
+            name(upTo(text, " - "));
+        } else if (take(text, "Sliced by ")) {
+            name(upTo(text, ","));
+        } else if (take(text, "GENERATOR.NAME:")) {
+            name(text);
+        } else if (take(text, "GENERATOR.VERSION:")) {
+            if (!settings.slicer.empty() && settings.slicer.find(' ') == std::string::npos)
+                settings.slicer.append(" ").append(text);
+        } else if (take(text, "FLAVOR:")) {
+            curaFlavor(text);
+        } else if (take(text, "Layer height:") || take(text, "layerHeight,") || take(text, "layer_height:")) {
+            if (const auto height = positive(text, 100)) settings.layer_height = height;
+        } else if (take(text, "Filament Diameter #")) {
+            const auto colon = text.find(':');
+            const auto diameter =
+                colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
+            if (diameter) settings.filament_diameters.push_back(*diameter);
+        } else if (take(text, "relativeEdistances,")) {
+            settings.relative_e = flag(text);
+        } else if (take(text, "filamentDiameters,")) {
+            if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
+        }
+    }
+
+    void name(std::string_view text) {
+        if (settings.slicer.empty()) settings.slicer = text;
+    }
+
+    void curaFlavor(std::string_view flavor) {
+        settings.firmware = flavor == "RepRap" ? Firmware::reprap : Firmware::marlin;
+        settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
+        // Two of Cura's flavours count mm^3 and leave it to the printer to know that; M200 in the file says otherwise.
+        // Griffin (Ultimaker 3 and later) is not among them.
+        if (flavor != "UltiGCode" && flavor != "Marlin(Volumetric)") return;
+        settings.volumetric_e = true;
+        settings.volumetric_reason = std::string("the file's FLAVOR is ").append(flavor);
+    }
+};
+
+void readComments(std::string_view part, SettingsReader& reader) {
+    while (!part.empty()) {
+        const auto end = std::min(part.find_first_of("\r\n"), part.size());
+        if (part.front() == ';') reader.comment(part.substr(1, end - 1));
+        if (part.front() == '(') reader.markup(part.substr(1, end - 1));
+        part.remove_prefix(std::min(end + 1, part.size()));
+    }
+}
+
+}  // namespace
+
+Settings readSettings(std::string_view bytes) {
+    SettingsReader reader;
+    readComments(bytes.substr(0, kReach), reader);
+    if (bytes.size() > kReach) {
+        std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));
+        // It may start in the midst of a line, which must not look like a comment by chance.
+        tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
+        readComments(tail, reader);
+    }
+    Settings settings = reader.finish();
+    settings.extrusion = scanExtrusion(bytes);
+    if (!settings.relative_e.value_or(false)) settings.extrusion.relative_after_g90 = fallsBackAfterG90(bytes);
+    settings.cut_short = findCut(bytes, settings.slicer);
+    return settings;
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,46 @@
+// What a file says about itself in its first and last comments: slicer, filament, layer height, how E counts.
+// Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r, OrcaSlicer, BambuStudio ("; key = value"), the
+// headers of Cura, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Skeinforge's "(<layerHeight> 0.3 )".
+#pragma once
+
+#include "gcode/machine/read_options.h"
+#include "gcode/slicer/extrusion_scan.h"
+#include "gcode/slicer/footer.h"
+#include "gcode/toolpath/color.h"
+#include "gcode/toolpath/frame.h"
+#include "gcode/toolpath/stated.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// Values are absent where the file is silent or says nonsense.
+struct Settings {
+    std::string slicer;                           ///< name and version
+    std::vector<double> filament_diameters;       ///< mm, by tool
+    std::optional<double> layer_height;           ///< mm
+    std::optional<bool> relative_e;               ///< E words are increments
+    std::optional<bool> volumetric_e;             ///< E words are mm^3
+    std::string volumetric_reason;                ///< where the file says so
+    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's colour, else the extruder's
+    std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
+    std::optional<double> nozzle_diameter;  ///< mm, of the first tool
+    std::optional<double> extrusion_width;  ///< mm
+    ExtrusionScan extrusion;                ///< what the program's own words show
+    std::string cut_short;                  ///< why the program seems to end too early; empty if it doesn't
+    bool shared_nozzle = false;             ///< several filaments take turns in one nozzle
+    Firmware firmware = Firmware::automatic;
+    std::string firmware_reason;  ///< what the file says about it
+    Footer footer;                ///< what the file says it uses
+    StatedFacts stated;           ///< what else it says of the print
+};
+
+/// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends
+/// as its slicer ends programs. Never throws for what it finds there.
+Settings readSettings(std::string_view bytes);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,177 @@
+#include "gcode/slicer/slicer_tags.h"
+
+#include "gcode/slicer/feature_names.h"
+#include "gcode/text/limits.h"
+#include "gcode/text/number.h"
+
+namespace stratum::gcode {
+namespace {
+
+std::string_view trim(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool take(std::string_view& text, std::string_view prefix) {
+    if (!text.starts_with(prefix)) return false;
+    text = trim(text.substr(prefix.size()));
+    return true;
+}
+
+constexpr double kMostHeight = 100;  // mm; a layer that is higher is a damaged number
+
+// The positive number up to `most` at the start of the text, else 0.
+double positive(std::string_view text, double most) {
+    const char* p = text.data();
+    double value = 0;
+    return parseNumber(p, p + text.size(), value) && value > 0 && value <= most ? value : 0;
+}
+
+Tag ofHeight(std::string_view text) {
+    const double height = positive(text, kMostHeight);
+    return height > 0 ? Tag{.kind = Tag::Kind::height, .height = height} : Tag{};
+}
+
+Tag ofType(std::string_view text) {
+    return {.kind = Tag::Kind::feature, .feature = featureOfType(text).value_or(Feature::unknown), .text = text};
+}
+
+Tag ofSegment(std::string_view text) {
+    return {.kind = Tag::Kind::feature, .feature = featureOfSegment(text).value_or(Feature::unknown), .text = text};
+}
+
+Tag layerChange(double height = 0) { return {.kind = Tag::Kind::layer_change, .height = height}; }
+
+// Kiri:Moto: ";; --- layer 3 (0.200 @ 0.85) ---", height and z in the parentheses.
+Tag ofKiriLayer(std::string_view text) {
+    const auto open = text.find('(');
+    if (open == std::string_view::npos || text.find('@') == std::string_view::npos) return {};
+    return layerChange(positive(text.substr(open + 1), kMostHeight));
+}
+
+// Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not. With several processes a layer is announced by each.
+Tag ofNumberedLayer(std::string_view text) {
+    const auto digits = text.find_first_not_of("0123456789");
+    if (digits == 0 || digits == std::string_view::npos) return {};
+    text.remove_prefix(digits);
+    if (!take(text, ", Z =")) return {};
+    Tag tag = layerChange();
+    tag.z = positive(text, kMaxCoordinate);
+    return tag;
+}
+
+// Simplify3D: "tool H0.200 W0.450".
+Tag ofToolShape(std::string_view text) { return take(text, "H") ? ofHeight(text) : Tag{}; }
+
+// KISSlicer: "'Sparse Infill Path', 0.9 [feed mm/s], 52.5 [head mm/s]".
+Tag ofPath(std::string_view text) {
+    text.remove_prefix(1);
+    const auto end = text.find(" Path'");
+    if (end == std::string_view::npos) return {};
+    text = text.substr(0, end);
+    if (text.starts_with("Destring")) return {};
+    return {.kind = Tag::Kind::feature, .feature = featureOfPath(text).value_or(Feature::unknown), .text = text};
+}
+
+// Skeinforge: "<layer> 0.36 ", the number being the middle of the layer; IceSL: "<layer 3>".
+Tag ofMarkup(std::string_view text) {
+    if (text.starts_with("<layer>") || text.starts_with("<layer ")) return layerChange();
+    if (text.starts_with("<edge>") || text.starts_with("<perimeter>") || text.starts_with("<perimeterPath>"))
+        return {.kind = Tag::Kind::feature, .feature = Feature::external_perimeter};
+    if (text.starts_with("<loop>")) return {.kind = Tag::Kind::feature, .feature = Feature::perimeter};
+    if (text.starts_with("<infill>")) return {.kind = Tag::Kind::feature, .feature = Feature::infill};
+    if (text.starts_with("<supportLayer>")) return {.kind = Tag::Kind::feature, .feature = Feature::support};
+    return {};
+}
+
+// PrusaSlicer and its kin: "COLOR_CHANGE,T0,#ED1C24".
+Tag ofColorChange(std::string_view text) {
+    Tag tag{.kind = Tag::Kind::color_change};
+    if (text.starts_with('T') && text.size() > 1 && text[1] >= '0' && text[1] <= '9') {
+        tag.tool = text[1] - '0';
+        if (text.size() > 2 && text[2] >= '0' && text[2] <= '9') tag.tool = tag.tool * 10 + text[2] - '0';
+    }
+    const auto color = text.find('#');
+    if (color == std::string_view::npos) return {};
+    tag.text = text.substr(color, 7);
+    return tag;
+}
+
+Tag ofObject(std::string_view name) { return {.kind = Tag::Kind::object_start, .text = name}; }
+
+}  // namespace
+
+Tag parseTag(std::string_view comment) {
+    std::string_view text = trim(comment);
+    if (text.empty()) return {};
+    switch (text.front()) {
+        case 'T':
+            if (take(text, "TYPE:")) return ofType(text);
+            break;
+        case '<':
+            return ofMarkup(text);
+        case '(':  // IceSL: ";(<layer 3>)"
+            return ofMarkup(text.substr(1));
+        case '\'':
+            return ofPath(text);
+        case 'B':
+            if (take(text, "BEGIN_LAYER_")) return layerChange();
+            break;
+        case 'P':  // ideaMaker
+            if (take(text, "PRINTING:"))
+                return text == "NON-OBJECT" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
+            break;
+        case 'F':
+            if (take(text, "FEATURE:")) return ofType(text);
+            break;
+        case 'f':  // Simplify3D from 4.1 on
+            if (take(text, "feature ")) {
+                if (const auto feature = featureOfBareName(text))
+                    return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
+                return {};
+            }
+            break;
+        case 'H':
+            if (take(text, "HEIGHT:")) return ofHeight(text);
+            break;
+        case 'L':
+            if (take(text, "LAYER_CHANGE")) return layerChange();
+            if (take(text, "LAYER_HEIGHT:")) return ofHeight(text);
+            if (take(text, "LAYER:")) return layerChange();
+            break;
+        case 'C':
+            if (take(text, "CHANGE_LAYER")) return layerChange();
+            if (take(text, "COLOR_CHANGE,")) return ofColorChange(text);
+            break;
+        case 'M':
+            if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);
+            break;
+        case ';':
+            if (take(text, "; --- layer ")) return ofKiriLayer(text);
+            break;
+        case 'l':
+            if (take(text, "layer ")) return ofNumberedLayer(text);
+            break;
+        case 't':
+            if (take(text, "tool ")) return ofToolShape(text);
+            break;
+        case 'p':
+            if (take(text, "printing object ")) return ofObject(text);
+            break;
+        case 's':
+            if (take(text, "start printing object, ")) return ofObject(text);
+            if (take(text, "segType:")) return ofSegment(text);
+            if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
+            break;
+        default:
+            break;
+    }
+    constexpr std::size_t kLongestBareName = 26;
+    if (text.size() <= kLongestBareName && text.front() >= 'a' && text.front() <= 'z')
+        if (const auto feature = featureOfBareName(text))
+            return {.kind = Tag::Kind::feature, .feature = *feature, .text = text};
+    return {};
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,29 @@
+// Centre and sweep of a G2/G3 move in the plane, from I/J or from R.
+// Sources: NIST RS274/NGC 3.5.3; Marlin G2_G3.cpp (which of the two centres R means).
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <optional>
+
+namespace stratum::gcode {
+
+struct PlanPoint {
+    double x = 0;  ///< mm
+    double y = 0;  ///< mm
+};
+
+/// How far the end may lie off the circle: this much of the radius, or this many mm if that is more. Slicers write
+/// three decimals; an arc that is further off was not meant, or not written, as an arc.
+constexpr double kArcRelativeTolerance = 0.05;
+constexpr double kArcAbsoluteTolerance = 0.1;
+
+/// The arc from `start` to `end` about start + `offset`. Start and end in one point make a full circle.
+/// nullopt if the radius is zero or the end is off the circle.
+std::optional<Arc> arcFromOffset(PlanPoint start, PlanPoint end, PlanPoint offset, bool clockwise);
+
+/// The arc of `radius` (mm) from `start` to `end`: the shorter one if it is positive, the longer one if negative.
+/// nullopt if the points coincide or lie further apart than the diameter.
+std::optional<Arc> arcFromRadius(PlanPoint start, PlanPoint end, double radius, bool clockwise);
+
+}  // namespace stratum::gcode

@@ -1,0 +1,205 @@
+#include "gcode/toolpath/heights.h"
+
+#include "gcode/toolpath/local_heights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr double kFallbackHeight = 0.2;  // mm
+constexpr double kLeastHeight = 0.01;    // mm; levels closer than this are one level
+constexpr double kMostNominals = 4;      // a gap of more layers than this is air, not a layer
+constexpr double kMostRise = 3;          // mm, the same where the file doesn't say its layer height
+constexpr double kMostBridge = 1.5;      // mm of diameter of a thread in the air
+constexpr double kNearNominal = 0.05;    // of it: what cells of a millimetre blur
+constexpr double kSpiralShare = 0.25;    // of a run's length that must have something below, to tell its height
+constexpr double kLevelShare = 0.3;
+constexpr double kBedShare = 0.1;
+
+// z levels of level beads in micrometres, ascending. Start-up lines (layer 0) are no levels of the part.
+std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z) {
+    std::vector<std::int64_t> levels;
+    for (const Bead& bead : toolpath.beads) {
+        const Run& run = toolpath.runOf(bead);
+        if (run.layer == 0 || std::isnan(run_z[bead.run])) continue;
+        const std::int64_t z = std::llround(bead.z1 * 1000);
+        if (levels.empty() || levels.back() != z) levels.push_back(z);
+    }
+    std::sort(levels.begin(), levels.end());
+    levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    return levels;
+}
+
+// The z of the next lower level, or of the bed.
+double levelBelow(const std::vector<std::int64_t>& levels, double z) {
+    const auto ceiling = std::llround((z - kLeastHeight) * 1000);
+    const auto above = std::upper_bound(levels.begin(), levels.end(), ceiling);
+    return above == levels.begin() ? 0 : std::max(0.0, static_cast<double>(*(above - 1)) / 1000);
+}
+
+double nearNominal(double height, std::optional<double> nominal) {
+    return nominal && std::abs(height - *nominal) < kNearNominal * *nominal ? *nominal : height;
+}
+
+// Is the print a plain stack of equal layers, but for the first? Only otherwise is it worth looking what lies below
+// where.
+bool isPlainStack(const Toolpath& toolpath, std::span<const double> run_z, std::span<const double> heights) {
+    double before = 0;
+    double usual = 0;
+    for (std::size_t k = 0; k < toolpath.runs.size(); ++k) {
+        const double z = run_z[k];
+        if (toolpath.runs[k].layer == 0) continue;
+        if (std::isnan(z)) return false;
+        if (std::abs(z - before) <= kLeastHeight) continue;
+        const double expected = z > before ? z - before : z;
+        if (std::abs(heights[k] - expected) > kLeastHeight) return false;
+        const bool on_bed = std::abs(heights[k] - z) <= kLeastHeight;
+        if (!on_bed && usual == 0) usual = heights[k];
+        if (!on_bed && std::abs(heights[k] - usual) > kLeastHeight) return false;
+        before = z;
+    }
+    return true;
+}
+
+// Heights of runs whose surroundings say otherwise than the levels of the whole print. What neighbouring runs of one
+// level share is decided by all of them.
+void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal,
+                    double first_level, std::vector<double>& heights) {
+    std::vector<bool> wanted(toolpath.runs.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const Run& run = toolpath.runs[k];
+        wanted[k] = !(run.height > 0) && run.layer > 0;
+    }
+    const std::vector<LocalRise> rises = localRises(toolpath, wanted);
+    const double most = nominal ? kMostNominals * *nominal : kMostRise;
+    const auto is_turn = [most](const LocalRise& rise) {
+        return rise.share > kSpiralShare && rise.median >= kLeastHeight && rise.median <= most;
+    };
+    double spiral = 0;
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+        if (!wanted[k]) continue;
+        const LocalRise& rise = rises[k];
+        if (std::isnan(run_z[k])) {
+            if (is_turn(rise)) spiral = rise.median;
+            if (spiral > 0) heights[k] = nearNominal(spiral, nominal);
+        } else if (rise.share > kLevelShare) {
+            if (rise.median > heights[k] + kLeastHeight && rise.median <= most) heights[k] = rise.median;
+        } else if (rise.share < kBedShare && run_z[k] <= 2 * first_level) {
+            heights[k] = run_z[k];  // nothing below and near the bed: the next object's first layer
+        }
+    }
+    // A spiral's first turn has nothing below; it is as high as the one above it.
+    for (std::size_t k = heights.size(); k-- > 0;) {
+        if (!wanted[k] || !std::isnan(run_z[k])) continue;
+        if (is_turn(rises[k]))
+            spiral = rises[k].median;
+        else if (spiral > 0)
+            heights[k] = nearNominal(spiral, nominal);
+    }
+}
+
+// Threads in the air and ironing are round whatever the layer: their height follows from their own area.
+void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
+    std::vector<double> area(toolpath.runs.size());
+    std::vector<double> length(toolpath.runs.size());
+    for (const Bead& bead : toolpath.beads) {
+        const double one = beadLength(toolpath, bead);
+        area[bead.run] += static_cast<double>(bead.width) * one;
+        length[bead.run] += one;
+    }
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+        const Run& run = toolpath.runs[k];
+        if (run.height > 0 || !(length[k] > 0)) continue;
+        const double diameter = 2 * std::sqrt(area[k] / length[k] / std::numbers::pi);
+        if (run.feature == Feature::bridge) heights[k] = std::max(heights[k], std::min(diameter, kMostBridge));
+        if (run.feature == Feature::ironing && heights[k] >= kLeastHeight)
+            heights[k] = std::clamp(diameter, kLeastHeight, heights[k]);
+    }
+}
+
+// Layers of a spiral were counted by a guess where the file doesn't tell its layer height.
+void recountSpiral(Toolpath& toolpath, std::span<const double> run_z, const std::vector<double>& heights) {
+    std::vector<double> top(toolpath.runs.size());
+    for (const Bead& bead : toolpath.beads) top[bead.run] = std::max(bead.z0, bead.z1);
+    double layer = 0;
+    double before = 0;
+    for (std::size_t k = 0; k < toolpath.runs.size(); ++k) {
+        Run& run = toolpath.runs[k];
+        if (run.layer == 0) continue;
+        if (!std::isnan(run_z[k])) {
+            layer = std::max(layer, static_cast<double>(run.layer));
+        } else if (before > 0 && heights[k] > 0) {
+            layer += (top[k] - before) / heights[k];
+            run.layer = static_cast<std::uint32_t>(std::clamp(std::ceil(layer - 0.05), 1.0, 1e9));
+        }
+        before = top[k];
+    }
+}
+
+class Nominal {
+public:
+    Nominal(std::optional<double> height, WarningLog& warnings) : height_(height), warnings_(warnings) {}
+
+    double at(std::uint32_t line) {
+        if (height_) return *height_;
+        warnings_.add("the file doesn't tell its layer height; 0.2 mm is used (set it with --layer-height)", line);
+        return kFallbackHeight;
+    }
+
+private:
+    std::optional<double> height_;
+    WarningLog& warnings_;
+};
+
+}  // namespace
+
+std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal,
+                                WarningLog& warnings) {
+    const std::size_t count = toolpath.runs.size();
+    const std::vector<std::int64_t> levels = levelsOf(toolpath, run_z);
+    std::vector<double> heights(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Run& run = toolpath.runs[k];
+        heights[k] = run.height > 0         ? static_cast<double>(run.height)
+                     : std::isnan(run_z[k]) ? nominal.value_or(0)
+                     : run.layer > 0        ? run_z[k] - levelBelow(levels, run_z[k])
+                                            : run_z[k];
+    }
+    if (!isPlainStack(toolpath, run_z, heights)) {
+        const double first_level = levels.empty() ? 0 : static_cast<double>(levels.front()) / 1000;
+        correctByPlace(toolpath, run_z, nominal, first_level, heights);
+        if (!nominal) recountSpiral(toolpath, run_z, heights);
+    }
+    roundByFeature(toolpath, heights);
+
+    std::vector<std::uint32_t> lines(count);
+    for (auto bead = toolpath.beads.rbegin(); bead != toolpath.beads.rend(); ++bead)
+        lines[bead->run] = toolpath.lineOf(*bead);
+    Nominal fallback(nominal, warnings);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Run& run = toolpath.runs[k];
+        double& height = heights[k];
+        if (run.height > 0) continue;
+        if (run.layer == 0) {
+            // A start-up line rests on the bed, unless it is a blob in the air.
+            const double usual = nominal ? *nominal : height <= kMostRise / 2 ? height : fallback.at(lines[k]);
+            if (!(height >= kLeastHeight && height <= 2 * usual)) height = usual;
+        } else if (std::isnan(run_z[k])) {
+            if (!(height > 0)) height = fallback.at(lines[k]);
+        } else if (!(height >= kLeastHeight)) {
+            warnings.add("extrusion at or below the bed (z <= 0); the nominal layer height is used", lines[k]);
+            height = fallback.at(lines[k]);
+        } else if (nominal && height > kMostNominals * *nominal) {
+            warnings.add("extrusion far above anything below it; the nominal layer height is used", lines[k]);
+            height = *nominal;
+        }
+        if (!(height > 0)) height = fallback.at(lines[k]);
+    }
+    return heights;
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,209 @@
+#include "gcode/toolpath/stated.h"
+
+#include "gcode/text/number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::size_t kMostTools = 256;
+constexpr double kLongest = 1e9;  // s, thirty years
+
+std::string_view trim(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+// The positive number at the start of the text, up to `most`.
+std::optional<double> positive(std::string_view text, double most) {
+    const char* p = text.data();
+    double value = 0;
+    if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
+    return value;
+}
+
+// Each part of a list, trimmed.
+template <typename Take>
+void split(std::string_view text, std::string_view separators, const Take& part) {
+    for (std::size_t i = 0; !text.empty() && i < kMostTools; ++i) {
+        const auto cut = std::min(text.find_first_of(separators), text.size());
+        part(i, trim(text.substr(0, cut)));
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+}
+
+// Grams by tool, added; absent if one is no number, or all are 0, which slicers write where they know no density.
+std::optional<double> sum(std::string_view text) {
+    double total = 0;
+    bool good = true;
+    split(text, ",;", [&](std::size_t, std::string_view part) {
+        const char* p = part.data();
+        double value = 0;
+        good = good && parseNumber(p, p + part.size(), value) && value >= 0 && value < 1e9;
+        total += value;
+    });
+    return good && total > 0 ? std::optional(total) : std::nullopt;
+}
+
+// The tool of "Extruder 1 Material", which it removes from the text up to what follows the number.
+std::optional<std::size_t> takeTool(std::string_view& text, std::string_view prefix) {
+    if (!text.starts_with(prefix) || text.size() == prefix.size()) return std::nullopt;
+    const char digit = text[prefix.size()];
+    if (digit < '0' || digit > '9') return std::nullopt;
+    text.remove_prefix(prefix.size() + 1);
+    return static_cast<std::size_t>(digit - '0');
+}
+
+}  // namespace
+
+std::optional<double> parseDuration(std::string_view text) {
+    constexpr std::array kUnits{std::pair{'d', 86400.0}, std::pair{'h', 3600.0}, std::pair{'m', 60.0},
+                                std::pair{'s', 1.0}};
+    text = trim(text);
+    double total = 0;
+    bool any = false;
+    bool units = false;  // so that what follows may be prose; a date begins with a number too
+    while (!text.empty()) {
+        const char* p = text.data();
+        const char* const end = p + text.size();
+        double value = 0;
+        if (!parseNumber(p, end, value) || value < 0) return units ? std::optional(total) : std::nullopt;
+        text.remove_prefix(static_cast<std::size_t>(p - text.data()));
+        text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+        const auto word = static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), isLetter) - text.begin());
+        const auto* unit = std::find_if(kUnits.begin(), kUnits.end(),
+                                        [&](const auto& one) { return word > 0 && (text[0] | 0x20) == one.first; });
+        if (unit == kUnits.end() && (any || word > 0)) return units ? std::optional(total) : std::nullopt;
+        total += value * (unit == kUnits.end() ? 1 : unit->second);
+        any = true;
+        units = units || word > 0;
+        text.remove_prefix(word);
+        text.remove_prefix(std::min(text.find_first_not_of(" :,"), text.size()));
+    }
+    return any && total <= kLongest ? std::optional(total) : std::nullopt;
+}
+
+std::string describeDuration(double seconds) {
+    const auto whole = std::llround(seconds);
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+    return fmt::format("{} h {} min {} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+bool StatedFacts::empty() const {
+    return !seconds && !model_seconds && !grams && materials.empty() && nozzle_diameters.empty() && printer.empty() &&
+           !layer_height && !first_layer_height;
+}
+
+void StatedReader::comment(std::string_view text) {
+    if (const auto equals = text.find(" = "); equals != std::string_view::npos)
+        return pair(text.substr(0, equals), trim(text.substr(equals + 3)));
+    // BambuStudio states two times in one comment.
+    if (text.starts_with("model printing time:"))
+        if (const auto cut = text.find(';'); cut != std::string_view::npos) {
+            comment(trim(text.substr(cut + 1)));
+            text = text.substr(0, cut);
+        }
+    if (text.starts_with("--- ") && text.ends_with(" ---")) text = trim(text.substr(4, text.size() - 8));  // Kiri:Moto
+    if (const auto colon = text.find(':'); colon != std::string_view::npos)
+        return sentence(trim(text.substr(0, colon)), trim(text.substr(colon + 1)));
+    if (const auto comma = text.find(','); comma != std::string_view::npos)
+        setting(text.substr(0, comma), trim(text.substr(comma + 1)));
+}
+
+void StatedReader::pair(std::string_view key, std::string_view value) {
+    if (key == "estimated printing time (normal mode)" || key == "estimated printing time") {
+        if (const auto time = parseDuration(value)) facts_.seconds = time;
+    } else if (key == "total filament used [g]") {
+        if (const auto grams = sum(value)) {
+            facts_.grams = grams;
+            total_grams_ = true;
+        }
+    } else if (key == "filament used [g]") {
+        if (const auto grams = sum(value); grams && !total_grams_) facts_.grams = grams;
+    } else if (key == "filament_type") {
+        split(value, ";,", [this](std::size_t tool, std::string_view name) { setMaterial(tool, name); });
+    } else if (key == "nozzle_diameter") {
+        split(value, ",;", [this](std::size_t tool, std::string_view size) { setNozzle(tool, size); });
+    } else if (key == "printer_model" || key == "printer_name") {
+        if (!value.empty()) facts_.printer = value;
+    } else if (key == "printer_settings_id") {
+        profile_ = value;
+    } else if (key == "layer_height" || key == "sliceHeight" || key == "layer_thickness_mm") {
+        if (const auto height = positive(value, 100)) facts_.layer_height = height;
+    } else if (key == "first_layer_height" || key == "initial_layer_print_height" || key == "firstSliceHeight" ||
+               key == "first_layer_thickness_mm") {
+        const bool share = value.ends_with('%');
+        const auto height = positive(value, share ? 1000 : 100);
+        if (share && height) first_share_ = *height / 100;
+        if (!share && height) facts_.first_layer_height = height;
+    }
+}
+
+void StatedReader::sentence(std::string_view key, std::string_view value) {
+    if (key == "TIME" || key == "PRINT.TIME" || key == "Print Time" || key == "Print time" || key == "print time" ||
+        key == "Build time" || key == "Estimated Build Time" || key == "total estimated time" ||
+        key == "estimated_time(s)" || key == "Estimated Print Time") {
+        if (const auto time = parseDuration(value)) facts_.seconds = time;
+    } else if (key == "model printing time") {
+        facts_.model_seconds = parseDuration(value);
+    } else if (key == "total filament weight [g]" || key == "Plastic weight") {
+        if (const auto grams = sum(value)) facts_.grams = grams;
+    } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer") {
+        if (!value.empty()) facts_.printer = value;
+    } else if (key == "right_extruder_material" || key == "left_extruder_material") {
+        setMaterial(key.starts_with("left") ? 1 : 0, value);
+    } else if (key == "layer_height" || key == "Layer height") {
+        if (const auto height = positive(value, 100)) facts_.layer_height = height;
+    } else if (const auto train = takeTool(key, "EXTRUDER_TRAIN.")) {
+        if (key == ".NOZZLE.DIAMETER") setNozzle(*train, value);
+    } else if (const auto extruder = takeTool(key, "Extruder ")) {
+        if (key == " Nozzle Size") setNozzle(*extruder, value);
+        if (key == " Material") setMaterial(*extruder, value);
+    }
+}
+
+void StatedReader::setting(std::string_view key, std::string_view value) {
+    if (key == "printMaterial") {
+        setMaterial(0, value);
+    } else if (key == "extruderDiameter") {
+        split(value, ",|", [this](std::size_t tool, std::string_view size) { setNozzle(tool, size); });
+    } else if (key == "profileName") {
+        profile_ = value;
+    } else if (key == "layerHeight") {
+        facts_.layer_height = positive(value, 100);
+    } else if (key == "firstLayerHeightPercentage") {
+        if (const auto share = positive(value, 1000)) first_share_ = *share / 100;
+    }
+}
+
+void StatedReader::setMaterial(std::size_t tool, std::string_view name) {
+    if (name.empty()) return;
+    if (facts_.materials.size() <= tool) facts_.materials.resize(tool + 1);
+    facts_.materials[tool] = name;
+}
+
+void StatedReader::setNozzle(std::size_t tool, std::string_view diameter) {
+    const auto size = positive(diameter, 100);
+    if (!size) return;
+    if (facts_.nozzle_diameters.size() <= tool) facts_.nozzle_diameters.resize(tool + 1);
+    facts_.nozzle_diameters[tool] = *size;
+}
+
+StatedFacts StatedReader::finish() {
+    if (facts_.printer.empty()) facts_.printer = profile_;
+    if (!facts_.first_layer_height && first_share_ && facts_.layer_height)
+        facts_.first_layer_height = *first_share_ * *facts_.layer_height;
+    return std::move(facts_);
+}
+
+}  // namespace stratum::gcode

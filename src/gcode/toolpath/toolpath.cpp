@@ -1,0 +1,79 @@
+#include "gcode/toolpath/toolpath.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::array<std::string_view, kFeatureCount> kFeatureNames{
+    "unknown",
+    "perimeter",
+    "external-perimeter",
+    "overhang-perimeter",
+    "infill",
+    "solid-infill",
+    "top-infill",
+    "bridge",
+    "gap-fill",
+    "ironing",
+    "skirt",
+    "brim",
+    "support",
+    "support-interface",
+    "wipe-tower",
+    "custom",
+};
+
+}  // namespace
+
+std::string_view featureName(Feature feature) {
+    const auto i = static_cast<std::size_t>(feature);
+    return i < kFeatureCount ? kFeatureNames[i] : "unknown";
+}
+
+Feature featureNamed(std::string_view name) {
+    const auto found = std::find(kFeatureNames.begin(), kFeatureNames.end(), name);
+    return static_cast<Feature>(found - kFeatureNames.begin());
+}
+
+double beadLength(const Toolpath& toolpath, const Bead& bead) {
+    double plan = 0;
+    if (bead.arc < 0) {
+        plan = std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0);
+    } else {
+        const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+        const double radius = 0.5 * (std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y) +
+                                     std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y));
+        plan = radius * std::abs(arc.sweep);
+    }
+    return std::hypot(plan, bead.z1 - bead.z0);
+}
+
+double beadSeconds(const Toolpath& toolpath, const Bead& bead) {
+    const double speed = toolpath.runOf(bead).speed;
+    return speed > 0 ? beadLength(toolpath, bead) / speed : 0;
+}
+
+double sectionArea(double width, double height) {
+    constexpr double kQuarterPi = std::numbers::pi / 4;
+    if (width < height) return kQuarterPi * width * width;
+    return height * (width - height * (1 - kQuarterPi));
+}
+
+double sectionWidth(double area, double height) {
+    constexpr double kQuarterPi = std::numbers::pi / 4;
+    if (area < kQuarterPi * height * height) return std::sqrt(area / kQuarterPi);
+    return area / height + height * (1 - kQuarterPi);
+}
+
+double beadVolume(const Toolpath& toolpath) {
+    double volume = 0;
+    for (const Bead& bead : toolpath.beads)
+        volume += sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height)) *
+                  beadLength(toolpath, bead);
+    return volume;
+}
+
+}  // namespace stratum::gcode

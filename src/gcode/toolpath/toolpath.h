@@ -1,0 +1,154 @@
+// The seam between reading G-code and everything after it: beads as plain data.
+//
+// Print space: millimetres, x and y in the bed plane, z up, as the G-code has them. One bead is one extruding move.
+// Sources: Marlin G0-G3 (marlinfw.org/docs/gcode), Slic3r's flow math for the stadium cross-section.
+#pragma once
+
+#include "gcode/container/packed_double.h"
+#include "gcode/toolpath/color.h"
+#include "gcode/toolpath/stated.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// What a bead is for, in one vocabulary for all slicers. Names as in featureName().
+enum class Feature : std::uint8_t {
+    unknown,
+    perimeter,
+    external_perimeter,
+    overhang_perimeter,
+    infill,
+    solid_infill,
+    top_infill,
+    bridge,
+    gap_fill,
+    ironing,
+    skirt,
+    brim,
+    support,
+    support_interface,
+    wipe_tower,
+    custom,
+    count_
+};
+constexpr std::size_t kFeatureCount = static_cast<std::size_t>(Feature::count_);
+
+/// Lower-case name with dashes, e.g. "external-perimeter".
+std::string_view featureName(Feature feature);
+/// The feature of that name, or Feature::count_ if there is none.
+Feature featureNamed(std::string_view name);
+
+/// A circular plan path. The path starts at the bead's start, turns by `sweep` radians (counter-clockwise positive,
+/// |sweep| <= 2 pi) about the centre, with z linear in the angle. Its radius is the mean of the distances of start and
+/// end from the centre, so that a file's rounding (a micrometre) is shared by both ends.
+struct Arc {
+    double center_x = 0;     ///< mm
+    double center_y = 0;     ///< mm
+    double sweep = 0;        ///< radians
+    std::uint32_t line = 0;  ///< 1-based line in the source
+};
+
+/// One extruding move. Coordinates are of the nozzle: z is the top of the bead. Millions of these are the memory of a
+/// large print, so nothing is padded.
+struct Bead {
+    PackedDouble x0{}, y0{}, z0{};  ///< mm, start
+    PackedDouble x1{}, y1{}, z1{};  ///< mm, end
+    float width = 0;                ///< mm; width >= height: stadium section; width < height: round, of this diameter
+    std::uint32_t run = 0;          ///< index into Toolpath::runs
+    std::int32_t arc = -1;          ///< >= 0: index into Toolpath::arcs; < 0: straight, minus its line in the source
+};
+static_assert(sizeof(Bead) == 60);
+
+/// What neighbouring beads have in common; a bead names its run by index.
+struct Run {
+    float height = 0;          ///< mm, of the layer: the bead's centre is at z - height / 2
+    float speed = 0;           ///< mm/s, the feed rate in force
+    std::uint32_t layer = 0;   ///< 1, 2, ... as slicers count; 0 is what comes before the first layer (prime lines)
+    std::uint16_t object = 0;  ///< index into Toolpath::objects; 0 is "no object"
+    std::uint8_t tool = 0;     ///< T number
+    Feature feature = Feature::unknown;
+    bool operator==(const Run&) const = default;
+};
+
+/// A remark about the input that changed nothing fatal. Equal texts are counted, not repeated.
+struct Warning {
+    std::string text;
+    std::uint32_t first_line = 0;
+    std::uint32_t count = 0;
+};
+
+/// The filament of a tool has another colour from a bead on (a manual change of filament).
+struct ColorChange {
+    std::uint32_t first_bead = 0;  ///< index into Toolpath::beads; may be one past the last
+    std::uint8_t tool = 0;
+    Rgb color{};
+};
+
+/// When a bead is laid and how fast, as the machine's planner has it (src/motion).
+struct BeadTiming {
+    double start = 0;   ///< s since the program's begin
+    float seconds = 0;  ///< that it takes
+    float entry = 0;    ///< mm/s along the path, at its start
+    float peak = 0;     ///< mm/s, the highest on it
+    float exit = 0;     ///< mm/s, at its end
+};
+
+/// Everything that one G-code file deposits, in print order.
+struct Toolpath {
+    std::vector<Bead> beads;
+    std::vector<Arc> arcs;
+    std::vector<Run> runs;
+    std::vector<std::string> objects{""};  ///< names of labelled objects; [0] is unlabelled
+    std::vector<Warning> warnings;
+
+    std::string slicer;               ///< e.g. "PrusaSlicer 2.5.0"; empty if the file doesn't say
+    std::string firmware;             ///< the rule set used, e.g. "marlin"
+    std::string format = "ascii";     ///< the container
+    double filament_diameter = 1.75;  ///< mm, of tool 0
+    double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
+    std::uint32_t layer_count = 0;
+    /// By tool, from the file's settings; empty for a tool of which they state none; may be short. bead_colors.h asks
+    /// it.
+    std::vector<std::optional<Rgb>> tool_colors;
+    std::vector<ColorChange> color_changes;  ///< in print order
+    std::vector<BeadTiming> timing;          ///< by bead; empty unless its motion was planned
+    std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
+    std::vector<double> footer_by_tool;      ///< mm that the file itself says each tool uses; empty if it doesn't say
+    double footer_mm = 0;                    ///< mm that the file says all tools use; 0 if it doesn't say
+    StatedFacts stated;                      ///< what the file says of time, weight, material, nozzle, printer, layers
+    std::string extrusion_rule;              ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
+    std::string firmware_reason;             ///< why that rule set was chosen
+    std::string cut_short;                   ///< why the program seems to end too early; empty if it doesn't
+    double filament_mm = 0;                  ///< positive E of the beads as the file counts it, in mm of filament
+    double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
+
+    const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
+    /// 1-based line in the source; what lies beyond line 2147483647 is said to lie there.
+    std::uint32_t lineOf(const Bead& bead) const {
+        return bead.arc < 0 ? static_cast<std::uint32_t>(-bead.arc) : arcs[static_cast<std::size_t>(bead.arc)].line;
+    }
+    bool empty() const { return beads.empty(); }
+};
+
+/// Length of the path of a bead in mm, its climb included.
+double beadLength(const Toolpath& toolpath, const Bead& bead);
+
+/// Seconds that laying a bead takes at the speed it was asked for, accelerations left out; 0 where the file tells no
+/// speed.
+double beadSeconds(const Toolpath& toolpath, const Bead& bead);
+
+/// Area of a bead's cross-section in mm^2: a stadium of `width` x `height`, or a disc of diameter `width` if narrower.
+double sectionArea(double width, double height);
+
+/// Inverse of sectionArea: the width in mm that gives `area` (mm^2) at `height` (mm).
+double sectionWidth(double area, double height);
+
+/// Sum over beads of section area times length, in mm^3.
+double beadVolume(const Toolpath& toolpath);
+
+}  // namespace stratum::gcode

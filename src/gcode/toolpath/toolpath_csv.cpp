@@ -1,0 +1,57 @@
+#include "gcode/toolpath/toolpath_csv.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iterator>
+#include <memory>
+
+namespace stratum::gcode {
+namespace {
+
+struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& path) {
+    constexpr std::size_t kChunk = std::size_t{1} << 18;
+    AtomicFile output(path);
+    std::unique_ptr<std::FILE, Close> file(std::fopen(output.temporary().c_str(), "wb"));
+    fmt::memory_buffer text;
+    const auto flush = [&] {
+        if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size())
+            throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+        text.clear();
+    };
+    fmt::format_to(std::back_inserter(text),
+                   "line,layer,feature,tool,object,x0,y0,z0,x1,y1,z1,center_x,center_y,sweep,width,height,length,"
+                   "volume,speed\n");
+    for (const Bead& bead : toolpath.beads) {
+        const Run& run = toolpath.runOf(bead);
+        const double length = beadLength(toolpath, bead);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},", toolpath.lineOf(bead), run.layer,
+                       featureName(run.feature), run.tool, run.object, bead.x0, bead.y0, bead.z0, bead.x1, bead.y1,
+                       bead.z1);
+        if (bead.arc >= 0) {
+            const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+            fmt::format_to(std::back_inserter(text), "{},{},{},", arc.center_x, arc.center_y, arc.sweep);
+        } else {
+            fmt::format_to(std::back_inserter(text), ",,,");
+        }
+        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", bead.width, run.height, length,
+                       length * sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height)),
+                       run.speed);
+        if (text.size() >= kChunk) flush();
+    }
+    flush();
+    if (std::fclose(file.release()) != 0)
+        throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    output.commit();
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,28 @@
+#include "gcode/toolpath/warning_log.h"
+
+#include <utility>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::size_t kMaxTexts = 100;
+constexpr std::string_view kOverflow = "more kinds of warnings than are listed";
+
+}  // namespace
+
+void WarningLog::add(std::string_view text, std::uint32_t line) {
+    if (const auto found = index_.find(text); found != index_.end()) {
+        ++warnings_[found->second].count;
+        return;
+    }
+    if (warnings_.size() >= kMaxTexts && text != kOverflow) return add(kOverflow, line);
+    index_.emplace(text, warnings_.size());
+    warnings_.push_back({std::string(text), line, 1});
+}
+
+std::vector<Warning> WarningLog::take() {
+    index_.clear();
+    return std::exchange(warnings_, {});
+}
+
+}  // namespace stratum::gcode

@@ -1,0 +1,47 @@
+// Normals that don't show the cells of the grid.
+#pragma once
+
+#include "march/file/leaf_field.h"
+
+#include <openvdb/openvdb.h>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <memory>
+
+namespace stratum::march {
+
+/// Single samples of a level set, world units. One a thread.
+class SampleReader {
+public:
+    virtual ~SampleReader() = default;
+    virtual float at(const openvdb::Coord& place) = 0;
+};
+
+/// The gradient of the trilinear field has a step at every face between cells, which gloss shows as facets. Central
+/// differences over a voxel to each side have none, but blur what is sharp: a crease between two beads. So both are
+/// mixed by how much the field bends within that voxel: below kSmooth (voxels per voxel of slope: a radius of 3 voxels)
+/// central differences, above kCrease the gradient in the cell.
+/// One a thread. Keeps a reference to the grid or field. World space.
+class SmoothNormal {
+public:
+    static constexpr double kSmooth = 0.33;
+    static constexpr double kCrease = 0.7;
+
+    explicit SmoothNormal(const openvdb::FloatGrid& grid);
+    explicit SmoothNormal(const LeafField& field);
+    /// @param position   a point of the surface
+    /// @param geometric  the unit normal there, in the cell
+    /// Unit length, and on the side of `geometric`, which is the answer where the field has no slope.
+    glm::dvec3 at(const glm::dvec3& position, const glm::dvec3& geometric);
+
+private:
+    SmoothNormal(const openvdb::math::Transform& transform, std::unique_ptr<SampleReader> samples);
+    double field(const glm::dvec3& p);
+
+    openvdb::math::MapBase::ConstPtr map_;
+    std::unique_ptr<SampleReader> samples_;
+    glm::dmat3 to_index_;  // of directions; its transpose takes gradients to world space
+};
+
+}  // namespace stratum::march

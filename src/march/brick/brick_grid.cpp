@@ -1,0 +1,434 @@
+#include "march/brick/brick_grid.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <type_traits>
+#include <utility>
+
+namespace stratum::march {
+namespace {
+
+constexpr std::size_t kGrain = 16;  // macro cells a task: many enough to find their neighbours in the cache
+
+// Samples of a level set reach no further than its band; what does is put at its edge.
+double quantumOf(float background, BrickValues values) {
+    return values == BrickValues::Int16 ? static_cast<double>(background) / kMostQuanta : 1;
+}
+
+// Converted leaves that a thread has used lately: those that neighbouring bricks share are converted once. The eight of
+// one brick have places of their own.
+template <typename T>
+class LeafCache {
+public:
+    struct Entry {
+        std::uint64_t key = 0;  // see keyOf()
+        bool uniform = false;   // background, all of it
+        LeafSamples<T> samples;
+        CapSamples<T> above;  // of a field
+    };
+    static std::uint64_t keyOf(int x, int y, int z) {
+        const auto part = [](int c) { return static_cast<std::uint64_t>(c) + 1; };
+        return part(x) << 42 | part(y) << 21 | part(z);
+    }
+    Entry& at(int x, int y, int z) {
+        return entries_[static_cast<std::size_t>((x & kLast) << (2 * kBits) | (y & kLast) << kBits | (z & kLast))];
+    }
+
+private:
+    static constexpr int kBits = 3;
+    static constexpr int kLast = (1 << kBits) - 1;
+    std::vector<Entry> entries_ = std::vector<Entry>(std::size_t{1} << (3 * kBits));
+};
+
+}  // namespace
+
+// Makes bricks of leaves, from any thread.
+class BrickGrid::Layouter {
+public:
+    Layouter(const BrickGrid& grid, const LeafSource& source, std::shared_ptr<const LeafSource> owned,
+             std::vector<std::uint32_t> leaves)
+        : grid_(grid),
+          source_(&source),
+          owned_(std::move(owned)),
+          leaves_(std::move(leaves)),
+          scale_(static_cast<float>(1 / quantumOf(source.background(), grid.values_))) {}
+    Layouter(const BrickGrid& grid, std::shared_ptr<const LeafField> field)
+        : grid_(grid),
+          source_(nullptr),
+          field_(std::move(field)),
+          scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))) {}
+
+    // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
+    std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
+
+    // Coordinates in bricks. False if there is no room.
+    bool layOut(std::size_t brick, int x, int y, int z) const {
+        if (!grid_.slots_.anyLeft()) return false;
+        return grid_.values_ == BrickValues::Float32
+                   ? layOut(brick, x, y, z, grid_.floats_.data(), float_caches_.local())
+                   : layOut(brick, x, y, z, grid_.quanta_.data(), quanta_caches_.local());
+    }
+
+    // All bricks of a macro cell, one after the other in memory, without those that turn out to have no surface.
+    // Returns the macro cell as it is then. Coordinates in macro cells.
+    MacroCell layOutAll(int x, int y, int z) const {
+        return grid_.values_ == BrickValues::Float32 ? layOutAll(x, y, z, grid_.floats_.data(), float_caches_.local())
+                                                     : layOutAll(x, y, z, grid_.quanta_.data(), quanta_caches_.local());
+    }
+
+    // What it remembers of leaves is no longer so.
+    void forgetLeaves() const {
+        float_caches_.clear();
+        quanta_caches_.clear();
+    }
+    const LeafField* field() const { return field_.get(); }
+
+private:
+    template <typename T>
+    bool layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+        const BrickParts<T> parts = partsOf(x, y, z, cache);
+        const CellBits surface = surfaceOf(parts);
+        std::uint32_t slot = BrickSlots::kNoSamples;
+        if (hasAny(surface)) {
+            slot = grid_.slots_.take(brick);
+            if (slot == 0) return false;  // another thread was faster
+            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
+        }
+        for (std::size_t part = 0; part < surface.size(); ++part)
+            std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
+        grid_.slots_.publish(brick, slot);
+        return true;
+    }
+
+    template <typename T>
+    MacroCell layOutAll(int x, int y, int z, T* samples, LeafCache<T>& cache) const {
+        const std::uint64_t listed = grid_.macroCell(x, y, z).bricks;
+        std::array<BrickParts<T>, 64> parts;
+        std::array<CellBits, 64> surface;
+        MacroCell made;
+        std::size_t count = 0;
+        for (std::uint64_t rest = listed; rest != 0; rest &= rest - 1) {
+            const int bit = std::countr_zero(rest);
+            // The leaves of one macro cell and its neighbours have places of their own in the cache.
+            parts[count] = partsOf(4 * x + (bit >> 4), 4 * y + (bit >> 2 & 3), 4 * z + (bit & 3), cache);
+            surface[count] = surfaceOf(parts[count]);
+            if (!hasAny(surface[count])) continue;
+            made.bricks |= std::uint64_t{1} << bit;
+            ++count;
+        }
+        made.first_brick = grid_.slots_.takeRow(static_cast<std::uint32_t>(count));
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::size_t brick = made.first_brick + n;
+            march::layOut(parts[n], samples + static_cast<std::ptrdiff_t>(brick) * kBrickSamples);
+            for (std::size_t part = 0; part < surface[n].size(); ++part) grid_.clear_[brick][part] = ~surface[n][part];
+        }
+        return made;
+    }
+
+    static bool hasAny(const CellBits& bits) {
+        return std::any_of(bits.begin(), bits.end(), [](std::uint64_t word) { return word != 0; });
+    }
+
+    template <typename T>
+    BrickParts<T> partsOf(int x, int y, int z, LeafCache<T>& cache) const {
+        BrickParts<T> parts;
+        for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
+            const int px = x + static_cast<int>(part >> 1);
+            const int py = y + static_cast<int>(part & 1);
+            if (field_) {
+                const auto* made = madeAt(px, py, z, cache);
+                if (made != nullptr) {
+                    parts.leaf[part] = &made->samples;
+                    parts.cap[part] = Cap<T>(made->above);
+                } else {
+                    parts.tile[part] = parts.cap_tile[part] = march::convert(field_->background(), scale_, T{});
+                }
+                continue;
+            }
+            parts.leaf[part] = leafAt(px, py, z, cache);
+            if (parts.leaf[part] == nullptr) parts.tile[part] = tileAt(px, py, z, T{});
+            if (const auto* next = leafAt(px, py, z + 1, cache))
+                parts.cap[part] = Cap<T>(*next);
+            else
+                parts.cap_tile[part] = tileAt(px, py, z + 1, T{});
+        }
+        return parts;
+    }
+
+    template <typename T>
+    T tileAt(int x, int y, int z, T type) const {
+        return march::convert(source_->tile(coordOf(x, y, z)), scale_, type);
+    }
+
+    openvdb::Coord coordOf(int x, int y, int z) const {
+        return grid_.origin_.offsetBy(x * kBrickEdge, y * kBrickEdge, z * kBrickEdge);
+    }
+
+    // Of the source, null where it has no leaf.
+    template <typename T>
+    const LeafSamples<T>* leafAt(int x, int y, int z, LeafCache<T>& cache) const {
+        if (x >= 4 * grid_.macros_[0] || y >= 4 * grid_.macros_[1] || z >= 4 * grid_.macros_[2]) return nullptr;
+        const MacroCell& macro = grid_.macroCell(x >> 2, y >> 2, z >> 2);
+        if ((macro.bricks >> Mask64::bit(x & 3, y & 3, z & 3) & 1) == 0) return nullptr;
+        auto& entry = cache.at(x, y, z);
+        const std::uint64_t key = cache.keyOf(x, y, z);
+        if (entry.key == key) return &entry.samples;
+        entry.key = 0;  // in case that reading throws
+        alignas(64) float scratch[LeafSource::kLeafSamples];
+        const std::uint32_t leaf = leaves_[brickIndex(macro, x & 3, y & 3, z & 3)];
+        keep(source_->samples(leaf, scratch), source_->name(), source_->origin(leaf), entry.samples);
+        entry.key = key;
+        return &entry.samples;
+    }
+
+    // Of the field, null where all is background.
+    template <typename T>
+    const typename LeafCache<T>::Entry* madeAt(int x, int y, int z, LeafCache<T>& cache) const {
+        auto& entry = cache.at(x, y, z);
+        const std::uint64_t key = cache.keyOf(x, y, z);
+        if (entry.key != key) {
+            entry.key = 0;  // in case that making throws
+            FieldSamples made;
+            const openvdb::Coord at = coordOf(x, y, z);
+            entry.uniform = !field_->samples(at, made);
+            if (!entry.uniform) {
+                keep(made.leaf.data(), field_->name(), at, entry.samples);
+                keep(made.above.data(), field_->name(), at, entry.above);
+            }
+            entry.key = key;
+        }
+        return entry.uniform ? nullptr : &entry;
+    }
+
+    template <typename Samples>
+    void keep(const float* samples, const std::string& name, const openvdb::Coord& at, Samples& out) const {
+        if (march::convert(samples, scale_, out)) return;
+        throw InputError(
+            fmt::format("the level set {} has a voxel that is not a finite number, among the 8 x 8 x 8 voxels from "
+                        "index ({}, {}, {}); make the grid again",
+                        name, at[0], at[1], at[2]));
+    }
+
+    const BrickGrid& grid_;
+    // One of both is there.
+    const LeafSource* const source_;
+    const std::shared_ptr<const LeafSource> owned_;
+    const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
+    const std::shared_ptr<const LeafField> field_;
+    const float scale_;
+    mutable std::array<std::mutex, 64> doors_;
+    mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
+    mutable tbb::enumerable_thread_specific<LeafCache<std::int16_t>> quanta_caches_;
+};
+
+BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
+    const Layouter layouter(*this, source, nullptr, listBricks(source, false, kNoBound));
+    HugeArray<MacroCell> made(macro_cells_.size());  // neighbours still need what is listed
+    parallelFor(made.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n) {
+            if (macro_cells_[n].bricks == 0) continue;
+            const auto ny = static_cast<std::size_t>(macros_[1]);
+            const auto nz = static_cast<std::size_t>(macros_[2]);
+            made[n] = layouter.layOutAll(static_cast<int>(n / nz / ny), static_cast<int>(n / nz % ny),
+                                         static_cast<int>(n % nz));
+        }
+    });
+    macro_cells_ = std::move(made);
+    listed_ = brickCount();
+    measureEmptySpace();
+}
+
+BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes)
+    : values_(values) {
+    const LeafSource& leaves = *source;
+    layouter_ =
+        std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves, true, cache_bytes));
+    measureEmptySpace();
+}
+
+BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes)
+    : values_(values) {
+    listBricks(*field, cache_bytes);
+    layouter_ = std::make_unique<const Layouter>(*this, std::move(field));
+    measureEmptySpace();
+}
+
+BrickGrid::~BrickGrid() = default;
+
+bool BrickGrid::require(std::size_t brick, int x, int y, int z) const {
+    if (slots_.of(brick) != 0) return true;
+    const std::scoped_lock lock(layouter_->doorOf(brick));
+    if (slots_.of(brick) != 0) return true;
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const bool there = layouter_->layOut(brick, x, y, z);
+    layout_ns_.fetch_add(std::chrono::nanoseconds(Clock::now() - start).count(), std::memory_order_relaxed);
+    return there;
+}
+
+std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
+    while (!require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge)) slots_.makeRoom(true);
+    if (slots_.bounded()) {
+        if (const std::uint32_t slot = slots_.of(brick); slot != BrickSlots::kNoSamples) slots_.mark(slot);
+        slots_.count(1);
+    }
+    return surface(brick, part);
+}
+
+void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
+    const LeafField& field = *layouter_->field();
+    const BrickMap& map = field.bricks();
+    layouter_->forgetLeaves();
+    for (const openvdb::Coord& leaf : leaves)
+        for (int part = 0; part < 8; ++part) {
+            // The leaf's own brick, and those before it that take its first samples.
+            const openvdb::Coord at =
+                (leaf - origin_)
+                    .offsetBy(-(part >> 2) * kBrickEdge, -(part >> 1 & 1) * kBrickEdge, -(part & 1) * kBrickEdge);
+            if (at[0] < 0 || at[1] < 0 || at[2] < 0 || at[0] >= size_[0] || at[1] >= size_[1] || at[2] >= size_[2])
+                continue;
+            const std::size_t n = macroIndex(at[0] / kMacroEdge, at[1] / kMacroEdge, at[2] / kMacroEdge);
+            MacroCell macro = macro_cells_[n];
+            macro.bricks = map.masks[n];  // also if it isn't shown
+            const int b[3] = {at[0] / kBrickEdge & 3, at[1] / kBrickEdge & 3, at[2] / kBrickEdge & 3};
+            if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
+            const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
+            slots_.forget(brick);
+            clear_[brick] = {};
+        }
+    for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = field.shows(n) ? map.masks[n] : 0;
+    measureEmptySpace();
+}
+
+// Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
+std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool late, std::size_t cache_bytes) {
+    unit_ = quantumOf(source.background(), values_);
+    const std::size_t count = source.leafCount();
+    openvdb::CoordBBox box;
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord low = source.origin(n);
+        box.expand(openvdb::CoordBBox(low, low.offsetBy(kBrickEdge - 1)));
+    }
+    std::array<int, 3> macros{};
+    const openvdb::Coord origin = box.min() & ~(kMacroEdge - 1);
+    for (int axis = 0; axis < 3; ++axis)
+        macros[static_cast<std::size_t>(axis)] =
+            static_cast<int>((std::int64_t{box.max()[axis]} - origin[axis]) / kMacroEdge + 1);
+    setBox(origin, macros, count);
+    const auto within = [](int cell) { return cell / kBrickEdge & 3; };
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord at = source.origin(n) - origin_;
+        macroOf(at).bricks |= std::uint64_t{1} << Mask64::bit(within(at[0]), within(at[1]), within(at[2]));
+    }
+    countBricks(late, cache_bytes);
+    std::vector<std::uint32_t> leaves(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        const openvdb::Coord at = source.origin(n) - origin_;
+        leaves[brickIndex(macroOf(at), within(at[0]), within(at[1]), within(at[2]))] = static_cast<std::uint32_t>(n);
+    }
+    return leaves;
+}
+
+void BrickGrid::listBricks(const LeafField& field, std::size_t cache_bytes) {
+    unit_ = quantumOf(field.background(), values_);
+    const BrickMap& map = field.bricks();
+    std::size_t count = 0;
+    for (const std::uint64_t mask : map.masks) count += static_cast<std::size_t>(std::popcount(mask));
+    setBox(map.origin, map.macros, count);
+    for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = map.masks[n];
+    countBricks(true, cache_bytes);
+}
+
+void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves) {
+    origin_ = origin;
+    macros_ = macros;
+    double cells = 1;
+    for (const int macro : macros) cells *= macro;
+    // Two leaves at the ends of space must not cost what lies between: prints have one or two macro cells a leaf, or
+    // much less.
+    const double most = std::min(2147483648.0, 16777216.0 + 4096.0 * static_cast<double>(leaves));
+    constexpr int kLongest = (1 << 19) - 1;  // macro cells: places of leaves are kept in 21 bits an axis
+    if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves >= BrickSlots::kNoSamples)
+        throw InputError(fmt::format(
+            "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
+            "or use --march vdb",
+            std::int64_t{macros[0]} * kMacroEdge, std::int64_t{macros[1]} * kMacroEdge,
+            std::int64_t{macros[2]} * kMacroEdge, leaves));
+    for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = macros[axis] * kMacroEdge;
+    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+}
+
+// Numbers the bricks whose bits are set, and makes room for them.
+void BrickGrid::countBricks(bool late, std::size_t cache_bytes) {
+    std::uint32_t first = 0;
+    for (MacroCell& macro : macro_cells_) {
+        macro.first_brick = first;
+        first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
+    }
+    listed_ = first;
+    // A picture writes few of them if they are laid out late.
+    using Pages = HugeArray<CellBits>::Pages;
+    clear_ = HugeArray<CellBits>(listed_, late ? Pages::small : Pages::huge);
+    // Room for all, of which only what is used is ever touched, or for as many as there may be.
+    std::size_t bricks = listed_;
+    if (late) {
+        slots_.open(listed_, cache_bytes / brickBytes());
+        bricks = slots_.size();
+        if (slots_.bounded() && bricks < BrickSlots::kLeastBound)
+            throw UsageError(fmt::format(
+                "--brick-cache: {} bytes hold {} bricks of {} bytes; the rays that are on their way at a time need {}: "
+                "give {} bytes or more",
+                cache_bytes, bricks, brickBytes(), BrickSlots::kLeastBound, BrickSlots::kLeastBound * brickBytes()));
+    }
+    const std::size_t samples = bricks * static_cast<std::size_t>(kBrickSamples);
+    if (values_ == BrickValues::Float32)
+        floats_ = HugeArray<float>(samples);
+    else
+        quanta_ = HugeArray<std::int16_t>(samples);
+}
+
+void BrickGrid::measureEmptySpace() {
+    // Chebyshev distance to the nearest occupied macro cell, by a forward and a backward sweep over half of the 26
+    // neighbours each (all steps cost one, so two sweeps are exact). Beyond the box everything is empty.
+    constexpr std::uint32_t kFar = 1U << 20;
+    const int nx = macros_[0];
+    const int ny = macros_[1];
+    const int nz = macros_[2];
+    for (MacroCell& macro : macro_cells_) macro.empty_radius = macro.bricks != 0 ? 0 : kFar;
+    const auto relax = [&](int x, int y, int z, int sign) {
+        MacroCell& macro = macro_cells_[macroIndex(x, y, z)];
+        if (macro.empty_radius == 0) return;
+        for (int n = 1; n <= 13; ++n) {
+            // The 13 neighbours that precede in raster order, or their mirror images.
+            const int code = 13 - n;
+            const int qx = x + sign * (code / 9 - 1);
+            const int qy = y + sign * (code / 3 % 3 - 1);
+            const int qz = z + sign * (code % 3 - 1);
+            if (qx < 0 || qy < 0 || qz < 0 || qx >= nx || qy >= ny || qz >= nz) continue;
+            macro.empty_radius = std::min(macro.empty_radius, macroCell(qx, qy, qz).empty_radius + 1);
+        }
+    };
+    for (int x = 0; x < nx; ++x)
+        for (int y = 0; y < ny; ++y)
+            for (int z = 0; z < nz; ++z) relax(x, y, z, 1);
+    for (int x = nx - 1; x >= 0; --x)
+        for (int y = ny - 1; y >= 0; --y)
+            for (int z = nz - 1; z >= 0; --z) relax(x, y, z, -1);
+    // A box that reaches beyond all edges is as good as one that reaches far beyond; small numbers keep products small.
+    const auto widest = static_cast<std::uint32_t>(std::max({nx, ny, nz}));
+    for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
+}
+
+std::size_t BrickGrid::bytes() const {
+    return macro_cells_.size() * sizeof(MacroCell) + listed_ * sizeof(CellBits) + slots_.bytes() +
+           brickCount() * brickBytes();
+}
+
+}  // namespace stratum::march

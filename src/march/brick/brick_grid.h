@@ -1,0 +1,185 @@
+// FloatGrid -> bricks: the level set laid out for rays.
+//
+// Three levels over the cells of the grid (a cell is the cube between eight neighbouring samples):
+//   macro cell   32^3 cells, in a dense array: which of its 4^3 bricks have surface, or how far the next such macro
+//                cell is (Chebyshev distance), so that rays leave empty space in large boxes
+//   brick        8^3 cells: a bit for every surface cell (corners not of one sign), and the 9^3 samples at its corners
+// All coordinates are cells, counted from the grid's lowest corner.
+//
+// Bricks are laid out at once, or each when the first ray comes to it: then a brick is there for every leaf, all its
+// cells count as surface until it is laid out, and a picture costs what it shows. With a bound on what may be laid out
+// at once (see brick_slots.h), bricks come and go; what is known of their surface cells stays.
+#pragma once
+
+#include "base/huge_array.h"
+#include "march/brick/brick_layout.h"
+#include "march/brick/brick_slots.h"
+#include "march/file/leaf_field.h"
+#include "march/file/leaf_source.h"
+
+#include <openvdb/openvdb.h>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace stratum::march {
+
+/// 4^3 bits, x slowest: whether something is at (x, y, z), and how large a part around a place is empty.
+struct Mask64 {
+    static constexpr int bit(int x, int y, int z) { return x << 4 | y << 2 | z; }
+    /// Bits of the aligned 2^3 group at even (x, y, z).
+    static constexpr std::uint64_t group(int x, int y, int z) {
+        constexpr std::uint64_t kPair = 0b11;  // two along z
+        constexpr std::uint64_t kQuad = kPair | kPair << 4;
+        constexpr std::uint64_t kGroup = kQuad | kQuad << 16;
+        return kGroup << bit(x & 2, y & 2, z & 2);
+    }
+    /// Edge of the largest aligned empty block around (x, y, z): 4, 2 or 1; 0 if that bit is set.
+    static constexpr int emptyEdge(std::uint64_t mask, int x, int y, int z) {
+        if (mask == 0) return 4;
+        if ((mask & group(x, y, z)) == 0) return 2;
+        return (mask >> bit(x, y, z) & 1) == 0 ? 1 : 0;
+    }
+};
+
+/// 32^3 cells.
+struct MacroCell {
+    std::uint64_t bricks = 0;        ///< Mask64 of the bricks that are kept
+    std::uint32_t first_brick = 0;   ///< index of the first of them
+    std::uint32_t empty_radius = 0;  ///< if there are none: all macro cells nearer than this (Chebyshev) are empty too
+};
+
+class BrickGrid {
+public:
+    static constexpr int kMacroEdge = 32;  ///< cells
+    static constexpr int kBrickEdge = 8;   ///< cells
+    static constexpr int kSamples = kBrickEdge + 1;
+    /// Strides of a brick's samples.
+    static constexpr std::ptrdiff_t kStrideY = kSamples;
+    static constexpr std::ptrdiff_t kStrideX = kStrideY * kSamples;
+    static constexpr std::ptrdiff_t kBrickSamples = kStrideX * kSamples;
+    static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
+
+    /// Lays out every brick, in parallel. The source is not needed afterwards.
+    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, or 2^24 and 4096
+    /// for each leaf, or 2^19 along an axis; and, with the place, for samples that are no finite numbers.
+    BrickGrid(const LeafSource& source, BrickValues values);
+    BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
+    /// Lays bricks out when require() asks for them, which then throws as above. No more than `cache_bytes` of samples
+    /// at once: throws UsageError if that is no room for BrickSlots::kLeastBound bricks.
+    BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes = kNoBound);
+    /// The same for samples that aren't there yet either.
+    BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes = kNoBound);
+    ~BrickGrid();
+    BrickGrid(const BrickGrid&) = delete;
+    BrickGrid& operator=(const BrickGrid&) = delete;
+
+    /// Index-space coordinate of cell (0, 0, 0).
+    const openvdb::Coord& origin() const { return origin_; }
+    /// Cells along each axis: a multiple of kMacroEdge.
+    const std::array<int, 3>& size() const { return size_; }
+
+    const MacroCell& macroCell(int x, int y, int z) const { return macro_cells_[macroIndex(x, y, z)]; }
+    /// Index of a brick that is set in its macro cell's mask; (x, y, z) in bricks within the macro cell.
+    static std::size_t brickIndex(const MacroCell& macro, int x, int y, int z) {
+        const std::uint64_t before = (std::uint64_t{1} << Mask64::bit(x, y, z)) - 1;
+        return macro.first_brick + static_cast<std::size_t>(std::popcount(macro.bricks & before));
+    }
+
+    /// For a field that has changed: forgets the bricks that have samples of these leaves (index-space coordinates of
+    /// their first samples), and asks which macro cells it shows now. All others stay as they are. Not while rays are
+    /// traced.
+    void update(std::span<const openvdb::Coord> leaves);
+
+    /// Whether bricks are laid out as they are asked for.
+    bool late() const { return layouter_ != nullptr; }
+    /// Lays out the brick at this place, unless it is. From any thread. False if there is no room for it.
+    bool require(std::size_t brick, int x, int y, int z) const;
+    /// What samples are read by. With a bound, from require() on until they have been read a Reading must be held, and
+    /// makeRoom() called when there is no room.
+    BrickSlots& cache() const { return slots_; }
+
+    /// The surface cells among 4^3 of a brick's, `part` = x << 2 | y << 1 | z; all, before it is laid out.
+    std::uint64_t surface(std::size_t brick, std::size_t part) const {
+        return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
+    }
+    /// The same after require() of the brick that `cell` is in; waits for room.
+    std::uint64_t surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
+    /// Where the samples of a brick with surface begin, in units of samples.
+    std::size_t firstSample(std::size_t brick) const {
+        if (late()) [[unlikely]]
+            brick = slots_.of(brick) - 1;
+        return brick * static_cast<std::size_t>(kBrickSamples);
+    }
+    BrickValues values() const { return values_; }
+    /// All samples; x slowest in a brick. One of both is there.
+    const float* floats() const { return floats_.data(); }
+    const std::int16_t* quanta() const { return quanta_.data(); }
+    /// World units of 1 in the samples.
+    double unit() const { return unit_; }
+
+    /// The same as arrays, for vector code.
+    const MacroCell* macroCells() const { return macro_cells_.data(); }
+    /// Complements of the surface cells.
+    const CellBits* clearCells() const { return clear_.data(); }
+    /// Where each brick's samples are if bricks are laid out late: BrickSlots::table(). The samples of bricks that are
+    /// laid out at once lie in the bricks' own order.
+    const std::uint32_t* slots() const { return slots_.table(); }
+
+    /// Bricks that have an index.
+    std::size_t listedCount() const { return listed_; }
+    /// Bricks with surface that are laid out.
+    std::size_t brickCount() const { return slots_.taken(); }
+    /// Memory of a brick's samples.
+    std::size_t brickBytes() const {
+        return static_cast<std::size_t>(kBrickSamples) *
+               (values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t));
+    }
+    /// What laying out bricks late took, all threads' seconds together.
+    double layoutSeconds() const { return 1e-9 * static_cast<double>(layout_ns_.load(std::memory_order_relaxed)); }
+    /// Memory taken for all.
+    std::size_t bytes() const;
+
+private:
+    class Layouter;
+
+    std::size_t macroIndex(int x, int y, int z) const {
+        return (static_cast<std::size_t>(x) * static_cast<std::size_t>(macros_[1]) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(macros_[2]) +
+               static_cast<std::size_t>(z);
+    }
+    MacroCell& macroOf(const openvdb::Coord& cell) {
+        return macro_cells_[macroIndex(cell[0] / kMacroEdge, cell[1] / kMacroEdge, cell[2] / kMacroEdge)];
+    }
+    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool late, std::size_t cache_bytes);
+    void listBricks(const LeafField& field, std::size_t cache_bytes);
+    void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
+    void countBricks(bool late, std::size_t cache_bytes);
+    void measureEmptySpace();
+
+    openvdb::Coord origin_;
+    std::array<int, 3> macros_{};
+    std::array<int, 3> size_{};
+    BrickValues values_;
+    double unit_ = 1;
+    HugeArray<MacroCell> macro_cells_;
+    std::size_t listed_ = 0;  // bricks that have an index
+    // Written when a brick is laid out, also in a grid that is const to those who trace it.
+    mutable HugeArray<CellBits> clear_;
+    mutable BrickSlots slots_;
+    mutable HugeArray<float> floats_;
+    mutable HugeArray<std::int16_t> quanta_;
+    mutable std::atomic<std::int64_t> layout_ns_{0};
+    std::unique_ptr<const Layouter> layouter_;
+};
+
+}  // namespace stratum::march

@@ -1,0 +1,38 @@
+// The exact intersector: bricks, traversed by integer steps, and the nearest root of each cell's cubic.
+#pragma once
+
+#include "march/brick/brick_layout.h"
+#include "march/file/leaf_field.h"
+#include "march/file/leaf_file.h"
+#include "trace/intersector.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+
+namespace stratum::march {
+
+/// Lays the level set out in bricks (see brick_grid.h) and traces them. Hits are the exact zeros of the trilinear field
+/// of the grid's samples, as they are or rounded to 16 bits: nothing is missed and nothing leaks between cells. The
+/// grid is not needed afterwards. Throws InputError for grids that requireTraceable() refuses. Tracers keep no state.
+std::unique_ptr<trace::Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid,
+                                                         BrickValues values = BrickValues::Int16);
+/// The same of a file: large level sets are laid out, brick by brick, when rays first come there, so that a picture
+/// costs what it shows. The hits are the same. Their samples take no more than `cache_bytes` at a time: what no ray
+/// came to lately makes room. Throws UsageError if that is too little (see BrickGrid).
+std::unique_ptr<trace::Intersector> makeBrickIntersector(
+    std::shared_ptr<const LeafFile> file, BrickValues values = BrickValues::Int16,
+    std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
+/// The same of a level set whose samples are made where rays come. The hits are those of its grid.
+std::unique_ptr<trace::Intersector> makeBrickIntersector(
+    std::shared_ptr<const LeafField> field, BrickValues values = BrickValues::Int16,
+    std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
+
+class BrickGrid;
+/// The bricks of an intersector made above; null for others.
+const BrickGrid* bricksOf(const trace::Intersector& intersector);
+BrickGrid* bricksOf(trace::Intersector& intersector);
+
+}  // namespace stratum::march

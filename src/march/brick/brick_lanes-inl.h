@@ -1,0 +1,397 @@
+// The walk of brick_walk.h in the lanes of a vector, for one Highway target at a time. Included by brick_stream.cpp
+// alone, once a target: hence the guard that toggles.
+//
+// A turn of a packet of rays either moves all lanes that are in empty space out of the largest empty blocks around
+// them, or, once enough lanes stand in surface cells, solves those cells. Then it looks up where its lanes are and
+// calls for the memory that its next turn reads; meanwhile other packets take their turns. All state lies in arrays in
+// the first-level cache: there is more of it than registers.
+#if defined(STRATUM_BRICK_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STRATUM_BRICK_LANES_INL_H
+#undef STRATUM_BRICK_LANES_INL_H
+#else
+#define STRATUM_BRICK_LANES_INL_H
+#endif
+
+#include "march/brick/brick_walk.h"
+#include "march/brick/cell_lanes-inl.h"
+#include "march/brick/hit_lanes-inl.h"
+#include "march/brick/lanes-inl.h"
+#include "march/brick/ray_queue_lanes-inl.h"
+#include "trace/intersector.h"
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#if STRATUM_WIDE_LANES
+HWY_BEFORE_NAMESPACE();
+namespace stratum::march {
+namespace HWY_NAMESPACE {
+
+// Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
+constexpr std::size_t kPackets = 8;
+constexpr int kHold = kLanes * 3 / 8;      // lanes in surface cells that make a test worth its turn
+constexpr std::int64_t kGroup = 0x330033;  // Mask64::group() at 0
+template <bool kAny>
+class Marcher {
+public:
+    Marcher(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays, trace::Hit* hits,
+            std::uint8_t* blocked)
+        : grid_(grid),
+          blocked_(blocked),
+          late_(grid.late()),
+          bounded_(grid.cache().bounded()),
+          cache_(grid.cache()),
+          reading_(cache_),
+          corners_(grid),
+          batch_(corners_, map, rays, hits),
+          queue_(grid, map, rays) {
+        for (int axis = 0; axis < 3; ++axis) last_[axis] = grid.size()[static_cast<std::size_t>(axis)] - 1;
+        macro_y_ = grid.size()[1] / BrickGrid::kMacroEdge;
+        macro_z_ = grid.size()[2] / BrickGrid::kMacroEdge;
+        for (Packet& packet : packets_)
+            // Lanes without a ray stand in cell 0 or where their last ray ended: what they read is there, and ignored.
+            for (auto& field : packet.field)
+                for (double& value : field) value = 0;
+    }
+
+    void run() {
+        // Each packet looks half a round after it has moved: the two halves of a turn depend on one another, so that
+        // what the processor works on at a time had better be of different packets. What decides is half a round old,
+        // too, so that a wrong guess costs little.
+        for (bool busy = true; busy;) {
+            busy = false;
+            if (bounded_ && (full_ || cache_.roomWanted())) rest();
+            for (std::size_t n = 0; n < kPackets; ++n) {
+                Packet& moving = packets_[n];
+                if (moving.alive != 0) {
+                    busy = true;
+                    if (std::popcount(moving.waiting) >= kHold || moving.waiting == moving.alive)
+                        solve(moving);
+                    else
+                        leap(moving);
+                }
+                Packet& looking = packets_[(n + kPackets / 2) % kPackets];
+                queue_.refill(looking);
+                if (looking.alive == 0) continue;
+                busy = true;
+                look(looking);
+            }
+        }
+        if constexpr (!kAny) {
+            batch_.settle();
+            batch_.flush();
+        }
+        if (bounded_) cache_.count(cells_);
+    }
+
+private:
+    static HWY_INLINE VI gather(const void* base, VI index) {
+        return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
+    }
+
+    // Where a ray leaves a block, by the three planes ahead of it. Walk::aim().
+    struct Exit {
+        V t;
+        M axis[3];
+    };
+    static HWY_INLINE Exit aim(const Packet& p, const VI plane[3]) {
+        V t[3];
+        for (int axis = 0; axis < 3; ++axis)
+            t[axis] = (toReal(plane[axis]) - load(p, kO + axis)) * load(p, kInverse + axis);
+        const M y_first = hn::Lt(t[1], t[0]);
+        const V t_xy = hn::Min(t[0], t[1]);
+        const M z_first = hn::Lt(t[2], t_xy);
+        Exit exit;
+        exit.axis[0] = hn::Not(hn::Or(y_first, z_first));
+        exit.axis[1] = hn::AndNot(z_first, y_first);
+        exit.axis[2] = z_first;
+        exit.t = hn::Max(hn::Min(t_xy, t[2]), load(p, kT));
+        return exit;
+    }
+
+    // Moves the lanes of `moving` to `next`. Walk::advance(). Rays that end free their lanes.
+    HWY_INLINE void advance(Packet& p, const VI next[3], const Exit& exit, M moving) const {
+        const D d;
+        const DU du;
+        M ended = hn::Ge(exit.t, load(p, kEnd));
+        for (int axis = 0; axis < 3; ++axis) {
+            const VI place = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
+            const VI last = whole(last_[axis]);  // what is below 0 is beyond, too
+            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, place), hn::BitCast(du, last))));
+        }
+        p.alive &= ~bitsOf(hn::And(ended, moving));
+        moving = hn::AndNot(ended, moving);
+        const auto moved = hn::RebindMask(DI(), moving);
+        for (int axis = 0; axis < 3; ++axis)
+            storeWhole(p, kCell + axis, hn::IfThenElse(moved, next[axis], loadWhole(p, kCell + axis)));
+        store(p, kT, hn::IfThenElse(moving, exit.t, load(p, kT)));
+        const V face =
+            hn::IfThenElse(exit.axis[0], hn::Zero(d), hn::IfThenElse(exit.axis[1], constant(1), constant(2)));
+        store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
+    }
+
+    // Where lanes are: findBlock() as far as the bricks; and calls for their surface cells.
+    void look(Packet& p) const {
+        const DI di;
+        const VI one = whole(1);
+        const VI none = hn::Zero(di);
+        VI c[3];
+        for (int axis = 0; axis < 3; ++axis) c[axis] = hn::Xor(loadWhole(p, kCell + axis), loadWhole(p, kFlip + axis));
+        const VI mx = hn::ShiftRight<5>(c[0]);
+        const VI my = hn::ShiftRight<5>(c[1]);
+        const VI mz = hn::ShiftRight<5>(c[2]);
+        const VI macro = hn::ShiftLeft<1>(product(product(mx, whole(macro_y_)) + my, whole(macro_z_)) + mz);
+        static_assert(sizeof(MacroCell) == 16);
+        const VI bricks = gather(grid_.macroCells(), macro);
+        const VI first = gather(grid_.macroCells(), macro + one);
+
+        const VI b =
+            hn::Or(hn::Or(hn::ShiftLeft<1>(hn::And(c[0], whole(24))), hn::ShiftRight<1>(hn::And(c[1], whole(24)))),
+                   hn::ShiftRight<3>(hn::And(c[2], whole(24))));
+        const VI bit = shiftedLeft(one, b);
+        const auto has_brick = hn::TestBit(bricks, bit);
+        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(whole(kGroup), hn::And(b, whole(42)))), none);
+        const auto far = hn::Eq(bricks, none);
+        const VI empty = hn::IfThenElse(far, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
+        const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);
+        const VI radius = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(DU(), first)));
+        const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(radius - one));
+        const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), hn::And(bricks, bit - one))));
+        const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
+                               hn::ShiftRight<2>(hn::And(c[2], whole(4))));
+        // Lanes without a brick read the first one's mask and ignore it.
+        const VI brick = hn::ShiftLeft<3>(hn::And(first, whole(0xffffffff)) + rank);
+        const VI part = hn::IfThenElseZero(has_brick, brick + half);
+        storeWhole(p, kPart, part);
+        storeWhole(p, kLowBits, low_bits);
+        storeWhole(p, kBeyond, beyond);
+        HWY_ALIGN std::int64_t words[kLanes];
+        hn::Store(part, di, words);
+        const auto* clear = reinterpret_cast<const std::uint64_t*>(grid_.clearCells());
+        for (const std::int64_t word : words) hwy::Prefetch(clear + word);
+    }
+
+    // One step of every lane that isn't waiting: out of the largest empty block, or to wait in a surface cell.
+    void leap(Packet& p) {
+        const D d;
+        const DI di;
+        const VI one = whole(1);
+        const VI none = hn::Zero(di);
+        const VI three = whole(3);
+        const VI part = loadWhole(p, kPart);
+        const VI cells = hn::Not(gather(grid_.clearCells(), part));
+        VI cell[3];
+        VI c[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            cell[axis] = loadWhole(p, kCell + axis);
+            c[axis] = hn::Xor(cell[axis], loadWhole(p, kFlip + axis));
+        }
+        const VI at = hn::Or(hn::Or(hn::ShiftLeft<4>(hn::And(c[0], three)), hn::ShiftLeft<2>(hn::And(c[1], three))),
+                             hn::And(c[2], three));
+        const VI empty = loadWhole(p, kLowBits);
+        const M in_brick = toDouble(hn::Lt(empty, none));
+        const M walking = maskOf(p.alive & ~p.waiting);
+        const M surface = hn::And(in_brick, toDouble(hn::TestBit(cells, shiftedLeft(one, at))));
+        const auto cells_empty = hn::Eq(hn::And(cells, shiftedLeft(whole(kGroup), hn::And(at, whole(42)))), none);
+        const VI small = hn::IfThenElseZero(cells_empty, hn::IfThenElse(hn::Eq(cells, none), three, one));
+        const VI low_bits = hn::IfThenElse(hn::RebindMask(di, in_brick), small, empty);
+        const VI beyond = loadWhole(p, kBeyond);
+
+        hold(p, bitsOf(hn::And(surface, walking)), part, at, c);
+        VI last[3];
+        VI plane[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            last[axis] = hn::Or(cell[axis], low_bits) + beyond;
+            plane[axis] = last[axis] + one;
+        }
+        const Exit exit = aim(p, plane);
+        VI next[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const VI there = floorToWhole(load(p, kO + axis) + exit.t * load(p, kD + axis));
+            const VI along = hn::Min(hn::Max(there, cell[axis]), last[axis]);
+            next[axis] = hn::IfThenElse(hn::RebindMask(di, exit.axis[axis]), plane[axis], along);
+        }
+        advance(p, next, exit, hn::AndNot(surface, walking));
+    }
+
+    static HWY_INLINE VI shiftedLeft(VI v, VI count) {
+        return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
+    }
+
+    // Remembers where the corners of surface cells lie, and calls for them. Lanes for whose brick there is no room look
+    // again in their next turn.
+    HWY_INLINE void hold(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
+        VI place = hn::ShiftRight<3>(part);  // of the brick's samples; bricks that are laid out at once are in order
+        if (late_) {
+            VI slot = slotsOf(place);
+            if (found != 0) found = thereOf(found, slot, place, part, at, c);
+            if (bounded_ && found != 0) note(found, slot);
+            place = slot - whole(1);
+        }
+        const VI seven = whole(7);
+        const VI sample = product(place, whole(BrickGrid::kBrickSamples)) +
+                          product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
+                          product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
+        const auto newly = hn::RebindMask(DI(), maskOf(found));
+        const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
+        hn::Store(samples, DI(), p.sample);
+        p.waiting |= found;
+        corners_.prefetch(samples);
+    }
+
+    HWY_INLINE VI slotsOf(VI brick) const {
+        return hn::And(
+            hn::GatherOffset(DI(), reinterpret_cast<const std::int64_t*>(grid_.slots()), hn::ShiftLeft<2>(brick)),
+            whole(0xffffffff));
+    }
+
+    // Which of the lanes stand in surface cells of bricks that are laid out, after asking for the others' bricks.
+    HWY_NOINLINE unsigned thereOf(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
+        const auto missing = [&]() HWY_ATTR { return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found; };
+        unsigned not_there = missing();
+        if (not_there != 0) {
+            require(not_there, brick, c);
+            std::atomic_signal_fence(std::memory_order_acquire);
+            // Those that have it now read it before anybody may take it away: every brick takes a ray on.
+            slot = slotsOf(brick);
+            not_there = missing();
+        }
+        // The bits may be older than the slot: laid out by another thread in between.
+        std::atomic_signal_fence(std::memory_order_acquire);
+        const VI clear = gather(grid_.clearCells(), part);
+        return found & ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
+    }
+
+    HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) {
+        HWY_ALIGN std::int64_t bricks[kLanes];
+        HWY_ALIGN std::int64_t place[3][kLanes];
+        hn::Store(brick, DI(), bricks);
+        for (int axis = 0; axis < 3; ++axis) hn::Store(hn::ShiftRight<3>(c[axis]), DI(), place[axis]);
+        for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+            const int lane = std::countr_zero(rest);
+            if (!grid_.require(static_cast<std::size_t>(bricks[lane]), static_cast<int>(place[0][lane]),
+                               static_cast<int>(place[1][lane]), static_cast<int>(place[2][lane])))
+                full_ = true;
+        }
+    }
+
+    // These lanes read their slots.
+    HWY_NOINLINE void note(unsigned lanes, VI slot) {
+        HWY_ALIGN std::int64_t slots[kLanes];
+        hn::Store(slot, DI(), slots);
+        for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
+            cache_.mark(static_cast<std::uint32_t>(slots[std::countr_zero(rest)]));
+        cells_ += static_cast<unsigned>(std::popcount(lanes));
+    }
+
+    // Finishes what has begun to read samples, so that bricks may be taken away.
+    HWY_NOINLINE void rest() {
+        for (Packet& packet : packets_) {
+            if (packet.waiting == 0) continue;
+            solve(packet);
+            look(packet);
+        }
+        if constexpr (!kAny) {
+            batch_.settle();
+            batch_.flush();
+        }
+        cache_.makeRoom(full_);
+        full_ = false;
+    }
+
+    // SegmentCubic and firstCrossing() for the waiting lanes. Those that don't hit walk on.
+    void solve(Packet& p) {
+        if constexpr (!kAny) batch_.settle();
+        const D d;
+        const V zero = hn::Zero(d);
+        const V one = constant(1);
+        const M waiting = maskOf(p.waiting);
+        const VI ahead = whole(1);
+        VI plane[3];
+        for (int axis = 0; axis < 3; ++axis) plane[axis] = loadWhole(p, kCell + axis) + ahead;
+        const Exit exit = aim(p, plane);
+        const V t = load(p, kT);
+        const V t_out = hn::Min(exit.t, load(p, kEnd));
+        const M whole_cell = hn::Le(exit.t, load(p, kEnd));
+        const V face = load(p, kFace);
+        LaneCell in;
+        for (int axis = 0; axis < 3; ++axis) {
+            const V o = load(p, kO + axis);
+            const V dir = load(p, kD + axis);
+            // In the cell's own coordinates rays go either way.
+            const V flip = load(p, kFlip + axis);
+            const V back = hn::And(flip, constant(-0.0));
+            const V cell = toReal(hn::Xor(loadWhole(p, kCell + axis), hn::BitCast(DI(), flip)));
+            const V enter = clampTo(hn::Xor(o + t * dir, back) - cell, zero, one);
+            const V leave = clampTo(hn::Xor(o + t_out * dir, back) - cell, zero, one);
+            const V near = hn::And(flip, one);
+            const M by_this = hn::Eq(face, constant(axis));
+            in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
+            in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
+        }
+        // Lanes that don't wait read where they last stood, or the first sample, and are ignored.
+        const VI sample = hn::Load(DI(), p.sample);
+        corners_.read(sample, in.v);
+        const LaneCubic f = cubicOf(in);
+        const M in0 = hn::Lt(f.c0, zero);
+        const M in1 = hn::Lt(f.c0 + f.c1 / constant(3), zero);
+        const M in2 = hn::Lt(f.c0 + (constant(2) * f.c1 + f.c2) / constant(3), zero);
+        const M in3 = hn::Lt(f.end, zero);
+        const M differ = hn::Xor(in0, in3);
+        const M between = hn::Or(hn::Xor(in0, in1), hn::Xor(in1, in2));
+        // Signs that change once, or more than once.
+        const M twice =
+            hn::And(waiting, hn::Or(hn::AndNot(differ, hn::Or(between, hn::Xor(in2, in3))),
+                                    hn::And(hn::Xor(in0, in1), hn::And(hn::Xor(in1, in2), hn::Xor(in2, in3)))));
+        unsigned hit = bitsOf(hn::And(hn::AndNot(twice, differ), waiting));
+        const unsigned rare = bitsOf(twice);
+        V s = constant(std::numeric_limits<double>::quiet_NaN());
+        if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
+        p.waiting = 0;
+        p.alive &= ~hit;
+        if constexpr (kAny) {
+            // Others write where nobody reads.
+            const auto address = [](const std::uint8_t* flag) { return std::bit_cast<std::int64_t>(flag); };
+            const VI flags = floorToWhole(load(p, kIndex)) + whole(address(blocked_));
+            HWY_ALIGN std::uint8_t* places[kLanes];
+            hn::Store(hn::IfThenElse(hn::RebindMask(DI(), maskOf(hit)), flags, whole(address(&nobody_))), DI(),
+                      reinterpret_cast<std::int64_t*>(places));
+            for (std::uint8_t* place : places) *place = 1;
+        } else {
+            batch_.push(hit, {load(p, kIndex), load(p, kStart), t, t_out, s}, in, sample);
+        }
+        VI next[3];
+        for (int axis = 0; axis < 3; ++axis)
+            next[axis] = hn::IfThenElse(hn::RebindMask(DI(), exit.axis[axis]), plane[axis], loadWhole(p, kCell + axis));
+        advance(p, next, exit, hn::AndNot(maskOf(hit), waiting));
+    }
+
+    const BrickGrid& grid_;
+    std::uint8_t* const blocked_;
+    std::uint8_t nobody_ = 0;
+    std::int64_t last_[3];  // cells
+    std::int64_t macro_y_, macro_z_;
+    const bool late_, bounded_;
+    BrickSlots& cache_;
+    const BrickSlots::Reading reading_;
+    bool full_ = false;        // a brick was asked for, and there was no room
+    std::uint64_t cells_ = 0;  // looked into
+    const CornerReader corners_;
+    HitBatch batch_;
+    RayQueue<!kAny> queue_;
+    HWY_ALIGN Packet packets_[kPackets];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace stratum::march
+HWY_AFTER_NAMESPACE();
+#endif  // STRATUM_WIDE_LANES
+
+#endif

@@ -1,0 +1,121 @@
+// Where the samples of late bricks lie: slots of equal size, given out as bricks are laid out.
+//
+// There is a slot for every brick, or, with a bound, for some of them: once all are taken, bricks that no ray came to
+// lately lose theirs, and are laid out again if one does. Which ones are left, a clock's hand says (Corbató, "A paging
+// experiment with the Multics system", 1968): it goes around, takes the mark off slots that were read since its last
+// visit, and empties those that have none. Samples depend on the brick alone, so pictures don't depend on the bound.
+//
+// Threads that read samples hold a Reading; slots are emptied only while nobody does. A thread that finds no slot left
+// finishes what it has begun to read, and then calls makeRoom(). Without a bound none of this costs anything.
+#pragma once
+
+#include "base/huge_array.h"
+
+#include <oneapi/tbb/rw_mutex.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace stratum::march {
+
+/// What a bound took, for reports.
+struct BrickCacheCounts {
+    std::size_t slots = 0;      ///< bricks that may be laid out at once
+    std::size_t peak = 0;       ///< that ever were
+    std::uint64_t hits = 0;     ///< cells whose brick was laid out when a ray came
+    std::uint64_t made = 0;     ///< bricks laid out, again or for the first time
+    std::uint64_t evicted = 0;  ///< bricks that lost their slot
+};
+
+class BrickSlots {
+public:
+    /// In place of a slot: the brick is laid out, and has no surface.
+    static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
+    /// A bound is at least that: a brick for every ray that a thread has on its way.
+    static constexpr std::size_t kLeastBound = 64;
+
+    /// For this many bricks, of which `most` may have slots at once.
+    void open(std::size_t bricks, std::size_t most);
+    bool bounded() const { return bounded_; }
+    /// Slots that there are; any number before open().
+    std::size_t size() const { return size_; }
+
+    /// Of each brick: 0 if it isn't laid out, kNoSamples, or its slot, counted from 1.
+    const std::uint32_t* table() const { return table_.data(); }
+    std::uint32_t of(std::size_t brick) { return std::atomic_ref(table_[brick]).load(std::memory_order_acquire); }
+    /// Whoever sees the slot sees what was written before.
+    void publish(std::size_t brick, std::uint32_t slot) {
+        std::atomic_ref(table_[brick]).store(slot, std::memory_order_release);
+    }
+    /// A slot for this brick, or 0 if none is left. From any thread.
+    std::uint32_t take(std::size_t brick);
+    bool anyLeft() const { return used_.load(std::memory_order_relaxed) < size_ || freeTaken() < free_.size(); }
+    /// This many in a row; returns what is before the first. Without a bound.
+    std::uint32_t takeRow(std::uint32_t count) { return used_.fetch_add(count, std::memory_order_relaxed); }
+    /// Not while rays are traced.
+    void forget(std::size_t brick);
+
+    /// Held, with a bound, by who reads samples: no slot is emptied meanwhile. One at a time a thread.
+    class Reading {
+    public:
+        explicit Reading(BrickSlots& slots) : gate_(slots.bounded_ ? &slots.gate_ : nullptr) {
+            if (gate_ != nullptr) gate_->lock_shared();
+        }
+        ~Reading() {
+            if (gate_ != nullptr) gate_->unlock_shared();
+        }
+        Reading(const Reading&) = delete;
+        Reading& operator=(const Reading&) = delete;
+
+    private:
+        tbb::rw_mutex* const gate_;
+    };
+    /// Whether a thread waits for room: those that hold a Reading call makeRoom(false) soon.
+    bool roomWanted() const { return waiting_.load(std::memory_order_relaxed) > 0; }
+    /// With a Reading held, by a thread that needs nothing of what it has read: lets others empty slots, or, if it
+    /// `needs` one itself, does it.
+    void makeRoom(bool needs);
+    /// A ray reads this slot.
+    void mark(std::uint32_t slot) {
+        const std::atomic_ref mark(marks_[slot - 1]);
+        if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
+    }
+    /// So many cells were looked into whose brick had to be there.
+    void count(std::uint64_t cells) { cells_.fetch_add(cells, std::memory_order_relaxed); }
+
+    /// Bricks that have a slot now.
+    std::size_t taken() const { return everTaken() - (free_.size() - freeTaken()); }
+    BrickCacheCounts counts() const;
+    /// Memory taken, bytes.
+    std::size_t bytes() const;
+
+private:
+    static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+
+    std::size_t freeTaken() const { return std::min(free_taken_.load(std::memory_order_relaxed), free_.size()); }
+    std::size_t everTaken() const { return std::min<std::size_t>(used_.load(std::memory_order_relaxed), size_); }
+    void dropTakenFree();
+    void evict();
+
+    HugeArray<std::uint32_t> table_;
+    std::size_t size_ = std::numeric_limits<std::size_t>::max();
+    bool bounded_ = false;
+    std::atomic<std::uint32_t> used_{0};
+    std::vector<std::uint32_t> free_;  // emptied slots; the first free_taken_ are in use again
+    std::atomic<std::size_t> free_taken_{0};
+
+    // With a bound.
+    tbb::rw_mutex gate_;
+    std::atomic<int> waiting_{0};
+    std::vector<std::uint32_t> owners_;  // the brick of each slot, or kNobody
+    std::vector<std::uint8_t> marks_;
+    std::size_t hand_ = 0;
+    std::atomic<std::uint64_t> cells_{0}, made_{0};
+    std::uint64_t evicted_ = 0;
+};
+
+}  // namespace stratum::march

@@ -1,0 +1,189 @@
+#include "march/file/level_set_file.h"
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "march/file/grid_axes.h"
+#include "march/file/vdb_check.h"
+
+#include <fmt/format.h>
+#include <openvdb/io/GridDescriptor.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <system_error>
+#include <vector>
+
+namespace stratum::march {
+namespace {
+
+constexpr double kLeastHalfWidth = 2;
+constexpr double kMostReturn = 0.01;  // voxels that a point may be off after there and back; a far origin rounds
+constexpr double kMostShear = 1e-5;   // what a transform from 32-bit floats may have by rounding
+
+// Which grid of a file is meant.
+struct Choice {
+    std::string name;
+    openvdb::GridBase::ConstPtr head;  // no voxels
+};
+
+Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
+    const std::string& where = file.filename();
+    std::string wanted = name;
+    std::string seen;
+    openvdb::GridBase::ConstPtr head;
+    int candidates = 0;
+    std::set<std::string> names;
+    for (auto it = file.beginName(); it != file.endName(); ++it) {
+        // Names that a file has twice come with a number: name[0], name[1].
+        const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
+        const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
+        if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
+            throw InputError(fmt::format("{}: has two grids named {}; name them apart, nobody can say which is meant",
+                                         where, plain.substr(0, plain.find('['))));
+        const auto meta = file.readGridMetadata(it.gridName());
+        seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
+        if (it.gridName() == name) head = meta;
+        const bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
+        if (!level_set) continue;
+        if (name.empty() && it.gridName() == "surface") {
+            wanted = "surface";
+            head = meta;
+            candidates = 1;
+            break;
+        }
+        ++candidates;
+        if (!name.empty()) continue;
+        wanted = it.gridName();
+        head = meta;
+    }
+    if (name.empty() && candidates > 1)
+        throw InputError(
+            fmt::format("{}: has {} level sets; say which with --grid NAME. It has: {}", where, candidates, seen));
+    if (name.empty() && candidates == 0)
+        throw InputError(fmt::format("{}: has no level set of floats; make one with gcode2vdb. It has: {}", where,
+                                     seen.empty() ? "nothing" : seen));
+    if (!head) throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
+    if (!head->isType<openvdb::FloatGrid>())
+        throw InputError(fmt::format("{}: the grid {} does not hold floats. It has: {}", where, name, seen));
+    return {wanted, head};
+}
+
+// Calls `read` with the opened file and the grid that is meant, which was checked to that depth.
+template <typename Read>
+auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDepth depth, const Read& read) {
+    const std::string where = path.string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        throw InputError(fmt::format("{}: is not a file; check the name", where));
+    const MappedFile mapped(path);
+    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
+    try {
+        openvdb::io::File file(where);
+        // Without OpenVDB's delayed loading: it would copy the file, and build the whole tree all the same.
+        file.open(/*delayLoad=*/false);
+        const Choice choice = chooseGrid(file, name);
+        checkVdb(mapped.bytes(), depth, choice.name, where);
+        return read(file, choice);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        // OpenVDB throws its own kinds, and std::bad_alloc for the absurd counts of a damaged file.
+        throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
+    }
+}
+
+}  // namespace
+
+openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
+    auto grid = withGrid(path, name, VdbDepth::leaves, [](openvdb::io::File& file, const Choice& choice) {
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(choice.name));
+    });
+    requireTraceable(*grid, path.string());
+    return grid;
+}
+
+std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
+    auto file = withGrid(path, name, VdbDepth::nodes, [&path](openvdb::io::File&, const Choice& choice) {
+        return LeafFile::open(path, choice.name, *choice.head);
+    });
+    if (file) requireTraceable(file->head(), file->leafCount(), path.string());
+    return file;
+}
+
+bool hasGrid(const std::filesystem::path& path, const std::string& name) {
+    const std::string where = path.string();
+    const MappedFile mapped(path);
+    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
+    try {
+        openvdb::io::File file(where);
+        file.open(/*delayLoad=*/false);
+        return file.hasGrid(name);
+    } catch (const std::exception& error) {
+        throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
+    }
+}
+
+void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {
+    requireTraceable(grid, grid.tree().leafCount(), where);
+}
+
+void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const std::string& where) {
+    if (grid.getGridClass() != openvdb::GRID_LEVEL_SET)
+        throw InputError(
+            fmt::format("{}: the grid {} is not a level set but a {}; make a level set with gcode2vdb or "
+                        "OpenVDB's fog-to-level-set tools",
+                        where, grid.getName(), grid.gridClassToMenuName(grid.getGridClass())));
+    if (leaves == 0)
+        throw InputError(
+            fmt::format("{}: the level set {} is empty; there is no surface to trace", where, grid.getName()));
+    if (!grid.transform().isLinear())
+        throw InputError(
+            fmt::format("{}: the voxels of {} lie in perspective (a frustum transform); resample it with a linear one",
+                        where, grid.getName()));
+    const GridAxes axes(grid.transform());
+    // Written so that no number is refused, too.
+    if (!(axes.shortest() > 0 && std::isfinite(axes.longest())))
+        throw InputError(fmt::format("{}: the voxels of {} have no size; mend its transform", where, grid.getName()));
+    // A file has its transform and the inverse of it.
+    const openvdb::math::MapBase& map = *grid.transform().baseMap();
+    for (const openvdb::Vec3d& p : {openvdb::Vec3d(0, 0, 0), openvdb::Vec3d(100, -200, 300)})
+        if (!((map.applyInverseMap(map.applyMap(p)) - p).length() <= kMostReturn))
+            throw InputError(fmt::format("{}: the transform of {} leads elsewhere than its inverse comes from; mend it",
+                                         where, grid.getName()));
+    if (!(axes.shear() <= kMostShear))
+        throw InputError(
+            fmt::format("{}: the voxels of {} are sheared: their edges are {:.4g} degrees from perpendicular; resample "
+                        "it on a lattice of boxes",
+                        where, grid.getName(), std::asin(axes.shear()) * 180 / std::numbers::pi));
+    const double half_width = static_cast<double>(grid.background()) / axes.shortest();
+    if (!(half_width >= kLeastHalfWidth))
+        throw InputError(
+            fmt::format("{}: the narrow band of {} is {:.2f} voxels to each side, at least {} are needed; "
+                        "make it again with --half-width 3",
+                        where, grid.getName(), half_width, kLeastHalfWidth));
+}
+
+trace::Box narrowBandBounds(const openvdb::FloatGrid& grid) {
+    return worldBounds(grid.transform(), grid.evalActiveVoxelBoundingBox());
+}
+
+trace::Box worldBounds(const openvdb::math::Transform& transform, const openvdb::CoordBBox& box) {
+    trace::Box bounds{glm::dvec3(std::numeric_limits<double>::infinity()),
+                      glm::dvec3(-std::numeric_limits<double>::infinity())};
+    for (int corner = 0; corner < 8; ++corner) {
+        openvdb::Coord index;
+        for (int axis = 0; axis < 3; ++axis)
+            index[axis] = (corner >> axis & 1) != 0 ? box.max()[axis] : box.min()[axis];
+        const openvdb::Vec3d world = transform.indexToWorld(index);
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.min[axis] = std::min(bounds.min[axis], world[axis]);
+            bounds.max[axis] = std::max(bounds.max[axis], world[axis]);
+        }
+    }
+    return bounds;
+}
+
+}  // namespace stratum::march

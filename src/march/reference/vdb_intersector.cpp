@@ -1,0 +1,138 @@
+#include "march/reference/vdb_intersector.h"
+
+#include "march/file/grid_axes.h"
+#include "march/file/level_set_file.h"
+
+#include <openvdb/tools/RayIntersector.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace stratum::march {
+namespace {
+
+using Reference = openvdb::tools::LevelSetRayIntersector<openvdb::FloatGrid>;
+
+glm::dvec3 toGlm(const openvdb::Vec3d& v) { return {v[0], v[1], v[2]}; }
+openvdb::Vec3d toVdb(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+// Gradient of the trilinear interpolant at an index-space point.
+openvdb::Vec3d cellGradient(openvdb::FloatGrid::ConstAccessor& accessor, const openvdb::Vec3d& point) {
+    const openvdb::Coord cell = openvdb::Coord::floor(point);
+    const openvdb::Vec3d u = point - cell.asVec3d();
+    double corner[2][2][2];
+    for (int x = 0; x < 2; ++x)
+        for (int y = 0; y < 2; ++y)
+            for (int z = 0; z < 2; ++z)
+                corner[x][y][z] = static_cast<double>(accessor.getValue(cell.offsetBy(x, y, z)));
+    openvdb::Vec3d gradient(0, 0, 0);
+    for (int a = 0; a < 2; ++a)
+        for (int b = 0; b < 2; ++b) {
+            const double wx = a != 0 ? u[0] : 1 - u[0];
+            const double wy_a = a != 0 ? u[1] : 1 - u[1];
+            const double wy_b = b != 0 ? u[1] : 1 - u[1];
+            const double wz = b != 0 ? u[2] : 1 - u[2];
+            gradient[0] += wy_a * wz * (corner[1][a][b] - corner[0][a][b]);
+            gradient[1] += wx * wz * (corner[a][1][b] - corner[a][0][b]);
+            gradient[2] += wx * wy_b * (corner[a][b][1] - corner[a][b][0]);
+        }
+    return gradient;
+}
+
+// Everything below works in index space with a map taken once: the grid's own conversions copy a shared pointer a ray,
+// and its atomic count would be fought over by all threads.
+class VdbTracer final : public trace::Tracer {
+public:
+    VdbTracer(const openvdb::FloatGrid& grid, const openvdb::math::MapBase& map, const Reference& reference,
+              const trace::Box& bounds)
+        : map_(map),
+          reference_(reference),
+          accessor_(grid.getConstAccessor()),
+          centre_(0.5 * (bounds.min + bounds.max)),
+          diagonal_(glm::length(bounds.max - bounds.min)) {}
+
+    bool intersect(const trace::Ray& ray, trace::Hit& hit) override {
+        openvdb::Vec3d index;
+        if (!nearest(ray, index)) return false;
+        hit.position = toGlm(map_.applyMap(index));
+        hit.t = glm::dot(hit.position - ray.origin, ray.direction);
+        // Gradients transform by the inverse transpose.
+        openvdb::Vec3d normal = map_.applyIJT(cellGradient(accessor_, index));
+        // A cell with a vanishing gradient has no normal; facing the ray keeps everything downstream finite.
+        if (!normal.normalize(1e-30)) normal = -toVdb(ray.direction);
+        hit.normal = toGlm(normal);
+        return true;
+    }
+
+    bool occluded(const trace::Ray& ray) override {
+        openvdb::Vec3d index;
+        return nearest(ray, index);
+    }
+
+private:
+    // The overload that returns only a time gives the time of the *previous* ray in OpenVDB 10.0.1 (it is read before
+    // the ray is traced; mended in 13.0.1). The position is right, and t follows from it.
+    bool nearest(const trace::Ray& ray, openvdb::Vec3d& index) {
+        // OpenVDB scales times to index space: an infinite one stays out of its arithmetic.
+        const double t_max = std::min(ray.t_max, glm::length(ray.origin - centre_) + diagonal_);
+        // OpenVDB wants a start above zero.
+        const double t_min = std::max(ray.t_min, openvdb::math::Delta<double>::value());
+        if (!(t_max > t_min)) return false;
+        const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), t_min, t_max);
+        return reference_.intersectsIS(world.applyInverseMap(map_), index);
+    }
+
+    const openvdb::math::MapBase& map_;
+    Reference reference_;  // a copy a tracer: it holds an accessor and the ray under way
+    openvdb::FloatGrid::ConstAccessor accessor_;
+    const glm::dvec3 centre_;  // of the bounds, world units
+    const double diagonal_;
+};
+
+// OpenVDB's intersector wants cubes, and takes small voxels that are turned for something else (its test compares a
+// determinant with 1e-8). It marches in index space, so it gets the same tree on upright cubes; rays are mapped by the
+// grid's own map. From the edge it only takes the width of the band in which it looks closely.
+openvdb::FloatGrid::ConstPtr onCubes(const openvdb::FloatGrid& grid) {
+    auto cubes = openvdb::FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(grid.constTreePtr()));
+    cubes->setGridClass(openvdb::GRID_LEVEL_SET);
+    cubes->setTransform(openvdb::math::Transform::createLinearTransform(GridAxes(grid.transform()).longest()));
+    return cubes;
+}
+
+class VdbIntersector final : public trace::Intersector {
+public:
+    explicit VdbIntersector(openvdb::FloatGrid::ConstPtr grid)
+        : grid_(std::move(grid)),
+          map_(grid_->transform().baseMap()),
+          cubes_(onCubes(*grid_)),
+          reference_(*cubes_),
+          bounds_(narrowBandBounds(*grid_)) {}
+
+    std::unique_ptr<trace::Tracer> makeTracer() const override {
+        return std::make_unique<VdbTracer>(*grid_, *map_, reference_, bounds_);
+    }
+    std::string_view name() const override { return "vdb"; }
+    trace::Box bounds() const override { return bounds_; }
+    std::size_t bytes() const override { return 0; }
+    double voxelSize() const override { return GridAxes(grid_->transform()).shortest(); }
+    // The reference interpolates its root linearly between a voxel's faces, so a hit may lie some hundredths of a voxel
+    // inside the solid; a secondary ray that started there would meet the surface on its way out.
+    double surfaceOffset() const override { return 0.1 * voxelSize(); }
+
+private:
+    openvdb::FloatGrid::ConstPtr grid_;
+    openvdb::math::MapBase::ConstPtr map_;
+    openvdb::FloatGrid::ConstPtr cubes_;
+    Reference reference_;
+    trace::Box bounds_;
+};
+
+}  // namespace
+
+std::unique_ptr<trace::Intersector> makeVdbIntersector(openvdb::FloatGrid::ConstPtr grid) {
+    requireTraceable(*grid, grid->getName());
+    return std::make_unique<VdbIntersector>(std::move(grid));
+}
+
+}  // namespace stratum::march

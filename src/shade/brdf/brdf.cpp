@@ -1,0 +1,115 @@
+#include "shade/brdf/brdf.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "shade/brdf/filament_color.h"
+#include "shade/brdf/lambert.h"
+#include "shade/brdf/plastic.h"
+#include "shade/brdf/preset.h"
+#include "shade/brdf/preset_names.h"
+#include "shade/camera/sampling.h"
+#include "shade/measured/brdf_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace stratum::shade {
+
+namespace {
+
+/// The tables that come with the project.
+std::filesystem::path tableFolder() {
+    if (const char* data = std::getenv("STRATUM_DATA")) return std::filesystem::path(data) / "brdf";
+    // Installed, they stand where the program does, wherever the tree was moved to.
+    std::error_code missing;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", missing);
+    std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
+    if (std::filesystem::is_directory(installed, missing)) return installed;
+    return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
+}
+
+constexpr std::string_view kEnding = ".bsdf.gz";
+
+std::vector<std::string> namesIn(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.ends_with(kEnding)) names.push_back(name.substr(0, name.size() - kEnding.size()));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+/// The table of that name, or an empty path.
+std::filesystem::path tableNamed(std::string_view text) {
+    if (text.empty() || text.find_first_of(":/.") != std::string_view::npos) return {};
+    std::error_code error;
+    std::filesystem::path path = tableFolder() / (std::string(text) + std::string(kEnding));
+    return std::filesystem::is_regular_file(path, error) ? path : std::filesystem::path();
+}
+
+std::shared_ptr<const Brdf> readNamed(std::string_view text) {
+    if (const std::filesystem::path table = tableNamed(text); !table.empty()) return readBrdfFile(table);
+    std::error_code error;
+    if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
+        return readBrdfFile(text);
+    if (const auto color = parseNamedColor(text)) return std::make_shared<Plastic>(bodyOf(*color), kFilamentAlpha);
+    const std::vector<std::string> tables = namesIn(tableFolder());
+    std::vector<std::string_view> names(tables.begin(), tables.end());
+    names.insert(names.end(), {"lambert", "plastic"});
+    throw UsageError(
+        fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+                    "a colour (#ff6600, teal), a file, or one of: {}{}",
+                    text,
+                    tables.empty() ? fmt::format("none; {} has no tables", tableFolder().string())
+                                   : fmt::format("{}", fmt::join(tables, ", ")),
+                    didYouMean(text.substr(0, text.find(':')), names)));
+}
+
+bool isFormula(std::string_view text) {
+    const std::string_view name = text.substr(0, text.find(':'));
+    return name == "lambert" || name == "plastic";
+}
+
+}  // namespace
+
+std::vector<std::string> brdfNames() { return namesIn(tableFolder()); }
+
+bool isBrdfPreset(std::string_view text) { return isFormula(text) || !tableNamed(text).empty(); }
+
+const std::vector<std::string>& Brdf::notes() const {
+    static const std::vector<std::string> none;
+    return none;
+}
+
+Color reflectanceFactor(const Brdf& brdf) {
+    const float s = std::sqrt(0.5f);
+    return kPi * brdf.eval({0.0f, 0.0f, 1.0f}, {s, 0.0f, s});
+}
+
+const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
+
+std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
+    constexpr std::string_view kOption = "--brdf";
+    if (text.empty()) text = kDefaultBrdf;
+    if (!isFormula(text)) return readNamed(text);
+    const Preset preset = parsePreset(text, kOption);
+    const auto colour = [&] {
+        for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
+        return Color(preset.values[0], preset.values[1], preset.values[2]);
+    };
+    if (preset.name == "lambert") {
+        requireValues(preset, 3, kOption, "lambert:R,G,B");
+        return std::make_shared<Lambert>(colour());
+    }
+    requireValues(preset, 4, kOption, "plastic:R,G,B,ALPHA");
+    requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
+    return std::make_shared<Plastic>(colour(), preset.values[3]);
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,25 @@
+// A glossy lobe and a matt one, drawn from by a share: how every glossy material here makes its samples.
+#pragma once
+
+#include "shade/brdf/brdf.h"
+#include "shade/brdf/microfacet.h"
+
+namespace stratum::shade {
+
+/// Directions by visible GGX normals with probability `share`, else by the cosine. Local frame.
+struct GlossMixture {
+    /// Below this cosine floats can't tell directions apart (wo + wi may vanish); no light is scattered there.
+    static constexpr float kGrazing = 1e-6f;
+    static bool above(const glm::vec3& w) { return w.z > kGrazing; }
+
+    Ggx ggx;
+    float share;  ///< of the glossy lobe, in [0, 1]
+
+    /// Per steradian; 0 unless both directions are above the surface.
+    float pdf(const glm::vec3& wo, const glm::vec3& wi) const;
+    /// A sample of `brdf`, which this is to draw for; nothing if it falls below the surface.
+    /// @param lobe, u  as for Brdf::sample
+    std::optional<BrdfSample> sample(const Brdf& brdf, const glm::vec3& wo, float lobe, const glm::vec2& u) const;
+};
+
+}  // namespace stratum::shade

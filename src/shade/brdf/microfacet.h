@@ -1,0 +1,65 @@
+// GGX microfacets under a smooth dielectric interface: the pieces of a glossy coat. Local frame, z is the normal.
+//
+// Sources: B. Walter et al., EGSR 2007 (distribution); E. Heitz, JCGT 3(2) 2014 (height-correlated masking-shadowing);
+// E. Heitz, JCGT 7(4) 2018 and J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
+#pragma once
+
+#include "shade/camera/sampling.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::shade {
+
+/// Unpolarized Fresnel reflectance from outside.
+/// @param cosine  of the angle of incidence, in [0, 1]
+/// @param eta     index of refraction inside / outside, > 1
+inline float fresnelDielectric(float cosine, float eta) {
+    const float c = std::min(cosine, 1.0f);
+    const float t = std::sqrt(1.0f - (1.0f - c * c) / (eta * eta));  // > 0: no total reflection from outside
+    const float parallel = (eta * c - t) / (eta * c + t);
+    const float perpendicular = (c - eta * t) / (c + eta * t);
+    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+/// The isotropic GGX distribution.
+struct Ggx {
+    float alpha;  ///< in (0, 1]
+
+    /// Density of facet normals, per steradian of projected area.
+    float d(const glm::vec3& h) const {
+        // sin^2 from x and y, not from 1 - z^2: a narrow lobe lives in the digits that the difference would lose.
+        const float a2 = alpha * alpha;
+        const float k = a2 * h.z * h.z + h.x * h.x + h.y * h.y;
+        return a2 / (kPi * k * k);
+    }
+    /// Length of a unit direction in the space where the facets are a hemisphere. Masking by it, not by tangents, stays
+    /// finite at grazing angles: lambda = (stretch / cosine - 1) / 2.
+    float stretch(const glm::vec3& w) const { return std::sqrt(w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y)); }
+    /// G2 / (4 cos cos): masking and shadowing with the Jacobian and the projections of a reflection.
+    float visibility(const glm::vec3& wo, const glm::vec3& wi) const {
+        return 0.5f / (stretch(wo) * wi.z + stretch(wi) * wo.z);
+    }
+    /// G2 / G1(wo): what a reflection off a visible normal keeps.
+    float shadowing(const glm::vec3& wo, const glm::vec3& wi) const {
+        return wi.z * (wo.z + stretch(wo)) / (stretch(wo) * wi.z + stretch(wi) * wo.z);
+    }
+
+    /// A facet normal that `wo` sees, wo.z > 0.
+    glm::vec3 sampleVisible(const glm::vec3& wo, const glm::vec2& u) const {
+        const glm::vec3 stretched = glm::normalize(glm::vec3(wo.x * alpha, wo.y * alpha, wo.z));
+        const float phi = 2.0f * kPi * u.x;
+        const float z = (1.0f - u.y) * (1.0f + stretched.z) - stretched.z;
+        const float s = std::sqrt(std::clamp(1.0f - z * z, 0.0f, 1.0f));
+        const glm::vec3 h = glm::vec3(s * std::cos(phi), s * std::sin(phi), z) + stretched;
+        return glm::normalize(glm::vec3(h.x * alpha, h.y * alpha, std::max(h.z, 0.0f)));
+    }
+    /// Density, per steradian, of the mirror directions wi = reflect(wo, h) of visible normals.
+    float pdfReflected(const glm::vec3& wo, const glm::vec3& h) const { return 0.5f * d(h) / (wo.z + stretch(wo)); }
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,47 @@
+// Satin plastic: a coloured diffuse body under a rough, colourless dielectric coat. The look of printed filament.
+#pragma once
+
+#include "shade/brdf/brdf.h"
+#include "shade/brdf/microfacet.h"
+
+#include <array>
+
+namespace stratum::shade {
+
+/// f = F D G2 / (4 cos cos) + kd / pi (1 - E(o)) (1 - E(i)) / (1 - Eavg)
+///
+/// E is the coat's directional albedo, tabulated at construction, so that body and coat share the light: with kd = 1
+/// nothing is lost and nothing is gained at any angle (to the table's 1e-4). Light that a single bounce between facets
+/// would lose is given to the body. Exact Fresnel, eta 1.5.
+/// Source of the coupling: C. Kelemen, L. Szirmay-Kalos, EG 2001; A. Kulla, A. Conty, SIGGRAPH course 2017.
+class Plastic final : public Brdf {
+public:
+    static constexpr float kEta = 1.5f;
+    static constexpr float kMinAlpha = 0.001f;
+
+    /// @param body   reflectance of the body, kd, in [0, 1]
+    /// @param alpha  GGX's alpha of the coat, in [kMinAlpha, 1]
+    Plastic(const Color& body, float alpha);
+    Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
+    std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
+    float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+    std::shared_ptr<const Brdf> recolored(const Color& body) const override;
+
+    /// Share of light from this angle that the coat reflects.
+    /// @param cosine  to the normal, in [0, 1]
+    float coatAlbedo(float cosine) const;
+
+private:
+    /// Probability of drawing from the coat.
+    float coatShare(float cosine) const;
+    float coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const;
+
+    static constexpr int kNodes = 65;  // in cosine^(1/4): a smooth coat's E changes where the cosine is about alpha
+    Color body_;
+    float body_max_;
+    Ggx ggx_;
+    std::array<float, kNodes> table_{};
+    float one_minus_mean_ = 1.0f;  // 1 - Eavg
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,46 @@
+#include "shade/brdf/preset.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+namespace stratum::shade {
+
+Preset parsePreset(std::string_view text, std::string_view option) {
+    Preset preset;
+    const std::size_t colon = text.find(':');
+    preset.name = text.substr(0, colon);
+    if (colon == std::string_view::npos) return preset;
+    std::string_view rest = text.substr(colon + 1);
+    for (;;) {
+        const std::size_t comma = rest.find(',');
+        const std::string_view word = rest.substr(0, comma);
+        float value = 0.0f;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+            throw UsageError(fmt::format("{} {}: '{}' is not a number; write e.g. 0.25", option, text, word));
+        preset.values.push_back(value);
+        if (comma == std::string_view::npos) return preset;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+void requireValues(const Preset& preset, std::size_t count, std::string_view option, std::string_view form) {
+    if (preset.values.size() != count)
+        throw UsageError(fmt::format("{} {}: has {} numbers where {} belong; write {}", option, preset.name,
+                                     preset.values.size(), count, form));
+}
+
+void requireRange(const Preset& preset, std::size_t index, float low, float high, std::string_view option,
+                  std::string_view what) {
+    const float value = preset.values.at(index);
+    if (!(value >= low && value <= high))
+        throw UsageError(
+            fmt::format("{} {}: {} is {}; it must be from {} to {}", option, preset.name, what, value, low, high));
+}
+
+}  // namespace stratum::shade

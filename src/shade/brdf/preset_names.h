@@ -1,0 +1,20 @@
+// Names that come before files and folders of the same name; such a file is reached as ./NAME.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::shade {
+
+/// Whether the text of --env names a light that needs no file: studio, sky, constant, alone or with numbers.
+bool isEnvironmentPreset(std::string_view text);
+
+/// Whether the text of --brdf names a material of the project: a formula with its numbers, or a table in data/brdf.
+bool isBrdfPreset(std::string_view text);
+
+/// The tables of the project by name, e.g. "pla-blue", sorted.
+std::vector<std::string> brdfNames();
+
+}  // namespace stratum::shade

@@ -1,0 +1,89 @@
+#include "shade/brdf/table_brdf.h"
+
+#include "shade/brdf/gloss_mixture.h"
+
+#include <glm/common.hpp>
+
+#include <cmath>
+
+namespace stratum::shade {
+
+TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std::vector<std::string> notes)
+    : table_(std::move(table)), notes_(std::move(notes)) {
+    // One lobe for all channels, and rather a little too wide: what is missed in the tails makes noise.
+    double weight = 0.0;
+    double log_alpha = 0.0;
+    Color body(0.0f);
+    for (int c = 0; c < 3; ++c) {
+        const Lobes& l = lobes[static_cast<std::size_t>(c)];
+        weight += l.ks;
+        log_alpha += l.ks * std::log(l.alpha);
+        body[c] = static_cast<float>(std::min(l.kd, 1.0));
+    }
+    ggx_.alpha = static_cast<float>(std::clamp(1.1 * std::exp(log_alpha / std::max(weight, 1e-12)), 0.005, 1.0));
+    // The albedo wants a density, the density a share of the lobes: half and half serves for the first.
+    gloss_share_.fill(0.5f);
+    scale_.fill(Color(1.0f));
+    std::array<float, kNodes> shares{};
+    bool scaled = false;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+        const float s = std::max(static_cast<float>(n) / (kNodes - 1), 0.01f);
+        const float cosine = s * s;
+        const Color a = albedo({std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine});
+        table_albedo_ = std::max(table_albedo_, maxComponent(a));
+        // A little below 1, so that neither the quadrature nor the straight line between nodes can reach above it.
+        for (int c = 0; c < 3; ++c) scale_[n][c] = a[c] > 0.995f ? 0.995f / a[c] : 1.0f;
+        scaled = scaled || std::min({scale_[n].r, scale_[n].g, scale_[n].b}) < 1.0f;
+        const float all = std::max(luminance(a), 1e-6f);
+        shares[n] = std::clamp(1.0f - luminance(body) / all, 0.2f, 0.9f);
+    }
+    gloss_share_ = shares;
+    scaled_ = scaled;
+}
+
+TableBrdf::Place TableBrdf::place(float cosine) {
+    const float s = std::sqrt(std::clamp(cosine, 0.0f, 1.0f)) * (kNodes - 1);
+    const int low = std::min(static_cast<int>(s), kNodes - 2);
+    return {static_cast<std::size_t>(low), s - static_cast<float>(low)};
+}
+
+Color TableBrdf::scale(float cosine) const {
+    const Place p = place(cosine);
+    return (1.0f - p.weight) * scale_[p.low] + p.weight * scale_[p.low + 1];
+}
+
+float TableBrdf::glossShare(float cosine) const {
+    const Place p = place(cosine);
+    return (1.0f - p.weight) * gloss_share_[p.low] + p.weight * gloss_share_[p.low + 1];
+}
+
+Color TableBrdf::albedo(const glm::vec3& wo) const {
+    constexpr int kSide = 64;
+    glm::dvec3 sum(0.0);
+    for (int i = 0; i < kSide; ++i) {
+        for (int j = 0; j < kSide; ++j) {
+            // Half of the points in each lobe, together of the density of the mixture.
+            for (const float lobe : {0.25f, 0.75f}) {
+                const glm::vec2 u((static_cast<float>(i) + 0.5f) / kSide, (static_cast<float>(j) + 0.5f) / kSide);
+                if (const auto s = sample(wo, lobe, u)) sum += glm::dvec3(s->f * (s->wi.z / s->pdf));
+            }
+        }
+    }
+    return Color(sum / (2.0 * kSide * kSide));
+}
+
+Color TableBrdf::eval(const glm::vec3& wo, const glm::vec3& wi) const {
+    if (!(GlossMixture::above(wo) && GlossMixture::above(wi))) return Color(0.0f);
+    const Color value = table_.at(wo, wi);
+    return scaled_ ? value * glm::min(scale(wo.z), scale(wi.z)) : value;
+}
+
+float TableBrdf::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
+    return GlossMixture{ggx_, glossShare(wo.z)}.pdf(wo, wi);
+}
+
+std::optional<BrdfSample> TableBrdf::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
+    return GlossMixture{ggx_, glossShare(wo.z)}.sample(*this, wo, lobe, u);
+}
+
+}  // namespace stratum::shade

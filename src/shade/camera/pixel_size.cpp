@@ -1,0 +1,54 @@
+#include "shade/camera/pixel_size.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stratum::shade {
+namespace {
+
+// Of the ray to a corner of the frame, against the line of sight: no ray goes farther for the same depth.
+double leastCosine(const Camera& camera) {
+    const double slope = std::tan(camera.fov() * std::numbers::pi / 360.0);
+    const double across = slope * camera.width() / camera.height();
+    return 1.0 / std::sqrt(1.0 + slope * slope + across * across);
+}
+
+double inOnePicture(const Camera& camera, const trace::Box& box) {
+    double depth = std::numeric_limits<double>::infinity();
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                           (corner & 4) != 0 ? box.max.z : box.min.z);
+        depth = std::min(depth, glm::dot(p - camera.eye(), camera.forward()));
+    }
+    // What is beside or behind the camera isn't seen: within the frame, depth is at least the distance times the cosine
+    // of the farthest corner.
+    const double distance = glm::length(camera.eye() - glm::clamp(camera.eye(), box.min, box.max));
+    return std::max(depth, distance * leastCosine(camera)) * camera.pixelSize();
+}
+
+}  // namespace
+
+double smallestPixel(const Camera& camera, const trace::Box& box, int turns) {
+    const glm::dvec3 middle = 0.5 * (box.min + box.max);
+    double smallest = inOnePicture(camera, box);
+    for (int turn = 1; turn < turns; ++turn)
+        smallest = std::min(smallest, inOnePicture(camera.turned(360.0 * turn / turns, middle), box));
+    return smallest;
+}
+
+PixelSpread pixelSpread(const Camera& camera, const trace::Box& box, int turns) {
+    PixelSpread spread;
+    spread.smallest = smallestPixel(camera, box, turns);
+    spread.eye = camera.eye();
+    spread.per_distance = leastCosine(camera) * camera.pixelSize();
+    if (turns <= 1)
+        spread.farthest = glm::length(glm::max(glm::abs(box.min - camera.eye()), glm::abs(box.max - camera.eye())));
+    return spread;
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,115 @@
+#include "shade/environment/environment.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "shade/brdf/preset.h"
+#include "shade/brdf/preset_names.h"
+#include "shade/camera/sampling.h"
+#include "shade/environment/bed_light.h"
+#include "shade/environment/constant.h"
+#include "shade/environment/map_environment.h"
+#include "shade/environment/sky.h"
+#include "shade/environment/studio.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace stratum::shade {
+
+namespace {
+
+constexpr std::string_view kOption = "--env";
+constexpr std::array<std::string_view, 3> kPresets = {"studio", "sky", "constant"};
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+std::string nameOf(std::string_view text) { return std::string(text.substr(0, text.find(':'))); }
+
+std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlacement& placement) {
+    SkyOptions sky;
+    // Behind the camera's left shoulder: from its right-hand side a quarter turn back, and as much again.
+    sky.azimuth = placement.azimuth - 0.75 * std::numbers::pi;
+    if (!preset.values.empty()) {
+        if (preset.values.size() == 2) preset.values.push_back(static_cast<float>(sky.turbidity));
+        requireValues(preset, 3, kOption, "sky:ELEVATION,AZIMUTH,TURBIDITY");
+        requireRange(preset, 0, 1.0f, 90.0f, kOption, "the sun's elevation in degrees");
+        requireRange(preset, 1, -360.0f, 360.0f, kOption, "the sun's azimuth in degrees");
+        requireRange(preset, 2, 2.0f, 8.0f, kOption, "the turbidity");
+        sky.elevation = static_cast<double>(preset.values[0]) * kRadians;
+        sky.azimuth = static_cast<double>(preset.values[1]) * kRadians;
+        sky.turbidity = static_cast<double>(preset.values[2]);
+    }
+    sky.azimuth += placement.rotation;
+    return makeSky(sky);
+}
+
+}  // namespace
+
+std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<CosineBedLight>(*this); }
+
+void Environment::radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) radiances[n] = radiance(directions[n]);
+}
+
+void Environment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                               std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n], normals[n]);
+}
+
+void Environment::towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                               std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = toward(directions[n], normals[n]);
+}
+
+bool isEnvironmentPreset(std::string_view text) {
+    return std::find(kPresets.begin(), kPresets.end(), nameOf(text)) != kPresets.end();
+}
+
+std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement) {
+    if (!(placement.exposure >= -30.0 && placement.exposure <= 30.0))
+        throw UsageError(fmt::format("--env-exposure {}: must be from -30 to 30 stops", placement.exposure));
+    if (!std::isfinite(placement.rotation)) throw UsageError("--env-rotation: must be a number of degrees");
+    if (std::error_code error;
+        !isEnvironmentPreset(text) && !text.empty() && std::filesystem::exists(std::filesystem::path(text), error))
+        return std::make_shared<MapEnvironment>(readLightMap(text), placement.rotation,
+                                                static_cast<float>(std::exp2(placement.exposure)));
+    const std::string name = nameOf(text);
+    if (!isEnvironmentPreset(text))
+        throw UsageError(
+            fmt::format("{} {}: is no file; write the name of a .hdr or .exr map, studio, sky or constant:R,G,B{}",
+                        kOption, text, didYouMean(name, kPresets)));
+    const Preset preset = parsePreset(text, kOption);
+    if (placement.exposure != 0.0)
+        throw UsageError(fmt::format("--env-exposure is for maps from files; --env {} needs none", text));
+    if (name == "sky") return skyOf(preset, placement);
+    if (name == "studio") {
+        requireValues(preset, 0, kOption, "studio");
+        EnvironmentPlacement turned = placement;
+        turned.azimuth += placement.rotation;
+        return makeStudio(turned);
+    }
+    requireValues(preset, 3, kOption, "constant:R,G,B");
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");
+    return std::make_shared<ConstantEnvironment>(Color(preset.values[0], preset.values[1], preset.values[2]));
+}
+
+Color irradianceFromAbove(const Environment& environment) {
+    // Uniform in azimuth and in squared sine, which is the density of the cosine.
+    constexpr int kRings = 256;
+    constexpr int kAngles = 512;
+    glm::dvec3 sum(0.0);
+    for (int i = 0; i < kRings; ++i) {
+        const double sine2 = (i + 0.5) / kRings;
+        const double r = std::sqrt(sine2);
+        const double z = std::sqrt(1.0 - sine2);
+        for (int j = 0; j < kAngles; ++j) {
+            const double phi = 2.0 * std::numbers::pi * (j + 0.5) / kAngles;
+            sum += glm::dvec3(environment.radiance(glm::vec3(r * std::cos(phi), r * std::sin(phi), z)));
+        }
+    }
+    return Color(sum * (std::numbers::pi / (kRings * kAngles)));
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,19 @@
+// Radiance RGBE pictures.
+#pragma once
+
+#include "shade/environment/light_map.h"
+
+#include <string_view>
+
+namespace stratum::shade {
+
+/// Whether these are the first bytes of a Radiance picture.
+bool isHdr(std::string_view bytes);
+
+/// Decodes a picture. Unknown header lines are skipped; EXPOSURE lines are undone, as the format asks.
+/// Source: G. Ward, "Real Pixels", Graphics Gems II, and Radiance's own "picture" man page.
+/// @param name  for messages
+/// Throws InputError.
+LightMap readHdr(std::string_view bytes, std::string_view name);
+
+}  // namespace stratum::shade

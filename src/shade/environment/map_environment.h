@@ -1,0 +1,58 @@
+// Light from a map: a photograph of all directions, or a tabulated sky.
+#pragma once
+
+#include "shade/environment/bilinear_distribution.h"
+#include "shade/environment/environment.h"
+#include "shade/environment/light_map.h"
+
+namespace stratum::shade {
+
+/// A latitude-longitude map, interpolated bilinearly. The map's middle column lies towards +x and azimuth grows to the
+/// left, as in Blender, so that a scene looks the same in both.
+///
+/// sample() is one half of multiple importance sampling and knows it: it draws where the map is brighter than its mean
+/// and leaves the rest to the BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling
+/// Techniques in Multiple Importance Sampling", SIGGRAPH Asia 2019. makeBedLight() draws alone and is complete.
+/// Of what is left it draws by the cosine to the normal, too (see BilinearDistribution).
+/// What little shines much, a sun or lamps, has a strategy of its own.
+class MapEnvironment final : public Environment {
+public:
+    /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
+    /// @param scale     of radiance, > 0
+    /// @param visible   see Environment::visible
+    /// @param sun       see Environment::sun
+    MapEnvironment(LightMap map, double rotation, float scale, bool visible = true,
+                   std::shared_ptr<const Light> sun = nullptr);
+    Color radiance(const glm::vec3& direction) const override;
+    int strategies() const override { return static_cast<int>(tables_.size()); }
+    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
+    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
+    EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
+    bool visible() const override { return visible_; }
+    std::shared_ptr<const Light> sun() const override { return sun_; }
+    void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override;
+    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override;
+    void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override;
+    std::unique_ptr<const BedLight> makeBedLight() const override;
+
+private:
+    friend class MapBedLight;
+    /// Place in the map, [0, 1)^2, and the sine of the polar angle.
+    glm::dvec2 place(const glm::vec3& direction, double& sine) const;
+    Color lookUp(const glm::dvec2& place) const;
+    using Tables = std::vector<BilinearDistribution>;  // one a strategy
+    EnvironmentSample lookInto(const Tables& tables, const glm::vec3& direction, const glm::vec3& normal) const;
+    EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u, const glm::vec3& normal) const;
+    /// Per steradian.
+    float density(const Tables& tables, const glm::dvec2& place, double sine, const glm::vec3& normal) const;
+
+    LightMap map_;
+    double rotation_;
+    bool visible_;
+    std::shared_ptr<const Light> sun_;
+    Tables tables_;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,46 @@
+// Maps of light for many surfaces at once: what MapEnvironment does for one, in vectors.
+#pragma once
+
+#include "shade/environment/bilinear_distribution.h"
+#include "shade/environment/environment.h"
+#include "shade/environment/light_map.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <span>
+
+namespace stratum::shade {
+
+/// A map where it stands. Keeps references.
+struct PlacedMap {
+    const LightMap& map;
+    double rotation;                               ///< radians, see MapEnvironment
+    std::span<const BilinearDistribution> tables;  ///< one a strategy
+};
+
+/// A large map misses the caches with nearly every sample; in vectors many misses are under way together. Angles are by
+/// polynomials, exact to 3e-8 radians; all else has the bits of the scalar functions on every processor.
+///
+/// What MapEnvironment::sample gives, for each draw.
+/// @param strategy  of the tables
+/// @param u         uniform in [0, 1)^2
+/// @param normals   of the surfaces, finite, not 0; none if all tables were made without directions
+/// @param samples   as many as u
+void drawFromMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u,
+                 std::span<const glm::vec3> normals, std::span<EnvironmentSample> samples);
+
+/// What MapEnvironment::toward gives, for each direction.
+/// @param directions  unit
+/// @param normals     as above
+/// @param samples     as many as directions
+void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                 std::span<EnvironmentSample> samples);
+
+/// What MapEnvironment::radiance gives, for each direction.
+/// @param directions  unit
+/// @param radiances   as many as directions
+void seeMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);
+
+}  // namespace stratum::shade

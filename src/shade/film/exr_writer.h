@@ -1,0 +1,19 @@
+// Linear pictures in full precision.
+#pragma once
+
+#include "shade/film/film.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace stratum::shade {
+
+/// Overwrites `path` with channels R, G, B, A: 32-bit float, linear, premultiplied, ZIP-compressed, Rec. 709 primaries.
+/// The film's layers follow as channels LAYER.CHANNEL. The display window is the frame, the data window the film's
+/// region.
+/// @param metadata  name -> UTF-8 text, written as string attributes
+/// Throws OutputError; std::invalid_argument for a name that the format uses itself.
+void writeExr(const std::filesystem::path& path, const Film& film, const std::map<std::string, std::string>& metadata);
+
+}  // namespace stratum::shade

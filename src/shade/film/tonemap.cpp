@@ -1,0 +1,131 @@
+#include "shade/film/tonemap.h"
+
+#include "base/error.h"
+#include "shade/camera/sampler.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::shade {
+namespace {
+
+/// A fixed number in [-0.5, 0.5) for a place and a channel.
+float dither(int x, int y, std::uint32_t channel) {
+    const std::uint32_t key =
+        sobol::hash(static_cast<std::uint32_t>(x) ^ (channel << 30), static_cast<std::uint32_t>(y));
+    return sobol::toFloat(key) - 0.5f;
+}
+
+/// @param noise  in steps of the 8 bits
+std::uint8_t toByte(float encoded, float noise) {
+    const float v = std::isfinite(encoded) ? encoded : 0.0f;
+    return static_cast<std::uint8_t>(std::clamp(v * 255.0f + noise + 0.5f, 0.0f, 255.0f));
+}
+
+struct DepthRange {
+    float near = std::numeric_limits<float>::infinity();
+    float far = 0.0f;
+};
+DepthRange depthRange(const Film& film) {
+    DepthRange range;
+    for (const Pixel& p : film.pixels()) {
+        if (!(p.alpha > 0.5f)) continue;
+        range.near = std::min(range.near, p.rgb.r / p.alpha);
+        range.far = std::max(range.far, p.rgb.r / p.alpha);
+    }
+    return range;
+}
+
+struct PositionRange {
+    Color low{std::numeric_limits<float>::infinity()};
+    Color high{-std::numeric_limits<float>::infinity()};
+};
+PositionRange positionRange(const Film& film) {
+    PositionRange range;
+    for (const Pixel& p : film.pixels()) {
+        if (!(p.alpha > 0.5f)) continue;
+        range.low = glm::min(range.low, p.rgb / p.alpha);
+        range.high = glm::max(range.high, p.rgb / p.alpha);
+    }
+    return range;
+}
+
+}  // namespace
+
+void ToneOptions::validate() const {
+    if (!(exposure >= -30.0 && exposure <= 30.0))
+        throw UsageError(fmt::format("--exposure {}: must be from -30 to 30 stops", exposure));
+}
+
+Color toneMapNeutral(Color color) {
+    constexpr float kStart = 0.8f - 0.04f;
+    constexpr float kDesaturation = 0.15f;
+    // Takes away what a 4 % Fresnel reflection of the surroundings adds to a base colour.
+    const float low = std::min({color.r, color.g, color.b});
+    color -= low < 0.08f ? low - 6.25f * low * low : 0.04f;
+    const float peak = maxComponent(color);
+    if (peak < kStart) return color;
+    constexpr float kRoom = 1.0f - kStart;
+    const float new_peak = 1.0f - kRoom * kRoom / (peak + kRoom - kStart);
+    color *= new_peak / peak;
+    const float white = 1.0f - 1.0f / (kDesaturation * (peak - new_peak) + 1.0f);
+    return (1.0f - white) * color + white * Color(new_peak);
+}
+
+float encodeSrgb(float linear) {
+    if (!(linear > 0.0f)) return 0.0f;
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options) {
+    options.validate();
+    const float scale = static_cast<float>(std::exp2(options.exposure));
+    const DepthRange range = film.content() == FilmContent::depth ? depthRange(film) : DepthRange{};
+    const PositionRange box = film.content() == FilmContent::position ? positionRange(film) : PositionRange{};
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(film.pixels().size() * 3);
+    for (int y = film.region().y0; y < film.region().y1; ++y) {
+        for (int x = film.region().x0; x < film.region().x1; ++x) {
+            const Pixel& pixel = film.at(x, y);
+            Color c = pixel.rgb;
+            float noise = 0.0f;
+            switch (film.content()) {
+                case FilmContent::radiance:
+                    c = toneMapNeutral(glm::max(c * scale, Color(0.0f)));
+                    c = {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)};
+                    noise = 1.0f;
+                    break;
+                case FilmContent::unit:
+                    c = {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)};
+                    noise = 1.0f;
+                    break;
+                case FilmContent::normal:
+                    c = 0.5f * (c + Color(1.0f));
+                    break;
+                case FilmContent::position:
+                    for (int k = 0; k < 3 && pixel.alpha > 0.0f; ++k) {
+                        const float span = std::max(box.high[k] - box.low[k], std::numeric_limits<float>::min());
+                        c[k] = pixel.alpha * std::clamp((c[k] / pixel.alpha - box.low[k]) / span, 0.0f, 1.0f);
+                    }
+                    break;
+                case FilmContent::depth: {
+                    // 0.1 is the farthest surface; black is left for "nothing".
+                    const float span = std::max(range.far - range.near, std::numeric_limits<float>::min());
+                    const float share = pixel.alpha > 0.0f ? (c.r / pixel.alpha - range.near) / span : 0.0f;
+                    c = Color(pixel.alpha * (1.0f - 0.9f * std::clamp(share, 0.0f, 1.0f)));
+                    break;
+                }
+            }
+            bytes.push_back(toByte(c.r, noise * dither(x, y, 0)));
+            bytes.push_back(toByte(c.g, noise * dither(x, y, 1)));
+            bytes.push_back(toByte(c.b, noise * dither(x, y, 2)));
+        }
+    }
+    return bytes;
+}
+
+}  // namespace stratum::shade

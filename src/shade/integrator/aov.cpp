@@ -1,0 +1,160 @@
+#include "shade/integrator/aov.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace stratum::shade {
+namespace {
+
+struct Kind {
+    Aov aov;
+    std::string_view name;
+    std::vector<std::string> channels;
+};
+
+const std::array<Kind, 11>& kinds() {
+    static const std::array<Kind, 11> all = {{{Aov::normal, "normal", {"X", "Y", "Z"}},
+                                              {Aov::depth, "depth", {"Z"}},
+                                              {Aov::position, "position", {"X", "Y", "Z"}},
+                                              {Aov::albedo, "albedo", {"R", "G", "B"}},
+                                              {Aov::shading, "shading", {"M", "G"}},
+                                              {Aov::mask, "mask", {"V"}},
+                                              {Aov::variance, "variance", {"V"}},
+                                              {Aov::samples, "samples", {"V"}},
+                                              {Aov::layer, "layer", {"V"}},
+                                              {Aov::tool, "tool", {"V"}},
+                                              {Aov::feature, "feature", {"V"}}}};
+    return all;
+}
+
+const Kind& kindOf(Aov aov) { return kinds()[static_cast<std::size_t>(aov)]; }
+
+std::optional<Label> labelOf(Aov aov) {
+    if (aov == Aov::layer) return Label::layer;
+    if (aov == Aov::tool) return Label::tool;
+    if (aov == Aov::feature) return Label::feature;
+    return std::nullopt;
+}
+
+bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
+
+}  // namespace
+
+std::vector<Aov> parseAovs(std::string_view text) {
+    std::vector<Aov> aovs;
+    while (!text.empty()) {
+        const std::string_view word = text.substr(0, text.find(','));
+        text.remove_prefix(std::min(text.size(), word.size() + 1));
+        const auto found =
+            std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
+        if (found == kinds().end()) {
+            std::vector<std::string_view> names;
+            for (const Kind& kind : kinds()) names.push_back(kind.name);
+            throw UsageError(
+                fmt::format("--aov {}: unknown layer; choose from normal, depth, position, albedo, shading, mask, "
+                            "variance, samples, layer, tool, feature{}",
+                            word, didYouMean(word, names)));
+        }
+        if (std::find(aovs.begin(), aovs.end(), found->aov) == aovs.end()) aovs.push_back(found->aov);
+    }
+    return aovs;
+}
+
+std::vector<Label> labelsOf(const std::vector<Aov>& aovs) {
+    std::vector<Label> labels;
+    for (const Aov aov : aovs)
+        if (const auto label = labelOf(aov)) labels.push_back(*label);
+    return labels;
+}
+
+std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels) {
+    std::vector<FilmLayer> layers;
+    for (const Aov aov : aovs) {
+        const Kind& kind = kindOf(aov);
+        layers.push_back({std::string(kind.name), kind.channels, std::vector<float>(pixels * kind.channels.size())});
+    }
+    return layers;
+}
+
+AovRecorder::AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs)
+    : surfaces_(scene, print), aovs_(std::move(aovs)) {
+    for (const Aov aov : aovs_)
+        if (geometric(aov)) size_ += kindOf(aov).channels.size();
+    if (std::find(aovs_.begin(), aovs_.end(), Aov::shading) != aovs_.end()) {
+        const trace::Box box = print.bounds();
+        const glm::dvec3 middle = 0.5 * (box.min + box.max);
+        const bool endless = !std::isfinite(middle.x + middle.y + middle.z);
+        bare_light_.emplace(scene, endless ? scene.camera.eye() : middle);
+    }
+}
+
+void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const {
+    if (size_ == 0 || !std::isfinite(point.t)) return;
+    const auto add3 = [&sums](const glm::dvec3& v) {
+        for (int k = 0; k < 3; ++k) *sums++ += v[k];
+    };
+    const double share = 1.0 - static_cast<double>(surfaces_.fade(point));
+    for (const Aov aov : aovs_) {
+        switch (aov) {
+            case Aov::normal:
+                add3(share * point.normal);
+                break;
+            case Aov::depth:
+                *sums++ += share * point.t;
+                break;
+            case Aov::position:
+                add3(share * point.position);
+                break;
+            case Aov::albedo:
+                add3(share * glm::dvec3(point.albedo));
+                break;
+            case Aov::shading: {
+                const glm::dvec3 mirror = direction - 2.0 * glm::dot(direction, point.normal) * point.normal;
+                *sums++ += share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal)));
+                *sums++ += share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror)));
+                break;
+            }
+            case Aov::mask:
+                *sums++ += point.bed ? 0.0 : 1.0;
+                break;
+            case Aov::layer:
+            case Aov::tool:
+            case Aov::feature: {
+                // Kept one higher, so that 0 is "not yet".
+                const float value = point.labels[static_cast<std::size_t>(*labelOf(aov))];
+                if (*sums == 0.0 && value >= 0.0f) *sums = static_cast<double>(value) + 1.0;
+                ++sums;
+                break;
+            }
+            case Aov::variance:
+            case Aov::samples:
+                break;
+        }
+    }
+}
+
+void AovRecorder::store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
+                        std::size_t pixel) const {
+    for (std::size_t n = 0; n < aovs_.size(); ++n) {
+        const std::size_t channels = layers[n].channels.size();
+        float* out = &layers[n].values[pixel * channels];
+        if (aovs_[n] == Aov::variance)
+            *out = static_cast<float>(statistics.variance);
+        else if (aovs_[n] == Aov::samples)
+            *out = static_cast<float>(statistics.samples);
+        else if (labelOf(aovs_[n]))
+            *out = static_cast<float>(*sums++ - 1.0);
+        else
+            for (std::size_t c = 0; c < channels; ++c) out[c] = static_cast<float>(*sums++ / statistics.samples);
+    }
+}
+
+}  // namespace stratum::shade

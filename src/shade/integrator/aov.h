@@ -1,0 +1,67 @@
+// What else a pixel can hold besides its light: layers for compositing, denoising and computer vision.
+#pragma once
+
+#include "shade/film/film.h"
+#include "shade/integrator/bare_light.h"
+#include "shade/integrator/integrator.h"
+#include "shade/integrator/surface.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::shade {
+
+/// One kind of layer. Of geometry the mean over all samples, 0 where there is nothing: "times coverage", as film
+/// colours are.
+enum class Aov {
+    normal,    ///< X, Y, Z: world-space unit, on the side that is seen
+    depth,     ///< Z: world units along the ray
+    position,  ///< X, Y, Z: world space
+    albedo,    ///< R, G, B: reflectanceFactor of the material
+    shading,   ///< M, G: what BareLight says of the surface's direction, matt and gloss
+    mask,      ///< V: share of the pixel that the print covers
+    variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
+               ///< stratified samples do better, so it is an upper estimate
+    samples,   ///< V: samples taken
+    // No means, for there is nothing between two tools: of the first sample that meets the print; -1 where none does.
+    layer,    ///< V: number of the layer
+    tool,     ///< V: T number
+    feature,  ///< V: see gcode2vdb --grids
+};
+
+/// The layers of --aov: "normal,depth,...". Throws UsageError.
+std::vector<Aov> parseAovs(std::string_view text);
+
+/// The labels that these layers need scene.labels for.
+std::vector<Label> labelsOf(const std::vector<Aov>& aovs);
+
+/// Empty layers of a film of this many pixels.
+std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
+
+/// Sees what a camera ray meets first. Immutable; shared by all threads.
+class AovRecorder {
+public:
+    AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs);
+    /// Numbers that one pixel needs: those of all geometric layers.
+    std::size_t size() const { return size_; }
+    /// Adds one sample, what a camera ray of that direction met first (t infinite: nothing), to size() sums.
+    void add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const;
+    /// What only the renderer knows.
+    struct PixelStatistics {
+        double variance = 0.0;
+        std::uint32_t samples = 0;
+    };
+    /// Writes the means of one pixel into the film's layers.
+    void store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
+               std::size_t pixel) const;
+
+private:
+    Surfaces surfaces_;
+    std::vector<Aov> aovs_;
+    std::optional<BareLight> bare_light_;  // if a layer asks for it
+    std::size_t size_ = 0;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,140 @@
+#include "shade/integrator/bare_light.h"
+
+#include "base/parallel_for.h"
+#include "shade/camera/sampling.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+
+namespace stratum::shade {
+namespace {
+
+constexpr std::size_t kSide = 64;  // nodes of the table
+constexpr int kRows = 32;          // cells of the sphere that light is gathered in, twice as many columns
+constexpr int kFine = 8;           // directions in a cell, a side: a lamp is not to fall between them
+constexpr float kGlossPower = 16.0f;
+
+/// Light from a part of the sphere.
+struct Part {
+    glm::vec3 direction;
+    float irradiance;  // luminance, of a surface that faces it
+};
+
+glm::vec3 direction(double row, double column) {
+    const double theta = std::numbers::pi * row / kRows;
+    const double phi = std::numbers::pi * column / kRows;
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center) {
+    constexpr std::size_t kColumns = 2 * std::size_t{kRows};
+    std::vector<Part> parts(kRows * kColumns);
+    parallelFor(kRows, 1, [&](std::size_t first, std::size_t last) {
+        std::vector<glm::vec3> directions(std::size_t{kFine} * kFine);
+        std::vector<Color> colors(directions.size());
+        for (std::size_t row = first; row != last; ++row)
+            for (std::size_t column = 0; column < kColumns; ++column) {
+                for (std::size_t n = 0; n < directions.size(); ++n) {
+                    const std::size_t i = n / kFine;
+                    const std::size_t j = n % kFine;
+                    directions[n] = direction(static_cast<double>(row) + (static_cast<double>(i) + 0.5) / kFine,
+                                              static_cast<double>(column) + (static_cast<double>(j) + 0.5) / kFine);
+                }
+                scene.environment->radianceStream(directions, colors);
+                Part& part = parts[row * kColumns + column];
+                part.direction = direction(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5);
+                float sum = 0.0f;
+                for (const Color& color : colors) sum += luminance(color);
+                const double a = std::numbers::pi * static_cast<double>(row) / kRows;
+                const double b = std::numbers::pi * static_cast<double>(row + 1) / kRows;
+                const double solid_angle = (std::cos(a) - std::cos(b)) * std::numbers::pi / kRows;
+                part.irradiance = sum / static_cast<float>(colors.size()) * static_cast<float>(solid_angle);
+            }
+    });
+    for (const auto& light : scene.lights)
+        if (const auto sample = light->sample(center, {0.5f, 0.5f}))
+            parts.push_back({sample->direction, luminance(sample->light) / (sample->pdf > 0.0f ? sample->pdf : 1.0f)});
+    if (!scene.bed) return parts;
+    // The bed in place of what lies below it.
+    float above = 0.0f;
+    for (const Part& part : parts) above += std::max(part.direction.z, 0.0f) * part.irradiance;
+    const float bed = luminance(scene.bed->texture.mean()) * above * kInvPi;
+    std::erase_if(parts, [](const Part& part) { return part.direction.z < 0.0f; });
+    for (std::size_t row = kRows / 2; row < kRows; ++row) {
+        const double a = std::numbers::pi * static_cast<double>(row) / kRows;
+        const double b = std::numbers::pi * static_cast<double>(row + 1) / kRows;
+        const double solid_angle = (std::cos(a) - std::cos(b)) * std::numbers::pi / kRows;
+        for (std::size_t column = 0; column < kColumns; ++column)
+            parts.push_back({direction(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5),
+                             bed * static_cast<float>(solid_angle)});
+    }
+    return parts;
+}
+
+/// Of a place on the square, [-1, 1]^2.
+glm::vec3 unfolded(float u, float v) {
+    glm::vec3 d(u, v, 1.0f - std::abs(u) - std::abs(v));
+    if (d.z < 0.0f) {
+        const glm::vec3 e = d;
+        d.x = (1.0f - std::abs(e.y)) * std::copysign(1.0f, e.x);
+        d.y = (1.0f - std::abs(e.x)) * std::copysign(1.0f, e.y);
+    }
+    return glm::normalize(d);
+}
+
+}  // namespace
+
+BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : table_(kSide * kSide) {
+    const std::vector<Part> parts = gather(scene, center);
+    parallelFor(table_.size(), kSide, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n) {
+            const auto place = [](std::size_t i) { return 2.0f * static_cast<float>(i) / (kSide - 1) - 1.0f; };
+            const glm::vec3 d = unfolded(place(n % kSide), place(n / kSide));
+            float matt = 0.0f;
+            float gloss = 0.0f;
+            for (const Part& part : parts) {
+                const float c = std::max(glm::dot(part.direction, d), 0.0f);
+                matt += c * part.irradiance;
+                float power = c * c;
+                power *= power;
+                power *= power;
+                power *= power;
+                gloss += power * part.irradiance;
+            }
+            table_[n] = {matt * kInvPi, gloss * (kGlossPower + 1.0f) * 0.5f * kInvPi};
+        }
+    });
+    // The brightest matt surface counts 1, whatever the light's unit.
+    for (const glm::vec2& node : table_) brightest_ = std::max(brightest_, node.x);
+    if (brightest_ > 0.0f && std::isfinite(brightest_))
+        for (glm::vec2& node : table_) node /= brightest_;
+}
+
+glm::vec2 BareLight::at(const glm::vec3& direction) const {
+    const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
+    float u = direction.x / sum;
+    float v = direction.y / sum;
+    if (direction.z < 0.0f) {
+        const float w = u;
+        u = std::copysign(1.0f - std::abs(v), w);
+        v = std::copysign(1.0f - std::abs(w), v);
+    }
+    const auto cell = [](float x, std::size_t& i) {
+        const float place = std::clamp(0.5f * (x + 1.0f), 0.0f, 1.0f) * (kSide - 1);
+        i = std::min(static_cast<std::size_t>(place), kSide - 2);
+        return place - static_cast<float>(i);
+    };
+    std::size_t x = 0;
+    std::size_t y = 0;
+    const float a = cell(u, x);
+    const float b = cell(v, y);
+    const glm::vec2* row = &table_[y * kSide + x];
+    return (1.0f - b) * ((1.0f - a) * row[0] + a * row[1]) + b * ((1.0f - a) * row[kSide] + a * row[kSide + 1]);
+}
+
+}  // namespace stratum::shade

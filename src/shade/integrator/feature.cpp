@@ -1,0 +1,36 @@
+#include "shade/integrator/feature.h"
+
+namespace stratum::shade {
+
+Pixel NormalIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const float alpha = 1.0f - surfaces_.fade(*first);
+    return {glm::vec3(first->normal) * alpha, alpha};
+}
+
+Pixel DepthIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const float alpha = 1.0f - surfaces_.fade(*first);
+    // A bed that the camera grazes is almost infinitely far away: 0 times that must be 0.
+    return alpha > 0.0f ? Pixel{Color(static_cast<float>(first->t)) * alpha, alpha} : Pixel{};
+}
+
+Pixel PositionIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr) return {};
+    const SurfacePoint& point = *first;
+    const float alpha = 1.0f - surfaces_.fade(point);
+    return {alpha * Color(point.position), alpha};
+}
+
+Pixel MaskIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr || first->bed) return {};
+    return {Color(1.0f), 1.0f};
+}
+
+Pixel LabelIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
+    if (first == nullptr || first->bed) return {};
+    const float value = first->labels[static_cast<std::size_t>(label_)];
+    return {value >= 0.0f ? categoryColor(static_cast<std::size_t>(value)) : Color(0.0f), 1.0f};
+}
+
+}  // namespace stratum::shade

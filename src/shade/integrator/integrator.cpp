@@ -1,0 +1,89 @@
+#include "shade/integrator/integrator.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "shade/integrator/ambient_occlusion.h"
+#include "shade/integrator/environment_sum.h"
+#include "shade/integrator/feature.h"
+#include "shade/integrator/path.h"
+#include "shade/integrator/phong.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace stratum::shade {
+namespace {
+
+constexpr std::array<std::string_view, 12> kNames = {"path",   "direct", "environment-sum", "phong", "ao",
+                                                     "normal", "depth",  "position",        "mask",  "layer",
+                                                     "tool",   "feature"};
+
+}  // namespace
+
+void IntegratorOptions::validate() const {
+    if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
+        throw UsageError(fmt::format("--integrator {}: unknown; choose {}{}", name, fmt::join(kNames, ", "),
+                                     didYouMean(name, kNames)));
+    if (bounces < 1 || bounces > 64)
+        throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
+    const auto within = [](float value, float high) { return value >= 0.0f && value <= high; };
+    if (!within(phong.ambient, 100.0f) || !within(phong.diffuse, 100.0f) || !within(phong.specular, 100.0f) ||
+        !within(phong.shininess, 1e6f) || !within(phong.reflective, 1.0f))
+        throw UsageError(
+            "--phong KA,KD,KS,SHININESS,KR: weights from 0 to 100, an exponent to 1e6, a mirror's share to 1");
+    if (environment_rows < 2 || environment_rows > 512)
+        throw UsageError(fmt::format("--environment-rows {}: must be from 2 to 512", environment_rows));
+    if (!(ao_distance > 0.0))
+        throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
+}
+
+bool needsLight(const IntegratorOptions& options) {
+    constexpr std::array<std::string_view, 8> kGeometry = {"ao",   "normal", "depth", "position",
+                                                           "mask", "layer",  "tool",  "feature"};
+    return std::find(kGeometry.begin(), kGeometry.end(), options.name) == kGeometry.end();
+}
+
+Pixel Integrator::radiance(const trace::Ray& ray, TraceContext& context) const {
+    SurfacePoint point;
+    ++context.rays.primary;
+    return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
+}
+
+void Integrator::radianceStream(std::span<const trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
+                                RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
+    counts.primary += rays.size();
+    surfaces_.nearest(rays, tracer, points);
+    seenStream(rays, points, samplers, tracer, counts, pixels);
+}
+
+void Integrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                            std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+                            std::span<Pixel> pixels) const {
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        TraceContext context{tracer, samplers[n], counts};
+        pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);
+    }
+}
+
+std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
+                                           const trace::Intersector& print) {
+    options.validate();
+    if (options.name == "direct") return std::make_unique<PathIntegrator>(scene, print, 1);
+    if (options.name == "ao") return std::make_unique<AmbientOcclusion>(scene, print, options.ao_distance);
+    if (options.name == "normal") return std::make_unique<NormalIntegrator>(scene, print);
+    if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
+    if (options.name == "position") return std::make_unique<PositionIntegrator>(scene, print);
+    if (options.name == "mask") return std::make_unique<MaskIntegrator>(scene, print);
+    if (options.name == "layer" || options.name == "tool" || options.name == "feature")
+        return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
+    if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
+    if (options.name == "environment-sum")
+        return std::make_unique<EnvironmentSum>(scene, print, options.environment_rows);
+    return std::make_unique<PathIntegrator>(scene, print, options.bounces);
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,92 @@
+// How much light comes back along a ray: the interface of every method, and their choice by name.
+#pragma once
+
+#include "shade/camera/sampler.h"
+#include "shade/film/film.h"
+#include "shade/integrator/surface.h"
+#include "shade/scene/scene.h"
+#include "trace/intersector.h"
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace stratum::shade {
+
+/// Rays traced against the print. A ray that is answered without it (the far bed) is not counted, except primary ones:
+/// there is one a sample.
+struct RayCounts {
+    std::uint64_t primary = 0;  ///< from the camera
+    std::uint64_t shadow = 0;   ///< to a light, and ambient occlusion's
+    std::uint64_t bounce = 0;   ///< drawn from a BRDF
+    std::uint64_t total() const { return primary + shadow + bounce; }
+    RayCounts& operator+=(const RayCounts& o) {
+        primary += o.primary;
+        shadow += o.shadow;
+        bounce += o.bounce;
+        return *this;
+    }
+    bool operator==(const RayCounts&) const = default;
+};
+
+/// What belongs to one thread.
+struct TraceContext {
+    trace::Tracer& tracer;
+    Sampler& sampler;
+    RayCounts& rays;
+};
+
+/// How PhongIntegrator weighs its terms.
+struct PhongOptions {
+    float ambient = 1.0f, diffuse = 1.0f, specular = 1.0f;  ///< ka, kd, ks, each in [0, 100]
+    float shininess = 500.0f;                               ///< exponent, in [0, 1e6]
+    float reflective = 0.2f;                                ///< kr, the mirror's share, in [0, 1]
+};
+
+struct IntegratorOptions {
+    std::string name = "path";  ///< path, direct, environment-sum, phong, ao, normal, depth, position, mask,
+                                ///< layer, tool, feature
+    int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
+    PhongOptions phong;
+    int environment_rows = 32;  ///< environment-sum: rows of its map, 2 to 512; twice as many columns
+    double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther things don't occlude
+
+    /// Throws UsageError.
+    void validate() const;
+};
+
+/// Whether the integrator of that name looks at light at all.
+bool needsLight(const IntegratorOptions& options);
+
+/// Immutable; shared by all threads.
+class Integrator {
+public:
+    virtual ~Integrator() = default;
+    /// What is seen along a camera ray; finite. Draws from context.sampler in a fixed order.
+    Pixel radiance(const trace::Ray& ray, TraceContext& context) const;
+    /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
+    /// @param points  what each ray meets first, for layers beside the picture; t is infinite where there is nothing
+    void radianceStream(std::span<const trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
+                        RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const;
+    virtual FilmContent content() const { return FilmContent::radiance; }
+
+protected:
+    Integrator(const SceneDescription& scene, const trace::Intersector& print) : surfaces_(scene, print) {}
+    /// What is seen along a camera ray that meets `first`, or nothing if that is null.
+    virtual Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
+    /// The same for many rays. Integrators that follow rays further trace those in streams, too. The answers must be
+    /// those of seen(), to the bit.
+    virtual void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                            std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+                            std::span<Pixel> pixels) const;
+
+    Surfaces surfaces_;
+};
+
+/// The integrator of `options`. It keeps references: `scene` and `print` must outlive it. Throws UsageError.
+std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
+                                           const trace::Intersector& print);
+
+}  // namespace stratum::shade

@@ -1,0 +1,34 @@
+// The shading of older renderers: for comparison with them, and for pictures that explain.
+#pragma once
+
+#include "shade/integrator/integrator.h"
+#include "shade/integrator/surface.h"
+
+#include <vector>
+
+namespace stratum::shade {
+
+/// Phong's model with hard shadows and mirrors:
+///   I = ka Ia + sum over lights of visible Ii [kd max(0, n.l) + ks max(0, r.v)^shininess]
+///   colour = (1 - kr) base I + kr (what the mirror shows), to a depth of five
+/// with base the reflectanceFactor of the surface. Lamps have the intensity of their text: a point's doesn't fall with
+/// distance, a directional's is its irradiance; those with extent shine from their middle. Ambient is --light ambient.
+/// Without any light: ambient 0.2 and one lamp of 0.8 from above the camera's left shoulder. The bed is no mirror.
+/// Sources: B. T. Phong, CACM 18(6) 1975; the terms, depth and defaults are those of Roukema, "SDFs versus polygons",
+/// 2023.
+class PhongIntegrator final : public Integrator {
+public:
+    PhongIntegrator(const SceneDescription& scene, const trace::Intersector& print, const PhongOptions& options);
+
+protected:
+    Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
+
+private:
+    Color local(const SurfacePoint& point, const glm::vec3& view, TraceContext& context) const;
+
+    PhongOptions options_;
+    std::vector<std::shared_ptr<const Light>> lights_;
+    Color ambient_;
+};
+
+}  // namespace stratum::shade

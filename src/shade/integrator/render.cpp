@@ -1,0 +1,259 @@
+#include "shade/integrator/render.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "shade/camera/filter.h"
+#include "shade/integrator/checkpoint.h"
+#include "shade/integrator/tile.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace stratum::shade {
+namespace {
+
+constexpr int kMaxSide = 32768;
+constexpr int kMaxSpp = 65536;
+/// Of a pixel, before anybody asks how noisy it is (RenderOptions::noise): of fewer, a highlight that is met by one
+/// sample in ten is often not seen at all, and its tile taken for good enough.
+constexpr int kFirstSamples = 16;
+/// The same by the clock, which comes back to every tile.
+constexpr int kClockSamples = 4;
+
+/// What all tiles of a render share.
+class Renderer {
+public:
+    Renderer(const trace::Intersector& print, const SceneDescription& scene, const RenderOptions& options,
+             const Progress& progress)
+        : print_(print),
+          scene_(scene),
+          options_(options),
+          progress_(progress),
+          integrator_(makeIntegrator(options.integrator, scene, print)),
+          recorder_(scene, print, options.aovs),
+          // How many samples a tile gets depends on all of its pixels: without the rest of it, a crop would differ.
+          region_(options.noise > 0.0 ? wholeTiles(options.region(), options.width, options.height) : options.region()),
+          boxes_(tilesOf(region_)),
+          pixels_(static_cast<std::uint64_t>(region_.width()) * static_cast<std::uint64_t>(region_.height())),
+          workers_([this] { return makeWorker(); }) {
+        state_.film = Film(options.width, options.height, region_, integrator_->content());
+        state_.film.layers() = makeLayers(options.aovs, state_.film.pixels().size());
+        state_.done.resize(boxes_.size(), 0);
+    }
+
+    RenderResult run() {
+        if (options_.seconds > 0.0)
+            byTheClock();
+        else
+            tileByTile();
+        const bool more = region_ != options_.region();
+        return {more ? state_.film.part(options_.region()) : std::move(state_.film),
+                static_cast<double>(state_.samples) / static_cast<double>(pixels_), state_.rays};
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    TileWorker makeWorker() const {
+        return {
+            print_.makeTracer(), Sampler(options_.seed, static_cast<std::uint32_t>(options_.spp)), {}, {}, {}, {}, {}};
+    }
+    void sample(Tile& tile, int target, TileWorker& worker) const {
+        tile.sample(target, scene_.camera, *integrator_, recorder_, filter_, worker);
+    }
+    /// Adds a finished tile to the state. Not for two threads at once.
+    void finish(std::size_t index, const Tile& tile) {
+        tile.store(state_.film, recorder_);
+        state_.done[index] = 1;
+        state_.rays += tile.rays();
+        state_.samples += static_cast<std::uint64_t>(tile.samples()) * tile.pixels();
+    }
+    void tileByTile();
+    void byTheClock();
+    std::string identity() const;
+
+    const trace::Intersector& print_;
+    const SceneDescription& scene_;
+    const RenderOptions& options_;
+    const Progress& progress_;
+    const std::unique_ptr<Integrator> integrator_;
+    const AovRecorder recorder_;
+    const PixelFilter filter_;
+    const PixelBox region_;
+    const std::vector<PixelBox> boxes_;
+    const std::uint64_t pixels_;
+    tbb::enumerable_thread_specific<TileWorker> workers_;
+    RenderState state_;
+};
+
+/// What the picture depends on: the options as text, what the print and the scene were made from if the caller says so,
+/// and what they look like to a few thousand samples.
+std::string Renderer::identity() const {
+    constexpr int kProbes = 4096;
+    TileWorker worker = makeWorker();
+    for (int n = 0; n < kProbes; ++n) {
+        Sampler sampler(0x9e3779b9u, kProbes);
+        sampler.start(0, 0, static_cast<std::uint32_t>(n));
+        const glm::dvec2 place(sampler.next2D());
+        const glm::dvec2 pixel = place * glm::dvec2(options_.width, options_.height);
+        worker.rays.push_back(scene_.camera.hasLens() ? scene_.camera.ray(pixel, sampler.next2D())
+                                                      : scene_.camera.ray(pixel));
+        worker.samplers.push_back(sampler);
+    }
+    worker.points.resize(kProbes);
+    worker.pixels.resize(kProbes);
+    RayCounts ignored;
+    integrator_->radianceStream(worker.rays, worker.samplers, *worker.tracer, ignored, worker.points, worker.pixels);
+    std::uint32_t look = 0;
+    for (const Pixel& p : worker.pixels)
+        for (const float v : {p.rgb.r, p.rgb.g, p.rgb.b, p.alpha})
+            look = sobol::hash(look, std::bit_cast<std::uint32_t>(v));
+    const IntegratorOptions& i = options_.integrator;
+    const auto& box = print_.bounds();
+    std::string text = fmt::format(
+        "{}x{} region {},{},{},{} spp {} noise {} seed {} march {} voxel {} box {},{},{},{},{},{} integrator {} {} {} "
+        "{} "
+        "{} {} {} {} {} layers",
+        options_.width, options_.height, region_.x0, region_.y0, region_.x1, region_.y1, options_.spp, options_.noise,
+        options_.seed, print_.name(), print_.voxelSize(), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
+        box.max.z, i.name, i.bounces, i.phong.ambient, i.phong.diffuse, i.phong.specular, i.phong.shininess,
+        i.phong.reflective, i.environment_rows, i.ao_distance);
+    for (const FilmLayer& layer : state_.film.layers()) text += " " + layer.name;
+    return text + fmt::format(" look {:08x} source {}", look, options_.source);
+}
+
+/// Every tile from its first sample to its last, and then the next one.
+void Renderer::tileByTile() {
+    std::optional<Checkpoint> checkpoint;
+    if (!options_.checkpoint.empty()) {
+        checkpoint.emplace(options_.checkpoint, identity());
+        if (!checkpoint->read(state_))
+            checkpoint->write(checkpoint->bytesOf(state_));  // a file that can't be written fails now
+    }
+    std::vector<std::size_t> todo;
+    for (std::size_t n = 0; n < boxes_.size(); ++n)
+        if (state_.done[n] == 0) todo.push_back(n);
+
+    std::mutex mutex;
+    std::uint64_t done = pixels_;
+    for (const std::size_t n : todo) done -= Tile(boxes_[n], recorder_).pixels();
+    auto written = Clock::now();
+    bool writing = false;
+    parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
+        TileWorker& worker = workers_.local();
+        for (std::size_t n = first; n != last; ++n) {
+            Tile tile(boxes_[todo[n]], recorder_);
+            int target = options_.noise > 0.0 ? std::min(kFirstSamples, options_.spp) : options_.spp;
+            sample(tile, target, worker);
+            while (target < options_.spp && tile.error() > options_.noise) {
+                target = std::min(2 * target, options_.spp);
+                sample(tile, target, worker);
+            }
+            std::string bytes;
+            {
+                const std::lock_guard lock(mutex);
+                finish(todo[n], tile);
+                done += tile.pixels();
+                if (progress_) progress_(done, pixels_);
+                if (!checkpoint || writing) continue;
+                const std::chrono::duration<double> since = Clock::now() - written;
+                if (since.count() < options_.checkpoint_interval) continue;
+                bytes = checkpoint->bytesOf(state_);
+                writing = true;
+            }
+            // A disc may take long; the other threads go on meanwhile.
+            checkpoint->write(bytes);
+            const std::lock_guard lock(mutex);
+            written = Clock::now();
+            writing = false;
+        }
+    });
+    if (checkpoint && !todo.empty()) checkpoint->write(checkpoint->bytesOf(state_));
+}
+
+/// All tiles a little, and then the worst ones more, until the time is over.
+void Renderer::byTheClock() {
+    const auto begin = Clock::now();
+    const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    std::vector<Tile> tiles;
+    tiles.reserve(boxes_.size());
+    for (const PixelBox& box : boxes_) tiles.emplace_back(box, recorder_);
+    std::mutex mutex;
+    std::uint64_t shown = 0;
+    std::vector<std::size_t> todo(tiles.size());
+    for (std::size_t n = 0; n < todo.size(); ++n) todo[n] = n;
+    while (!todo.empty()) {
+        parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
+            TileWorker& worker = workers_.local();
+            for (std::size_t n = first; n != last; ++n) {
+                Tile& tile = tiles[todo[n]];
+                // The first samples are taken whatever the clock says: every pixel needs some.
+                if (tile.samples() > 0 && elapsed() >= options_.seconds) return;
+                sample(tile, std::min(std::max(kClockSamples, 2 * tile.samples()), options_.spp), worker);
+                if (!progress_) continue;
+                const std::lock_guard lock(mutex);
+                const double part = std::min(1.0, elapsed() / options_.seconds);
+                const auto now = static_cast<std::uint64_t>(part * static_cast<double>(pixels_ - 1));
+                if (now > shown) progress_(shown = now, pixels_);
+            }
+        });
+        if (elapsed() >= options_.seconds) break;
+        // The worse half of what is not good enough yet.
+        std::vector<std::pair<double, std::size_t>> errors;
+        for (std::size_t n = 0; n < tiles.size(); ++n) {
+            const double error = tiles[n].error();
+            if (tiles[n].samples() < options_.spp && error > options_.noise) errors.emplace_back(-error, n);
+        }
+        std::sort(errors.begin(), errors.end());
+        todo.clear();
+        for (std::size_t k = 0; k < (errors.size() + 1) / 2; ++k) todo.push_back(errors[k].second);
+    }
+    for (std::size_t n = 0; n < tiles.size(); ++n) finish(n, tiles[n]);
+    if (progress_) progress_(pixels_, pixels_);
+}
+
+}  // namespace
+
+PixelBox RenderOptions::region() const {
+    if (!crop) return {0, 0, width, height};
+    return {std::max(crop->x0 - margin, 0), std::max(crop->y0 - margin, 0), std::min(crop->x1 + margin, width),
+            std::min(crop->y1 + margin, height)};
+}
+
+void RenderOptions::validate() const {
+    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)
+        throw UsageError(fmt::format("--size {}x{}: each side must be from 1 to {} pixels", width, height, kMaxSide));
+    if (spp < 1 || spp > kMaxSpp) throw UsageError(fmt::format("--spp {}: must be from 1 to {}", spp, kMaxSpp));
+    if (crop && (crop->x0 < 0 || crop->y0 < 0 || crop->x1 > width || crop->y1 > height || crop->x0 >= crop->x1 ||
+                 crop->y0 >= crop->y1))
+        throw UsageError(fmt::format("--crop {},{},{},{}: must be a part of the {}x{} picture, X0 < X1 and Y0 < Y1",
+                                     crop->x0, crop->y0, crop->x1, crop->y1, width, height));
+    if (!(noise >= 0.0 && noise <= 1.0))
+        throw UsageError(fmt::format("--noise {}: must be above 0 and at most 1", noise));
+    if (spp < 2 && std::find(aovs.begin(), aovs.end(), Aov::variance) != aovs.end())
+        throw UsageError("--aov variance needs --spp 2 or more: one sample has no spread");
+    if (!(seconds >= 0.0 && seconds <= 1e7))
+        throw UsageError(fmt::format("--time {}: must be from 0 to 1e7 s", seconds));
+    if (seconds > 0.0 && !checkpoint.empty())
+        throw UsageError("--checkpoint is for pictures of so many samples; one by the clock (--time) can't be resumed");
+    integrator.validate();
+}
+
+RenderResult render(const trace::Intersector& print, const SceneDescription& scene, const RenderOptions& options,
+                    const Progress& progress) {
+    options.validate();
+    if (scene.camera.width() != options.width || scene.camera.height() != options.height)
+        throw UsageError(fmt::format("the camera was made for {}x{} pixels, the picture has {}x{}",
+                                     scene.camera.width(), scene.camera.height(), options.width, options.height));
+    return Renderer(print, scene, options, progress).run();
+}
+
+}  // namespace stratum::shade

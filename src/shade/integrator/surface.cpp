@@ -1,0 +1,150 @@
+#include "shade/integrator/surface.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace stratum::shade {
+
+Surfaces::Surfaces(const SceneDescription& scene, const trace::Intersector& print)
+    : scene_(scene), offset_(print.surfaceOffset()), only_(scene.material) {}
+
+SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const {
+    SurfacePoint point;
+    point.position = hit.position;
+    point.t = hit.t;
+    const ObjectMaterial& object = hit.object < scene_.objects.size() ? scene_.objects[hit.object] : only_;
+    const Material& material = object.single() ? object.only() : object.of(tracer.attribute(hit, object.attribute()));
+    point.brdf = material.brdf.get();
+    point.albedo = material.albedo;
+    for (std::size_t n = 0; n < kLabels; ++n)
+        if (scene_.labels[n])
+            if (const auto value = tracer.attribute(hit, *scene_.labels[n])) point.labels[n] = value->x;
+    const double facing = glm::dot(hit.normal, ray.direction);
+    // A normal that is no number (a gradient of zero) is replaced here, once: the surface then faces the ray.
+    if (!std::isfinite(facing) || !(glm::dot(hit.normal, hit.normal) > 0.5))
+        point.normal = -ray.direction;
+    else
+        point.normal = facing > 0.0 ? -hit.normal : hit.normal;
+    point.geometric = point.normal;
+    if (scene_.smooth_normals) {
+        const glm::dvec3 smooth = tracer.shadingNormal(hit);
+        const glm::dvec3 facing_us = facing > 0.0 ? -smooth : smooth;
+        // One that looks away from the viewer would show nothing: near the silhouette it gives way.
+        if (glm::dot(facing_us, ray.direction) < 0.0) point.normal = facing_us;
+    }
+    return point;
+}
+
+SurfacePoint Surfaces::onBed(const trace::Ray& ray, double t) const {
+    SurfacePoint point;
+    point.position = ray.origin + t * ray.direction;
+    point.position.z = scene_.bed->z;
+    point.t = t;
+    const glm::dvec2 place(point.position.x, point.position.y);
+    const BedTexture::Finish& finish = scene_.bed->texture.at(place);
+    point.brdf = finish.brdf.get();
+    point.albedo = finish.albedo;
+    const glm::dvec3 bump = scene_.bed->texture.normal(place);
+    // As on the print: what looks away from the viewer would show nothing.
+    if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
+    point.bed = true;
+    return point;
+}
+
+bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoint& point) const {
+    trace::Ray limited = ray;
+    const std::optional<double> bed = scene_.bed ? scene_.bed->intersect(ray) : std::nullopt;
+    if (bed) limited.t_max = *bed;
+    trace::Hit hit;
+    const bool print = tracer.intersect(limited, hit);
+    if (print)
+        point = onPrint(ray, hit, tracer);
+    else if (bed)
+        point = onBed(ray, *bed);
+    return print || bed;
+}
+
+void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
+    // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
+    static thread_local std::vector<trace::Hit> hits;
+    hits.resize(rays.size());
+    // Of an earlier scene, perhaps; who has but one object, or no parts, says nothing of them.
+    for (trace::Hit& hit : hits) hit.object = hit.part = 0;
+    static thread_local std::vector<std::optional<double>> beds;
+    if (scene_.bed) {
+        beds.resize(rays.size());
+        static thread_local std::vector<trace::Ray> limited;
+        limited.assign(rays.begin(), rays.end());
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            beds[n] = scene_.bed->intersect(rays[n]);
+            if (beds[n]) limited[n].t_max = *beds[n];
+        }
+        tracer.intersectStream(limited, hits);
+    } else {
+        tracer.intersectStream(rays, hits);
+    }
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        if (std::isfinite(hits[n].t))
+            points[n] = onPrint(rays[n], hits[n], tracer);
+        else if (scene_.bed && beds[n])
+            points[n] = onBed(rays[n], *beds[n]);
+        else
+            points[n].t = std::numeric_limits<double>::infinity();
+    }
+}
+
+bool Surfaces::occluded(const trace::Ray& ray, trace::Tracer& tracer) const {
+    return (scene_.bed && scene_.bed->intersect(ray)) || tracer.occluded(ray);
+}
+
+void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
+                        std::span<std::uint8_t> blocked) const {
+    if (!scene_.bed) return tracer.occludedStream(rays, blocked);
+    // What the bed stops needs no walk through the print.
+    std::vector<trace::Ray> others;
+    std::vector<std::size_t> places;
+    for (std::size_t n = 0; n < rays.size(); ++n) {
+        blocked[n] = scene_.bed->intersect(rays[n]) ? 1 : 0;
+        if (blocked[n] != 0) continue;
+        others.push_back(rays[n]);
+        places.push_back(n);
+    }
+    std::vector<std::uint8_t> answers(others.size());
+    tracer.occludedStream(others, answers);
+    for (std::size_t k = 0; k < places.size(); ++k) blocked[places[k]] = answers[k];
+}
+
+trace::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {
+    trace::Ray ray;
+    ray.origin = point.position + offset_ * point.geometric;
+    ray.direction = glm::normalize(glm::dvec3(direction));
+    return ray;
+}
+
+float Surfaces::fade(const SurfacePoint& point) const {
+    return point.bed && scene_.backdrop ? static_cast<float>(scene_.bed->fade(point.position)) : 0.0f;
+}
+
+bool Surfaces::backdrop(const trace::Ray& ray, Color& radiance) const {
+    return backdrop(std::span(&ray, 1), std::span(&radiance, 1));
+}
+
+bool Surfaces::backdrop(std::span<const trace::Ray> rays, std::span<Color> radiances) const {
+    if (scene_.backdrop) {
+        for (std::size_t n = 0; n < rays.size(); ++n)
+            radiances[n] = scene_.backdrop->radiance(glm::vec3(rays[n].direction));
+        return true;
+    }
+    if (!scene_.environment->visible()) return false;
+    std::vector<glm::vec3> ways;
+    ways.reserve(rays.size());
+    for (const trace::Ray& ray : rays) ways.emplace_back(ray.direction);
+    scene_.environment->radianceStream(ways, radiances);
+    return true;
+}
+
+}  // namespace stratum::shade

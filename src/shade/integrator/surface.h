@@ -1,0 +1,60 @@
+// Everything that a ray can meet: the print and the bed.
+#pragma once
+
+#include "shade/brdf/brdf.h"
+#include "shade/scene/scene.h"
+#include "trace/intersector.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace stratum::shade {
+
+/// A point where light is scattered. World space.
+struct SurfacePoint {
+    glm::dvec3 position{0.0};
+    glm::dvec3 normal{0.0, 0.0, 1.0};     ///< unit, to shade with, on the side that the ray came from
+    glm::dvec3 geometric{0.0, 0.0, 1.0};  ///< unit, to leave along; the same but for smooth normals
+    double t = 0.0;                       ///< along the ray, world units
+    const Brdf* brdf = nullptr;
+    Color albedo{0.0f};  ///< reflectanceFactor of brdf
+    bool bed = false;
+    /// By Label: what was printed here, if the scene asks for it and the object knows; -1 if not.
+    std::array<float, kLabels> labels{-1.0f, -1.0f, -1.0f};
+};
+
+/// Immutable; shared by all threads. Keeps references to the scene and its material.
+class Surfaces {
+public:
+    Surfaces(const SceneDescription& scene, const trace::Intersector& print);
+
+    /// The nearest surface in the ray's interval; false if there is none.
+    bool nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoint& point) const;
+    /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`.
+    void nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
+    bool occluded(const trace::Ray& ray, trace::Tracer& tracer) const;
+    /// blocked[i] is 1 or 0. `blocked` is as long as `rays`.
+    void occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
+    /// A ray that leaves a point without meeting the same surface again.
+    /// @param direction  world space, near unit length
+    trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const;
+    /// Share of the backdrop in what the camera sees of this point, 0 to 1.
+    float fade(const SurfacePoint& point) const;
+    /// What the camera sees where there is nothing.
+    bool backdrop(const trace::Ray& ray, Color& radiance) const;
+    /// The same for many rays; false if there is nothing behind any of them. `radiances` is as long as `rays`.
+    bool backdrop(std::span<const trace::Ray> rays, std::span<Color> radiances) const;
+
+private:
+    SurfacePoint onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const;
+    SurfacePoint onBed(const trace::Ray& ray, double t) const;
+
+    const SceneDescription& scene_;
+    double offset_;        // world units
+    ObjectMaterial only_;  // of objects that scene_.objects doesn't have
+};
+
+}  // namespace stratum::shade

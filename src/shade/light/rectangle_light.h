@@ -1,0 +1,27 @@
+// A flat lamp: a softbox, a window, a screen.
+#pragma once
+
+#include "shade/light/light.h"
+
+namespace stratum::shade {
+
+/// A rectangle of even radiance that shines to both sides. Drawn from by the solid angle in which the point sees it:
+/// C. Urena, M. Fajardo, A. King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
+class RectangleLight final : public Light {
+public:
+    /// @param half_u, half_v  perpendicular. World units
+    RectangleLight(const glm::dvec3& centre, const glm::dvec3& half_u, const glm::dvec3& half_v, const Color& radiance);
+    std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
+    std::optional<LightMeeting> meet(const trace::Ray& ray) const override;
+    bool hasExtent() const override { return true; }
+
+private:
+    struct View;
+    View viewFrom(const glm::dvec3& point) const;
+
+    glm::dvec3 centre_, x_, y_, z_;  // unit axes; z is across
+    double half_x_, half_y_;         // world units
+    Color radiance_;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,53 @@
+// What the bed is covered with: plain paper, or the sheets that printers have.
+#pragma once
+
+#include "shade/brdf/brdf.h"
+#include "shade/color.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+namespace stratum::shade {
+
+enum class BedSurface : std::uint8_t {
+    paper,  ///< plain, matt and light: a photographer's sweep
+    pei,    ///< a powder-coated steel sheet: dark bronze, satin, bumps of about 0.4 mm
+    grid,   ///< a dark matt plate with light lines every 10 mm, broader ones every 50
+};
+
+/// Throws UsageError.
+BedSurface parseBedSurface(std::string_view text);
+
+/// Reflectance and slope by place, by formula: nothing is stored, and it has no end. Immutable.
+class BedTexture {
+public:
+    struct Finish {
+        std::shared_ptr<const Brdf> brdf;
+        Color albedo{0.0f};  ///< reflectanceFactor of brdf
+    };
+
+    /// @param mm_per_unit  millimetres a world unit
+    explicit BedTexture(BedSurface surface, double mm_per_unit = 1.0);
+    /// Paper of that reflectance, in [0, 1].
+    explicit BedTexture(const Color& paper);
+
+    /// @param place  world units
+    const Finish& at(const glm::dvec2& place) const;
+    /// The normal to shade with, unit, upwards.
+    /// @param place  world units
+    glm::dvec3 normal(const glm::dvec2& place) const;
+    /// Reflectance over a large piece.
+    const Color& mean() const { return mean_; }
+
+private:
+    BedSurface surface_;
+    double mm_per_unit_ = 1.0;
+    Finish base_, lines_;  // the second of the grid only
+    Color mean_{0.0f};
+};
+
+}  // namespace stratum::shade

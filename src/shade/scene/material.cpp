@@ -1,0 +1,211 @@
+#include "shade/scene/material.h"
+
+#include "base/error.h"
+#include "shade/brdf/filament_color.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace stratum::shade {
+namespace {
+
+constexpr double kMostCategories = 32;
+constexpr std::size_t kRampSteps = 256;
+constexpr float kBrightest = 0.95f;  // no filament reflects all
+const Color kNeutral(0.18f);         // of values that are no numbers
+
+Color fromSrgb(std::uint32_t hex) {
+    const auto channel = [](std::uint32_t v) {
+        const double s = (v & 0xffu) / 255.0;
+        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    };
+    return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
+}
+
+/// What slicers' users are used to, more or less.
+struct Named {
+    std::string_view name;
+    std::uint32_t color;
+};
+constexpr std::array<Named, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d},
+                                                   {"external-perimeter", 0xe87a2c},
+                                                   {"overhang-perimeter", 0x3a48d6},
+                                                   {"infill", 0xa83232},
+                                                   {"solid-infill", 0x8c52c4},
+                                                   {"top-infill", 0xe04848},
+                                                   {"bridge", 0x4a80c0},
+                                                   {"gap-fill", 0xe8e8e8},
+                                                   {"ironing", 0xe89070},
+                                                   {"skirt", 0x0a8a70},
+                                                   {"brim", 0x0a8a70},
+                                                   {"support", 0x40b840},
+                                                   {"support-interface", 0x1e7a1e},
+                                                   {"wipe-tower", 0xa8d8a0}}};
+
+/// The number that a key of `each` means: itself, or the place of a name.
+int valueOf(const std::string& key, const MaterialOptions& options, const trace::AttributeSummary& summary) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
+    if (error == std::errc() && end == key.data() + key.size()) return value;
+    const auto found = std::find(summary.labels.begin(), summary.labels.end(), key);
+    if (found == summary.labels.end()) {
+        std::string known;
+        for (const std::string& label : summary.labels)
+            if (!label.empty()) known += (known.empty() ? "" : ", ") + label;
+        throw UsageError(fmt::format("the material of {} '{}': that is neither a whole number nor one of its names: {}",
+                                     options.by, key, known.empty() ? "the file has none" : known));
+    }
+    return static_cast<int>(found - summary.labels.begin());
+}
+
+/// Which colour a whole number has where nothing else is said: a feature its own, others one of a palette.
+Color colorOfInteger(int value, const trace::AttributeSummary& summary) {
+    const auto id = static_cast<std::size_t>(value);
+    if (id < summary.labels.size())
+        for (const Named& named : kFeatureColors)
+            if (named.name == summary.labels[id]) return fromSrgb(named.color);
+    return categoryColor(id);
+}
+
+/// Whether each whole number has a colour of its own, and not a place on a ramp.
+bool isPalette(const MaterialOptions& options, const trace::AttributeSummary& summary) {
+    return summary.kind == trace::AttributeSummary::Kind::integer && options.by != "layer" &&
+           summary.most - summary.least < kMostCategories;
+}
+
+std::string nameOf(int value, const MaterialOptions& options, const trace::AttributeSummary& summary) {
+    const auto id = static_cast<std::size_t>(value);
+    if (id < summary.labels.size() && !summary.labels[id].empty()) return summary.labels[id];
+    return fmt::format("{} {}", options.by, value);
+}
+
+std::shared_ptr<const Brdf> recolored(const Brdf& base, const Color& color, const std::string& text) {
+    const Color body = glm::clamp(color, Color(0.0f), Color(kBrightest));
+    if (auto brdf = base.recolored(body)) return brdf;
+    throw UsageError(fmt::format(
+        "the material {} has a colour of its own; to colour by an attribute take lambert:... or plastic:...", text));
+}
+
+}  // namespace
+
+ObjectMaterial::ObjectMaterial(std::shared_ptr<const Brdf> brdf) {
+    const Color albedo = reflectanceFactor(*brdf);
+    materials_.push_back({std::move(brdf), albedo});
+}
+
+ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
+                               std::function<std::size_t(const glm::vec3&)> choose)
+    : attribute_(attribute), choose_(std::move(choose)) {
+    for (const auto& brdf : brdfs) materials_.push_back({brdf, reflectanceFactor(*brdf)});
+}
+
+Color categoryColor(std::size_t n) {
+    // After Okabe and Ito's set for all kinds of colour vision, with three more.
+    constexpr std::array<std::uint32_t, 10> kColors = {0xe69f00, 0x0072b2, 0x009e73, 0xd55e00, 0xcc79a7,
+                                                       0x56b4e9, 0xf0e442, 0x7a4a2a, 0x8a8a8a, 0x2f2f4f};
+    return fromSrgb(kColors[n % kColors.size()]);
+}
+
+Color rampColor(double t) {
+    constexpr std::array<std::uint32_t, 6> kStops = {0x2a1a5e, 0x2b5a92, 0x1f8f8c, 0x4fb562, 0xb5cf3f, 0xf7e65a};
+    const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
+    const auto n = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
+    const auto w = static_cast<float>(place - static_cast<double>(n));
+    // Between square roots: even to the eye, near enough.
+    const Color mixed = (1.0f - w) * glm::sqrt(fromSrgb(kStops[n])) + w * glm::sqrt(fromSrgb(kStops[n + 1]));
+    return mixed * mixed;
+}
+
+ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
+                                  const trace::AttributeSummary& summary) {
+    using Kind = trace::AttributeSummary::Kind;
+    const std::string& text = options.brdf.empty() ? scene_brdf : options.brdf;
+    const std::shared_ptr<const Brdf> base = makeBrdf(text);
+    std::vector<std::shared_ptr<const Brdf>> brdfs{base};
+    if (!options.each.empty()) {
+        if (summary.kind != Kind::integer)
+            throw UsageError(
+                fmt::format("materials by {}: it holds no whole numbers; take tool, feature, layer or "
+                            "object, or color_by",
+                            options.by));
+        std::map<int, std::size_t> place;
+        for (const auto& [key, brdf] : options.each) {
+            place[valueOf(key, options, summary)] = brdfs.size();
+            brdfs.push_back(makeBrdf(brdf));
+        }
+        brdfs.push_back(base);
+        return {attribute, brdfs, [place](const glm::vec3& v) {
+                    const auto found = place.find(static_cast<int>(v.x));
+                    return found == place.end() ? std::size_t{0} : found->second;
+                }};
+    }
+    if (summary.kind == Kind::color) {
+        for (const glm::vec3& color : summary.colors)
+            brdfs.push_back(color == trace::kNoColor ? base : recolored(*base, bodyOf(color), text));
+        brdfs.push_back(recolored(*base, kNeutral, text));
+        return {attribute, brdfs, [colors = summary.colors](const glm::vec3& v) {
+                    const auto before = [](const glm::vec3& a, const glm::vec3& b) {
+                        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+                    };
+                    const auto found = std::lower_bound(colors.begin(), colors.end(), v, before);
+                    return found != colors.end() && *found == v ? static_cast<std::size_t>(found - colors.begin()) + 1
+                                                                : std::size_t{0};
+                }};
+    }
+    const double least = summary.least;
+    const double span = summary.most - least;
+    if (isPalette(options, summary)) {
+        for (int n = 0; n <= static_cast<int>(span); ++n)
+            brdfs.push_back(recolored(*base, colorOfInteger(static_cast<int>(least) + n, summary), text));
+        brdfs.push_back(recolored(*base, kNeutral, text));
+        return {attribute, brdfs, [least, span](const glm::vec3& v) {
+                    const double n = static_cast<double>(v.x) - least;
+                    return n >= 0 && n <= span ? static_cast<std::size_t>(n) + 1 : std::size_t{0};
+                }};
+    }
+    for (std::size_t n = 0; n < kRampSteps; ++n)
+        brdfs.push_back(recolored(*base, rampColor(static_cast<double>(n) / (kRampSteps - 1)), text));
+    brdfs.push_back(recolored(*base, kNeutral, text));
+    return {attribute, brdfs, [least, span](const glm::vec3& v) {
+                const double t = span > 0 ? (static_cast<double>(v.x) - least) / span : 0.0;
+                return 1 + static_cast<std::size_t>(std::lround(std::clamp(t, 0.0, 1.0) * (kRampSteps - 1)));
+            }};
+}
+
+Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary& summary,
+                  const ObjectMaterial& material) {
+    using Kind = trace::AttributeSummary::Kind;
+    Legend legend;
+    legend.title = options.by;
+    if (!options.each.empty()) {
+        for (const auto& [key, text] : options.each) {
+            const int value = valueOf(key, options, summary);
+            legend.entries.push_back({nameOf(value, options, summary),
+                                      material.of(glm::vec3(static_cast<float>(value), 0.0f, 0.0f)).albedo});
+        }
+    } else if (summary.kind == Kind::color) {
+        for (const glm::vec3& color : summary.colors)
+            legend.entries.push_back({color == trace::kNoColor ? "not stated" : hexOf(color), color});
+    } else if (isPalette(options, summary)) {
+        for (const int value : summary.values)
+            legend.entries.push_back({nameOf(value, options, summary), colorOfInteger(value, summary)});
+    } else {
+        legend.unit = unitOfAttribute(options.by);
+        legend.least = summary.least;
+        legend.most = summary.most;
+        for (std::size_t n = 0; n < kRampSteps; ++n)
+            legend.ramp.push_back(rampColor(static_cast<double>(n) / (kRampSteps - 1)));
+    }
+    return legend;
+}
+
+}  // namespace stratum::shade

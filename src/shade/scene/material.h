@@ -1,0 +1,76 @@
+// What an object is made of: one BRDF, or many that an attribute of its voxels chooses among.
+#pragma once
+
+#include "shade/brdf/brdf.h"
+#include "shade/color.h"
+#include "shade/film/legend.h"
+#include "trace/attribute.h"
+
+#include <glm/vec3.hpp>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stratum::shade {
+
+/// An object's material in words.
+struct MaterialOptions {
+    std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: where `each` has nothing
+    std::string by;    ///< name of the attribute that chooses; empty: one material
+    std::map<std::string, std::string>
+        each;  ///< value, or its name -> see makeBrdf; empty: `brdf` in a palette's colours
+};
+
+/// A BRDF and its colour.
+struct Material {
+    std::shared_ptr<const Brdf> brdf;
+    Color albedo{0.0f};  ///< its reflectanceFactor
+};
+
+/// Immutable; shared by all threads.
+class ObjectMaterial {
+public:
+    explicit ObjectMaterial(std::shared_ptr<const Brdf> brdf);
+    /// @param attribute  number of the attribute, see Tracer::attribute()
+    /// @param brdfs      at least one; the first is for places without a value, the last for values that are no finite
+    ///                   numbers
+    /// @param choose     finite value -> index into brdfs
+    ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
+                   std::function<std::size_t(const glm::vec3&)> choose);
+
+    bool single() const { return !choose_; }
+    std::size_t attribute() const { return attribute_; }
+    const Material& only() const { return materials_.front(); }
+    const Material& of(const std::optional<glm::vec3>& value) const {
+        if (!value) return materials_.front();
+        return isFinite(*value) ? materials_[choose_(*value)] : materials_.back();
+    }
+
+private:
+    std::size_t attribute_ = 0;
+    std::vector<Material> materials_;
+    std::function<std::size_t(const glm::vec3&)> choose_;
+};
+
+/// The material of `options` for an object whose attribute `options.by` has this number and summary.
+/// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colours: of the attribute itself if it
+/// holds colours, of a palette for up to 32 whole numbers (features have colours of their own), else of a ramp from the
+/// least value to the most; gray where a value is no finite number. Throws UsageError: a BRDF that can't be coloured (a
+/// table), a name that the attribute doesn't have.
+ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
+                                  const trace::AttributeSummary& summary);
+
+/// What the colours of that material mean: values that the attribute has, or its ramp.
+Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary& summary,
+                  const ObjectMaterial& material);
+
+/// The n-th of a set of colours that are easy to tell apart; they repeat. Linear RGB.
+Color categoryColor(std::size_t n);
+/// A ramp from dark blue (0) by green to yellow (1) of growing lightness. Linear RGB.
+Color rampColor(double t);
+
+}  // namespace stratum::shade

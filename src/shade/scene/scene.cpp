@@ -1,0 +1,125 @@
+#include "shade/scene/scene.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "shade/camera/sampling.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace stratum::shade {
+namespace {
+
+/// Radiance of the bare paper far from the print.
+Color paperRadiance(const SceneDescription& scene, const Color& albedo, const glm::dvec3& point) {
+    Color irradiance = irradianceFromAbove(*scene.environment) + kPi * scene.ambient;
+    for (const auto& light : scene.lights) irradiance += irradianceFrom(*light, point);
+    return albedo * irradiance * kInvPi;
+}
+
+}  // namespace
+
+Label parseLabel(std::string_view text) {
+    for (std::size_t n = 0; n < kLabels; ++n)
+        if (labelName(static_cast<Label>(n)) == text) return static_cast<Label>(n);
+    throw UsageError(fmt::format("{}: no label; choose layer, tool or feature", text));
+}
+
+std::string_view labelName(Label label) {
+    constexpr std::array<std::string_view, kLabels> kNames = {"layer", "tool", "feature"};
+    return kNames[static_cast<std::size_t>(label)];
+}
+
+double restingHeight(const trace::Intersector& print) {
+    constexpr std::size_t kSide = 128;
+    const trace::Box box = print.bounds();
+    const glm::dvec3 size = box.max - box.min;
+    const double below = std::max(size.z, print.voxelSize());
+    // No higher than it takes: what is looked at may not be there yet, and one that stands on the bed is met at once.
+    // In few steps, also of a print whose voxel is tiny or none (shapes by formula, triangles).
+    for (double reach = std::max(8 * print.voxelSize(), size.z / 256);; reach *= 4) {
+        const bool whole = !(reach < size.z);
+        std::array<double, kSide> lowest_of{};
+        parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {
+            const auto tracer = print.makeTracer();
+            std::array<trace::Ray, kSide> rays;
+            std::array<trace::Hit, kSide> hits;
+            for (std::size_t i = first; i != last; ++i) {
+                for (std::size_t j = 0; j < kSide; ++j) {
+                    rays[j].origin = {box.min.x + size.x * (static_cast<double>(i) + 0.5) / kSide,
+                                      box.min.y + size.y * (static_cast<double>(j) + 0.5) / kSide, box.min.z - below};
+                    rays[j].direction = {0.0, 0.0, 1.0};
+                    rays[j].t_max = whole ? std::numeric_limits<double>::infinity() : below + reach;
+                }
+                tracer->intersectStream(rays, hits);
+                lowest_of[i] = std::numeric_limits<double>::infinity();
+                for (const trace::Hit& hit : hits)
+                    if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
+            }
+        });
+        const double lowest = *std::min_element(lowest_of.begin(), lowest_of.end());
+        if (std::isfinite(lowest)) return std::clamp(lowest, box.min.z, box.max.z);
+        if (whole) return box.min.z;
+    }
+}
+
+SceneDescription makeScene(const SceneOptions& options, const trace::Intersector& print, int width, int height) {
+    const trace::Box box = print.bounds();
+    CameraOptions camera = options.camera;
+    camera.mm_per_unit = options.mm_per_unit;
+    SceneDescription scene{.camera = Camera::make(camera, options.frame.value_or(box), width, height),
+                           .material = makeBrdf(options.brdf),
+                           .objects = {},
+                           .smooth_normals = options.smooth_normals,
+                           .labels = {},
+                           .environment = nullptr,
+                           .lights = {},
+                           .ambient = Color(0.0f),
+                           .bed = std::nullopt,
+                           .backdrop = std::nullopt};
+    for (const std::string& light : options.lights) {
+        if (const auto ambient = parseAmbient(light))
+            scene.ambient += *ambient;
+        else
+            scene.lights.push_back(parseLight(light));
+    }
+
+    EnvironmentPlacement placement;
+    placement.azimuth = std::atan2(scene.camera.right().y, scene.camera.right().x);
+    placement.bed = false;
+    placement.rotation = options.env_rotation * std::numbers::pi / 180.0;
+    placement.exposure = options.env_exposure;
+    Bed bed;
+    if (options.bed) {
+        bed.texture = BedTexture(options.bed_surface, options.mm_per_unit);
+        bed.z = restingHeight(print);
+        placement.bed = scene.camera.eye().z > bed.z;
+    }
+    scene.environment = makeEnvironment(options.env, placement);
+    if (auto sun = scene.environment->sun()) scene.lights.push_back(std::move(sun));
+
+    const trace::Box subject = options.frame.value_or(box);
+    const glm::dvec3 middle = 0.5 * (subject.min + subject.max);
+    bed.centre = {middle.x, middle.y};
+    if (placement.bed) {
+        // As far as the farthest corner of all that stands on it.
+        const double reach = glm::length(glm::max(box.max - middle, middle - box.min));
+        bed.fade_begin = 1.0 * reach;
+        bed.fade_end = 7.0 * reach;
+        scene.bed = bed;
+    }
+    // The paper's own colour a little darker, as the light of a real lamp falls off behind the subject.
+    if (options.backdrop && (scene.bed || !scene.environment->visible())) {
+        const Color paper = paperRadiance(scene, bed.texture.mean(), {bed.centre.x, bed.centre.y, bed.z});
+        scene.backdrop = Backdrop{paper * 0.72f, paper * 0.35f};
+    }
+    return scene;
+}
+
+}  // namespace stratum::shade

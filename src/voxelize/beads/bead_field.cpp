@@ -1,0 +1,158 @@
+#include "voxelize/beads/bead_field.h"
+
+#include <numbers>
+
+namespace stratum::voxelize {
+
+PlanPath::PlanPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
+    : x0_(bead.x0), y0_(bead.y0), x1_(bead.x1), y1_(bead.y1), dx_(x1_ - x0_), dy_(y1_ - y0_) {
+    const double length2 = dx_ * dx_ + dy_ * dy_;
+    inverse_length2_ = length2 > 0 ? 1.0 / length2 : 0.0;
+    length_ = std::sqrt(length2);
+    if (bead.arc < 0) return;
+    const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+    center_x_ = arc.center_x;
+    center_y_ = arc.center_y;
+    sweep_ = arc.sweep;
+    const double start = std::hypot(x0_ - center_x_, y0_ - center_y_);
+    const double end = std::hypot(x1_ - center_x_, y1_ - center_y_);
+    radius_ = 0.5 * (start + end);
+    if (!(start > 0) || !(end > 0)) {
+        radius_ = 0;
+        return;
+    }
+    start_x_ = (x0_ - center_x_) / start;
+    start_y_ = (y0_ - center_y_) / start;
+    end_x_ = (x1_ - center_x_) / end;
+    end_y_ = (y1_ - center_y_) / end;
+    length_ = radius_ * std::abs(sweep_);
+}
+
+bool PlanPath::withinSweep(double vx, double vy) const {
+    const double turn = sweep_ < 0 ? -1.0 : 1.0;
+    const double past_start = turn * (start_x_ * vy - start_y_ * vx);
+    const double before_end = turn * (vx * end_y_ - vy * end_x_);
+    // The wedge of up to half a turn is an intersection of two half planes, the wider one is a union.
+    if (std::abs(sweep_) <= std::numbers::pi) return past_start >= 0 && before_end >= 0;
+    return past_start >= 0 || before_end >= 0 || std::abs(sweep_) >= 2 * std::numbers::pi;
+}
+
+double PlanPath::arcDistance(double x, double y) const {
+    const double vx = x - center_x_;
+    const double vy = y - center_y_;
+    if (withinSweep(vx, vy)) return std::abs(std::sqrt(vx * vx + vy * vy) - radius_);
+    const double to_start = std::hypot(vx - radius_ * start_x_, vy - radius_ * start_y_);
+    const double to_end = std::hypot(vx - radius_ * end_x_, vy - radius_ * end_y_);
+    return std::min(to_start, to_end);
+}
+
+double PlanPath::parameter(double x, double y) const {
+    if (radius_ > 0) {
+        const double vx = x - center_x_;
+        const double vy = y - center_y_;
+        if (!withinSweep(vx, vy)) {
+            const double to_start = std::hypot(vx - radius_ * start_x_, vy - radius_ * start_y_);
+            const double to_end = std::hypot(vx - radius_ * end_x_, vy - radius_ * end_y_);
+            return to_start <= to_end ? 0.0 : 1.0;
+        }
+        const double turn = sweep_ < 0 ? -1.0 : 1.0;
+        double angle = turn * std::atan2(start_x_ * vy - start_y_ * vx, start_x_ * vx + start_y_ * vy);
+        if (angle < 0) angle += 2 * std::numbers::pi;
+        return std::clamp(angle / std::abs(sweep_), 0.0, 1.0);
+    }
+    return std::clamp(((x - x0_) * dx_ + (y - y0_) * dy_) * inverse_length2_, 0.0, 1.0);
+}
+
+void PlanPath::bounds(double (&min)[2], double (&max)[2]) const {
+    min[0] = std::min(x0_, x1_);
+    min[1] = std::min(y0_, y1_);
+    max[0] = std::max(x0_, x1_);
+    max[1] = std::max(y0_, y1_);
+    if (radius_ == 0) return;
+    if (withinSweep(1, 0)) max[0] = std::max(max[0], center_x_ + radius_);
+    if (withinSweep(-1, 0)) min[0] = std::min(min[0], center_x_ - radius_);
+    if (withinSweep(0, 1)) max[1] = std::max(max[1], center_y_ + radius_);
+    if (withinSweep(0, -1)) min[1] = std::min(min[1], center_y_ - radius_);
+}
+
+Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
+    // Widths and heights are floats that print decimals (0.2f is 0.200000003): rounding to a nanometre gives layers
+    // that agree on their planes, so that the lattice can meet them exactly.
+    const auto nanometres = [](double mm) { return std::round(mm * 1e6) * 1e-6; };
+    const double height = nanometres(toolpath.runOf(bead).height);
+    const double width = static_cast<double>(bead.width);
+    Section section;
+    section.drop = 0.5 * height;
+    if (width < height) {
+        section.radius = 0.5 * width;
+    } else {
+        section.radius = 0.5 * height;
+        section.half_flat = 0.5 * (width - height);
+    }
+    return section;
+}
+
+BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
+    : path_(toolpath, bead), x0_(bead.x0), y0_(bead.y0), dx_(bead.x1 - bead.x0), dy_(bead.y1 - bead.y0) {
+    const Section section = sectionOf(toolpath, bead);
+    half_flat_ = section.half_flat;
+    radius_ = section.radius;
+    zc0_ = bead.z0 - section.drop;
+    zc1_ = bead.z1 - section.drop;
+    const double climb = bead.z1 - bead.z0;
+    level_ = climb == 0;
+    const double plan_length = path_.length();
+    if (!level_) {
+        cosine_ = plan_length / std::hypot(plan_length, climb);
+        if (half_flat_ > 0 && std::abs(climb) > plan_length) {
+            const double area = gcode::sectionArea(bead.width, toolpath.runOf(bead).height);
+            radius_ = std::sqrt(area / std::numbers::pi);
+            half_flat_ = 0;
+        }
+        if (half_flat_ > 0) reach_ = kSlopedReach * 2 * radius_;
+    }
+    rod_ = half_flat_ == 0 && bead.arc < 0;
+}
+
+double BeadField::distance(double x, double y, double z) const {
+    if (rod_) {
+        const double px = x - x0_;
+        const double py = y - y0_;
+        const double pz = z - zc0_;
+        const double dz = zc1_ - zc0_;
+        const double length2 = dx_ * dx_ + dy_ * dy_ + dz * dz;
+        const double t = length2 > 0 ? std::clamp((px * dx_ + py * dy_ + pz * dz) / length2, 0.0, 1.0) : 0.0;
+        const double qx = px - t * dx_;
+        const double qy = py - t * dy_;
+        const double qz = pz - t * dz;
+        return std::sqrt(qx * qx + qy * qy + qz * qz) - radius_;
+    }
+    const double side = std::max(path_.distance(x, y) - half_flat_, 0.0);
+    double up = 0;
+    if (level_) {
+        up = z - zc0_;
+    } else {
+        up = (z - std::lerp(zc0_, zc1_, path_.parameter(x, y))) * cosine_;
+        if (up < 0) up = std::min(up + reach_, 0.0);
+    }
+    return std::sqrt(side * side + up * up) - radius_;
+}
+
+Bounds BeadField::bounds() const {
+    double plan_min[2];
+    double plan_max[2];
+    path_.bounds(plan_min, plan_max);
+    const double side = half_flat_ + radius_;
+    const double above = rod_ ? radius_ : radius_ / cosine_;
+    const double below = rod_ ? radius_ : (radius_ + reach_) / cosine_;
+    Bounds box;
+    for (int axis = 0; axis < 2; ++axis) {
+        box.min[axis] = plan_min[axis] - side;
+        box.max[axis] = plan_max[axis] + side;
+    }
+    box.min[2] = std::min(zc0_, zc1_) - below;
+    box.max[2] = std::max(zc0_, zc1_) + above;
+    return box;
+}
+
+}  // namespace stratum::voxelize

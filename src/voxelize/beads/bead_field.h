@@ -1,0 +1,123 @@
+// The exact field of one bead, and the plan (xy) distance it is made of.
+//
+// With rho the plan distance to the path and c = (width - height) / 2, a level bead is a plan capsule swept by a ball
+//     phi(p) = hypot(max(rho - c, 0), z - z_c) - height / 2        (mm, negative inside)
+// which is the exact signed distance outside. It is column-separable: rho does not depend on z.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::voxelize {
+
+/// Axis-aligned box in print space, mm.
+struct Bounds {
+    double min[3] = {1e300, 1e300, 1e300};
+    double max[3] = {-1e300, -1e300, -1e300};
+
+    void include(const Bounds& other) {
+        for (int axis = 0; axis < 3; ++axis) {
+            min[axis] = std::min(min[axis], other.min[axis]);
+            max[axis] = std::max(max[axis], other.max[axis]);
+        }
+    }
+    double extent(int axis) const { return max[axis] - min[axis]; }
+    double centre(int axis) const { return 0.5 * (min[axis] + max[axis]); }
+};
+
+/// A bead's path seen from above: a line segment or a circular arc. Distances are closed form; nothing is tessellated.
+class PlanPath {
+public:
+    PlanPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+
+    /// Distance in mm from (x, y) to the path.
+    double distance(double x, double y) const {
+        if (radius_ > 0) return arcDistance(x, y);
+        const double px = x - x0_;
+        const double py = y - y0_;
+        const double t = std::clamp((px * dx_ + py * dy_) * inverse_length2_, 0.0, 1.0);
+        const double qx = px - t * dx_;
+        const double qy = py - t * dy_;
+        return std::sqrt(qx * qx + qy * qy);
+    }
+
+    /// Fraction 0..1 along the path of the point nearest to (x, y).
+    double parameter(double x, double y) const;
+
+    /// Length in the plane, mm.
+    double length() const { return length_; }
+
+    /// Extent of the centre line in x and y, mm; the z members are untouched.
+    void bounds(double (&min)[2], double (&max)[2]) const;
+
+private:
+    bool withinSweep(double vx, double vy) const;
+    double arcDistance(double x, double y) const;
+
+    double x0_, y0_, x1_, y1_;
+    double dx_, dy_;          // chord
+    double inverse_length2_;  // 0 for a point: then every t is 0
+    double length_;
+    // Arc only; radius_ == 0 marks a straight path.
+    double center_x_ = 0, center_y_ = 0, radius_ = 0, sweep_ = 0;
+    double start_x_ = 0, start_y_ = 0, end_x_ = 0, end_y_ = 0;  // unit directions from the centre
+};
+
+/// Cross-section of a bead: the flats reach half_flat to each side of the path, the rounding has `radius`, and the
+/// centre line runs `drop` below the nozzle. All mm. half_flat is 0 for a round bead.
+struct Section {
+    double half_flat = 0;
+    double radius = 0;
+    double drop = 0;
+};
+Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+
+/// How far a sloped bead reaches below its underside, as a fraction of its height, to weld it to what it rests on.
+constexpr double kSlopedReach = 0.02;
+
+/// The field of one bead, level or sloped.
+///
+/// A sloped bead scales the vertical offset by the cosine of its slope, which is exact on its long sides and, at slope
+/// angle a, off by at most height / 2 * tan(a) near its two ends. Paths steeper than 45 degrees can't lay flats: they
+/// become round rods of the same section area. Round straight beads are exact 3-D capsules at any slope.
+class BeadField {
+public:
+    BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+
+    /// Signed distance (mm, negative inside) at a point of print space (mm).
+    double distance(double x, double y, double z) const;
+
+    /// Box of the solid, mm.
+    Bounds bounds() const;
+
+    const PlanPath& path() const { return path_; }
+    double halfFlat() const { return half_flat_; }
+    double radius() const { return radius_; }
+    bool level() const { return level_; }
+    /// A straight round bead: a capsule in 3-D.
+    bool rod() const { return rod_; }
+    /// Of the slope's angle; 1 for a level bead.
+    double cosine() const { return cosine_; }
+    /// How far the underside is let down, mm; see kSlopedReach.
+    double reach() const { return reach_; }
+
+private:
+    PlanPath path_;
+    double half_flat_, radius_;
+    double x0_, y0_, dx_, dy_;  // mm, centre line in the plane
+    double zc0_, zc1_;          // mm, centre line at the start and the end
+    double cosine_ = 1, reach_ = 0;
+    bool level_ = true, rod_ = false;
+};
+
+/// Box of the solid of all listed beads, mm. The range must not be empty.
+template <typename Indices>
+Bounds boundsOf(const gcode::Toolpath& toolpath, const Indices& beads) {
+    Bounds all;
+    for (const auto index : beads) all.include(BeadField(toolpath, toolpath.beads[index]).bounds());
+    return all;
+}
+
+}  // namespace stratum::voxelize

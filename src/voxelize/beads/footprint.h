@@ -1,0 +1,143 @@
+// Which square columns a bead reaches, seen from above.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/bead_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::voxelize {
+
+/// Rectangle of columns [i0, i1] x [j0, j1].
+struct ColumnRange {
+    int i0 = std::numeric_limits<int>::max();
+    int i1 = std::numeric_limits<int>::min();
+    int j0 = std::numeric_limits<int>::max();
+    int j1 = std::numeric_limits<int>::min();
+
+    bool empty() const { return i0 > i1; }
+    void include(const ColumnRange& other) {
+        i0 = std::min(i0, other.i0);
+        i1 = std::max(i1, other.i1);
+        j0 = std::min(j0, other.j0);
+        j1 = std::max(j1, other.j1);
+    }
+};
+
+/// Visits the square columns that beads reach. A column is reached if the centre of its samples is within limit() of
+/// the path: no sample is farther from that centre than half the diagonal they span.
+class Footprints {
+public:
+    /// All mm: columns are `edge` wide, from multiples of it; their samples span twice `half_span`; beads reach `band`
+    /// beyond their solid.
+    Footprints(const gcode::Toolpath& toolpath, double edge, double half_span, double band)
+        : toolpath_(toolpath),
+          edge_(edge),
+          half_(half_span),
+          // The part in 1e9 keeps rounding on the safe side.
+          slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
+
+    /// How far from its path a bead reaches the centres of columns, mm.
+    double limit(const gcode::Bead& bead) const {
+        const Section section = sectionOf(toolpath_, bead);
+        return section.half_flat + radiusOf(bead, section) + slack_;
+    }
+
+    /// Columns whose centres lie in the box of the path, `limit` wider all around.
+    ColumnRange range(const gcode::Bead& bead, double limit) const {
+        double min[2] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1)};
+        double max[2] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1)};
+        if (bead.arc >= 0) PlanPath(toolpath_, bead).bounds(min, max);
+        return {first(min[0] - limit), last(max[0] + limit), first(min[1] - limit), last(max[1] + limit)};
+    }
+
+    /// Calls visit(i0, i1, j) for each row's run of columns [i0, i1].
+    template <typename Visit>
+    void forEachColumn(const gcode::Bead& bead, Visit visit) const {
+        const double reach = limit(bead);
+        const ColumnRange columns = range(bead, reach);
+        if (bead.arc >= 0) {
+            const PlanPath path(toolpath_, bead);
+            for (int j = columns.j0; j <= columns.j1; ++j)
+                forEachNearRing(bead, reach, columns, j, [&](int i) {
+                    if (path.distance(i * edge_ + half_, j * edge_ + half_) <= reach) visit(i, i, j);
+                });
+            return;
+        }
+        // A straight bead's reach is a capsule: convex, so one run of columns a row. The run spans what the row cuts
+        // from the discs about the ends and from the two long sides.
+        const double dx = bead.x1 - bead.x0;
+        const double dy = bead.y1 - bead.y0;
+        const double length = std::sqrt(dx * dx + dy * dy);
+        const double side_x = length > 0 ? -dy / length * reach : 0;
+        const double side_y = length > 0 ? dx / length * reach : 0;
+        for (int j = columns.j0; j <= columns.j1; ++j) {
+            const double y = j * edge_ + half_;
+            double low = std::numeric_limits<double>::max();
+            double high = -std::numeric_limits<double>::max();
+            const auto include = [&](double x) {
+                low = std::min(low, x);
+                high = std::max(high, x);
+            };
+            const auto disc = [&](double x0, double y0) {
+                const double h2 = reach * reach - (y - y0) * (y - y0);
+                if (h2 < 0) return;
+                const double h = std::sqrt(h2);
+                include(x0 - h);
+                include(x0 + h);
+            };
+            disc(bead.x0, bead.y0);
+            disc(bead.x1, bead.y1);
+            for (const double turn : {-1.0, 1.0}) {
+                const double up = y - (bead.y0 + turn * side_y);
+                // 0 <= up / dy <= 1, written so that a level path divides nothing.
+                if (dy != 0 && up * dy >= 0 && std::abs(up) <= std::abs(dy))
+                    include(bead.x0 + turn * side_x + up / dy * dx);
+            }
+            if (low > high) continue;
+            const int i0 = std::max(first(low), columns.i0);
+            const int i1 = std::min(last(high), columns.i1);
+            if (i0 <= i1) visit(i0, i1, j);
+        }
+    }
+
+private:
+    // The columns of a row that lie within `reach` of an arc's circle: what the row cuts from a disc, less a hole. A
+    // little wider, for the two ends of an arc may differ in radius and rounding is not to lose any; the caller tests.
+    template <typename Visit>
+    void forEachNearRing(const gcode::Bead& bead, double reach, const ColumnRange& columns, int j, Visit visit) const {
+        const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+        const double a = std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+        const double b = std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y);
+        const double outer = std::max(a, b) + reach + 1e-6 * edge_;
+        const double inner = std::min(a, b) - reach - 1e-6 * edge_;
+        const double dy = j * edge_ + half_ - arc.center_y;
+        if (std::abs(dy) > outer) return;
+        const double far = std::sqrt(outer * outer - dy * dy);
+        const int i0 = std::max(first(arc.center_x - far), columns.i0);
+        const int i1 = std::min(last(arc.center_x + far), columns.i1);
+        int hole0 = i1 + 1;
+        int hole1 = i1;
+        if (inner > std::abs(dy)) {
+            const double near = std::sqrt(inner * inner - dy * dy);
+            hole0 = last(arc.center_x - near) + 1;
+            hole1 = first(arc.center_x + near) - 1;
+        }
+        for (int i = i0; i <= std::min(i1, hole0 - 1); ++i) visit(i);
+        for (int i = std::max(i0, std::max(hole0, hole1 + 1)); i <= i1; ++i) visit(i);
+    }
+
+    // A bead too steep for flats is a rod of the same area; see BeadField.
+    double radiusOf(const gcode::Bead& bead, const Section& section) const {
+        return bead.z0 == bead.z1 ? section.radius : BeadField(toolpath_, bead).radius();
+    }
+    int first(double mm) const { return static_cast<int>(std::ceil((mm - half_) / edge_ - 1e-9)); }
+    int last(double mm) const { return static_cast<int>(std::floor((mm - half_) / edge_ + 1e-9)); }
+
+    const gcode::Toolpath& toolpath_;
+    const double edge_, half_, slack_;  // mm
+};
+
+}  // namespace stratum::voxelize

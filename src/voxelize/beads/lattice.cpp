@@ -1,0 +1,142 @@
+#include "voxelize/beads/lattice.h"
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "voxelize/beads/estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace stratum::voxelize {
+namespace {
+
+// Without a request: as fine as this many samples of the part's box allow, between these bounds. Three voxels a layer
+// show layer lines well; two is where they begin to look cut.
+constexpr int kFinestVoxelsPerLayer = 4;
+constexpr int kCoarsestVoxelsPerLayer = 2;
+constexpr double kComfortableActiveVoxels = 60e6;
+// Of the memory at hand, what a grid nobody asked a size for may take by its estimate, which can be off by a factor of
+// two or three.
+constexpr double kComfortableShare = 0.5;
+
+// A plane within this fraction of a voxel of a voxel plane is on it.
+constexpr double kOnPlane = 0.01;
+
+std::int64_t micrometres(double mm) { return std::llround(mm * 1e3); }
+
+// The number of voxels a layer for a print whose user named none.
+void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                    const LatticeRequest& request, Lattice& lattice) {
+    const auto memory = static_cast<double>(request.memory != 0 ? request.memory : availableMemory());
+    const auto voxelsAt = [&](int count) {
+        return estimateActiveVoxels(toolpath, selection, lattice.layer_height / count, request.half_width);
+    };
+    const double affordable = kComfortableShare * memory / kBytesPerActiveVoxel;
+    int count = kFinestVoxelsPerLayer;
+    bool short_of_memory = false;
+    while (count > kCoarsestVoxelsPerLayer && voxelsAt(count) > std::min(kComfortableActiveVoxels, affordable)) {
+        short_of_memory = voxelsAt(count) <= kComfortableActiveVoxels;
+        --count;
+    }
+    lattice.voxel_size = lattice.layer_height / count;
+    lattice.reason = fmt::format("chosen: {} voxels a layer of {:g} mm, about {:.0f} M active", count,
+                                 lattice.layer_height, voxelsAt(count) * 1e-6);
+    if (short_of_memory)
+        lattice.reason += fmt::format("; {} would take about {:.2g} GB of the {:.2g} GB that are free", count + 1,
+                                      voxelsAt(count + 1) * kBytesPerActiveVoxel * 1e-9, memory * 1e-9);
+}
+
+}  // namespace
+
+Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Bounds& bounds,
+                      const LatticeRequest& request) {
+    if (!(request.half_width >= 1 && request.half_width <= 10))
+        throw UsageError(
+            fmt::format("half-width of {} voxels: expected 1 to 10 (3 suits OpenVDB's tools)", request.half_width));
+
+    // Printed length by layer height, and by bottom plane within the majority height.
+    std::map<std::int64_t, double> by_height;
+    for (const std::uint32_t index : selection) {
+        const gcode::Bead& bead = toolpath.beads[index];
+        by_height[micrometres(toolpath.runOf(bead).height)] += gcode::beadLength(toolpath, bead);
+    }
+    const auto longest = [](const auto& histogram) {
+        return std::max_element(histogram.begin(), histogram.end(),
+                                [](const auto& a, const auto& b) { return a.second < b.second; })
+            ->first;
+    };
+    const std::int64_t height_um = longest(by_height);
+    std::map<std::int64_t, double> by_plane;
+    for (const std::uint32_t index : selection) {
+        const gcode::Bead& bead = toolpath.beads[index];
+        const double height = toolpath.runOf(bead).height;
+        if (bead.z0 == bead.z1 && micrometres(height) == height_um)
+            by_plane[micrometres(bead.z0 - height)] += gcode::beadLength(toolpath, bead);
+    }
+
+    Lattice lattice;
+    lattice.half_width = request.half_width;
+    lattice.layer_height = static_cast<double>(height_um) * 1e-3;
+    if (request.voxel_size) {
+        lattice.voxel_size = *request.voxel_size;
+        lattice.reason = "as asked";
+        if (!(std::isfinite(lattice.voxel_size) && lattice.voxel_size > 0))
+            throw UsageError(fmt::format("voxel size {} mm: expected a number above 0, e.g. 0.1", lattice.voxel_size));
+    } else if (request.voxels_per_layer) {
+        if (*request.voxels_per_layer < 1 || *request.voxels_per_layer > 64)
+            throw UsageError(fmt::format("{} voxels a layer: expected 1 to 64", *request.voxels_per_layer));
+        lattice.voxel_size = lattice.layer_height / *request.voxels_per_layer;
+        lattice.reason = fmt::format("{} voxels a layer of {:g} mm", *request.voxels_per_layer, lattice.layer_height);
+    } else {
+        chooseByItself(toolpath, selection, request, lattice);
+    }
+    const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
+    if (lattice.voxel_size > extent)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm is larger than the part ({:.3f} x {:.3f} x {:.3f} mm); the "
+                        "layer height is {:g} mm, try {:g}",
+                        lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2), lattice.layer_height,
+                        lattice.layer_height / 2));
+    // OpenVDB indexes with 32-bit integers; a factor of four is left for the band and for the tools of others.
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
+    if (farthest / lattice.voxel_size > 536870912.0)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm: {:.3g} voxels from the origin to the part's far end, more "
+                        "than OpenVDB can index; try {:g} mm",
+                        lattice.voxel_size, farthest / lattice.voxel_size, lattice.layer_height / 2));
+
+    if (!by_plane.empty()) {
+        const double plane = static_cast<double>(longest(by_plane)) * 1e-3;
+        lattice.origin_z = plane - std::floor(plane / lattice.voxel_size + kOnPlane) * lattice.voxel_size;
+        // See the head of lattice.h.
+        if (lattice.voxel_size > (1 - kOnPlane) * lattice.layer_height) {
+            lattice.origin_z +=
+                lattice.origin_z < 0.5 * lattice.voxel_size ? 0.5 * lattice.voxel_size : -0.5 * lattice.voxel_size;
+            lattice.reason += ", its planes half a voxel off those of the layers";
+        }
+        if (std::abs(lattice.origin_z) < 1e-9) lattice.origin_z = 0;
+    }
+
+    const auto on_plane = [&](double z) {
+        const double k = (z - lattice.origin_z) / lattice.voxel_size;
+        return std::abs(k - std::round(k)) <= kOnPlane;
+    };
+    double level = 0;
+    double aligned = 0;
+    for (const std::uint32_t index : selection) {
+        const gcode::Bead& bead = toolpath.beads[index];
+        if (bead.z0 != bead.z1) continue;
+        const double length = gcode::beadLength(toolpath, bead);
+        level += length;
+        if (on_plane(bead.z0) && on_plane(bead.z0 - toolpath.runOf(bead).height)) aligned += length;
+    }
+    lattice.aligned_share = level > 0 ? aligned / level : 0;
+    return lattice;
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,104 @@
+#include "voxelize/beads/layer_stack.h"
+
+#include "voxelize/beads/bead_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace stratum::voxelize {
+namespace {
+
+// Centre plane and radius in whole nanometres: relative moves accumulate rounding that must not split a layer.
+using LayerKey = std::pair<std::int64_t, std::int64_t>;
+
+constexpr std::uint32_t kDirect = 0xffffffff;
+
+// Ascending layers with their beads' ranks, from the group of each selected bead.
+void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::uint32_t>& group_of,
+               const std::map<LayerKey, std::uint32_t>& groups, LayerStack& stack) {
+    std::vector<std::uint32_t> layer_of_group(groups.size());
+    for (const auto& [key, group] : groups) {
+        layer_of_group[group] = static_cast<std::uint32_t>(stack.layers.size());
+        stack.layers.push_back({static_cast<double>(key.first) * 1e-6, static_cast<double>(key.second) * 1e-6});
+    }
+    const auto layers = static_cast<std::uint32_t>(stack.layers.size());
+    std::vector<std::uint32_t> next(stack.layers.size() + 2, 0);
+    for (const std::uint32_t group : group_of) ++next[(group == kDirect ? layers : layer_of_group[group]) + 1];
+    for (std::size_t l = 1; l < next.size(); ++l) next[l] += next[l - 1];
+    for (std::uint32_t l = 0; l < layers; ++l) {
+        stack.layers[l].first = next[l];
+        stack.layers[l].last = next[l + 1];
+    }
+    stack.first_direct = next[layers];
+    stack.beads.resize(selection.size());
+    stack.layer.resize(selection.size());
+    for (std::size_t n = 0; n < selection.size(); ++n) {
+        const std::uint32_t layer = group_of[n] == kDirect ? layers : layer_of_group[group_of[n]];
+        const std::uint32_t rank = next[layer]++;
+        stack.beads[rank] = selection[n];
+        stack.layer[rank] = layer;
+    }
+}
+
+void findWelds(LayerStack& stack) {
+    // Bottom planes in order, so that each top plane finds its partners by bisection.
+    std::vector<std::pair<double, std::uint32_t>> bottoms;
+    double widest_gap = 0;
+    for (std::uint32_t i = 0; i < stack.layers.size(); ++i) {
+        bottoms.emplace_back(stack.layers[i].centre_z - stack.layers[i].radius, i);
+        widest_gap = std::max(widest_gap, kWeldGap * 2 * stack.layers[i].radius);
+    }
+    std::sort(bottoms.begin(), bottoms.end());
+    for (std::uint32_t lower = 0; lower < stack.layers.size(); ++lower) {
+        const Layer& below = stack.layers[lower];
+        const double top = below.centre_z + below.radius;
+        auto it = std::lower_bound(bottoms.begin(), bottoms.end(), std::pair{top - widest_gap, std::uint32_t{0}});
+        for (; it != bottoms.end() && it->first <= top + widest_gap; ++it) {
+            const Layer& above = stack.layers[it->second];
+            const double limit = kWeldGap * 2 * std::min(below.radius, above.radius);
+            if (it->second != lower && std::abs(it->first - top) <= limit) stack.welds.push_back({lower, it->second});
+        }
+    }
+    std::sort(stack.welds.begin(), stack.welds.end(), [](const Weld& a, const Weld& b) {
+        return std::pair{a.upper, a.lower} < std::pair{b.upper, b.lower};
+    });
+}
+
+}  // namespace
+
+LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+    LayerStack stack;
+    std::map<LayerKey, std::uint32_t> groups;
+    std::vector<std::uint32_t> group_of;
+    group_of.reserve(selection.size());
+    // Neighbours in print order nearly always share their layer.
+    LayerKey last_key{};
+    std::uint32_t last_group = kDirect;
+    for (const std::uint32_t index : selection) {
+        const gcode::Bead& bead = toolpath.beads[index];
+        const Section section = sectionOf(toolpath, bead);
+        // A round bead has a radius of its own and would be a layer of one.
+        if (bead.z0 != bead.z1 || section.half_flat == 0) {
+            group_of.push_back(kDirect);
+            continue;
+        }
+        const LayerKey key{std::llround((bead.z0 - section.drop) * 1e6), std::llround(section.radius * 1e6)};
+        if (last_group == kDirect || key != last_key) {
+            last_group = groups.try_emplace(key, static_cast<std::uint32_t>(groups.size())).first->second;
+            last_key = key;
+        }
+        group_of.push_back(last_group);
+    }
+    rankBeads(selection, group_of, groups, stack);
+    stack.extents.reserve(stack.direct().size());
+    for (const std::uint32_t bead : stack.direct()) {
+        const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();
+        stack.extents.push_back({box.min[2], box.max[2]});
+    }
+    findWelds(stack);
+    return stack;
+}
+
+}  // namespace stratum::voxelize

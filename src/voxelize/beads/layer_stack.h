@@ -1,0 +1,57 @@
+// Toolpath -> LayerStack: level beads grouped by centre plane and half-height, and what must be welded to what.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// Level beads of one centre plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
+/// one plan field, expanded once per column.
+struct Layer {
+    double centre_z = 0;      ///< mm
+    double radius = 0;        ///< mm, half the layer height
+    std::uint32_t first = 0;  ///< ranks [first, last) of LayerStack::beads, in print order
+    std::uint32_t last = 0;
+};
+
+/// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave
+/// phi = 0 on the plane between them, a crack of no thickness inside the solid. The weld adds the body that both share,
+/// {max(D_lower, D_upper) <= 0} between the two centre planes, which lies inside the union and moves no surface.
+struct Weld {
+    std::uint32_t lower = 0;  ///< index into LayerStack::layers
+    std::uint32_t upper = 0;
+};
+
+/// Planes closer than this fraction of the thinner layer's height touch (slicers print Z with three decimals).
+constexpr double kWeldGap = 0.02;
+
+/// From the lowest to the highest point of a bead's solid, mm.
+struct Extent {
+    double z_min = 0, z_max = 0;
+};
+
+/// The selected beads, ranked by layer. A bead's rank is its place in this order; bins and columns name beads by it.
+struct LayerStack {
+    std::vector<Layer> layers;         ///< ascending centre_z, then radius
+    std::vector<Weld> welds;           ///< ordered by (upper, lower)
+    std::vector<std::uint32_t> beads;  ///< by rank: index into Toolpath::beads. Layers first, then direct beads
+    std::vector<std::uint32_t> layer;  ///< by rank: index into layers; layers.size() for a direct bead
+    std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
+    std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
+
+    std::span<const std::uint32_t> beadsOf(const Layer& l) const {
+        return std::span(beads).subspan(l.first, l.last - l.first);
+    }
+    std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
+    /// Of a direct bead.
+    const Extent& extentOf(std::uint32_t rank) const { return extents[rank - first_direct]; }
+};
+
+/// Groups the beads of `selection` (indices into toolpath.beads, ascending). Single-threaded.
+LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,46 @@
+// One bead as one leaf column sees it: its path relative to the middle of the column, small enough for floats.
+//
+// A float holds a coordinate of a metre to 0.06 um only, and a difference of two such coordinates no better. So what is
+// large is subtracted in double, once a bead and column; what is left is of the size of a leaf.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+namespace stratum::voxelize {
+
+/// A straight path. With q the point relative to the middle of the column: the distance to the line is
+/// |n0 + nx qx + ny qy|, the position along it s = ux qx + uy qy, and the segment is lo <= s <= hi. World units.
+struct LocalLine {
+    float nx, ny, n0;
+    float ux, uy, lo, hi;
+    float half_flat;
+    bool spans;  ///< the segment passes all samples of the column: its ends can be left out
+};
+
+/// A circular path of one column. |v0 + q| - radius, with v0 the middle of the column from the centre, is written so
+/// that a large radius cancels nothing: (2 e.q + k q^2) / (1 + sqrt(1 + k (2 e.q + k q^2))) + rho0, e = v0 / |v0|,
+/// k = 1 / |v0|. Near the centre, where e turns quickly, |v0 + q| - radius is small numbers anyway.
+struct LocalArc {
+    float ex, ey, k, rho0;
+    float vx, vy, radius;                  ///< used when `near_centre`
+    float start_x, start_y, end_x, end_y;  ///< ends relative to the middle of the column
+    // Half planes of the sweep: past the start where sx qx + sy qy + s0 >= 0, before the end where tx qx + ty qy + t0
+    // >= 0.
+    float sx, sy, s0, tx, ty, t0;
+    float half_flat;
+    bool near_centre;
+    bool wide;  ///< sweeps more than half a turn: the half planes' union, else their intersection
+    bool full;  ///< a whole turn: no ends
+};
+
+/// Whether the bead's path is an arc; one that starts or ends at its own centre is taken for its chord.
+bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+
+/// `x`, `y` (mm): the middle of the column's samples. `half_extent` (mm): its samples lie within that in x and y.
+/// `scale`: world units a mm. `half_flat` in mm.
+LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double y, double half_extent, double scale);
+/// For curved() beads only.
+LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_flat, double x, double y,
+                  double half_extent, double scale);
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,26 @@
+#include "voxelize/beads/placement.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+namespace stratum::voxelize {
+
+openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
+    const double edge = lattice.voxel_size * placement.unit;
+    // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+    constexpr double kSmallestEdge = 1.45e-5;
+    if (edge < kSmallestEdge)
+        throw UsageError(
+            fmt::format("voxels of {:g} world units are smaller than the {:g} that OpenVDB can place; choose --unit mm "
+                        "or cm, or a voxel of {:g} mm or more",
+                        edge, kSmallestEdge, kSmallestEdge / placement.unit));
+    auto transform = openvdb::math::Transform::createLinearTransform(edge);
+    transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
+                                            (placement.offset[2] + lattice.origin_z) * placement.unit));
+    // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
+    if (placement.up_y) transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
+    return transform;
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,56 @@
+// Which beads become voxels: layers, features, objects and partial prints.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// A filter over beads; the default keeps all layers of the print, without prime lines.
+struct Selection {
+    std::uint32_t first_layer = 1;  ///< inclusive; 0 also takes what is extruded before the first layer (prime lines)
+    std::uint32_t last_layer = 0xffffffff;
+    std::array<bool, gcode::kFeatureCount> features;
+    std::vector<std::uint16_t> objects;  ///< indices into Toolpath::objects; empty takes all beads, labelled or not
+
+    Selection() { features.fill(true); }
+};
+
+/// Parses "A:B" (inclusive, either end may be left out: from 1, to the last) or "A" into the layer range. Layer 0 is
+/// what is extruded before the first layer. Throws UsageError.
+void parseLayers(std::string_view text, Selection& selection);
+
+/// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list
+/// of names for an unknown one.
+void parseFeatures(std::string_view text, Selection& selection);
+
+/// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 is what
+/// belongs to no object). Throws UsageError with the list of objects if there is none.
+void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpath, Selection& selection);
+
+/// Indices of the selected beads, ascending. Throws InputError, saying what there is, if none is left.
+std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
+
+/// Whether such a list names a time, for which the toolpath's motion had better be planned.
+bool needsTiming(std::string_view snapshots);
+
+/// A partial print: everything printed before bead number `bead_count`.
+struct Snapshot {
+    std::string label;  ///< for the file name, e.g. "025pct", "layer0040", "0090min": they sort as they print
+    std::size_t bead_count = 0;
+};
+
+/// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40), "every:10" (after each 10 layers)
+/// and "time:90" (what lies there after 90 minutes; also time:5400s, time:90m, time:1.5h, and time:50%, of the time to
+/// the last bead). Time is Toolpath::timing's; without one, that of extruding at the speeds asked for. In print order,
+/// without doubles. Throws UsageError, which names the option that the text is of.
+std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath,
+                                     std::string_view option = "--snapshots");
+
+}  // namespace stratum::voxelize

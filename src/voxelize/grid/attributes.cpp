@@ -1,0 +1,178 @@
+#include "voxelize/grid/attributes.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+#include "gcode/slicer/bead_colors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "tool",
+                                                 "object", "width", "speed",   "color"};
+constexpr float kGrey = 0.8f;
+
+// IEC 61966-2-1, by a table: a colour is asked for at every voxel.
+float linear(std::uint8_t srgb) {
+    static const std::array<float, 256> kTable = [] {
+        std::array<float, 256> table{};
+        for (std::size_t n = 0; n < table.size(); ++n) {
+            const double v = static_cast<double>(n) / 255;
+            table[n] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+        }
+        return table;
+    }();
+    return kTable[srgb];
+}
+
+template <typename Grid>
+openvdb::GridBase::Ptr emptyGrid(const openvdb::FloatGrid& surface) {
+    using Value = typename Grid::ValueType;
+    return Grid::create(
+        typename Grid::TreePtrType(new typename Grid::TreeType(surface.tree(), Value(0), openvdb::TopologyCopy())));
+}
+
+template <typename Grid, typename ValueOf>
+void fill(openvdb::GridBase& base, const openvdb::Coord& origin, std::span<const std::uint32_t> beads,
+          const ValueOf& value_of) {
+    auto* leaf = static_cast<Grid&>(base).tree().probeLeaf(origin);
+    if (leaf == nullptr) return;
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) {
+        const std::uint32_t bead = beads[voxel.pos()];
+        if (bead != std::numeric_limits<std::uint32_t>::max()) voxel.setValue(value_of(bead));
+    }
+}
+
+}  // namespace
+
+AttributeKind attributeKind(Attribute attribute) {
+    switch (attribute) {
+        case Attribute::time:
+        case Attribute::width:
+        case Attribute::speed:
+            return AttributeKind::number;
+        case Attribute::color:
+            return AttributeKind::color;
+        default:
+            return AttributeKind::integer;
+    }
+}
+
+std::string_view attributeName(Attribute attribute) { return kNames[static_cast<std::size_t>(attribute)]; }
+
+std::vector<Attribute> parseGrids(std::string_view text) {
+    std::vector<Attribute> attributes;
+    while (!text.empty()) {
+        const std::size_t comma = text.find(',');
+        const std::string_view name = text.substr(0, comma);
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+        if (name == "surface") continue;
+        const auto known = std::find(kNames.begin(), kNames.end(), name);
+        if (known == kNames.end())
+            throw UsageError(fmt::format("--grids {}: expected names separated by commas, of surface, {}{}", name,
+                                         fmt::join(kNames, ", "), didYouMean(name, kNames)));
+        const auto attribute = static_cast<Attribute>(known - kNames.begin());
+        if (std::find(attributes.begin(), attributes.end(), attribute) == attributes.end())
+            attributes.push_back(attribute);
+    }
+    return attributes;
+}
+
+BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes)
+    : toolpath_(toolpath) {
+    if (std::find(attributes.begin(), attributes.end(), Attribute::time) == attributes.end()) return;
+    start_.reserve(toolpath.beads.size());
+    for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
+    if (!start_.empty()) return;
+    double time = 0;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        start_.push_back(static_cast<float>(time));
+        time += gcode::beadSeconds(toolpath, bead);
+    }
+}
+
+std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) const {
+    const gcode::Run& run = toolpath_.runOf(toolpath_.beads[bead]);
+    switch (attribute) {
+        case Attribute::layer:
+            return static_cast<std::int32_t>(run.layer);
+        case Attribute::feature:
+            return static_cast<std::int32_t>(run.feature);
+        case Attribute::object:
+            return run.object;
+        default:
+            return run.tool;
+    }
+}
+
+float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
+    if (attribute == Attribute::time) return start_[bead];
+    if (attribute == Attribute::width) return toolpath_.beads[bead].width;
+    const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
+    if (!(seconds > 0)) return toolpath_.runOf(toolpath_.beads[bead]).speed;
+    return static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;
+}
+
+openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {
+    const std::optional<gcode::Rgb> srgb = gcode::colorOf(toolpath_, bead);
+    if (!srgb) return openvdb::Vec3f(kGrey);
+    return {linear((*srgb)[0]), linear((*srgb)[1]), linear((*srgb)[2])};
+}
+
+std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& toolpath,
+                                                       std::span<const Attribute> attributes,
+                                                       const openvdb::FloatGrid& surface) {
+    std::vector<openvdb::GridBase::Ptr> grids;
+    for (const Attribute attribute : attributes) {
+        openvdb::GridBase::Ptr grid;
+        switch (attributeKind(attribute)) {
+            case AttributeKind::integer:
+                grid = emptyGrid<openvdb::Int32Grid>(surface);
+                break;
+            case AttributeKind::number:
+                grid = emptyGrid<openvdb::FloatGrid>(surface);
+                break;
+            case AttributeKind::color:
+                grid = emptyGrid<openvdb::Vec3SGrid>(surface);
+                break;
+        }
+        grid->setName(std::string(attributeName(attribute)));
+        grid->setTransform(surface.transform().copy());
+        std::string names;
+        if (attribute == Attribute::feature)
+            for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
+                names +=
+                    fmt::format("{}{} {}", f > 0 ? ", " : "", f, gcode::featureName(static_cast<gcode::Feature>(f)));
+        if (attribute == Attribute::object)
+            for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
+                names += fmt::format("{}{} {}", n > 1 ? ", " : "", n, toolpath.objects[n]);
+        if (!names.empty()) grid->insertMeta("names", openvdb::StringMetadata(names));
+        grids.push_back(std::move(grid));
+    }
+    return grids;
+}
+
+void fillLeaf(openvdb::GridBase& grid, Attribute attribute, const openvdb::Coord& origin, const BeadAttributes& values,
+              std::span<const std::uint32_t> beads_of_voxels) {
+    switch (attributeKind(attribute)) {
+        case AttributeKind::integer:
+            return fill<openvdb::Int32Grid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.integer(attribute, bead); });
+        case AttributeKind::number:
+            return fill<openvdb::FloatGrid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.number(attribute, bead); });
+        case AttributeKind::color:
+            return fill<openvdb::Vec3SGrid>(grid, origin, beads_of_voxels,
+                                            [&](std::uint32_t bead) { return values.color(bead); });
+    }
+}
+
+}  // namespace stratum::voxelize

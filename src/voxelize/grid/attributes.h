@@ -1,0 +1,59 @@
+// What each voxel was printed as: grids of bead attributes beside the surface.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// One grid each, named as written here, of the surface's transform and active voxels; a voxel takes the bead whose
+/// surface is nearest.
+enum class Attribute : std::uint8_t {
+    layer,    ///< Int32: 1, 2, ...
+    time,     ///< float: seconds from the program's begin to the bead (Toolpath::timing); without a plan, of extruding
+    feature,  ///< Int32: see gcode::Feature; metadata "names" lists them
+    tool,     ///< Int32: T number
+    object,   ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
+    width,    ///< float: mm
+    speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the one asked for
+    color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 grey where it has none
+};
+
+/// Parses "surface,layer,tool". The surface is always written and may be named. Throws UsageError with the names.
+std::vector<Attribute> parseGrids(std::string_view text);
+std::string_view attributeName(Attribute attribute);
+
+/// What its grid holds: Int32, float or Vec3f.
+enum class AttributeKind : std::uint8_t { integer, number, color };
+AttributeKind attributeKind(Attribute attribute);
+
+/// A value of every bead for every attribute; made once, read by all threads.
+class BeadAttributes {
+public:
+    BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes);
+
+    std::int32_t integer(Attribute attribute, std::uint32_t bead) const;
+    float number(Attribute attribute, std::uint32_t bead) const;
+    openvdb::Vec3f color(std::uint32_t bead) const;
+
+private:
+    const gcode::Toolpath& toolpath_;
+    std::vector<float> start_;  // by bead, seconds; only if time is wanted
+};
+
+/// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.
+std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& toolpath,
+                                                       std::span<const Attribute> attributes,
+                                                       const openvdb::FloatGrid& surface);
+
+/// Fills the leaf of `grid` at `origin`, if there is one: the voxels of `ranks` that name a bead.
+void fillLeaf(openvdb::GridBase& grid, Attribute attribute, const openvdb::Coord& origin, const BeadAttributes& values,
+              std::span<const std::uint32_t> beads_of_voxels);
+
+}  // namespace stratum::voxelize

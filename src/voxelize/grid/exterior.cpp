@@ -1,0 +1,444 @@
+#include "voxelize/grid/exterior.h"
+
+#include "base/parallel_for.h"
+#include "voxelize/leaf/leaf_mask.h"
+#include "voxelize/leaf/leaf_places.h"
+
+#include <tbb/concurrent_vector.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+namespace stratum::voxelize {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A leaf position that the flood has reached. Only the thread that works on its column writes; the words of `reached`
+// are read by others meanwhile. They only ever gain bits, and whoever gains a bit queues the neighbours it concerns, so
+// what a reader misses it sees in the next round. That is why queueing releases what was written before it, and taking
+// from the queue acquires it.
+struct Cell {
+    std::unique_ptr<Leaf> leaf;  // null if nothing is to be built, or all is outside or inside
+    bool surface = false;
+    LeafMask wide;     // samples that the flood may take
+    LeafMask outside;  // samples with phi >= 0
+    LeafMask settled;  // what was reached, once the flood is over
+    LeafMask shown;    // of those, what is seen from outside: what was reached and a little around it
+    std::array<std::atomic<std::uint64_t>, 8> reached{};
+
+    LeafMask load() const {
+        LeafMask mask;
+        for (std::size_t x = 0; x < 8; ++x) mask.word[x] = reached[x].load(std::memory_order_relaxed);
+        return mask;
+    }
+    void store(const LeafMask& mask) {
+        for (std::size_t x = 0; x < 8; ++x) reached[x].store(mask.word[x], std::memory_order_relaxed);
+    }
+};
+
+constexpr std::uint32_t kUnseen = 0xffffffff;
+constexpr std::size_t kColumnGrain = 8;
+
+constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+
+// Whether a mask has bits on that face of its leaf.
+bool touchesFace(const LeafMask& mask, const int (&face)[3]) {
+    if (face[0] != 0) return mask.word[face[0] < 0 ? 0 : 7] != 0;
+    std::uint64_t any = 0;
+    for (const std::uint64_t word : mask.word) any |= word;
+    if (face[1] != 0) return (any & (face[1] < 0 ? 0xffU : std::uint64_t{0xff} << 56)) != 0;
+    return (any & (face[2] < 0 ? 0x0101010101010101U : 0x8080808080808080U)) != 0;
+}
+
+class Flood {
+public:
+    // `whole`: a grid of all leaves, to look them up in; null to evaluate them.
+    Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const ExteriorRule& rule,
+          const openvdb::FloatTree* whole)
+        : bins_(bins), columns_(columns), end_(end), rule_(rule), whole_(whole), places_(bins, columns, end) {}
+
+    ExteriorCounts run(LeavesByColumn& leaves, const std::function<void(double)>& progress) {
+        begin();
+        openAir();
+        while (anyQueued()) {
+            ++counts_.rounds;
+            spread();
+            openAir();
+            if (progress) progress(static_cast<double>(cells_.size()) / static_cast<double>(places_.slotCount()));
+        }
+        lookAround();
+        collect(leaves);
+        if (progress) progress(1);
+        counts_.evaluate_seconds = evaluate_seconds_.load();
+        counts_.flood_seconds = thread_seconds_.load() - counts_.evaluate_seconds;
+        return counts_;
+    }
+
+private:
+    using Run = LeafPlaces::Run;
+    using Place = LeafPlaces::Place;
+
+    void begin() {
+        const auto start = Clock::now();
+        const std::size_t slots = places_.slotCount();
+        counts_.positions = slots;
+        cells_of_ = std::vector<std::atomic<std::uint32_t>>(slots);
+        for (auto& cell : cells_of_) cell.store(kUnseen, std::memory_order_relaxed);
+        queued_ = std::vector<std::atomic<std::uint8_t>>(slots);
+        near_ = std::vector<std::atomic<std::uint8_t>>(slots);
+        dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
+        air_ = std::vector<std::atomic<std::uint8_t>>(places_.airCount());
+        // The air outside the rectangle of columns is open, and with it the air below and above every column.
+        for (std::size_t c = 0; c < bins_.size(); ++c) {
+            const std::size_t airs = places_.airCount(c);
+            reachAir(c, 0);
+            reachAir(c, airs - 1);
+            const int i = places_.columnI(c);
+            const int j = places_.columnJ(c);
+            if (i > 0 && j > 0 && places_.inside(i + 1, j + 1)) continue;
+            for (std::size_t n = 1; n + 1 < airs; ++n) reachAir(c, n);
+            for (const Run& run : places_.runsOf(c))
+                for (int k = run.first; k <= run.last; ++k) queue(c, run.slotOf(k));
+        }
+        addThreadSeconds(secondsSince(start));
+    }
+
+    void reachAir(std::size_t c, std::size_t n) {
+        if (air_[places_.firstAir(c) + n].exchange(1, std::memory_order_relaxed) == 0) new_air_.push_back({c, n});
+    }
+
+    void queue(std::size_t c, std::size_t slot) {
+        near_[slot].store(1, std::memory_order_relaxed);
+        // Exchanges, not stores: two threads may queue one leaf, and who takes it must see what both have reached. A
+        // store would hide the first thread's.
+        queued_[slot].exchange(1, std::memory_order_release);
+        dirty_[c].exchange(1, std::memory_order_release);
+    }
+
+    bool anyQueued() const {
+        return std::any_of(dirty_.begin(), dirty_.end(),
+                           [](const auto& flag) { return flag.load(std::memory_order_relaxed) != 0; });
+    }
+
+    // Open air spreads to the air beside it and queues the leaves that it touches.
+    void openAir() {
+        const auto start = Clock::now();
+        new_air_.insert(new_air_.end(), found_air_.begin(), found_air_.end());
+        found_air_.clear();
+        while (!new_air_.empty()) {
+            const auto [c, n] = new_air_.back();
+            new_air_.pop_back();
+            const auto runs = places_.runsOf(c);
+            const int low = n > 0 ? runs[n - 1].last + 1 : std::numeric_limits<int>::min() + 1;
+            const int high = n < runs.size() ? runs[n].first - 1 : std::numeric_limits<int>::max() - 1;
+            if (n > 0) queue(c, runs[n - 1].slotOf(runs[n - 1].last));
+            if (n < runs.size()) queue(c, runs[n].slot);
+            for (int dx = -1; dx <= 1; ++dx)
+                for (int dy = -1; dy <= 1; ++dy) {
+                    const int i = places_.columnI(c) + dx;
+                    const int j = places_.columnJ(c) + dy;
+                    if ((dx == 0 && dy == 0) || !places_.inside(i, j)) continue;
+                    const std::size_t beside = places_.columnAt(i, j);
+                    const auto other = places_.runsOf(beside);
+                    for (const Run& run : other)
+                        for (int k = std::max(run.first, low - 1); k <= std::min(run.last, high + 1); ++k)
+                            queue(beside, run.slotOf(k));
+                    if (dx != 0 && dy != 0) continue;
+                    for (std::size_t m = 0; m <= other.size(); ++m) {
+                        const int from = m > 0 ? other[m - 1].last + 1 : std::numeric_limits<int>::min() + 1;
+                        const int to = m < other.size() ? other[m].first - 1 : std::numeric_limits<int>::max() - 1;
+                        if (std::max(from, low) <= std::min(to, high)) reachAir(beside, m);
+                    }
+                }
+        }
+        addThreadSeconds(secondsSince(start));
+    }
+
+    const LeafMask* reachedAt(int i, int j, int k, LeafMask& storage) const {
+        static const LeafMask kAll = LeafMask::full();
+        if (!places_.inside(i, j)) return &kAll;
+        const Place place = places_.at(places_.columnAt(i, j), k);
+        if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
+        const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
+        if (cell == kUnseen) return nullptr;
+        storage = cells_[cell].load();
+        return storage.empty() ? nullptr : &storage;
+    }
+
+    LeafMask seedsOf(std::size_t c, int k) const {
+        LeafMask storage[7];
+        Neighbourhood around{};
+        const int i = places_.columnI(c);
+        const int j = places_.columnJ(c);
+        around[neighbourIndex(0, 0, 0)] = reachedAt(i, j, k, storage[6]);
+        for (std::size_t n = 0; n < 6; ++n) {
+            const auto [dx, dy, dz] = kFaces[n];
+            around[neighbourIndex(dx, dy, dz)] = reachedAt(i + dx, j + dy, k + dz, storage[n]);
+        }
+        return besides(around);
+    }
+
+    // What is known of a leaf position once the flood is over: open air, a cell, or nothing (both empty).
+    struct Known {
+        bool air = false;
+        const Cell* cell = nullptr;
+    };
+    using Around = std::array<Known, 27>;
+
+    Around around(std::size_t c, int k) const {
+        Around known{};
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int i = places_.columnI(c) + dx;
+                const int j = places_.columnJ(c) + dy;
+                const bool there = places_.inside(i, j);
+                for (int dz = -1; dz <= 1; ++dz) {
+                    Known& out = known[neighbourIndex(dx, dy, dz)];
+                    if (!there) {
+                        out.air = true;
+                        continue;
+                    }
+                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
+                    if (!place.slot) {
+                        out.air = air_[place.index].load(std::memory_order_relaxed) != 0;
+                    } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
+                               cell != kUnseen) {
+                        out.cell = &cells_[cell];
+                    }
+                }
+            }
+        return known;
+    }
+
+    static Neighbourhood masksOf(const Around& around, LeafMask Cell::*mask) {
+        static const LeafMask kAll = LeafMask::full();
+        Neighbourhood out{};
+        for (std::size_t n = 0; n < out.size(); ++n)
+            out[n] = around[n].air ? &kAll : around[n].cell != nullptr ? &(around[n].cell->*mask) : nullptr;
+        return out;
+    }
+
+    Cell& cellAt(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
+        const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
+        if (known != kUnseen) return cells_[known];
+        const auto start = Clock::now();
+        const auto it = cells_.emplace_back();
+        Cell& cell = *it;
+        LeafContent content = LeafContent::surface;
+        const Leaf* leaf = nullptr;
+        if (whole_ != nullptr) {
+            const openvdb::Coord origin(bins_.originI(c), bins_.originJ(c), k * kLeafDim);
+            leaf = whole_->probeConstLeaf(origin);
+            if (leaf == nullptr) content = whole_->getValue(origin) < 0 ? LeafContent::inside : LeafContent::outside;
+        } else {
+            if (!opened) column.open(bins_.originI(c), bins_.originJ(c), bins_[c], end_);
+            opened = true;
+            content = column.evaluate(k);
+            if (content == LeafContent::surface) cell.leaf = column.makeLeaf();
+            leaf = cell.leaf.get();
+        }
+        cell.surface = leaf != nullptr;
+        if (content == LeafContent::outside) cell.wide = cell.outside = LeafMask::full();
+        if (leaf != nullptr) {
+            maskFrom(leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
+            maskFrom(leaf->buffer().data(), 0, cell.outside.word.data());
+        }
+        cells_of_[slot].store(static_cast<std::uint32_t>(it - cells_.begin()), std::memory_order_release);
+        evaluating += secondsSince(start);
+        return cell;
+    }
+
+    // The leaves around one that is reached will be looked at when the flood is over.
+    void markNear(std::size_t c, int k) {
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy) {
+                const int i = places_.columnI(c) + dx;
+                const int j = places_.columnJ(c) + dy;
+                if (!places_.inside(i, j)) continue;
+                for (int dz = -1; dz <= 1; ++dz) {
+                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
+                    if (place.slot) near_[place.index].store(1, std::memory_order_relaxed);
+                }
+            }
+    }
+
+    // One round: every queued leaf takes in what its neighbours have reached.
+    void spread() {
+        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+            const auto start = Clock::now();
+            double evaluating = 0;
+            LeafColumn& column = columns_();
+            for (std::size_t c = first; c != last; ++c) {
+                if (dirty_[c].exchange(0, std::memory_order_acquire) == 0) continue;
+                bool opened = false;
+                for (const Run& run : places_.runsOf(c))
+                    for (int k = run.first; k <= run.last; ++k) {
+                        const std::size_t slot = run.slotOf(k);
+                        if (queued_[slot].exchange(0, std::memory_order_acquire) == 0) continue;
+                        visit(column, opened, c, k, slot, evaluating);
+                    }
+            }
+            addThreadSeconds(secondsSince(start));
+            evaluate_seconds_.fetch_add(evaluating, std::memory_order_relaxed);
+        });
+    }
+
+    void visit(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
+        const LeafMask seeds = seedsOf(c, k);
+        if (seeds.empty()) return;
+        Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
+        const LeafMask before = cell.load();
+        const LeafMask after = floodWithin(cell.wide, seeds);
+        if (after == before) return;
+        cell.store(after);
+        if (before.empty()) markNear(c, k);
+        LeafMask gained;
+        for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
+        for (const auto& face : kFaces) {
+            const int i = places_.columnI(c) + face[0];
+            const int j = places_.columnJ(c) + face[1];
+            if (!places_.inside(i, j) || !touchesFace(gained, face)) continue;
+            const std::size_t beside = places_.columnAt(i, j);
+            const Place place = places_.at(beside, k + face[2]);
+            if (place.slot) {
+                queue(beside, place.index);
+            } else if (air_[place.index].exchange(1, std::memory_order_relaxed) == 0) {
+                found_air_.push_back({beside, place.index - places_.firstAir(beside)});
+            }
+        }
+    }
+
+    // Visits every leaf position beside one that was reached, on all threads.
+    template <typename Body>
+    void forEachNear(const Body& body) {
+        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+            const auto start = Clock::now();
+            double evaluating = 0;
+            LeafColumn& column = columns_();
+            for (std::size_t c = first; c != last; ++c) {
+                bool opened = false;
+                for (const Run& run : places_.runsOf(c))
+                    for (int k = run.first; k <= run.last; ++k) {
+                        const std::size_t slot = run.slotOf(k);
+                        if (near_[slot].load(std::memory_order_relaxed) != 0)
+                            body(c, k, slot, [&]() -> Cell& { return cellAt(column, opened, c, k, slot, evaluating); });
+                    }
+            }
+            addThreadSeconds(secondsSince(start));
+            evaluate_seconds_.fetch_add(evaluating, std::memory_order_relaxed);
+        });
+    }
+
+    // What the flood left out for being narrow is seen all the same where it is shallow.
+    void lookAround() {
+        for (Cell& cell : cells_) cell.settled = cell.load();
+        // First all leaves that matter, then what is shown of each: a look at a neighbour must find it complete.
+        forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen &&
+                anyWithin(masksOf(around(c, k), &Cell::settled), rule_.depth))
+                cell();
+        });
+        forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen) return;
+            const Around known = around(c, k);
+            cell().shown = spreadThrough(masksOf(known, &Cell::outside), masksOf(known, &Cell::settled), rule_.depth);
+        });
+    }
+
+    // Keeps what lies within the band of what is shown, and turns the rest inside.
+    void collect(LeavesByColumn& leaves) {
+        std::atomic<std::size_t> kept{0};
+        std::atomic<std::size_t> kept_voxels{0};
+        forEachNear([&](std::size_t c, int k, std::size_t slot, const auto& of) {
+            const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
+            if (known != kUnseen && !cells_[known].surface) return;
+            const Neighbourhood shown = masksOf(around(c, k), &Cell::shown);
+            if (known == kUnseen && !anyWithin(shown, static_cast<int>(rule_.band))) return;
+            const LeafMask near = withinReach(shown, rule_.band);
+            if (near.empty()) return;
+            Cell& cell = of();
+            if (!cell.surface) return;
+            // What goes: outside but not seen, or inside and far from what is.
+            LeafMask drop;
+            for (std::size_t x = 0; x < 8; ++x)
+                drop.word[x] = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
+            const Leaf* leaf = cell.leaf.get();
+            if (leaf == nullptr)
+                leaf = whole_->probeConstLeaf(openvdb::Coord(bins_.originI(c), bins_.originJ(c), k * kLeafDim));
+            const std::size_t active = activeWithout(*leaf, drop);
+            if (active == 0) return;
+            kept.fetch_add(1, std::memory_order_relaxed);
+            kept_voxels.fetch_add(active, std::memory_order_relaxed);
+            if (cell.leaf == nullptr) return;
+            turnInside(*cell.leaf, drop);
+            leaves[c].push_back(std::move(cell.leaf));
+        });
+        counts_.evaluated = cells_.size();
+        counts_.kept = kept;
+        counts_.kept_voxels = kept_voxels;
+    }
+
+    static std::size_t activeWithout(const Leaf& leaf, const LeafMask& drop) {
+        std::size_t count = 0;
+        for (openvdb::Index x = 0; x < 8; ++x)
+            count += static_cast<std::size_t>(
+                std::popcount(leaf.getValueMask().getWord<openvdb::Index64>(x) & ~drop.word[x]));
+        return count;
+    }
+
+    void turnInside(Leaf& leaf, const LeafMask& drop) const {
+        float* values = leaf.buffer().data();
+        for (openvdb::Index x = 0; x < 8; ++x) {
+            for (std::uint64_t bits = drop.word[x]; bits != 0; bits &= bits - 1)
+                values[x * 64 + static_cast<openvdb::Index>(std::countr_zero(bits))] = -rule_.background;
+            leaf.getValueMask().getWord<openvdb::Index64>(x) &= ~drop.word[x];
+        }
+    }
+
+    void addThreadSeconds(double seconds) { thread_seconds_.fetch_add(seconds, std::memory_order_relaxed); }
+
+    const PlanBins& bins_;
+    const ColumnSource& columns_;
+    const std::uint32_t end_;
+    const ExteriorRule rule_;
+    const openvdb::FloatTree* const whole_;
+    const LeafPlaces places_;
+
+    std::vector<std::atomic<std::uint32_t>> cells_of_;  // by slot: index into cells_
+    tbb::concurrent_vector<Cell> cells_;
+    std::vector<std::atomic<std::uint8_t>> queued_, near_;  // by slot
+    std::vector<std::atomic<std::uint8_t>> dirty_, air_;    // by column, by air
+    struct Air {
+        std::size_t column, number;
+    };
+    std::vector<Air> new_air_;
+    tbb::concurrent_vector<Air> found_air_;
+    std::atomic<double> thread_seconds_{0}, evaluate_seconds_{0};
+    ExteriorCounts counts_;
+};
+
+}  // namespace
+
+ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, LeavesByColumn& leaves,
+                              const std::function<void(double)>& progress) {
+    leaves.clear();
+    leaves.resize(bins.size());
+    return Flood(bins, columns, end, rule, nullptr).run(leaves, progress);
+}
+
+ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const ExteriorRule& rule, const openvdb::FloatTree& whole) {
+    LeavesByColumn none;
+    return Flood(bins, columns, end, rule, &whole).run(none, {});
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,115 @@
+#include "voxelize/grid/voxel_choice.h"
+
+#include "base/error.h"
+#include "voxelize/beads/estimate.h"
+#include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/leaf/leaf_column.h"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr int kMostVoxelsPerLayer = 64;
+constexpr int kMostWithinBudget = 16;
+// The upper nodes of however small a grid: a part across the origin has eight, of 32^3 pointers each.
+constexpr double kBytesOfTree = 2.2e6;
+// Masks that the flood keeps for a leaf while it runs, and leaves that it visits without keeping them.
+constexpr double kFloodFactor = 1.35;
+// Voxels a layer of the culled build that finer ones are scaled from.
+constexpr int kScaledFrom = 2;
+
+}  // namespace
+
+int voxelsPerLayerForTolerance(double layer_height, double tolerance) {
+    if (!(std::isfinite(tolerance) && tolerance > 0))
+        throw UsageError(fmt::format("--tolerance {}: expected a number of mm above 0, e.g. 0.02", tolerance));
+    const double count = std::ceil(kLargestMissVoxels * layer_height / tolerance - 1e-9);
+    if (count > kMostVoxelsPerLayer)
+        throw UsageError(
+            fmt::format("--tolerance {:g} mm needs {:.0f} voxels a layer of {:g} mm, at most {} are made; "
+                        "the finest tolerance is {:g} mm",
+                        tolerance, count, layer_height, kMostVoxelsPerLayer,
+                        kLargestMissVoxels * layer_height / kMostVoxelsPerLayer));
+    return std::max(kFewestVoxelsPerLayer, static_cast<int>(count));
+}
+
+int voxelsPerLayerForPixel(double layer_height, double pixel) {
+    const double count = std::ceil(kVoxelsPerPixel * layer_height / pixel - 1e-9);
+    return static_cast<int>(std::clamp<double>(count, kFewestForPixels, kMostForPixels));
+}
+
+double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
+                     Interior interior) {
+    if (interior == Interior::cull) {
+        Lattice coarse = lattice;
+        coarse.voxel_size = std::max(lattice.voxel_size, lattice.layer_height / kScaledFrom);
+        VoxelizeOptions options;
+        options.interior = Interior::cull;
+        const auto leaves = static_cast<double>(voxelize(toolpath, selection, coarse, options)->tree().leafCount());
+        const double finer = coarse.voxel_size / lattice.voxel_size;
+        return leaves * finer * finer * kBytesPerLeaf * kFloodFactor + kBytesOfTree;
+    }
+    const LayerStack stack = stackLayers(toolpath, selection);
+    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
+    LeafColumn column(toolpath, stack, lattice, 1);
+    std::size_t leaves = 0;
+    for (std::size_t c = 0; c < bins.size(); ++c)
+        if (!bins[c].empty()) leaves += column.countLeaves(bins[c]);
+    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes()) + kBytesOfTree;
+}
+
+int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                         const Lattice& any_size, Interior interior) {
+    static_assert(kScaledFrom == kFewestVoxelsPerLayer);
+    Lattice lattice = any_size;
+    lattice.voxel_size = lattice.layer_height / kFewestVoxelsPerLayer;
+    const double coarsest = estimateBytes(toolpath, selection, lattice, interior);
+    if (coarsest > budget)
+        throw UsageError(fmt::format(
+            "--memory-budget: {} voxels a layer of {:g} mm take about {:.3g} MB already, and fewer lose parts of the "
+            "print; give that much, fewer layers or features{}",
+            kFewestVoxelsPerLayer, lattice.layer_height, coarsest * 1e-6,
+            interior == Interior::keep ? ", or --interior cull" : ""));
+    int best = kFewestVoxelsPerLayer;
+    for (int count = best + 1; count <= kMostWithinBudget; ++count) {
+        const double finer = static_cast<double>(count) / kFewestVoxelsPerLayer;
+        // What is culled grows like a surface (see estimateBytes). The rest grows no slower, up to a third that leaves
+        // which are partly empty make of it: no need to list what that alone rules out.
+        const double least = coarsest * finer * finer;
+        if (least > (interior == Interior::cull ? 1 : 1.5) * budget) break;
+        lattice.voxel_size = lattice.layer_height / count;
+        if (interior == Interior::keep && estimateBytes(toolpath, selection, lattice, interior) > budget) break;
+        best = count;
+    }
+    return best;
+}
+
+double parseSize(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+    std::string suffix;
+    for (const char* p = end; p != text.data() + text.size(); ++p)
+        if (*p != ' ') suffix += static_cast<char>(std::tolower(static_cast<unsigned char>(*p)));
+    if (suffix.ends_with('b')) suffix.pop_back();
+    // SI, and with an i the binary ones of IEC 80000-13.
+    const bool binary = suffix.size() == 2 && suffix.ends_with('i');
+    if (binary) suffix.pop_back();
+    constexpr std::string_view kPrefixes = "kmgt";
+    const std::size_t power = suffix.size() == 1 ? kPrefixes.find(suffix[0]) : std::string_view::npos;
+    const bool known = suffix.empty() ? !binary : power != std::string_view::npos;
+    if (error != std::errc{} || !(value > 0) || !std::isfinite(value) || !known)
+        throw UsageError(fmt::format("{}: expected a size such as 800MB, 4GB or 4GiB", text));
+    return suffix.empty() ? value : value * std::pow(binary ? 1024.0 : 1000.0, static_cast<double>(power + 1));
+}
+
+}  // namespace stratum::voxelize

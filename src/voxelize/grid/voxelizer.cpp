@@ -1,0 +1,276 @@
+#include "voxelize/grid/voxelizer.h"
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "base/parallel_for.h"
+#include "voxelize/beads/estimate.h"
+#include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/grid/exterior.h"
+#include "voxelize/leaf/leaf_column.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace stratum::voxelize {
+namespace {
+
+// Calls back at most once a percent, one thread at a time.
+class ProgressMeter {
+public:
+    ProgressMeter(std::size_t total, const std::function<void(double)>& report) : total_(total), report_(report) {}
+    void advance(std::size_t count) {
+        if (!report_) return;
+        const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
+        if (done * 100 / total_ == (done - count) * 100 / total_) return;
+        const std::scoped_lock lock(mutex_);
+        report_(static_cast<double>(done) / static_cast<double>(total_));
+    }
+
+private:
+    const std::size_t total_;
+    const std::function<void(double)>& report_;
+    std::atomic<std::size_t> done_{0};
+    std::mutex mutex_;
+};
+
+// When culling, voxels: the masks look one leaf far.
+constexpr double kDeepestBand = 8;
+constexpr double kChannelRadius = 0.15;  // layer heights
+constexpr std::size_t kColumnGrain = 16;
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::size_t memoryLimit(const VoxelizeOptions& options) {
+    return options.memory_limit != 0 ? options.memory_limit : availableMemory();
+}
+
+// The estimate can be off by about that; culling leaves most of it out.
+double estimateMargin(Interior interior) { return interior == Interior::keep ? 3 : 30; }
+
+// Refuses what is hopeless by arithmetic alone, before any list is made. The exact bound follows from the bins.
+LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                         const Lattice& lattice, const VoxelizeOptions& options, double estimate) {
+    const auto limit = static_cast<double>(memoryLimit(options));
+    if (estimate > estimateMargin(options.interior) * limit)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
+                        "(half the layer height is {:g} mm), --memory-budget, fewer layers or features{}",
+                        lattice.voxel_size, estimate * 1e-9, limit * 1e-9, lattice.layer_height / 2,
+                        options.interior == Interior::keep ? ", or --interior cull" : ""));
+    return stackLayers(toolpath, selection);
+}
+
+}  // namespace
+
+struct Voxelizer::State {
+    State(const gcode::Toolpath& the_toolpath, std::span<const std::uint32_t> selection, const Lattice& the_lattice,
+          VoxelizeOptions the_options)
+        : toolpath(the_toolpath),
+          lattice(the_lattice),
+          options(std::move(the_options)),
+          estimated_bytes(estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) *
+                          kBytesPerActiveVoxel),
+          stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
+          bins(toolpath, stack, lattice, memoryLimit(options) / 4),
+          scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
+          background(static_cast<float>(lattice.background() * options.placement.unit)),
+          grid(openvdb::FloatGrid::create(background)) {
+        grid->setTransform(makeTransform(lattice, options.placement));
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        grid->setName("surface");
+    }
+
+    void refuseIfTooLarge();
+    void buildTouched(std::uint32_t end);
+    void buildReached(std::uint32_t end);
+    ExteriorRule exteriorRule() const;
+    ColumnSource columnSource() {
+        return [this]() -> LeafColumn& { return scratch.local(); };
+    }
+
+    const gcode::Toolpath& toolpath;
+    const Lattice& lattice;
+    const VoxelizeOptions options;
+    const double estimated_bytes;
+    const LayerStack stack;
+    const PlanBins bins;
+    tbb::enumerable_thread_specific<LeafColumn> scratch;
+    const float background;
+    openvdb::FloatGrid::Ptr grid;
+    std::uint32_t printed = 0;
+    VoxelizeReport report;
+};
+
+void Voxelizer::State::refuseIfTooLarge() {
+    // Culling builds a fraction that only the flood can tell. What clearly fits needs no counting.
+    if (options.interior == Interior::cull) return;
+    if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
+    std::atomic<std::size_t> leaf_bound{0};
+    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = scratch.local();
+        std::size_t count = 0;
+        for (std::size_t c = first; c != last; ++c)
+            if (!bins[c].empty()) count += column.countLeaves(bins[c]);
+        leaf_bound.fetch_add(count, std::memory_order_relaxed);
+    });
+    const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
+    const auto limit = static_cast<double>(memoryLimit(options));
+    if (bytes > limit)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger "
+                        "voxel, --memory-budget, fewer layers or features, or --interior cull",
+                        lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
+}
+
+void Voxelizer::State::buildTouched(std::uint32_t end) {
+    // Leaves with something active; and, if there was a grid before, positions that are deep inside now.
+    struct Built {
+        std::vector<std::unique_ptr<Leaf>> leaves;
+        std::vector<openvdb::Coord> inside;
+    };
+    std::vector<Built> built(bins.size());
+    std::atomic<std::size_t> evaluated{0};
+    ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), options.progress);
+    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = scratch.local();
+        std::size_t count = 0;
+        for (std::size_t c = first; c != last; ++c) {
+            if (bins[c].empty()) continue;
+            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
+            for (const LeafRange& range : column.touched(printed))
+                for (int k = range.first; k <= range.second; ++k) {
+                    ++count;
+                    const LeafContent content = column.evaluate(k);
+                    if (content == LeafContent::surface)
+                        built[c].leaves.push_back(column.makeLeaf());
+                    else if (content == LeafContent::inside && printed > 0)
+                        built[c].inside.emplace_back(bins.originI(c), bins.originJ(c), k * kLeafDim);
+                }
+            meter.advance(bins[c].size());
+        }
+        evaluated.fetch_add(count, std::memory_order_relaxed);
+    });
+    std::size_t made = 0;
+    auto accessor = grid->getAccessor();
+    for (Built& column : built) {
+        made += column.leaves.size();
+        for (std::unique_ptr<Leaf>& leaf : column.leaves) accessor.addLeaf(leaf.release());
+        for (const openvdb::Coord& origin : column.inside) accessor.addTile(1, origin, -background, false);
+    }
+    report.leaf_positions = std::max(report.leaf_positions, evaluated.load());
+    report.leaves_evaluated = evaluated;
+    report.leaves_reused = grid->tree().leafCount() - made;
+}
+
+ExteriorRule Voxelizer::State::exteriorRule() const {
+    ExteriorRule rule;
+    rule.background = background;
+    // Half a voxel, so that the narrowest gap passed is a voxel wide; but not the channels of planned spacing, however
+    // fine the voxel: with h the layer height their clear radius is h (sqrt((pi / 8)^2 + 1 / 4) - 1 / 2) = 0.136 h.
+    rule.clearance = static_cast<float>(std::max(0.5 * lattice.voxel_size, kChannelRadius * lattice.layer_height) *
+                                        options.placement.unit);
+    // An outside sample next to the surface is up to a voxel from it.
+    rule.band = std::clamp(lattice.half_width - 1, 1.0, kDeepestBand);
+    return rule;
+}
+
+void Voxelizer::State::buildReached(std::uint32_t end) {
+    const auto start = Clock::now();
+    LeavesByColumn leaves;
+    grid->tree().clear();
+    const ExteriorCounts counts = buildReachable(bins, columnSource(), end, exteriorRule(), leaves, options.progress);
+    const double share = counts.flood_seconds / (counts.flood_seconds + counts.evaluate_seconds + 1e-9);
+    report.exterior_seconds = share * secondsSince(start);
+    auto accessor = grid->getAccessor();
+    for (auto& column : leaves)
+        for (std::unique_ptr<Leaf>& leaf : column) accessor.addLeaf(leaf.release());
+    report.leaf_positions = counts.positions;
+    report.leaves_evaluated = counts.evaluated;
+    report.flood_rounds = counts.rounds;
+}
+
+Voxelizer::Voxelizer(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice,
+                     VoxelizeOptions options) {
+    const auto start = Clock::now();
+    state_ = std::make_unique<State>(toolpath, selection, lattice, std::move(options));
+    state_->refuseIfTooLarge();
+    state_->report.bin_seconds = secondsSince(start);
+}
+
+Voxelizer::~Voxelizer() = default;
+
+openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
+    const auto start = Clock::now();
+    if (state_->options.interior == Interior::keep)
+        state_->buildTouched(end);
+    else
+        state_->buildReached(end);
+    state_->printed = end;
+    // Tiles get the sign of the leaves beside them; leaves know theirs.
+    openvdb::tools::signedFloodFill(state_->grid->tree(), true, 1, 1);
+    state_->report.build_seconds = secondsSince(start);
+    return state_->grid;
+}
+
+CullForecast Voxelizer::forecastCull() const {
+    State& s = *state_;
+    const ExteriorCounts counts =
+        countReachable(s.bins, s.columnSource(), s.printed, s.exteriorRule(), s.grid->constTree());
+    return {counts.kept, counts.kept_voxels};
+}
+
+std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attribute> wanted) const {
+    const State& s = *state_;
+    std::vector<openvdb::GridBase::Ptr> grids = makeAttributeGrids(s.toolpath, wanted, *s.grid);
+    if (wanted.empty()) return grids;
+    const BeadAttributes values(s.toolpath, wanted);
+    ProgressMeter meter(std::max<std::size_t>(s.bins.entryCount(), 1), s.options.progress);
+    constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+    tbb::enumerable_thread_specific<LeafColumn> owning(
+        [&s] { return LeafColumn(s.toolpath, s.stack, s.lattice, s.options.placement.unit, true); });
+    parallelFor(s.bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = owning.local();
+        std::array<std::uint32_t, Leaf::SIZE> owners{};
+        for (std::size_t c = first; c != last; ++c) {
+            if (s.bins[c].empty()) continue;
+            column.open(s.bins.originI(c), s.bins.originJ(c), s.bins[c], s.printed);
+            for (const LeafRange& range : column.touched())
+                for (int k = range.first; k <= range.second; ++k) {
+                    const openvdb::Coord origin(s.bins.originI(c), s.bins.originJ(c), k * kLeafDim);
+                    if (s.grid->tree().probeConstLeaf(origin) == nullptr) continue;
+                    column.evaluate(k);
+                    column.owners(owners);
+                    for (std::uint32_t& owner : owners)
+                        if (owner != kNobody) owner = s.stack.beads[owner];
+                    for (std::size_t n = 0; n < wanted.size(); ++n)
+                        fillLeaf(*grids[n], wanted[n], origin, values, owners);
+                }
+            meter.advance(s.bins[c].size());
+        }
+    });
+    return grids;
+}
+
+const VoxelizeReport& Voxelizer::report() const { return state_->report; }
+
+openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                                 const Lattice& lattice, const VoxelizeOptions& options) {
+    return Voxelizer(toolpath, selection, lattice, options).printAll();
+}
+
+}  // namespace stratum::voxelize

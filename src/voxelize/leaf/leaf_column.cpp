@@ -1,0 +1,287 @@
+#include "voxelize/leaf/leaf_column.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::voxelize {
+namespace {
+
+// How far planes that count as touching may be apart, for a layer of this radius (mm).
+double weldGap(double radius) { return kWeldGap * 2 * radius; }
+
+}  // namespace
+
+LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
+                       bool owners)
+    : toolpath_(toolpath),
+      stack_(stack),
+      lattice_(lattice),
+      scale_(scale),
+      band_(lattice.background()),
+      with_owners_(owners),
+      grid_(static_cast<float>(lattice.voxel_size * scale)) {
+    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.radius);
+    weld_offsets_.assign(stack.layers.size() + 1, 0);
+    for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
+    for (std::size_t i = 1; i < weld_offsets_.size(); ++i) weld_offsets_[i] += weld_offsets_[i - 1];
+}
+
+LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
+    const double edge = lattice_.voxel_size * kLeafDim;
+    return {static_cast<int>(std::floor((z_min - band_ - lattice_.origin_z) / edge)),
+            static_cast<int>(std::floor((z_max + band_ - lattice_.origin_z) / edge))};
+}
+
+void LeafColumn::mergeRanges() {
+    // Those of the layers come first and ascend.
+    const auto rest = std::is_sorted_until(ranges_.begin(), ranges_.end());
+    std::sort(rest, ranges_.end());
+    std::inplace_merge(ranges_.begin(), rest, ranges_.end());
+    std::size_t kept = 0;
+    for (const LeafRange& range : ranges_) {
+        if (kept > 0 && range.first <= ranges_[kept - 1].second + 1) {
+            ranges_[kept - 1].second = std::max(ranges_[kept - 1].second, range.second);
+        } else {
+            ranges_[kept++] = range;
+        }
+    }
+    ranges_.resize(kept);
+}
+
+std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
+    ranges_.clear();
+    std::uint32_t previous = std::numeric_limits<std::uint32_t>::max();
+    for (const std::uint32_t rank : ranks) {
+        if (rank >= stack_.first_direct) {
+            const Extent& extent = stack_.extentOf(rank);
+            ranges_.push_back(leafRange(extent.z_min, extent.z_max));
+        } else if (stack_.layer[rank] != previous) {
+            previous = stack_.layer[rank];
+            const Layer& l = stack_.layers[previous];
+            ranges_.push_back(leafRange(l.centre_z - l.radius, l.centre_z + l.radius));
+        }
+    }
+    mergeRanges();
+    std::size_t count = 0;
+    for (const LeafRange& range : ranges_) count += static_cast<std::size_t>(range.second - range.first) + 1;
+    return count;
+}
+
+void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end) {
+    i_ = i;
+    j_ = j;
+    leaf_k_ = std::numeric_limits<int>::min();
+    constexpr double kMiddle = 0.5 * (kLeafDim - 1);
+    middle_x_ = (i + kMiddle) * lattice_.voxel_size;
+    middle_y_ = (j + kMiddle) * lattice_.voxel_size;
+    ranks_ = ranks;
+    end_ = end;
+    column_layers_.clear();
+    direct_.clear();
+    next_layer_ = first_direct_ = 0;
+    free_.insert(free_.end(), window_.begin(), window_.end());
+    window_.clear();
+    welds_.clear();
+    radii_.clear();
+    // A few beads are soon wanted, and lie apart in memory.
+    constexpr std::size_t kFew = 128;
+    const bool few = ranks.size() <= kFew;
+    for (std::uint32_t e = 0; e < ranks.size(); ++e) {
+        const std::uint32_t rank = ranks[e];
+        if (stack_.beads[rank] >= end) continue;
+        if (few) __builtin_prefetch(&toolpath_.beads[stack_.beads[rank]]);
+        if (rank >= stack_.first_direct) {
+            const Extent& extent = stack_.extentOf(rank);
+            direct_.push_back({extent.z_min - band_, extent.z_max + band_, rank});
+        } else if (column_layers_.empty() || column_layers_.back().layer != stack_.layer[rank]) {
+            column_layers_.push_back({stack_.layer[rank], e, e + 1, false});
+        } else {
+            column_layers_.back().last = e + 1;
+        }
+    }
+    // Rank breaks ties, so that the order never depends on the sort.
+    std::sort(direct_.begin(), direct_.end(), [](const DirectBead& a, const DirectBead& b) {
+        return std::pair{a.z_min, a.rank} < std::pair{b.z_min, b.rank};
+    });
+}
+
+std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
+    ranges_.clear();
+    for (const ColumnLayer& source : column_layers_) {
+        bool any = begin == 0;
+        for (std::uint32_t e = source.first; !any && e < source.last; ++e) {
+            const std::uint32_t bead = stack_.beads[ranks_[e]];
+            any = bead >= begin && bead < end_;
+        }
+        if (!any) continue;
+        const Layer& l = stack_.layers[source.layer];
+        // A new bead can weld what lies below it: up to its own centre plane, so no farther than its own band.
+        ranges_.push_back(
+            leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
+    }
+    for (const DirectBead& direct : direct_)
+        if (stack_.beads[direct.rank] >= begin)
+            ranges_.push_back(leafRange(direct.z_min + band_, direct.z_max - band_));
+    mergeRanges();
+    return ranges_;
+}
+
+void LeafColumn::loadLayer(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    lines_.clear();
+    arcs_.clear();
+    line_ids_.clear();
+    arc_ids_.clear();
+    const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
+    for (std::uint32_t e = source.first; e < source.last; ++e) {
+        const std::uint32_t rank = ranks_[e];
+        // The beads of a column lie apart in memory: ask for one early.
+        constexpr std::uint32_t kAhead = 6;
+        if (e + kAhead < ranks_.size()) __builtin_prefetch(&toolpath_.beads[stack_.beads[ranks_[e + kAhead]]]);
+        if (stack_.beads[rank] >= end_) continue;
+        const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
+        const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.radius;
+        if (!curved(toolpath_, bead)) {
+            lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            if (with_owners_) line_ids_.push_back(rank);
+        } else {
+            const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+            arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            if (with_owners_) arc_ids_.push_back(rank);
+        }
+    }
+    if (free_.empty()) {
+        free_.push_back(static_cast<std::uint32_t>(slots_.size()));
+        slots_.emplace_back();
+    }
+    const std::uint32_t slot = free_.back();
+    PlanLayer& plan = slots_[slot];
+    plan.layer = source.layer;
+    plan.centre_z = layer.centre_z;
+    plan.radius = layer.radius;
+    std::fill(std::begin(plan.d.v), std::end(plan.d.v), std::numeric_limits<float>::max());
+    PlanOwners* owners = with_owners_ ? &plan.owners : nullptr;
+    if (!lines_.empty()) minimumOfLines(grid_, lines_, plan.d, line_ids_.data(), owners);
+    if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, plan.d, arc_ids_.data(), owners);
+    // Nothing of the column within the band: neither a surface nor a weld.
+    const double reach = (layer.radius + band_) * scale_;
+    if (static_cast<double>(squaredSides(plan.d, plan.sides2)) >= reach * reach) return;
+    free_.pop_back();
+    window_.push_back(slot);
+    if (std::find(radii_.begin(), radii_.end(), layer.radius) == radii_.end()) radii_.push_back(layer.radius);
+    addWelds(plan);
+}
+
+void LeafColumn::addWelds(const PlanLayer& upper) {
+    for (std::size_t w = weld_offsets_[upper.layer]; w < weld_offsets_[upper.layer + 1]; ++w) {
+        const std::uint32_t wanted = stack_.welds[w].lower;
+        const auto lower = std::find_if(window_.begin(), window_.end(),
+                                        [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
+        if (lower == window_.end()) continue;
+        const PlanLayer& below = slots_[*lower];
+        const double top = below.centre_z + below.radius;
+        const double bottom = upper.centre_z - upper.radius;
+        PlanWeld weld{std::min(top, bottom),
+                      std::max(top, bottom),
+                      0.5 * (below.centre_z + upper.centre_z),
+                      0.5 * (upper.centre_z - below.centre_z),
+                      {}};
+        if (maximumOf(below.d, upper.d, weld.d) < 0) welds_.push_back(weld);
+    }
+}
+
+void LeafColumn::moveWindow(double z_min, double z_max) {
+    // A layer stays while its band reaches the leaf, and a little longer for what rests on it across a gap.
+    const auto reach = [this](double radius) { return radius + band_ + weldGap(radius); };
+    const auto passed = [&](std::uint32_t slot) {
+        const PlanLayer& plan = slots_[slot];
+        return plan.centre_z + reach(plan.radius) < z_min;
+    };
+    // In order, for ties go to the first.
+    std::size_t kept = 0;
+    for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
+    if (kept != window_.size()) {
+        window_.resize(kept);
+        radii_.clear();
+        for (const std::uint32_t slot : window_)
+            if (std::find(radii_.begin(), radii_.end(), slots_[slot].radius) == radii_.end())
+                radii_.push_back(slots_[slot].radius);
+    }
+    std::erase_if(welds_, [&](const PlanWeld& weld) { return weld.interface_high + band_ < z_min; });
+    // Layers ascend by centre, but a thick one can reach lower than a thin one before it.
+    for (std::size_t n = next_layer_; n < column_layers_.size(); ++n) {
+        ColumnLayer& source = column_layers_[n];
+        if (source.loaded) continue;
+        const Layer& layer = stack_.layers[source.layer];
+        if (layer.centre_z - reach(thickest_) > z_max) break;
+        if (layer.centre_z - reach(layer.radius) > z_max) continue;
+        source.loaded = true;
+        if (layer.centre_z + reach(layer.radius) >= z_min) loadLayer(source);
+    }
+    while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
+}
+
+void LeafColumn::gatherTerms(int k0) {
+    terms_.clear();
+    for (std::size_t z = 0; z < terms_.planes; ++z) {
+        const double height = sampleZ(k0 + static_cast<int>(z));
+        for (const double radius : radii_) {
+            const double reach = radius + band_;
+            const auto first = static_cast<std::uint32_t>(terms_.terms.size());
+            for (const std::uint32_t slot : window_) {
+                const PlanLayer& plan = slots_[slot];
+                const double dz = height - plan.centre_z;
+                if (plan.radius != radius || std::abs(dz) >= reach) continue;
+                const auto world = static_cast<float>(dz * scale_);
+                terms_.terms.push_back({&plan.sides2, world * world});
+            }
+            const auto last = static_cast<std::uint32_t>(terms_.terms.size());
+            if (first != last) terms_.groups.push_back({first, last, static_cast<float>(radius * scale_)});
+        }
+        for (const PlanWeld& weld : welds_) {
+            // Farther than the band from the interface the layer itself is deeper than the band.
+            if (height < weld.interface_low - band_ || height > weld.interface_high + band_) continue;
+            const double bound = std::abs(height - weld.middle_z) - weld.half;
+            if (bound < 0) terms_.welds.push_back({&weld.d, static_cast<float>(bound * scale_)});
+        }
+        terms_.group_end[z] = static_cast<std::uint32_t>(terms_.groups.size());
+        terms_.weld_end[z] = static_cast<std::uint32_t>(terms_.welds.size());
+    }
+}
+
+LeafContent LeafColumn::evaluate(int leaf_k, std::size_t planes) {
+    leaf_k_ = leaf_k;
+    const int k0 = leaf_k * kLeafDim;
+    const double z_min = sampleZ(k0);
+    const double z_max = sampleZ(k0 + static_cast<int>(planes) - 1);
+    terms_.planes = planes;
+    moveWindow(z_min, z_max);
+    const auto background = static_cast<float>(band_ * scale_);
+    gatherTerms(k0);
+    expandLayers(terms_, background, phi_);
+    while (first_direct_ < direct_.size() && direct_[first_direct_].z_max < z_min) ++first_direct_;
+    for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n) {
+        if (direct_[n].z_max < z_min) continue;
+        expandDirect(direct_[n], k0, std::span(phi_.plane).first(kLeafPlanes));
+        // As the leaf above has it, to the bit: relative to that one's middle.
+        if (planes > kLeafPlanes) expandDirect(direct_[n], k0 + kLeafDim, std::span(phi_.plane).subspan(kLeafPlanes));
+    }
+    return clampLeaf(phi_, planes, background);
+}
+
+std::unique_ptr<Leaf> LeafColumn::makeLeaf() const {
+    const auto background = static_cast<float>(band_ * scale_);
+    const openvdb::Coord origin(i_, j_, leaf_k_ * kLeafDim);
+    // Partial: the values are written once, below, not twice.
+    auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, background, false);
+    leaf->allocate();
+    std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];
+    storeLeaf(phi_, leaf->buffer().data());
+    maskWithin(leaf->buffer().data(), background, mask);
+    for (openvdb::Index w = 0; w < Leaf::NodeMaskType::WORD_COUNT; ++w)
+        leaf->getValueMask().getWord<openvdb::Index64>(w) = mask[w];
+    return leaf;
+}
+
+}  // namespace stratum::voxelize

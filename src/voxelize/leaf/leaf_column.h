@@ -1,0 +1,122 @@
+// One leaf column: plan fields of its layers, expanded along z into leaves.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/lattice.h"
+#include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/leaf/leaf_kernels.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace stratum::voxelize {
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+/// First and last leaf of a run along z, in leaves from index 0.
+using LeafRange = std::pair<int, int>;
+
+/// Scratch of one thread: opens columns one after the other and evaluates their leaves from the bottom up. Plan fields
+/// live in a window that moves up with the leaves, so a column costs what meets one leaf, however tall it is.
+class LeafColumn {
+public:
+    /// `scale` turns mm into the grid's world unit. The references must outlive the object. With `owners` the nearest
+    /// bead is remembered as well; see owners().
+    LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
+               bool owners = false);
+
+    /// Takes up the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
+    /// toolpath of `end` or more aren't printed yet.
+    void open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end);
+
+    /// The leaves that the open column's beads from index `begin` on can touch: ascending, apart. Valid until the next
+    /// call.
+    std::span<const LeafRange> touched(std::uint32_t begin = 0);
+
+    /// An upper bound on the leaves of a column, from z extents alone; does not open it.
+    std::size_t countLeaves(std::span<const std::uint32_t> ranks);
+
+    /// Evaluates a leaf of the open column, `planes` of it: its own eight, or also the one above. `leaf_k` must ascend
+    /// from call to call until the next open().
+    LeafContent evaluate(int leaf_k, std::size_t planes = kLeafPlanes);
+
+    /// A new leaf with what evaluate() has just found to be surface.
+    std::unique_ptr<Leaf> makeLeaf() const;
+    /// The values of evaluate(), clamped to the background, world units.
+    const LeafPlanes& planes() const { return phi_; }
+
+    /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; the
+    /// earlier bead of equals. Only with `owners`, and only where a bead is within the band.
+    void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
+
+private:
+    struct ColumnLayer {
+        std::uint32_t layer;
+        std::uint32_t first, last;  // entries of ranks_
+        bool loaded;
+    };
+    struct PlanLayer {
+        std::uint32_t layer;
+        double centre_z, radius;  // mm
+        PlanField d, sides2;
+        PlanOwners owners;
+    };
+    struct PlanWeld {
+        double interface_low, interface_high;  // mm, the two planes that touch
+        double middle_z, half;                 // mm
+        PlanField d;                           // max of the two layers
+    };
+    struct DirectBead {
+        double z_min, z_max;  // mm, with the band
+        std::uint32_t rank;
+    };
+
+    double sampleZ(int k) const { return lattice_.origin_z + k * lattice_.voxel_size; }
+    LeafRange leafRange(double z_min, double z_max) const;
+    void mergeRanges();
+    void moveWindow(double z_min, double z_max);
+    void loadLayer(const ColumnLayer& source);
+    void addWelds(const PlanLayer& upper);
+    void gatherTerms(int k0);
+    /// Into the planes from k0, the first of a leaf.
+    void expandDirect(const DirectBead& direct, int k0, std::span<PlanField> planes);
+
+    const gcode::Toolpath& toolpath_;
+    const LayerStack& stack_;
+    const Lattice& lattice_;
+    const double scale_, band_;  // world units a mm; mm
+    const bool with_owners_;
+    const ColumnGrid grid_;
+    double thickest_ = 0;                    // mm, the largest radius of a layer
+    std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by upper layer
+
+    // The open column.
+    int i_ = 0, j_ = 0, leaf_k_ = 0;
+    double middle_x_ = 0, middle_y_ = 0;  // mm
+    std::span<const std::uint32_t> ranks_;
+    std::uint32_t end_ = 0;
+    std::vector<ColumnLayer> column_layers_;
+    std::size_t next_layer_ = 0;
+    std::vector<DirectBead> direct_;  // ascending z_min
+    std::size_t first_direct_ = 0;
+    std::vector<LeafRange> ranges_;
+
+    // The window. Slots are reused; window_ and weld_window_ list those in use.
+    std::vector<PlanLayer> slots_;
+    std::vector<std::uint32_t> window_, free_;
+    std::vector<PlanWeld> welds_;
+    std::vector<double> radii_;  // distinct, of the window
+    std::vector<LocalLine> lines_;
+    std::vector<LocalArc> arcs_;
+    std::vector<std::uint32_t> line_ids_, arc_ids_;
+    LeafTerms terms_;
+    LeafPlanes phi_{};
+};
+
+}  // namespace stratum::voxelize

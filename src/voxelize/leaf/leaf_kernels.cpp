@@ -1,0 +1,349 @@
+#include "voxelize/leaf/leaf_kernels.h"
+
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxelize/leaf/leaf_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace stratum::voxelize {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most 16 lanes, so that a column is whole vectors on every target.
+using F = hn::CappedTag<float, 16>;
+using U = hn::RebindToUnsigned<F>;
+using VF = hn::Vec<F>;
+
+template <typename Body>
+HWY_INLINE void forEachVector(const Body& body) {
+    const F f;
+    for (std::size_t c = 0; c < kColumnSamples; c += hn::Lanes(f)) body(c);
+}
+
+HWY_INLINE VF dot(VF ax, VF ay, VF bx, VF by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
+
+// Distance to a line segment, its square, or to the line where the segment passes all samples.
+HWY_INLINE VF across(const LocalLine& line, VF qx, VF qy) {
+    const F f;
+    return hn::Add(hn::Set(f, line.n0), dot(hn::Set(f, line.nx), hn::Set(f, line.ny), qx, qy));
+}
+HWY_INLINE VF along(const LocalLine& line, VF qx, VF qy) {
+    const F f;
+    return dot(hn::Set(f, line.ux), hn::Set(f, line.uy), qx, qy);
+}
+HWY_INLINE VF beyond(VF s, float lo, float hi) {
+    const F f;
+    return hn::Max(hn::Max(hn::Sub(hn::Set(f, lo), s), hn::Sub(s, hn::Set(f, hi))), hn::Zero(f));
+}
+HWY_INLINE VF distance(const LocalLine& line, VF qx, VF qy) {
+    const VF n = across(line, qx, qy);
+    if (line.spans) return hn::Abs(n);
+    const VF e = beyond(along(line, qx, qy), line.lo, line.hi);
+    return hn::Sqrt(dot(n, e, n, e));
+}
+
+HWY_INLINE VF distance(const LocalArc& arc, VF qx, VF qy) {
+    const F f;
+    VF on_circle;
+    if (arc.near_centre) {
+        const VF vx = hn::Add(qx, hn::Set(f, arc.vx));
+        const VF vy = hn::Add(qy, hn::Set(f, arc.vy));
+        on_circle = hn::Abs(hn::Sub(hn::Sqrt(dot(vx, vy, vx, vy)), hn::Set(f, arc.radius)));
+    } else {
+        const VF eq = dot(hn::Set(f, arc.ex), hn::Set(f, arc.ey), qx, qy);
+        const VF k = hn::Set(f, arc.k);
+        const VF t = hn::Add(hn::Add(eq, eq), hn::Mul(k, dot(qx, qy, qx, qy)));
+        const VF one = hn::Set(f, 1.0f);
+        const VF root = hn::Sqrt(hn::Add(one, hn::Mul(k, t)));
+        on_circle = hn::Abs(hn::Add(hn::Set(f, arc.rho0), hn::Div(t, hn::Add(one, root))));
+    }
+    if (arc.full) return on_circle;
+    const VF past_start = hn::Add(hn::Set(f, arc.s0), dot(hn::Set(f, arc.sx), hn::Set(f, arc.sy), qx, qy));
+    const VF before_end = hn::Add(hn::Set(f, arc.t0), dot(hn::Set(f, arc.tx), hn::Set(f, arc.ty), qx, qy));
+    const VF wedge = arc.wide ? hn::Max(past_start, before_end) : hn::Min(past_start, before_end);
+    const VF ax = hn::Sub(qx, hn::Set(f, arc.start_x));
+    const VF ay = hn::Sub(qy, hn::Set(f, arc.start_y));
+    const VF bx = hn::Sub(qx, hn::Set(f, arc.end_x));
+    const VF by = hn::Sub(qy, hn::Set(f, arc.end_y));
+    const VF to_ends = hn::Sqrt(hn::Min(dot(ax, ay, ax, ay), dot(bx, by, bx, by)));
+    return hn::IfThenElse(hn::Ge(wedge, hn::Zero(f)), on_circle, to_ends);
+}
+
+template <typename Path>
+HWY_INLINE void minimumOf(const ColumnGrid& grid, std::span<const Path> paths, PlanField& d, const std::uint32_t* ids,
+                          PlanOwners* owners) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        VF least = hn::Load(f, d.v + c);
+        if (owners == nullptr) {
+            for (const Path& path : paths)
+                least = hn::Min(least, hn::Sub(distance(path, qx, qy), hn::Set(f, path.half_flat)));
+        } else {
+            const U u;
+            hn::Vec<U> owner = hn::Load(u, owners->v + c);
+            for (std::size_t n = 0; n < paths.size(); ++n) {
+                const VF own = hn::Sub(distance(paths[n], qx, qy), hn::Set(f, paths[n].half_flat));
+                const auto nearer = hn::Lt(own, least);
+                least = hn::IfThenElse(nearer, own, least);
+                owner = hn::IfThenElse(hn::RebindMask(u, nearer), hn::Set(u, ids[n]), owner);
+            }
+            hn::Store(owner, u, owners->v + c);
+        }
+        hn::Store(least, f, d.v + c);
+    });
+}
+
+void MinimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, PlanField& d, const std::uint32_t* ids,
+                    PlanOwners* owners) {
+    minimumOf(grid, lines, d, ids, owners);
+}
+
+void MinimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
+                   PlanOwners* owners) {
+    minimumOf(grid, arcs, d, ids, owners);
+}
+
+float SquaredSides(const PlanField& d, PlanField& out) {
+    const F f;
+    VF least = hn::Set(f, 3e38f);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF side = hn::Max(hn::Load(f, d.v + c), hn::Zero(f));
+        const VF squared = hn::Mul(side, side);
+        hn::Store(squared, f, out.v + c);
+        least = hn::Min(least, squared);
+    });
+    return hn::GetLane(hn::MinOfLanes(f, least));
+}
+
+float MaximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
+    const F f;
+    VF least = hn::Set(f, 3e38f);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF larger = hn::Max(hn::Load(f, a.v + c), hn::Load(f, b.v + c));
+        hn::Store(larger, f, out.v + c);
+        least = hn::Min(least, larger);
+    });
+    return hn::GetLane(hn::MinOfLanes(f, least));
+}
+
+void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
+    const F f;
+    const PlaneTerm* const terms = leaf.terms.data();
+    std::uint32_t group = 0;
+    std::uint32_t weld = 0;
+    for (std::size_t z = 0; z < leaf.planes; ++z) {
+        const std::uint32_t group_end = leaf.group_end[z];
+        const std::uint32_t weld_end = leaf.weld_end[z];
+        forEachVector([&](std::size_t c) HWY_ATTR {
+            VF value = hn::Set(f, background);
+            for (std::uint32_t g = group; g != group_end; ++g) {
+                const PlaneTerms& of = leaf.groups[g];
+                VF least = hn::Add(hn::Load(f, terms[of.first].sides2->v + c), hn::Set(f, terms[of.first].dz2));
+                for (std::uint32_t t = of.first + 1; t != of.last; ++t)
+                    least = hn::Min(least, hn::Add(hn::Load(f, terms[t].sides2->v + c), hn::Set(f, terms[t].dz2)));
+                value = hn::Min(value, hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius)));
+            }
+            for (std::uint32_t w = weld; w != weld_end; ++w) {
+                // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
+                const VF body = hn::Max(hn::Load(f, leaf.welds[w].d->v + c), hn::Set(f, leaf.welds[w].bound));
+                value = hn::IfThenElse(hn::Lt(body, hn::Zero(f)), hn::Min(value, body), value);
+            }
+            hn::Store(value, f, phi.plane[z].v + c);
+        });
+        group = group_end;
+        weld = weld_end;
+    }
+}
+
+void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+                PlanField& centre_z) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        const VF side = hn::Max(hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat)), hn::Zero(f));
+        hn::Store(hn::Mul(side, side), f, sides2.v + c);
+        const VF s = hn::Min(hn::Max(along(line, qx, qy), hn::Set(f, line.lo)), hn::Set(f, line.hi));
+        hn::Store(hn::Add(hn::Set(f, z0), hn::Mul(s, hn::Set(f, climb_per_unit))), f, centre_z.v + c);
+    });
+}
+
+void ExpandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, centre_z.v + c)), hn::Set(f, term.cosine));
+        const VF below = hn::Min(hn::Add(up, hn::Set(f, term.reach)), hn::Zero(f));
+        const VF height = hn::IfThenElse(hn::Lt(up, hn::Zero(f)), below, up);
+        const VF value =
+            hn::Sub(hn::Sqrt(hn::Add(hn::Load(f, sides2.v + c), hn::Mul(height, height))), hn::Set(f, term.radius));
+        hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
+    });
+}
+
+void ExpandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {
+    const F f;
+    const VF b0 = hn::Set(f, rod.b0 + rod.bz * z);
+    const VF s0 = hn::Set(f, rod.uz * z);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        const VF a = hn::Add(hn::Set(f, rod.n0), dot(hn::Set(f, rod.nx), hn::Set(f, rod.ny), qx, qy));
+        const VF b = hn::Add(b0, dot(hn::Set(f, rod.bx), hn::Set(f, rod.by), qx, qy));
+        const VF s = hn::Add(s0, dot(hn::Set(f, rod.ux), hn::Set(f, rod.uy), qx, qy));
+        const VF e = beyond(s, rod.lo, rod.hi);
+        const VF value = hn::Sub(hn::Sqrt(hn::Add(dot(a, b, a, b), hn::Mul(e, e))), hn::Set(f, rod.radius));
+        hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
+    });
+}
+
+LeafContent ClampLeaf(LeafPlanes& phi, std::size_t planes, float background) {
+    const F f;
+    const VF low = hn::Set(f, -background);
+    const VF high = hn::Set(f, background);
+    VF least = high;
+    VF most = low;
+    for (std::size_t z = 0; z < planes; ++z) {
+        PlanField& plane = phi.plane[z];
+        forEachVector([&](std::size_t c) HWY_ATTR {
+            const VF value = hn::Min(hn::Max(hn::Load(f, plane.v + c), low), high);
+            least = hn::Min(least, value);
+            most = hn::Max(most, value);
+            hn::Store(value, f, plane.v + c);
+        });
+    }
+    if (hn::GetLane(hn::MinOfLanes(f, least)) >= background) return LeafContent::outside;
+    if (hn::GetLane(hn::MaxOfLanes(f, most)) <= -background) return LeafContent::inside;
+    return LeafContent::surface;
+}
+
+// Packs test(n), a vector mask for values n and up, into 8 words.
+template <typename Test>
+HWY_INLINE void maskOf(const Test& test, std::uint64_t* HWY_RESTRICT mask) {
+    const F f;
+    const std::size_t lanes = hn::Lanes(f);
+    for (std::size_t word = 0; word < kColumnSamples * kLeafPlanes / 64; ++word) {
+        std::uint64_t bits = 0;
+        for (std::size_t n = 0; n < 64; n += lanes) {
+            // Stores whole bytes, and no more than two for 16 lanes.
+            std::uint8_t some[8] = {};
+            hn::StoreMaskBits(f, test(word * 64 + n), some);
+            bits |= static_cast<std::uint64_t>(some[0] | some[1] << 8) << n;
+        }
+        mask[word] = bits;
+    }
+}
+
+void StoreLeaf(const LeafPlanes& phi, float* HWY_RESTRICT values) {
+#if HWY_TARGET == HWY_SCALAR
+    for (std::size_t z = 0; z < kLeafPlanes; ++z)
+        for (std::size_t c = 0; c < kColumnSamples; ++c) values[c * kLeafPlanes + z] = phi.plane[z].v[c];
+#else
+    // 4 x 4 blocks: four planes of four samples become four samples of four planes.
+    const hn::FixedTag<float, 4> f4;
+    for (std::size_t z = 0; z < kLeafPlanes; z += 4)
+        for (std::size_t c = 0; c < kColumnSamples; c += 4) {
+            const auto r0 = hn::Load(f4, phi.plane[z].v + c);
+            const auto r1 = hn::Load(f4, phi.plane[z + 1].v + c);
+            const auto r2 = hn::Load(f4, phi.plane[z + 2].v + c);
+            const auto r3 = hn::Load(f4, phi.plane[z + 3].v + c);
+            const auto a = hn::InterleaveLower(f4, r0, r2);
+            const auto b = hn::InterleaveUpper(f4, r0, r2);
+            const auto d = hn::InterleaveLower(f4, r1, r3);
+            const auto e = hn::InterleaveUpper(f4, r1, r3);
+            float* out = values + c * kLeafPlanes + z;
+            hn::StoreU(hn::InterleaveLower(f4, a, d), f4, out);
+            hn::StoreU(hn::InterleaveUpper(f4, a, d), f4, out + kLeafPlanes);
+            hn::StoreU(hn::InterleaveLower(f4, b, e), f4, out + 2 * kLeafPlanes);
+            hn::StoreU(hn::InterleaveUpper(f4, b, e), f4, out + 3 * kLeafPlanes);
+        }
+#endif
+}
+
+void MaskWithin(const float* HWY_RESTRICT values, float background, std::uint64_t* HWY_RESTRICT mask) {
+    const F f;
+    const VF high = hn::Set(f, background);
+    maskOf([&](std::size_t n) HWY_ATTR { return hn::Lt(hn::Abs(hn::LoadU(f, values + n)), high); }, mask);
+}
+
+void MaskFrom(const float* HWY_RESTRICT values, float least, std::uint64_t* HWY_RESTRICT mask) {
+    const F f;
+    maskOf([&](std::size_t n) HWY_ATTR { return hn::Ge(hn::LoadU(f, values + n), hn::Set(f, least)); }, mask);
+}
+
+const char* KernelTarget() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace stratum::voxelize
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stratum::voxelize {
+
+HWY_EXPORT(MinimumOfLines);
+HWY_EXPORT(MinimumOfArcs);
+HWY_EXPORT(SquaredSides);
+HWY_EXPORT(MaximumOf);
+HWY_EXPORT(ExpandLayers);
+HWY_EXPORT(SlopedLine);
+HWY_EXPORT(ExpandSloped);
+HWY_EXPORT(ExpandRod);
+HWY_EXPORT(ClampLeaf);
+HWY_EXPORT(StoreLeaf);
+HWY_EXPORT(MaskWithin);
+HWY_EXPORT(MaskFrom);
+HWY_EXPORT(KernelTarget);
+
+ColumnGrid::ColumnGrid(float voxel) {
+    for (std::size_t c = 0; c < kColumnSamples; ++c) {
+        const std::size_t x = c / 8;
+        const std::size_t y = c % 8;
+        qx.v[c] = (static_cast<float>(x) - 3.5f) * voxel;
+        qy.v[c] = (static_cast<float>(y) - 3.5f) * voxel;
+    }
+}
+
+void minimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, PlanField& d, const std::uint32_t* ids,
+                    PlanOwners* owners) {
+    HWY_DYNAMIC_DISPATCH(MinimumOfLines)(grid, lines, d, ids, owners);
+}
+void minimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
+                   PlanOwners* owners) {
+    HWY_DYNAMIC_DISPATCH(MinimumOfArcs)(grid, arcs, d, ids, owners);
+}
+float squaredSides(const PlanField& d, PlanField& out) { return HWY_DYNAMIC_DISPATCH(SquaredSides)(d, out); }
+float maximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
+    return HWY_DYNAMIC_DISPATCH(MaximumOf)(a, b, out);
+}
+void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandLayers)(leaf, background, phi);
+}
+void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+                PlanField& centre_z) {
+    HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, centre_z);
+}
+void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandSloped)(sides2, centre_z, term, z, phi);
+}
+void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandRod)(grid, rod, z, phi);
+}
+LeafContent clampLeaf(LeafPlanes& phi, std::size_t planes, float background) {
+    return HWY_DYNAMIC_DISPATCH(ClampLeaf)(phi, planes, background);
+}
+void storeLeaf(const LeafPlanes& phi, float* values) { HWY_DYNAMIC_DISPATCH(StoreLeaf)(phi, values); }
+void maskWithin(const float* values, float background, std::uint64_t* mask) {
+    HWY_DYNAMIC_DISPATCH(MaskWithin)(values, background, mask);
+}
+void maskFrom(const float* values, float least, std::uint64_t* mask) {
+    HWY_DYNAMIC_DISPATCH(MaskFrom)(values, least, mask);
+}
+const char* kernelTarget() { return HWY_DYNAMIC_DISPATCH(KernelTarget)(); }
+
+}  // namespace stratum::voxelize
+#endif  // HWY_ONCE

@@ -1,0 +1,48 @@
+// LeafColumn's answer to whose surface is nearest.
+#include "voxelize/beads/bead_field.h"
+#include "voxelize/leaf/leaf_column.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::voxelize {
+
+void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
+    float nearest[Leaf::SIZE];
+    std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::max());
+    std::fill(ranks.begin(), ranks.end(), std::numeric_limits<std::uint32_t>::max());
+    const int k0 = leaf_k_ * kLeafDim;
+    const auto claim = [&](std::size_t n, float distance, std::uint32_t rank) {
+        if (distance < nearest[n] || (distance == nearest[n] && rank < ranks[n])) {
+            nearest[n] = distance;
+            ranks[n] = rank;
+        }
+    };
+    for (const std::uint32_t slot : window_) {
+        const PlanLayer& plan = slots_[slot];
+        const auto radius = static_cast<float>(plan.radius * scale_);
+        for (int z = 0; z < kLeafDim; ++z) {
+            const double dz = sampleZ(k0 + z) - plan.centre_z;
+            if (std::abs(dz) >= plan.radius + band_) continue;
+            const auto world = static_cast<float>(dz * scale_);
+            for (std::size_t c = 0; c < kColumnSamples; ++c)
+                claim(c * kLeafPlanes + static_cast<std::size_t>(z),
+                      std::sqrt(plan.sides2.v[c] + world * world) - radius, plan.owners.v[c]);
+        }
+    }
+    const double z_min = sampleZ(k0);
+    const double z_max = sampleZ(k0 + kLeafDim - 1);
+    for (const DirectBead& direct : direct_) {
+        if (direct.z_max < z_min || direct.z_min > z_max) continue;
+        const BeadField field(toolpath_, toolpath_.beads[stack_.beads[direct.rank]]);
+        for (std::size_t n = 0; n < Leaf::SIZE; ++n) {
+            const double x = (i_ + static_cast<int>(n / 64)) * lattice_.voxel_size;
+            const double y = (j_ + static_cast<int>(n / 8 % 8)) * lattice_.voxel_size;
+            const double z = sampleZ(k0 + static_cast<int>(n % 8));
+            claim(n, static_cast<float>(field.distance(x, y, z) * scale_), direct.rank);
+        }
+    }
+}
+
+}  // namespace stratum::voxelize

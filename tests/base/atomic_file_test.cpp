@@ -1,0 +1,199 @@
+#include "base/atomic_file.h"
+
+#include "base/error.h"
+#include "scratch_folder.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+namespace stratum {
+namespace {
+
+std::string slurp(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+std::size_t filesIn(const std::filesystem::path& folder) {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+class EachMaking : public testing::TestWithParam<AtomicFile::Making> {};
+INSTANTIATE_TEST_SUITE_P(AtomicFile, EachMaking,
+                         testing::Values(AtomicFile::Making::unnamed, AtomicFile::Making::named));
+
+TEST_P(EachMaking, CommitReplacesAndLeavesNothingBeside) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    {
+        AtomicFile file(folder / "out", GetParam());
+        std::ofstream(file.temporary()) << "new";
+        EXPECT_EQ(slurp(folder / "out"), "old");
+        file.commit();
+    }
+    EXPECT_EQ(slurp(folder / "out"), "new");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST_P(EachMaking, ModesAreThoseOfAnyNewFile) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "plain") << "x";
+    AtomicFile file(folder / "out", GetParam());
+    file.commit();
+    EXPECT_EQ(std::filesystem::status(folder / "out").permissions(),
+              std::filesystem::status(folder / "plain").permissions());
+}
+
+TEST_P(EachMaking, TwoAtOnceTheLastOneStays) {
+    const test::ScratchFolder folder;
+    AtomicFile first(folder / "out", GetParam());
+    std::ofstream(first.temporary()) << "first";
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        AtomicFile second(folder / "out", GetParam());
+        std::ofstream(second.temporary()) << "second";
+        second.commit();
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(slurp(folder / "out"), "second");
+    first.commit();
+    EXPECT_EQ(slurp(folder / "out"), "first");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST_P(EachMaking, AKilledRunLeavesNothingThatTheNextOneKeeps) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        const AtomicFile file(folder / "out", GetParam());
+        std::ofstream(file.temporary()) << "half";
+        ::raise(SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(slurp(folder / "out"), "old");
+    if (GetParam() == AtomicFile::Making::named) {
+        EXPECT_EQ(filesIn(folder.path()), 2U);
+    }
+    // Of its own file and others', the next run removes what nobody holds.
+    std::ofstream(folder / ".other.123.part") << "of another output";
+    std::ofstream(folder / ".out.mine.part") << "of somebody else";
+    { const AtomicFile next(folder / "out", GetParam()); }
+    EXPECT_EQ(filesIn(folder.path()), 3U);
+    EXPECT_EQ(slurp(folder / "out"), "old");
+}
+
+TEST(AtomicFile, WhatARunHoldsStays) {
+    const test::ScratchFolder folder;
+    const int held = ::open((folder / ".out.1.part").c_str(), O_RDWR | O_CREAT, 0666);
+    ASSERT_EQ(::flock(held, LOCK_EX), 0);
+    std::ofstream(folder / ".out.2.part") << "left";
+    { const AtomicFile file(folder / "out"); }
+    EXPECT_TRUE(std::filesystem::exists(folder / ".out.1.part"));
+    EXPECT_FALSE(std::filesystem::exists(folder / ".out.2.part"));
+    ::close(held);
+}
+
+TEST_P(EachMaking, WithoutCommitTheOldFileStays) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    {
+        const AtomicFile file(folder / "out", GetParam());
+        std::ofstream(file.temporary()) << "half";
+    }
+    EXPECT_EQ(slurp(folder / "out"), "old");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST_P(EachMaking, WritersFailInTheDestinationsName) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "out") << "old";
+    const std::string out = (folder / "out").string();
+    try {
+        AtomicFile(out, GetParam()).write([](const std::filesystem::path& to) {
+            throw OutputError(to.string() + ": full; mend " + to.string());
+        });
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const OutputError& error) {
+        EXPECT_EQ(error.what(), out + ": full; mend " + out);
+    }
+    EXPECT_EQ(slurp(folder / "out"), "old");
+    AtomicFile(out, GetParam()).write([](const std::filesystem::path& to) { std::ofstream(to) << "new"; });
+    EXPECT_EQ(slurp(folder / "out"), "new");
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST(AtomicFile, RefusesBeforeTheWork) {
+    EXPECT_THROW(AtomicFile("/nonexistent/folder/out.vdb"), OutputError);
+    const test::ScratchFolder folder;
+    EXPECT_THROW(AtomicFile{folder.path()}, OutputError);
+}
+
+// What stands there and is no file stays what it is, and gets the bytes.
+TEST(AtomicFile, PoursIntoStreams) {
+    const test::ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    {
+        AtomicFile file(folder / "pipe");
+        std::ofstream(file.temporary()) << "whole";
+        std::array<char, 16> buffer{};
+        EXPECT_LE(::read(reader, buffer.data(), buffer.size()), 0) << "nothing before the commit";
+        file.commit();
+        EXPECT_EQ(::read(reader, buffer.data(), buffer.size()), 5);
+        EXPECT_STREQ(buffer.data(), "whole");
+    }
+    ::close(reader);
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe"));
+    EXPECT_EQ(filesIn(folder.path()), 1U);
+}
+
+TEST(AtomicFile, AFullDeviceIsAnError) {
+    AtomicFile file("/dev/full");
+    std::ofstream(file.temporary()) << "much";
+    EXPECT_THROW(file.commit(), OutputError);
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, ADashIsStandardOutput) {
+    EXPECT_TRUE(isStandardOutput("-"));
+    EXPECT_TRUE(isStandardOutput("-.exr"));
+    EXPECT_FALSE(isStandardOutput("./-"));
+    EXPECT_FALSE(isStandardOutput("-.d/a"));
+    EXPECT_FALSE(isStandardOutput("a-"));
+    EXPECT_FALSE(isStandardOutput(""));
+}
+
+TEST_P(EachMaking, ASignalRemovesTheTemporary) {
+    const test::ScratchFolder folder;
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        AtomicFile::removeOnSignals();
+        const AtomicFile file(folder / "out", GetParam());
+        ::raise(SIGTERM);
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+    EXPECT_EQ(filesIn(folder.path()), 0U);
+}
+
+}  // namespace
+}  // namespace stratum

@@ -1,0 +1,186 @@
+#include "gcode/machine/motion_recorder.h"
+
+#include "program.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace stratum::gcode {
+namespace {
+
+class Log : public MotionSink {
+public:
+    void limits(const MachineLimits& limits) override { last = limits; }
+    void move(const Move& move) override { moves.push_back(move); }
+    void wait(double seconds) override { waits.push_back(seconds); }
+
+    MachineLimits last;
+    std::vector<Move> moves;
+    std::vector<double> waits;
+    Toolpath toolpath;
+};
+
+void record(std::string_view program, Log& log) {
+    ReadOptions options;
+    options.motion = &log;
+    log.toolpath = readProgram(program, options);
+}
+
+TEST(MotionRecorder, TellsEverythingThatMoves) {
+    Log log;
+    record(
+        "M83\nG0 X10 F6000\nG1 X20 E1 F1200\nG1 E-2 F2400\nG1 Z.4\nG1 E2\nG2 X30 I5 E1\nG2 X20 I-5\n"
+        "M221 S50\nG1 Y5 E1\nG1 Y5 Z.4\n",
+        log);
+    ASSERT_EQ(log.moves.size(), 8U);
+    EXPECT_EQ(log.moves[0].delta[0], 10);
+    EXPECT_EQ(log.moves[0].speed, 100);
+    EXPECT_EQ(log.moves[0].bead, Move::kNoBead);
+    EXPECT_EQ(log.moves[1].bead, 0U);
+    EXPECT_EQ(log.moves[1].delta[3], 1);
+    EXPECT_EQ(log.moves[1].line, 3U);
+    EXPECT_EQ(log.moves[2].delta[3], -2);
+    EXPECT_EQ(log.moves[3].delta[2], 0.4);
+    EXPECT_EQ(log.moves[5].bead, 1U);
+    EXPECT_NE(log.moves[5].sweep, 0);
+    EXPECT_EQ(log.moves[6].bead, Move::kNoBead);  // an arc without E
+    EXPECT_NE(log.moves[6].sweep, 0);
+    EXPECT_EQ(log.moves[7].delta[3], 0.5);
+}
+
+TEST(MotionRecorder, TakesLimits) {
+    Log log;
+    record(
+        "M83\nM201 X100 Y200 Z300 E400\nM203 X10 Y20 Z30 E40\nM204 P500 R600 T700\nM205 X1 Y2 Z3 E4\nM205 S5 T6\n"
+        "G1 X1 E1\n",
+        log);
+    EXPECT_EQ(log.last.acceleration, (std::array<double, 4>{100, 200, 300, 400}));
+    EXPECT_EQ(log.last.speed, (std::array<double, 4>{10, 20, 30, 40}));
+    EXPECT_EQ(log.last.jerk, (std::array<double, 4>{1, 2, 3, 4}));
+    EXPECT_EQ(log.last.printing, 500);
+    EXPECT_EQ(log.last.retracting, 600);
+    EXPECT_EQ(log.last.travel, 700);
+    EXPECT_EQ(log.last.least_printing_speed, 5);
+    EXPECT_EQ(log.last.least_travel_speed, 6);
+    record("M83\nM566 X600 Y300\nM204 S800\nG1 X1 E1\n", log);
+    EXPECT_EQ(log.last.jerk[0], 10);
+    EXPECT_EQ(log.last.jerk[1], 5);
+    EXPECT_EQ(log.last.printing, 800);
+    EXPECT_EQ(log.last.travel, 800);
+    record("M83\nM205 J0.02\nG1 X1 E1\n", log);
+    EXPECT_EQ(log.last.junction_deviation, 0.02);
+    EXPECT_EQ(log.last.rule, CornerRule::junction_deviation);
+    record("M83\nSET_VELOCITY_LIMIT VELOCITY=300 ACCEL=4000 ACCEL_TO_DECEL=1000 SQUARE_CORNER_VELOCITY=8\nG1 X1 E1\n",
+           log);
+    EXPECT_EQ(log.last.path_speed, 300);
+    EXPECT_EQ(log.last.travel, 4000);
+    EXPECT_EQ(log.last.cruise_ratio, 0.75);
+    EXPECT_EQ(log.last.corner_velocity, 8);
+    EXPECT_EQ(log.last.rule, CornerRule::corner_velocity);
+}
+
+TEST(MotionRecorder, RefusesLimitsThatNoMachineHas) {
+    Log log;
+    record(
+        "M83\nM201 X0 Y-5 Z1000000000000\nM203 X0\nM204\nM204 P0 T-1\nM205 X-1\nM205 J-1\nG4 S-3\nG4 S1e9\n"
+        "SET_VELOCITY_LIMIT ACCEL=0\nG1 X1 E1 F0\nM566 X-60\nG1 X2 E1 F0.0001\n",
+        log);
+    const MachineLimits usual;
+    EXPECT_EQ(log.last.acceleration[0], usual.acceleration[0]);
+    EXPECT_EQ(log.last.acceleration[1], usual.acceleration[1]);
+    EXPECT_EQ(log.last.acceleration[2], kStrongestAxis);
+    EXPECT_EQ(log.last.speed, usual.speed);
+    EXPECT_EQ(log.last.printing, usual.printing);
+    EXPECT_EQ(log.last.travel, usual.travel);
+    EXPECT_EQ(log.last.jerk, usual.jerk);
+    EXPECT_EQ(log.last.junction_deviation, usual.junction_deviation);
+    const auto lineOf = [&](std::string_view part) {
+        for (const Warning& warning : log.toolpath.warnings)
+            if (warning.text.find(part) != std::string::npos) return warning.first_line;
+        return 0U;
+    };
+    EXPECT_EQ(lineOf("M201 X0"), 2U);
+    EXPECT_EQ(lineOf("M201 Y-5"), 2U);
+    EXPECT_EQ(lineOf("M201 Z1e+12 is more"), 2U);
+    EXPECT_EQ(lineOf("M203 X0"), 3U);
+    EXPECT_EQ(lineOf("M204 without an acceleration"), 4U);
+    EXPECT_EQ(lineOf("M204 P0"), 5U);
+    EXPECT_EQ(lineOf("M205 X-1"), 6U);
+    EXPECT_EQ(lineOf("M205 J-1"), 7U);
+    EXPECT_EQ(lineOf("G4 with a time below zero"), 8U);
+    EXPECT_EQ(lineOf("ACCEL=0"), 10U);
+    EXPECT_EQ(lineOf("M566 X-1"), 12U);
+    for (const Move& move : log.moves) EXPECT_GE(move.speed, 0.01);
+}
+
+TEST(MotionRecorder, FirmwareRetractsByWhatTheFileSays) {
+    Log log;
+    record("M83\nG1 X1 E1 F600\nG10\nG11\n", log);
+    EXPECT_EQ(log.moves.size(), 1U);  // a length that nobody told
+    log.moves.clear();
+    record("M83\nM207 S2 F1800\nG1 X1 E1 F600\nG10\nG10\nG1 X5\nG11\nG11\nG10 P1 X3\n", log);
+    ASSERT_EQ(log.moves.size(), 4U);
+    EXPECT_EQ(log.moves[1].delta[3], -2);
+    EXPECT_EQ(log.moves[1].speed, 30);
+    EXPECT_EQ(log.moves[3].delta[3], 2);
+}
+
+TEST(MotionRecorder, VolumesBecomeFilament) {
+    Log log;
+    record("M83\nM200 D1.75\nG1 X10 E2.4052819 F600\n", log);
+    EXPECT_NEAR(log.moves.back().delta[3], 1, 1e-7);
+}
+
+TEST(MotionRecorder, ChangesOfToolTakeWhatTheSettingsSay) {
+    Log log;
+    record("M83\nT0\nG1 X1 E1 F600\nT1\nG1 X2 E1\n; filament_load_time = 10,20\n; filament_unload_time = 3,4\n", log);
+    ASSERT_EQ(log.waits.size(), 1U);
+    EXPECT_EQ(log.waits[0], 23);
+}
+
+TEST(MachineSettings, AreReadFromTrailers) {
+    const MachineSettings prusa = readMachineSettings(
+        "; gcode_flavor = marlin2\n; machine_max_acceleration_x = 2500,1200\n; machine_max_feedrate_z = 12\n"
+        "; machine_max_jerk_e = 3\n; machine_max_acceleration_extruding = 2000\n; machine_max_acceleration_travel = "
+        "2600\n",
+        CornerRule::automatic);
+    EXPECT_EQ(prusa.limits.acceleration[0], 2500);
+    EXPECT_EQ(prusa.limits.speed[2], 12);
+    EXPECT_EQ(prusa.limits.jerk[3], 3);
+    EXPECT_EQ(prusa.limits.printing, 2000);
+    EXPECT_EQ(prusa.limits.travel, 2600);
+    EXPECT_EQ(prusa.most_printing, 2000);
+    EXPECT_EQ(prusa.limits.rule, CornerRule::slicer_jerk);
+    EXPECT_EQ(readMachineSettings("; gcode_flavor = marlin\n; machine_max_acceleration_extruding = 900\n",
+                                  CornerRule::automatic)
+                  .limits.travel,
+              900);
+    EXPECT_EQ(readMachineSettings("; machine_max_speed_x = 350,160\n", CornerRule::automatic).limits.speed[0], 350);
+    EXPECT_EQ(readMachineSettings("; machine_max_junction_deviation = 0.02\n", CornerRule::automatic).limits.rule,
+              CornerRule::junction_deviation);
+    EXPECT_EQ(readMachineSettings(";Generated with Cura_SteamEngine 4.13.0\n", CornerRule::automatic).limits.rule,
+              CornerRule::plan_jerk);
+    EXPECT_EQ(readMachineSettings("; gcode_flavor = klipper\n", CornerRule::automatic).limits.rule,
+              CornerRule::corner_velocity);
+    EXPECT_EQ(readMachineSettings("; gcode_flavor = klipper\n", CornerRule::jerk).limits.rule, CornerRule::jerk);
+}
+
+TEST(MachineSettings, NonsenseIsNoLimit) {
+    const MachineLimits usual;
+    const MachineSettings read = readMachineSettings(
+        "; machine_max_acceleration_x = 0\n; machine_max_feedrate_y = -3\n; machine_max_jerk_z = nan\n"
+        "; machine_max_acceleration_extruding = 99999999999\n; filament_load_time = -1\n",
+        CornerRule::automatic);
+    EXPECT_EQ(read.limits.acceleration, usual.acceleration);
+    EXPECT_EQ(read.limits.speed, usual.speed);
+    EXPECT_EQ(read.limits.jerk, usual.jerk);
+    EXPECT_EQ(read.limits.printing, usual.printing);
+    EXPECT_TRUE(read.load.empty());
+}
+
+}  // namespace
+}  // namespace stratum::gcode

@@ -1,0 +1,49 @@
+#include "gcode/slicer/footer.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace stratum::gcode {
+namespace {
+
+using List = std::vector<double>;
+
+Footer footerOf(std::string_view comment) {
+    Footer footer;
+    readFooter(comment, footer);
+    return footer;
+}
+
+TEST(Footer, OfSeveralSlicers) {
+    EXPECT_EQ(footerOf("filament used = 290.4mm (0.7cm3)").length, (List{290.4}));
+    EXPECT_EQ(footerOf("filament used [mm] = 1.5, 2").length, (List{1.5, 2}));
+    EXPECT_EQ(footerOf("Filament used: 0.5m, 0m").length, (List{500, 0}));
+    EXPECT_EQ(footerOf("Filament length: 2706.2 mm (2.71 m)").length, (List{2706.2}));
+    EXPECT_EQ(footerOf("Material#2 Used: 3.5").length, (List{0, 3.5}));
+    EXPECT_EQ(footerOf("--- filament used: 225.03 mm ---").length, (List{225.03}));
+}
+
+TEST(Footer, OfHeaders) {
+    EXPECT_EQ(footerOf("total filament length [mm] : 325.49").length, (List{325.49}));
+    EXPECT_EQ(footerOf("total filament length [mm] : 1.5,2").length, (List{3.5}));  // of the tools in use
+    EXPECT_EQ(footerOf("filament_length_m = 0.2904").length, (List{290.4}));
+    EXPECT_EQ(footerOf("Ext 2 =    53.49 mm  (0.378 cm^3)").length, (List{0, 53.49}));
+}
+
+TEST(Footer, Volumes) {
+    EXPECT_EQ(footerOf("Filament used: 772.133mm3, 674.215mm3").volume, (List{772.133, 674.215}));
+    EXPECT_TRUE(footerOf("Filament used: 772.133mm3, 674.215mm3").length.empty());
+    EXPECT_EQ(footerOf("EXTRUDER_TRAIN.1.MATERIAL.VOLUME_USED:12034").volume, (List{0, 12034}));
+}
+
+TEST(Footer, NonsenseIsNotTaken) {
+    for (const auto* comment :
+         {"filament used [mm] = much", "Filament used: -1m", "Material#0 Used: 4", "Material# Used: 4",
+          "EXTRUDER_TRAIN.9999.MATERIAL.VOLUME_USED:1", "EXTRUDER_TRAIN.0.NOZZLE.DIAMETER:0.4", "Ext = 5 mm",
+          "Ext 0 = 5 mm", "total filament length [mm] : ?", "Filament used:", "filament_diameter = 1.75"})
+        EXPECT_TRUE(footerOf(comment).empty()) << comment;
+}
+
+}  // namespace
+}  // namespace stratum::gcode

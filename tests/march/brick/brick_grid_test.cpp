@@ -1,0 +1,141 @@
+#include "march/brick/brick_grid.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "march/brick/brick_walk.h"
+#include "spheres.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+namespace stratum::march {
+namespace {
+
+TEST(Mask64, EmptyEdgeIsTheLargestAlignedEmptyBlock) {
+    EXPECT_EQ(Mask64::emptyEdge(0, 1, 2, 3), 4);
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = 0; z < 4; ++z) {
+                const std::uint64_t one = std::uint64_t{1} << Mask64::bit(x, y, z);
+                EXPECT_EQ(Mask64::emptyEdge(one, x, y, z), 0);
+                EXPECT_EQ(Mask64::emptyEdge(~one, x, y, z), 1);
+                EXPECT_EQ(Mask64::emptyEdge(one, x ^ 1, y, z), 1);  // the same group
+                EXPECT_EQ(Mask64::emptyEdge(one, x ^ 2, y, z), 2);  // another group
+            }
+}
+
+// Every cell of the grid: is it marked if and only if its corners are not of one sign, and are they its samples?
+void expectAllCells(const openvdb::FloatGrid& grid, const BrickGrid& bricks) {
+    const auto accessor = grid.getConstAccessor();
+    const auto size = bricks.size();
+    const double tolerance = bricks.values() == BrickValues::Float32 ? 0.0 : 0.5 * bricks.unit() * (1 + 1e-4);
+    std::size_t surface_cells = 0;
+    for (int x = 0; x < size[0]; ++x)
+        for (int y = 0; y < size[1]; ++y)
+            for (int z = 0; z < size[2]; ++z) {
+                const openvdb::Coord at = bricks.origin().offsetBy(x, y, z);
+                bool mixed = false;
+                std::array<double, 8> corner{};
+                for (int c = 0; c < 8; ++c) {
+                    corner[static_cast<std::size_t>(c)] =
+                        static_cast<double>(accessor.getValue(at.offsetBy(c >> 2, c >> 1 & 1, c & 1)));
+                    mixed = mixed || (corner[static_cast<std::size_t>(c)] < 0) != (corner[0] < 0);
+                }
+                const Block block = findBlock(bricks, {x, y, z});
+                ASSERT_EQ(block.surface, mixed) << at;
+                surface_cells += mixed ? 1 : 0;
+                if (!mixed) continue;
+                const Corners stored = cornersOf(bricks, block.brick, {x, y, z});
+                for (std::size_t c = 0; c < 8; ++c) {
+                    ASSERT_EQ(stored[c] < 0, corner[c] < 0);
+                    ASSERT_NEAR(stored[c] * bricks.unit(), corner[c], tolerance);
+                }
+            }
+    EXPECT_GT(surface_cells, 10000U);
+}
+
+TEST(BrickGrid, HoldsEverySurfaceCellAndItsCorners) {
+    // Not aligned with anything, in all octants.
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
+    for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
+        expectAllCells(*grid, BrickGrid(*grid, values));
+        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values);
+        EXPECT_EQ(late.brickCount(), 0U);
+        expectAllCells(*grid, late);
+        EXPECT_EQ(late.brickCount(), BrickGrid(*grid, values).brickCount());
+    }
+}
+
+TEST(BrickGrid, KeepsSixteenBitsInSixteenHundredBytesABrick) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.03F);
+    const BrickGrid bricks(*grid, BrickValues::Int16);
+    EXPECT_GT(bricks.brickCount(), 1000U);
+    EXPECT_LE(bricks.bytes(), 1600 * bricks.brickCount());
+}
+
+TEST(BrickGrid, LaysLateBricksOutOnceForAllThreads) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.1F);
+    const BrickGrid all(*grid, BrickValues::Int16);
+    const BrickGrid late(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
+    const auto size = late.size();
+    // All threads at the same bricks.
+    parallelFor(8, 1, [&](std::size_t, std::size_t) {
+        for (int x = 0; x < size[0]; x += 2)
+            for (int y = 0; y < size[1]; y += 2)
+                for (int z = 0; z < size[2]; z += 2) (void)findBlock(late, {x, y, z});
+    });
+    EXPECT_EQ(late.brickCount(), all.brickCount());
+    expectAllCells(*grid, late);
+}
+
+TEST(BrickGrid, HoldsEveryCellInWhateverRoomThereIs) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
+    const std::size_t all = BrickGrid(*grid, BrickValues::Int16).brickCount();
+    for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
+        const std::size_t brick = BrickGrid(*grid, values).brickBytes();
+        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values, BrickSlots::kLeastBound * brick + 1);
+        const BrickSlots::Reading reading(late.cache());
+        // Twice: once what is asked for again has been evicted.
+        for (int round = 0; round < 2; ++round) {
+            expectAllCells(*grid, late);
+            EXPECT_LE(late.brickCount(), BrickSlots::kLeastBound);
+            EXPECT_EQ(late.cache().counts().peak, BrickSlots::kLeastBound);
+        }
+        EXPECT_GT(late.cache().counts().made, all);
+    }
+}
+
+TEST(BrickGrid, RefusesRoomForFewerBricksThanRaysNeed) {
+    const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.1F);
+    const auto source = std::make_shared<GridLeaves>(*grid);
+    const std::size_t least = BrickSlots::kLeastBound * BrickGrid(*grid, BrickValues::Int16).brickBytes();
+    EXPECT_NO_THROW(BrickGrid(source, BrickValues::Int16, least));
+    EXPECT_THROW(BrickGrid(source, BrickValues::Int16, least - 1), UsageError);
+    EXPECT_THROW(BrickGrid(source, BrickValues::Float32, least), UsageError);
+}
+
+TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {
+    auto grid = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
+    // A second part far away, to open a wide space between.
+    auto far = test::sphereGrid(1, openvdb::Vec3f(21, 13, 8), 0.1F);
+    for (auto it = far->cbeginValueOn(); it; ++it) grid->tree().setValueOn(it.getCoord(), *it);
+    const BrickGrid bricks(*grid, BrickValues::Int16);
+    const int n[3] = {bricks.size()[0] / 32, bricks.size()[1] / 32, bricks.size()[2] / 32};
+    for (int x = 0; x < n[0]; ++x)
+        for (int y = 0; y < n[1]; ++y)
+            for (int z = 0; z < n[2]; ++z) {
+                int nearest = 1 << 20;
+                for (int a = 0; a < n[0]; ++a)
+                    for (int b = 0; b < n[1]; ++b)
+                        for (int c = 0; c < n[2]; ++c)
+                            if (bricks.macroCell(a, b, c).bricks != 0)
+                                nearest =
+                                    std::min(nearest, std::max({std::abs(a - x), std::abs(b - y), std::abs(c - z)}));
+                ASSERT_EQ(bricks.macroCell(x, y, z).empty_radius, static_cast<std::uint32_t>(nearest));
+            }
+}
+
+}  // namespace
+}  // namespace stratum::march

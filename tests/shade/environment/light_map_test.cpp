@@ -1,0 +1,63 @@
+#include "shade/environment/light_map.h"
+
+#include "base/error.h"
+#include "corpus.h"
+#include "scratch_folder.h"
+#include "shade/map_files.h"
+
+#include <limits>
+
+namespace stratum {
+namespace {
+
+using shade::Color;
+using shade::readLightMap;
+
+TEST(LightMap, ContentDecidesNotTheName) {
+    const test::ScratchFolder scratch;
+    const std::vector<Color> texels = {{1, 2, 3}, {0.5, 0.5, 0.5}};
+    const auto path = scratch.path() / "map.txt";
+    test::writeExrMap(path, 2, 1, texels);
+    EXPECT_EQ(readLightMap(path).texels, texels);
+    test::writeText(path, test::hdrBytes("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n", 2, 1, texels));
+    EXPECT_NEAR(readLightMap(path).at(0, 0).b, 3.0f, 0.02f);
+}
+
+TEST(LightMap, RefusesWhatGivesNoPicture) {
+    const test::ScratchFolder scratch;
+    const auto path = scratch.path() / "map.exr";
+    const auto refused = [&](int width, int height, const std::vector<Color>& texels, const char* word) {
+        test::writeExrMap(path, width, height, texels);
+        try {
+            readLightMap(path);
+            FAIL() << word;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+        }
+    };
+    refused(2, 1, {{1, 1, 1}, {std::nanf(""), 0, 0}}, "texel 1, 0");
+    refused(2, 1, {{1, -1, 1}, {0, 0, 0}}, "texel 0, 0");
+    refused(2, 1, {{std::numeric_limits<float>::infinity(), 1, 1}, {0, 0, 0}}, "texel 0, 0");
+    refused(2, 1, {{0, 0, 0}, {0, 0, 0}}, "black");
+    refused(2, 2, std::vector<Color>(4, Color(1.0f)), "twice as wide");
+    test::writeText(path, "P6 nothing of the kind");
+    EXPECT_THROW(readLightMap(path), InputError);
+    test::writeExrMap(path, 64, 32, std::vector<Color>(2048, Color(0.3f, 0.1f, 0.7f)));
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    EXPECT_THROW(readLightMap(path), InputError);
+    EXPECT_THROW(readLightMap(scratch.path() / "none.exr"), InputError);
+}
+
+TEST(LightMap, ReadsRealMaps) {
+    STRATUM_NEEDS_CORPUS(hills, "env/golden_gate_hills_1k.hdr");
+    STRATUM_NEEDS_CORPUS(studio, "env/studio_small_03_1k.hdr");
+    const auto map = readLightMap(hills);
+    EXPECT_EQ(map.width, 1024);
+    float peak = 0.0f;
+    for (const Color& c : map.texels) peak = std::max(peak, shade::maxComponent(c));
+    EXPECT_GT(peak, 5e4f);  // the sun
+    EXPECT_EQ(readLightMap(studio).height, 512);
+}
+
+}  // namespace
+}  // namespace stratum

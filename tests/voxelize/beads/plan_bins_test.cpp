@@ -1,0 +1,97 @@
+#include "voxelize/beads/plan_bins.h"
+
+#include "base/error.h"
+#include "toolpaths.h"
+#include "voxelize/beads/footprint.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace stratum::voxelize {
+namespace {
+
+using test::addArc;
+using test::addBead;
+using test::allBeads;
+
+TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
+    gcode::Toolpath toolpath;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> where(-6, 6);
+    for (int n = 0; n < 40; ++n) {
+        if (n % 3 == 0)
+            addArc(toolpath, where(random), where(random), 2.5, where(random), where(random), 0.2, 0.2, 0.5, 0.2);
+        else
+            addBead(toolpath, where(random), where(random), 0.2, where(random), where(random), n % 5 == 0 ? 0.3 : 0.2,
+                    0.5, 0.2);
+    }
+    Lattice lattice;
+    lattice.voxel_size = 0.1;
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    const PlanBins bins(toolpath, stack, lattice, std::size_t{1} << 30);
+    std::size_t samples = 0;
+    for (std::size_t c = 0; c < bins.size(); ++c) {
+        std::set<std::uint32_t> present;
+        EXPECT_TRUE(std::is_sorted(bins[c].begin(), bins[c].end()));  // layer by layer, direct beads last
+        for (const std::uint32_t rank : bins[c]) present.insert(stack.beads[rank]);
+        EXPECT_EQ(present.size(), bins[c].size());
+        for (std::uint32_t bead = 0; bead < toolpath.beads.size(); ++bead) {
+            const BeadField field(toolpath, toolpath.beads[bead]);
+            const double reach = field.halfFlat() + field.radius() + lattice.background();
+            for (int x = 0; x < kLeafDim; ++x)
+                for (int y = 0; y < kLeafDim; ++y) {
+                    const double rho = field.path().distance((bins.originI(c) + x) * 0.1, (bins.originJ(c) + y) * 0.1);
+                    if (rho < reach) {
+                        ++samples;
+                        EXPECT_TRUE(present.contains(bead));
+                    }
+                }
+        }
+    }
+    EXPECT_GT(samples, 1000U);
+}
+
+// Rows of a ring are what the whole rectangle, tested column by column, gives.
+TEST(Footprints, OfArcsAreThoseOfEveryColumn) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> where(-6, 6);
+    std::uniform_real_distribution<double> size(-3, 1.5);
+    for (int n = 0; n < 300; ++n) {
+        gcode::Toolpath toolpath;
+        addArc(toolpath, where(random), where(random), std::pow(10, size(random)), where(random), where(random), 0.2,
+               0.2, 0.5, 0.2);
+        // The two ends may lie on circles of slightly different size.
+        if (n % 3 == 0) toolpath.beads[0].x1 = toolpath.beads[0].x1 + 0.02;
+        const gcode::Bead& bead = toolpath.beads[0];
+        const Footprints footprints(toolpath, 0.4, 0.175, 0.15);
+        const double reach = footprints.limit(bead);
+        const ColumnRange all = footprints.range(bead, reach);
+        const PlanPath path(toolpath, bead);
+        std::vector<std::pair<int, int>> expected;
+        for (int j = all.j0; j <= all.j1; ++j)
+            for (int i = all.i0; i <= all.i1; ++i)
+                if (path.distance(i * 0.4 + 0.175, j * 0.4 + 0.175) <= reach) expected.emplace_back(i, j);
+        std::vector<std::pair<int, int>> found;
+        footprints.forEachColumn(bead, [&](int i0, int i1, int j) {
+            for (int i = i0; i <= i1; ++i) found.emplace_back(i, j);
+        });
+        EXPECT_EQ(found, expected) << n;
+    }
+}
+
+TEST(PlanBins, RefusesBeforeItAllocates) {
+    gcode::Toolpath toolpath;
+    addBead(toolpath, 0, 0, 0.2, 1000, 1000, 0.2, 0.5, 0.2);
+    Lattice lattice;
+    lattice.voxel_size = 1e-5;
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    EXPECT_THROW(PlanBins(toolpath, stack, lattice, std::size_t{1} << 30), UsageError);
+}
+
+}  // namespace
+}  // namespace stratum::voxelize
