@@ -1,0 +1,144 @@
+// The path integrator against the rendering equation written down as it stands: recursion, directions uniform over the
+// hemisphere, no sampling of lights, no weights, one ray at a time.
+#include "shade/analytic_prints.h"
+#include "shade/environment/constant.h"
+#include "shade/integrator/path.h"
+#include "shade/light/rectangle_light.h"
+#include "shade/mean_radiance.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stratum {
+namespace {
+
+using shade::Color;
+
+/// A lamp's rectangle, met by a ray of its own.
+struct Panel {
+    glm::dvec3 center, u, v;  // half edges, perpendicular
+    Color radiance;
+
+    /// World units along the ray; infinite if it misses.
+    double meets(const trace::Ray& ray) const {
+        const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
+        const double t = glm::dot(center - ray.origin, normal) / glm::dot(ray.direction, normal);
+        const glm::dvec3 p = ray.origin + t * ray.direction - center;
+        const bool inside =
+            t > 0.0 && std::abs(glm::dot(p, u)) <= glm::dot(u, u) && std::abs(glm::dot(p, v)) <= glm::dot(v, v);
+        return inside ? t : std::numeric_limits<double>::infinity();
+    }
+};
+
+class Recursion {
+public:
+    Recursion(const shade::SceneDescription& scene, const trace::Intersector& print, int bounces, const Panel* panel)
+        : scene_(scene), surfaces_(scene, print), tracer_(print.makeTracer()), bounces_(bounces), panel_(panel) {}
+
+    /// One estimate of the radiance that comes back along a ray that meets a surface.
+    glm::dvec3 estimate(const trace::Ray& ray) {
+        shade::SurfacePoint point;
+        EXPECT_TRUE(surfaces_.nearest(ray, *tracer_, point));
+        return scattered(point, ray.direction, 1);
+    }
+
+private:
+    glm::dvec3 scattered(const shade::SurfacePoint& point, const glm::dvec3& towards, int depth) {
+        const shade::Frame frame{glm::vec3(point.normal)};
+        const double z = uniform_(random_);
+        const double angle = 2.0 * std::numbers::pi * uniform_(random_);
+        const double r = std::sqrt(1.0 - z * z);
+        const glm::vec3 wi(r * std::cos(angle), r * std::sin(angle), z);
+        const glm::vec3 wo = frame.toLocal(glm::vec3(-towards));
+        // f cos over the density of the hemisphere.
+        const glm::dvec3 weight = glm::dvec3(point.brdf->eval(wo, wi)) * z * 2.0 * std::numbers::pi;
+        const trace::Ray ray = surfaces_.leave(point, frame.toWorld(wi));
+        glm::dvec3 incoming = glm::dvec3(scene_.ambient);
+        shade::SurfacePoint next;
+        const bool meets = surfaces_.nearest(ray, *tracer_, next);
+        // Lamps give light and stand in no one's way.
+        const double lamp = panel_ == nullptr ? std::numeric_limits<double>::infinity() : panel_->meets(ray);
+        if (std::isfinite(lamp) && (!meets || lamp < next.t)) incoming += glm::dvec3(panel_->radiance);
+        if (!meets)
+            incoming += glm::dvec3(scene_.environment->radiance(glm::vec3(ray.direction)));
+        else if (depth < bounces_)
+            incoming += scattered(next, ray.direction, depth + 1);
+        return weight * incoming;
+    }
+
+    const shade::SceneDescription& scene_;
+    shade::Surfaces surfaces_;
+    std::unique_ptr<trace::Tracer> tracer_;
+    int bounces_;
+    const Panel* panel_;
+    std::mt19937_64 random_{17};
+    std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+struct Case {
+    std::string name, brdf, environment;
+    bool bed, lamp;
+    float ambient;
+    int bounces;
+};
+
+class PathRecursive : public testing::TestWithParam<Case> {};
+
+// Within 4.5 standard errors of the recursion's own mean, and within its 5 %, wherever it is looked.
+TEST_P(PathRecursive, HasTheSameMean) {
+    test::Vase vase;
+    vase.layers = 12;
+    const auto print = vase.intersector();
+    const Case& c = GetParam();
+    auto scene = test::plainScene(print, c.brdf.c_str(), c.environment.c_str(), c.bed);
+    scene.backdrop.reset();
+    scene.ambient = Color(c.ambient);
+    const Panel panel{{6, -10, 24}, {8, 0, 0}, {0, 6, 0}, Color(4.0f, 3.0f, 2.0f)};
+    if (c.lamp)
+        scene.lights.push_back(std::make_shared<shade::RectangleLight>(panel.center, panel.u, panel.v, panel.radiance));
+    const shade::PathIntegrator path(scene, print, c.bounces);
+    Recursion recursion(scene, print, c.bounces, c.lamp ? &panel : nullptr);
+    std::vector<std::pair<glm::dvec3, glm::dvec3>> views = {{{0, -2, 60}, {0, 0, 1}}, {{5, -60, 9}, {3, 0, 2}}};
+    if (c.bed) views.push_back({{30, -50, 40}, {12, -22, -0.1}});
+    for (const auto& [from, to] : views) {
+        trace::Ray ray;
+        ray.origin = from;
+        ray.direction = glm::normalize(to - from);
+        constexpr int kSamples = 60000;
+        glm::dvec3 sum(0.0);
+        glm::dvec3 squares(0.0);
+        for (int n = 0; n < kSamples; ++n) {
+            const glm::dvec3 x = recursion.estimate(ray);
+            sum += x;
+            squares += x * x;
+        }
+        const Color found = test::meanRadiance(print, path, ray, 8192);
+        for (int k = 0; k < 3; ++k) {
+            const double mean = sum[k] / kSamples;
+            const double error = std::sqrt((squares[k] / kSamples - mean * mean) / kSamples);
+            EXPECT_GT(mean, 0.0);
+            EXPECT_LT(error, 0.011 * mean) << "too few samples to say anything";
+            EXPECT_NEAR(found[k], mean, 4.5 * error) << "from " << from.z << ", channel " << k;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, PathRecursive,
+    testing::Values(Case{"matt", "lambert:0.8,0.5,0.2", "constant:1,0.8,0.6", false, false, 0, 3},
+                    Case{"direct", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 1},
+                    Case{"bed_and_studio", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 3},
+                    Case{"lamp", "plastic:0.6,0.3,0.1,0.4", "constant:0.2,0.2,0.2", true, true, 0, 3},
+                    Case{"ambient_and_lamp", "lambert:0.8,0.5,0.2", "constant:0.2,0.2,0.2", false, true, 0.3f, 2}),
+    [](const testing::TestParamInfo<Case>& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace stratum
