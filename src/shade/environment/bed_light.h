@@ -19,10 +19,10 @@ public:
     /// @param u         uniform in [0, 1)^2
     virtual EnvironmentSample sample(int strategy, const glm::vec2& u) const = 0;
     /// Radiance of the environment, and the sum of the strategies' densities per steradian.
-    virtual EnvironmentSample toward(const glm::vec3& direction) const = 0;
-    /// sample() of many draws, and toward(); faster. All spans are of one length.
+    virtual EnvironmentSample eval(const glm::vec3& direction) const = 0;
+    /// sample() of many draws, and eval(); faster. All spans are of one length.
     virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<EnvironmentSample> samples) const;
-    virtual void towardStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const;
+    virtual void evalStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const;
 };
 
 /// For light that is much the same from everywhere: by the cosine alone.
@@ -30,7 +30,7 @@ class CosineBedLight final : public BedLight {
 public:
     explicit CosineBedLight(const Environment& environment) : environment_(environment) {}
     EnvironmentSample sample(int strategy, const glm::vec2& u) const override;
-    EnvironmentSample toward(const glm::vec3& direction) const override;
+    EnvironmentSample eval(const glm::vec3& direction) const override;
 
 private:
     const Environment& environment_;

@@ -58,9 +58,9 @@ void Environment::sampleStream(int strategy, std::span<const glm::vec2> u, std::
     for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n], normals[n]);
 }
 
-void Environment::towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                               std::span<EnvironmentSample> samples) const {
-    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = toward(directions[n], normals[n]);
+void Environment::evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                             std::span<EnvironmentSample> samples) const {
+    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = eval(directions[n], normals[n]);
 }
 
 bool isEnvironmentPreset(std::string_view text) {

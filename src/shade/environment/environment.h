@@ -41,15 +41,15 @@ public:
     /// Sum of the strategies' densities per steradian, for a surface of that normal.
     virtual float pdf(const glm::vec3& direction, const glm::vec3& normal) const = 0;
     /// radiance and pdf of a direction at once.
-    virtual EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const {
+    virtual EnvironmentSample eval(const glm::vec3& direction, const glm::vec3& normal) const {
         return {direction, radiance(direction), pdf(direction, normal)};
     }
-    /// radiance() of many directions, sample() for many surfaces, and toward(); faster. All spans are of one length.
+    /// radiance() of many directions, sample() for many surfaces, and eval(); faster. All spans are of one length.
     virtual void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const;
     virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                               std::span<EnvironmentSample> samples) const;
-    virtual void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                              std::span<EnvironmentSample> samples) const;
+    virtual void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                            std::span<EnvironmentSample> samples) const;
     /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
     virtual bool visible() const { return true; }
     /// What a horizontal matt surface draws by. The environment must outlive it.

@@ -82,9 +82,9 @@ std::vector<BilinearDistribution> tablesOf(Split split, int width, int height,
 }
 
 /// A place on the map as a direction. `sine` is that of the polar angle.
-glm::vec3 directionOf(const glm::dvec2& place, double rotation, double& sine) {
-    const double theta = kPiD * place.y;
-    const double phi = 2.0 * kPiD * (0.5 - place.x) + rotation;
+glm::vec3 directionOf(const glm::dvec2& uv, double rotation, double& sine) {
+    const double theta = kPiD * uv.y;
+    const double phi = 2.0 * kPiD * (0.5 - uv.x) + rotation;
     sine = std::sin(theta);
     return {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
 }
@@ -93,9 +93,9 @@ glm::vec3 directionOf(const glm::dvec2& place, double rotation, double& sine) {
 std::vector<BilinearDistribution> compensatedTables(const LightMap& map, double rotation) {
     Split split = splitOf(luminances(map), map.width, map.height);
     split.others = compensated(std::move(split.others), map.width, map.height);
-    return tablesOf(std::move(split), map.width, map.height, [rotation](const glm::dvec2& place) {
+    return tablesOf(std::move(split), map.width, map.height, [rotation](const glm::dvec2& uv) {
         double sine = 0.0;
-        return directionOf(place, rotation, sine);
+        return directionOf(uv, rotation, sine);
     });
 }
 
@@ -120,16 +120,16 @@ public:
         : environment_(environment), tables_(cosineTables(environment.map_)) {}
     int strategies() const override { return static_cast<int>(tables_.size()); }
     EnvironmentSample sample(int strategy, const glm::vec2& u) const override {
-        return environment_.draw(tables_, strategy, u, kUp);
+        return environment_.sampleTables(tables_, strategy, u, kUp);
     }
-    EnvironmentSample toward(const glm::vec3& direction) const override {
-        return environment_.lookInto(tables_, direction, kUp);
+    EnvironmentSample eval(const glm::vec3& direction) const override {
+        return environment_.evalTables(tables_, direction, kUp);
     }
     void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<EnvironmentSample> samples) const override {
-        drawFromMap({environment_.map_, environment_.rotation_, tables_}, strategy, u, {}, samples);
+        sampleMap({environment_.map_, environment_.rotation_, tables_}, strategy, u, {}, samples);
     }
-    void towardStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const override {
-        lookIntoMap({environment_.map_, environment_.rotation_, tables_}, directions, {}, samples);
+    void evalStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const override {
+        evalMap({environment_.map_, environment_.rotation_, tables_}, directions, {}, samples);
     }
 
 private:
@@ -146,7 +146,7 @@ MapEnvironment::MapEnvironment(LightMap map, double rotation, float scale, bool 
       sun_(std::move(sun)),
       tables_(compensatedTables(map_, rotation_)) {}
 
-glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const {
+glm::dvec2 MapEnvironment::uvOf(const glm::vec3& direction, double& sine) const {
     const double x = direction.x;
     const double y = direction.y;
     sine = std::sqrt(x * x + y * y);
@@ -156,10 +156,10 @@ glm::dvec2 MapEnvironment::place(const glm::vec3& direction, double& sine) const
     return {u < 1.0 ? u : 0.0, v};
 }
 
-Color MapEnvironment::lookUp(const glm::dvec2& place) const {
-    double sx = place.x * map_.width - 0.5;
+Color MapEnvironment::lookUp(const glm::dvec2& uv) const {
+    double sx = uv.x * map_.width - 0.5;
     if (sx < 0.0) sx += map_.width;
-    const double sy = std::clamp(place.y * map_.height - 0.5, 0.0, map_.height - 1.0);
+    const double sy = std::clamp(uv.y * map_.height - 0.5, 0.0, map_.height - 1.0);
     const int x0 = std::clamp(static_cast<int>(sx), 0, map_.width - 1);
     const int y0 = std::min(static_cast<int>(sy), map_.height - 1);
     const int x1 = x0 + 1 == map_.width ? 0 : x0 + 1;
@@ -172,69 +172,68 @@ Color MapEnvironment::lookUp(const glm::dvec2& place) const {
 
 Color MapEnvironment::radiance(const glm::vec3& direction) const {
     double sine = 0.0;
-    return lookUp(place(direction, sine));
+    return lookUp(uvOf(direction, sine));
 }
 
-EnvironmentSample MapEnvironment::draw(const Tables& tables, int strategy, const glm::vec2& u,
-                                       const glm::vec3& normal) const {
+EnvironmentSample MapEnvironment::sampleTables(const Tables& tables, int strategy, const glm::vec2& u,
+                                               const glm::vec3& normal) const {
     const auto chosen = static_cast<std::size_t>(strategy);
     double density = 0.0;
-    const glm::dvec2 p = tables[chosen].sample(tables[chosen].bin(normal), u, density);
+    const glm::dvec2 uv = tables[chosen].sample(tables[chosen].bin(normal), u, density);
     EnvironmentSample result;
     if (!(density > 0.0)) return result;
     double sine = 0.0;
-    result.direction = directionOf(p, rotation_, sine);
+    result.direction = directionOf(uv, rotation_, sine);
     if (!(sine > 0.0)) return result;
     for (std::size_t k = 0; k < tables.size(); ++k)
-        if (k != chosen) density += tables[k].pdf(tables[k].bin(normal), p);
+        if (k != chosen) density += tables[k].pdf(tables[k].bin(normal), uv);
     result.pdf = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
     if (!std::isfinite(result.pdf)) result.pdf = 0.0f;
-    result.radiance = lookUp(p);
+    result.radiance = lookUp(uv);
     return result;
 }
 
 EnvironmentSample MapEnvironment::sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const {
-    return draw(tables_, strategy, u, normal);
+    return sampleTables(tables_, strategy, u, normal);
 }
 
-float MapEnvironment::density(const Tables& tables, const glm::dvec2& place, double sine,
-                              const glm::vec3& normal) const {
+float MapEnvironment::density(const Tables& tables, const glm::dvec2& uv, double sine, const glm::vec3& normal) const {
     if (!(sine > 0.0)) return 0.0f;
     double density = 0.0;
-    for (const BilinearDistribution& table : tables) density += table.pdf(table.bin(normal), place);
+    for (const BilinearDistribution& table : tables) density += table.pdf(table.bin(normal), uv);
     const auto result = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
     return std::isfinite(result) ? result : 0.0f;
 }
 
 float MapEnvironment::pdf(const glm::vec3& direction, const glm::vec3& normal) const {
     double sine = 0.0;
-    const glm::dvec2 p = place(direction, sine);
-    return density(tables_, p, sine, normal);
+    const glm::dvec2 uv = uvOf(direction, sine);
+    return density(tables_, uv, sine, normal);
 }
 
-EnvironmentSample MapEnvironment::lookInto(const Tables& tables, const glm::vec3& direction,
-                                           const glm::vec3& normal) const {
+EnvironmentSample MapEnvironment::evalTables(const Tables& tables, const glm::vec3& direction,
+                                             const glm::vec3& normal) const {
     double sine = 0.0;
-    const glm::dvec2 p = place(direction, sine);
-    return {direction, lookUp(p), density(tables, p, sine, normal)};
+    const glm::dvec2 uv = uvOf(direction, sine);
+    return {direction, lookUp(uv), density(tables, uv, sine, normal)};
 }
 
-EnvironmentSample MapEnvironment::toward(const glm::vec3& direction, const glm::vec3& normal) const {
-    return lookInto(tables_, direction, normal);
+EnvironmentSample MapEnvironment::eval(const glm::vec3& direction, const glm::vec3& normal) const {
+    return evalTables(tables_, direction, normal);
 }
 
 void MapEnvironment::radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const {
-    seeMap({map_, rotation_, tables_}, directions, radiances);
+    mapRadiance({map_, rotation_, tables_}, directions, radiances);
 }
 
 void MapEnvironment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                                   std::span<EnvironmentSample> samples) const {
-    drawFromMap({map_, rotation_, tables_}, strategy, u, normals, samples);
+    sampleMap({map_, rotation_, tables_}, strategy, u, normals, samples);
 }
 
-void MapEnvironment::towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                                  std::span<EnvironmentSample> samples) const {
-    lookIntoMap({map_, rotation_, tables_}, directions, normals, samples);
+void MapEnvironment::evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                                std::span<EnvironmentSample> samples) const {
+    evalMap({map_, rotation_, tables_}, directions, normals, samples);
 }
 
 std::unique_ptr<const BedLight> MapEnvironment::makeBedLight() const { return std::make_unique<MapBedLight>(*this); }

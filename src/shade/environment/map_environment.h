@@ -27,26 +27,27 @@ public:
     int strategies() const override { return static_cast<int>(tables_.size()); }
     EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
     float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
-    EnvironmentSample toward(const glm::vec3& direction, const glm::vec3& normal) const override;
+    EnvironmentSample eval(const glm::vec3& direction, const glm::vec3& normal) const override;
     bool visible() const override { return visible_; }
     std::shared_ptr<const Light> sun() const override { return sun_; }
     void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override;
     void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                       std::span<EnvironmentSample> samples) const override;
-    void towardStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                      std::span<EnvironmentSample> samples) const override;
+    void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                    std::span<EnvironmentSample> samples) const override;
     std::unique_ptr<const BedLight> makeBedLight() const override;
 
 private:
     friend class MapBedLight;
     /// Place in the map, [0, 1)^2, and the sine of the polar angle.
-    glm::dvec2 place(const glm::vec3& direction, double& sine) const;
-    Color lookUp(const glm::dvec2& place) const;
+    glm::dvec2 uvOf(const glm::vec3& direction, double& sine) const;
+    Color lookUp(const glm::dvec2& uv) const;
     using Tables = std::vector<BilinearDistribution>;  // one a strategy
-    EnvironmentSample lookInto(const Tables& tables, const glm::vec3& direction, const glm::vec3& normal) const;
-    EnvironmentSample draw(const Tables& tables, int strategy, const glm::vec2& u, const glm::vec3& normal) const;
+    EnvironmentSample evalTables(const Tables& tables, const glm::vec3& direction, const glm::vec3& normal) const;
+    EnvironmentSample sampleTables(const Tables& tables, int strategy, const glm::vec2& u,
+                                   const glm::vec3& normal) const;
     /// Per steradian.
-    float density(const Tables& tables, const glm::dvec2& place, double sine, const glm::vec3& normal) const;
+    float density(const Tables& tables, const glm::dvec2& uv, double sine, const glm::vec3& normal) const;
 
     LightMap map_;
     double rotation_;

@@ -365,8 +365,8 @@ void get(const MapBatch& b, std::size_t first, std::size_t count, std::span<Envi
 
 }  // namespace
 
-void drawFromMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u,
-                 std::span<const glm::vec3> normals, std::span<EnvironmentSample> samples) {
+void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+               std::span<EnvironmentSample> samples) {
     MapBatch batch{};
     const auto chosen = static_cast<std::size_t>(strategy);
     for (std::size_t first = 0; first < u.size(); first += kBatch) {
@@ -392,8 +392,8 @@ void drawFromMap(const PlacedMap& placed, int strategy, std::span<const glm::vec
     }
 }
 
-void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                 std::span<EnvironmentSample> samples) {
+void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+             std::span<EnvironmentSample> samples) {
     MapBatch batch{};
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);
@@ -408,7 +408,7 @@ void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions,
     }
 }
 
-void seeMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances) {
+void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances) {
     MapBatch batch{};
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);

@@ -28,19 +28,19 @@ struct PlacedMap {
 /// @param u         uniform in [0, 1)^2
 /// @param normals   of the surfaces, finite, not 0; none if all tables were made without directions
 /// @param samples   as many as u
-void drawFromMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u,
-                 std::span<const glm::vec3> normals, std::span<EnvironmentSample> samples);
+void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+               std::span<EnvironmentSample> samples);
 
-/// What MapEnvironment::toward gives, for each direction.
+/// What MapEnvironment::eval gives, for each direction.
 /// @param directions  unit
 /// @param normals     as above
 /// @param samples     as many as directions
-void lookIntoMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                 std::span<EnvironmentSample> samples);
+void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+             std::span<EnvironmentSample> samples);
 
 /// What MapEnvironment::radiance gives, for each direction.
 /// @param directions  unit
 /// @param radiances   as many as directions
-void seeMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);
+void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);
 
 }  // namespace stratum::shade

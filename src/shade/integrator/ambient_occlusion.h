@@ -1,4 +1,4 @@
-// How open a place is: the share of its hemisphere, by cosine, that nothing covers.
+// Ambient occlusion: the cosine-weighted share of the hemisphere over a point that is not occluded.
 #pragma once
 
 #include "shade/integrator/integrator.h"
@@ -8,7 +8,7 @@
 
 namespace stratum::shade {
 
-/// 1 in the open, 0 in a corner without light. Things farther than `distance` cover nothing. The bed counts.
+/// 1 if nothing is occluded, 0 if everything is. Surfaces farther than `distance` don't occlude. The bed occludes.
 class AmbientOcclusion final : public Integrator {
 public:
     /// @param distance  world units, > 0
@@ -22,11 +22,11 @@ protected:
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
-    /// The ray that asks whether something covers `first`; none if the answer is known without.
-    std::optional<trace::Ray> feeler(const SurfacePoint& first, const glm::vec2& u) const;
+    /// The occlusion ray from `first`; none where the result is known without a ray.
+    std::optional<trace::Ray> shadowRay(const SurfacePoint& first, const glm::vec2& u) const;
     Pixel unoccluded(const SurfacePoint* first) const;
 
-    bool opaque_;  // whether there is a backdrop; it is 1
+    bool opaque_;  // whether the scene has a backdrop; its pixels are 1
     double distance_;
 };
 

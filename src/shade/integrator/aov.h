@@ -1,4 +1,4 @@
-// What else a pixel can hold besides its light: layers for compositing, denoising and computer vision.
+// Arbitrary output variables (AOVs): layers of a film beside its color, for compositing, denoising and computer vision.
 #pragma once
 
 #include "shade/film/film.h"
@@ -13,19 +13,19 @@
 
 namespace stratum::shade {
 
-/// One kind of layer. Of geometry the mean over all samples, 0 where there is nothing: "times coverage", as film
-/// colours are.
+/// One kind of layer. Layers of geometry are means over all samples, with 0 for samples that hit nothing: premultiplied
+/// by coverage, as the film's colors are.
 enum class Aov {
-    normal,    ///< X, Y, Z: world-space unit, on the side that is seen
+    normal,    ///< X, Y, Z: world-space unit normal that faces the camera
     depth,     ///< Z: world units along the ray
     position,  ///< X, Y, Z: world space
     albedo,    ///< R, G, B: reflectanceFactor of the material
-    shading,   ///< M, G: what BareLight says of the surface's direction, matt and gloss
+    shading,   ///< M, G: BareLight::matt and gloss of the surface's normal
     mask,      ///< V: share of the pixel that the print covers
     variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
                ///< stratified samples do better, so it is an upper estimate
     samples,   ///< V: samples taken
-    // No means, for there is nothing between two tools: of the first sample that meets the print; -1 where none does.
+    // Ids are not averaged: the id of the first sample that hits the print; -1 if none does.
     layer,    ///< V: number of the layer
     tool,     ///< V: T number
     feature,  ///< V: see gcode2vdb --grids
@@ -40,15 +40,15 @@ std::vector<Label> labelsOf(const std::vector<Aov>& aovs);
 /// Empty layers of a film of this many pixels.
 std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
 
-/// Sees what a camera ray meets first. Immutable; shared by all threads.
+/// Records the first hits of camera rays. Immutable; shared by all threads.
 class AovRecorder {
 public:
     AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs);
     /// Numbers that one pixel needs: those of all geometric layers.
     std::size_t size() const { return size_; }
-    /// Adds one sample, what a camera ray of that direction met first (t infinite: nothing), to size() sums.
+    /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to size() sums.
     void add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const;
-    /// What only the renderer knows.
+    /// Values that the renderer supplies.
     struct PixelStatistics {
         double variance = 0.0;
         std::uint32_t samples = 0;
@@ -60,7 +60,7 @@ public:
 private:
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
-    std::optional<BareLight> bare_light_;  // if a layer asks for it
+    std::optional<BareLight> bare_light_;  // only for Aov::shading
     std::size_t size_ = 0;
 };
 

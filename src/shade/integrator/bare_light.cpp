@@ -15,8 +15,8 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::size_t kSide = 64;  // nodes of the table
-constexpr int kRows = 32;          // cells of the sphere that light is gathered in, twice as many columns
-constexpr int kFine = 8;           // directions in a cell, a side: a lamp is not to fall between them
+constexpr int kRows = 32;          // rows of cells on the sphere in which light is summed; twice as many columns
+constexpr int kFine = 8;           // samples along each side of a cell: fine enough not to miss a small light
 constexpr float kGlossPower = 16.0f;
 
 /// Light from a part of the sphere.
@@ -76,7 +76,7 @@ std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center
     return parts;
 }
 
-/// Of a place on the square, [-1, 1]^2.
+/// The direction of a point of the octahedral square, [-1, 1]^2.
 glm::vec3 unfolded(float u, float v) {
     glm::vec3 d(u, v, 1.0f - std::abs(u) - std::abs(v));
     if (d.z < 0.0f) {
@@ -109,7 +109,7 @@ BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : 
             table_[n] = {matt * kInvPi, gloss * (kGlossPower + 1.0f) * 0.5f * kInvPi};
         }
     });
-    // The brightest matt surface counts 1, whatever the light's unit.
+    // Relative to the brightest matt surface, so that the light's unit cancels.
     for (const glm::vec2& node : table_) brightest_ = std::max(brightest_, node.x);
     if (brightest_ > 0.0f && std::isfinite(brightest_))
         for (glm::vec2& node : table_) node /= brightest_;

@@ -1,4 +1,4 @@
-// What a surface would look like by its direction alone: the light of a scene with nothing in its way.
+// Unoccluded light of a scene by the normal of a surface.
 #pragma once
 
 #include "shade/scene/scene.h"
@@ -10,23 +10,23 @@
 
 namespace stratum::shade {
 
-/// Two tables over the sphere, of luminance: what a white Lambert surface returns by its normal, and a blurred mirror
-/// image of the light. A layer line is a normal that turns within a pixel or two; means of these over a pixel tell,
-/// without the noise of sampled light, how bright that makes it. Immutable; shared by all threads.
+/// Two tables of luminance over the sphere: the radiance of a white Lambert surface by its normal, and a blurred mirror
+/// image of the light. Across a layer line the normal turns within a pixel or two; the mean of a table over a pixel
+/// estimates how bright the line is, without the noise of sampled light. Immutable; shared by all threads.
 ///
-/// Lamps count as seen from `center`; the bed returns what falls on it in the open. Directions are table cells of a
-/// square that is folded to an octahedron, and are interpolated between. Source: Z. H. Cigolle et al., "A Survey of
-/// Efficient Representations for Independent Unit Vectors", JCGT 3(2) 2014.
+/// Lights are evaluated at `center`; the bed reflects its unoccluded irradiance. Directions use the octahedral map of
+/// the unit square, with bilinear interpolation. Source: Z. H. Cigolle et al., "A Survey of Efficient Representations
+/// for Independent Unit Vectors", JCGT 3(2) 2014.
 class BareLight {
 public:
-    /// @param center  a place on the print, world space
+    /// @param center  a point on the print, world space
     BareLight(const SceneDescription& scene, const glm::dvec3& center);
 
-    /// Of a white Lambert surface; 1 for the direction that gets most.
+    /// Radiance of a white Lambert surface, relative to that of the brightest normal.
     float matt(const glm::vec3& normal) const { return at(normal).x; }
     /// Mean radiance about a direction, by the weight (wi . mirror)^16, in the same unit.
     float gloss(const glm::vec3& mirror) const { return at(mirror).y; }
-    /// Radiance (relative, see color.h) that counts 1; 0 if there is no light.
+    /// Radiance (relative, see color.h) of the brightest normal; 0 if there is no light.
     float brightest() const { return brightest_; }
 
 private:

@@ -1,4 +1,4 @@
-// A render that is put down and taken up again: the finished tiles, in a file.
+// Checkpoints of a render: a file of the finished tiles, from which it can be resumed.
 #pragma once
 
 #include "shade/film/film.h"
@@ -11,7 +11,7 @@
 
 namespace stratum::shade {
 
-/// What has been finished so far.
+/// The finished tiles of a render.
 struct RenderState {
     Film film;                       ///< pixels and layers of finished tiles; the others are zero
     std::vector<std::uint8_t> done;  ///< 1 for each finished tile
@@ -22,12 +22,13 @@ struct RenderState {
 /// The file of a RenderState. Native byte order, one machine's own; guarded by a CRC-32.
 class Checkpoint {
 public:
-    /// @param identity  what the picture depends on, as text of a line: another one's file is refused
+    /// @param identity  one line of text that describes everything the picture depends on: files with another are
+    /// refused
     Checkpoint(std::filesystem::path path, std::string identity);
     /// Fills `state`, whose film and tiles have their sizes, from the file. Returns false if there is no file yet.
     /// Throws InputError if the file is damaged or belongs to another picture.
     bool read(RenderState& state) const;
-    /// What the file is to hold.
+    /// The contents of the file for this state.
     std::string bytesOf(const RenderState& state) const;
     /// Replaces the file: a process that is killed meanwhile leaves the one before. Not for two threads at once. Throws
     /// OutputError.

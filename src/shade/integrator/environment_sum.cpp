@@ -11,7 +11,7 @@ namespace stratum::shade {
 EnvironmentSum::EnvironmentSum(const SceneDescription& scene, const trace::Intersector& print, int rows)
     : Integrator(scene, print), scene_(scene) {
     constexpr double kPiD = std::numbers::pi;
-    // Probes finer than any map that is likely, so that a sun of one texel is in the mean.
+    // Sampled more finely than any likely map, so that the mean includes a sun of one texel.
     const int cuts = std::max(4, 2048 / rows);
     const auto directionAt = [&](double row, double column) {
         const double theta = kPiD * row / rows;
@@ -47,28 +47,28 @@ Pixel EnvironmentSum::seen(const trace::Ray& ray, const SurfacePoint* first, Tra
     if (fade >= 1.0f) return {behind, 1.0f};
     const Frame frame{glm::vec3(point.normal)};
     const glm::vec3 wo = frame.toLocal(glm::vec3(-ray.direction));
-    // All shadow rays of a point are one stream.
-    std::vector<trace::Ray> ways;
+    // All shadow rays of a point are traced as one stream.
+    std::vector<trace::Ray> shadow_rays;
     std::vector<Color> values;
     const auto add = [&](const glm::vec3& direction, double distance, const Color& power) {
         const glm::vec3 wi = frame.toLocal(direction);
         if (!(wi.z > 0.0f)) return;
         const Color value = point.brdf->eval(wo, wi) * wi.z * power;
         if (!(maxComponent(value) > 0.0f)) return;
-        trace::Ray way = surfaces_.leave(point, direction);
-        way.t_max = distance;
-        ways.push_back(way);
+        trace::Ray shadow_ray = surfaces_.leave(point, direction);
+        shadow_ray.t_max = distance;
+        shadow_rays.push_back(shadow_ray);
         values.push_back(value);
     };
     for (const Cell& cell : cells_) add(cell.direction, std::numeric_limits<double>::infinity(), cell.power);
     for (const auto& light : scene_.lights)
         if (const auto s = light->sample(point.position, {0.5f, 0.5f}))
             add(s->direction, s->distance, s->light / (s->pdf > 0.0f ? s->pdf : 1.0f));
-    context.rays.shadow += ways.size();
-    std::vector<std::uint8_t> blocked(ways.size());
-    surfaces_.occluded(ways, context.tracer, blocked);
+    context.rays.shadow += shadow_rays.size();
+    std::vector<std::uint8_t> blocked(shadow_rays.size());
+    surfaces_.occluded(shadow_rays, context.tracer, blocked);
     Color sum(0.0f);
-    for (std::size_t k = 0; k < ways.size(); ++k)
+    for (std::size_t k = 0; k < shadow_rays.size(); ++k)
         if (blocked[k] == 0) sum += values[k];
     return {(1.0f - fade) * sum + fade * behind, 1.0f};
 }

@@ -1,4 +1,4 @@
-// Direct light of the environment as a sum over the cells of a coarse map: the simple way, to compare with.
+// Direct light of the environment as a sum over the cells of a coarse map: a simple method, for comparison.
 #pragma once
 
 #include "shade/integrator/integrator.h"
@@ -9,8 +9,8 @@
 namespace stratum::shade {
 
 /// The environment is averaged over `rows` x 2 `rows` cells of a latitude-longitude map. At each point that the camera
-/// sees, the cells above the surface are added, each with one shadow ray to its middle, weighed by the BRDF, its solid
-/// angle and the cosine; lamps with extent shine from their middle. One scattering. Free of noise, but biased: shadows
+/// sees, the cells above the surface are added, each with one shadow ray to its center, weighted by the BRDF, its solid
+/// angle and the cosine; lights with extent are sampled at their center. One bounce. Free of noise, but biased: shadows
 /// are those of a few hundred hard lights, and highlights narrower than a cell are lost. Source: J. Spilar,
 /// "Visualization of 3D printing via ray tracing", CTU Prague 2025.
 class EnvironmentSum final : public Integrator {

@@ -4,7 +4,7 @@
 #include "base/nearest_name.h"
 #include "shade/integrator/ambient_occlusion.h"
 #include "shade/integrator/environment_sum.h"
-#include "shade/integrator/feature.h"
+#include "shade/integrator/geometry_integrators.h"
 #include "shade/integrator/path.h"
 #include "shade/integrator/phong.h"
 

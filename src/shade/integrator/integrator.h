@@ -1,4 +1,4 @@
-// How much light comes back along a ray: the interface of every method, and their choice by name.
+// The interface of all integrators, and their construction by name.
 #pragma once
 
 #include "shade/camera/sampler.h"
@@ -15,7 +15,7 @@
 
 namespace stratum::shade {
 
-/// Rays traced against the print. A ray that is answered without it (the far bed) is not counted, except primary ones:
+/// Rays traced against the print. Rays that need no traversal (over the far bed) are not counted, except primary ones:
 /// there is one a sample.
 struct RayCounts {
     std::uint64_t primary = 0;  ///< from the camera
@@ -31,18 +31,18 @@ struct RayCounts {
     bool operator==(const RayCounts&) const = default;
 };
 
-/// What belongs to one thread.
+/// State of one thread.
 struct TraceContext {
     trace::Tracer& tracer;
     Sampler& sampler;
     RayCounts& rays;
 };
 
-/// How PhongIntegrator weighs its terms.
+/// Weights of PhongIntegrator's terms.
 struct PhongOptions {
     float ambient = 1.0f, diffuse = 1.0f, specular = 1.0f;  ///< ka, kd, ks, each in [0, 100]
     float shininess = 500.0f;                               ///< exponent, in [0, 1e6]
-    float reflective = 0.2f;                                ///< kr, the mirror's share, in [0, 1]
+    float reflective = 0.2f;                                ///< kr, weight of the mirror term, in [0, 1]
 };
 
 struct IntegratorOptions {
@@ -51,33 +51,33 @@ struct IntegratorOptions {
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
     PhongOptions phong;
     int environment_rows = 32;  ///< environment-sum: rows of its map, 2 to 512; twice as many columns
-    double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther things don't occlude
+    double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther surfaces don't occlude
 
     /// Throws UsageError.
     void validate() const;
 };
 
-/// Whether the integrator of that name looks at light at all.
+/// Whether the integrator of that name evaluates lights; false for those of geometry and ambient occlusion.
 bool needsLight(const IntegratorOptions& options);
 
 /// Immutable; shared by all threads.
 class Integrator {
 public:
     virtual ~Integrator() = default;
-    /// What is seen along a camera ray; finite. Draws from context.sampler in a fixed order.
+    /// Radiance along a camera ray; finite. Draws from context.sampler in a fixed order.
     Pixel radiance(const trace::Ray& ray, TraceContext& context) const;
     /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
-    /// @param points  what each ray meets first, for layers beside the picture; t is infinite where there is nothing
+    /// @param points  output: the first surface that each ray hits, for the layers of a film; t is infinite if none
     void radianceStream(std::span<const trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                         RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const;
     virtual FilmContent content() const { return FilmContent::radiance; }
 
 protected:
     Integrator(const SceneDescription& scene, const trace::Intersector& print) : surfaces_(scene, print) {}
-    /// What is seen along a camera ray that meets `first`, or nothing if that is null.
+    /// The pixel value of a camera ray whose first hit is `first`; null if it hits nothing.
     virtual Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
-    /// The same for many rays. Integrators that follow rays further trace those in streams, too. The answers must be
-    /// those of seen(), to the bit.
+    /// The same for many rays; integrators that trace further rays trace those as streams. The results must be
+    /// bit-identical to those of seen().
     virtual void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
                             std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
                             std::span<Pixel> pixels) const;

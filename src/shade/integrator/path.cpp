@@ -11,12 +11,13 @@
 namespace stratum::shade {
 namespace {
 
-/// What a cosine sample of the bed counts in its weight against one of BedLight. With 1 the open bed would be as noisy
-/// as the cosine is; with 0 the shadow of a sun would be lit by the few samples that miss the sun.
+/// Factor of the BRDF's pdf in the balance heuristic on the bed, where BedLight is the other strategy. With 1 the
+/// unoccluded bed would be as noisy as with cosine sampling; with 0 the shadow of a sun would be lit only by the few
+/// samples of BedLight that miss the sun.
 constexpr float kBedShare = 0.25f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Sets the members of the groups: numbers of what stands on the print, and on the bed.
+/// Sets the members of the two groups: indices of things on the print, and of things on the bed.
 template <typename Groups, typename Things, typename IsBed>
 void gatherGroups(Groups& groups, const Things& things, const IsBed& isBed) {
     for (auto& group : groups) group.members.clear();
@@ -29,7 +30,7 @@ PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Inter
     : Integrator(scene, print), scene_(scene), bounces_(bounces) {
     if (scene.bed) bed_light_ = scene.environment->makeBedLight();
     for (const auto& light : scene.lights)
-        if (light->hasExtent()) lamps_.push_back(light.get());
+        if (light->hasExtent()) extended_lights_.push_back(light.get());
 }
 
 Pixel PathIntegrator::seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const {
@@ -43,133 +44,131 @@ Pixel PathIntegrator::seen(const trace::Ray& ray, const SurfacePoint* first, Tra
     return pixel;
 }
 
-void PathIntegrator::Feelers::add(const trace::Ray& ray, const Color& value, std::size_t to) {
+void PathIntegrator::ShadowRays::add(const trace::Ray& ray, const Color& value, std::size_t to) {
     rays.push_back(ray);
     light.push_back(value);
     pixel.push_back(to);
 }
 
-void PathIntegrator::Feelers::clear() {
+void PathIntegrator::ShadowRays::clear() {
     rays.clear();
     light.clear();
     pixel.clear();
 }
 
-void PathIntegrator::Looks::resize(std::size_t count) {
+void PathIntegrator::LightBatch::resize(std::size_t count) {
     normals.resize(count);
     samples.resize(count);
 }
 
-/// One sample of each lamp.
-void PathIntegrator::feelLights(const Stand& stand, Sampler& sampler, Feelers& feelers) const {
-    const Path& path = *stand.path;
+void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const {
+    const Path& path = *vertex.path;
     const SurfacePoint& point = path.point;
-    const glm::vec3& wo = stand.wo;
+    const glm::vec3& wo = vertex.wo;
     for (const auto& light : scene_.lights) {
         const glm::vec2 draw = light->hasExtent() ? sampler.next2D() : glm::vec2(0.0f);
         const std::optional<LightSample> sample = light->sample(point.position, draw);
         if (!sample) continue;
-        const glm::vec3 wi = stand.frame.toLocal(sample->direction);
+        const glm::vec3 wi = vertex.frame.toLocal(sample->direction);
         Color value = path.throughput * point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * sample->light;
         if (sample->pdf > 0.0f) value *= powerHeuristic(sample->pdf, point.brdf->pdf(wo, wi)) / sample->pdf;
         if (!(maxComponent(value) > 0.0f)) continue;
         trace::Ray ray = surfaces_.leave(point, sample->direction);
         ray.t_max = sample->distance;
-        feelers.add(ray, value, path.pixel);
+        shadow_rays.add(ray, value, path.pixel);
     }
 }
 
-Color PathIntegrator::fromLamps(const trace::Ray& ray, double t, float pdf) const {
+Color PathIntegrator::hitLights(const trace::Ray& ray, double t, float pdf) const {
     Color sum(0.0f);
-    for (const Light* lamp : lamps_) {
-        const std::optional<LightMeeting> meeting = lamp->meet(ray);
-        if (meeting && meeting->t <= t) sum += meeting->radiance * powerHeuristic(pdf, meeting->pdf);
+    for (const Light* light : extended_lights_) {
+        const std::optional<LightHit> hit = light->intersect(ray);
+        if (hit && hit->t <= t) sum += hit->radiance * powerHeuristic(pdf, hit->pdf);
     }
     return sum;
 }
 
-/// A sample of the environment by each of its strategies. On the print the BRDF's sample complements them.
-void PathIntegrator::feelEnvironment(const Group& group, std::span<const Stand> stands, std::span<Sampler> samplers,
-                                     Feelers& feelers, Looks& looks) const {
+/// Adds one shadow ray for each strategy. The BRDF's own sample, which scatter() draws, completes them.
+void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathVertex> vertices,
+                                       std::span<Sampler> samplers, ShadowRays& shadow_rays, LightBatch& batch) const {
     const std::size_t count = group.members.size();
-    if (count == 0) return;  // there may be no bed
+    if (count == 0) return;  // without a bed, bed_light_ is null
     const int strategies = group.bed ? bed_light_->strategies() : scene_.environment->strategies();
-    looks.resize(count);
-    looks.u.resize(count);
-    looks.pixels.resize(count);
+    batch.resize(count);
+    batch.u.resize(count);
+    batch.pixels.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
-        const Stand& stand = stands[group.members[k]];
-        looks.pixels[k] = stand.path->pixel;
-        looks.normals[k] = stand.frame.z;
+        const PathVertex& vertex = vertices[group.members[k]];
+        batch.pixels[k] = vertex.path->pixel;
+        batch.normals[k] = vertex.frame.z;
     }
     for (int strategy = 0; strategy < strategies; ++strategy) {
-        next2DStream(samplers, looks.pixels, looks.u);
+        next2DStream(samplers, batch.pixels, batch.u);
         if (group.bed)
-            bed_light_->sampleStream(strategy, looks.u, looks.samples);
+            bed_light_->sampleStream(strategy, batch.u, batch.samples);
         else
-            scene_.environment->sampleStream(strategy, looks.u, looks.normals, looks.samples);
+            scene_.environment->sampleStream(strategy, batch.u, batch.normals, batch.samples);
         for (std::size_t k = 0; k < count; ++k) {
-            const Stand& stand = stands[group.members[k]];
-            const EnvironmentSample& light = looks.samples[k];
-            const SurfacePoint& point = stand.path->point;
-            const glm::vec3 wi = stand.frame.toLocal(light.direction);
+            const PathVertex& vertex = vertices[group.members[k]];
+            const EnvironmentSample& light = batch.samples[k];
+            const SurfacePoint& point = vertex.path->point;
+            const glm::vec3 wi = vertex.frame.toLocal(light.direction);
             if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
-            const float other = (group.bed ? kBedShare : 1.0f) * point.brdf->pdf(stand.wo, wi);
+            const float other = (group.bed ? kBedShare : 1.0f) * point.brdf->pdf(vertex.wo, wi);
             const float weight = balanceHeuristic(light.pdf, other);
-            const Color value =
-                stand.path->throughput * point.brdf->eval(stand.wo, wi) * (wi.z * weight / light.pdf) * light.radiance;
+            const Color value = vertex.path->throughput * point.brdf->eval(vertex.wo, wi) *
+                                (wi.z * weight / light.pdf) * light.radiance;
             if (!(maxComponent(value) > 0.0f)) continue;
-            feelers.add(surfaces_.leave(point, light.direction), value, stand.path->pixel);
+            shadow_rays.add(surfaces_.leave(point, light.direction), value, vertex.path->pixel);
         }
     }
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(Stand& stand, float lobe_draw,
+std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(PathVertex& vertex, float lobe_draw,
                                                               const glm::vec2& brdf_draw) const {
-    Path& path = *stand.path;
-    const std::optional<BrdfSample> next = path.point.brdf->sample(stand.wo, lobe_draw, brdf_draw);
+    Path& path = *vertex.path;
+    const std::optional<BrdfSample> next = path.point.brdf->sample(vertex.wo, lobe_draw, brdf_draw);
     if (!next) return std::nullopt;
     path.throughput *= next->f * (next->wi.z / next->pdf);
     if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
-    const glm::vec3 way = stand.frame.toWorld(next->wi);
-    Bounce bounce{&stand, surfaces_.leave(path.point, way), way, next->pdf, Color(0.0f)};
-    bounce.escaped = fromLamps(bounce.ray, kFar, next->pdf);
+    const glm::vec3 direction = vertex.frame.toWorld(next->wi);
+    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f)};
+    bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
     return bounce;
 }
 
-/// What the environment adds to the bounces of a group that escape.
-void PathIntegrator::lookWhereTheyGo(const Group& group, std::span<Bounce> bounces, Looks& looks) const {
+void PathIntegrator::evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const {
     const std::size_t count = group.members.size();
     if (count == 0) return;
-    looks.resize(count);
-    looks.ways.resize(count);
+    batch.resize(count);
+    batch.directions.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         const Bounce& bounce = bounces[group.members[k]];
-        looks.ways[k] = bounce.way;
-        looks.normals[k] = bounce.from->frame.z;
+        batch.directions[k] = bounce.direction;
+        batch.normals[k] = bounce.from->frame.z;
     }
     if (group.bed)
-        bed_light_->towardStream(looks.ways, looks.samples);
+        bed_light_->evalStream(batch.directions, batch.samples);
     else
-        scene_.environment->towardStream(looks.ways, looks.normals, looks.samples);
+        scene_.environment->evalStream(batch.directions, batch.normals, batch.samples);
     for (std::size_t k = 0; k < count; ++k) {
         Bounce& bounce = bounces[group.members[k]];
         const float own = (group.bed ? kBedShare : 1.0f) * bounce.pdf;
-        bounce.escaped += looks.samples[k].radiance * balanceHeuristic(own, looks.samples[k].pdf);
+        bounce.escaped += batch.samples[k].radiance * balanceHeuristic(own, batch.samples[k].pdf);
     }
 }
 
-void PathIntegrator::gather(const Feelers& feelers, trace::Tracer& tracer, std::span<Color> sums) const {
-    std::vector<std::uint8_t> blocked(feelers.rays.size());
-    surfaces_.occluded(feelers.rays, tracer, blocked);
+void PathIntegrator::addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const {
+    std::vector<std::uint8_t> blocked(shadow_rays.rays.size());
+    surfaces_.occluded(shadow_rays.rays, tracer, blocked);
     for (std::size_t k = 0; k < blocked.size(); ++k)
-        if (blocked[k] == 0) sums[feelers.pixel[k]] += feelers.light[k];
+        if (blocked[k] == 0) sums[shadow_rays.pixel[k]] += shadow_rays.light[k];
 }
 
 void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
                                 std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
                                 std::span<Pixel> pixels) const {
-    // How much of the backdrop is seen in a place.
+    // Share of the backdrop in what a camera ray sees.
     const auto fadeOf = [this](const SurfacePoint& p) { return std::isfinite(p.t) ? surfaces_.fade(p) : 1.0f; };
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Path> paths;
@@ -177,87 +176,87 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     for (std::size_t n = 0; n < rays.size(); ++n)
         if (fadeOf(points[n]) < 1.0f) paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
 
-    Feelers feelers;
-    // Those of the last step that nothing but the print can stop: an answer of yes or no will do.
-    Feelers endings;
-    Looks looks;
+    ShadowRays shadow_rays;
+    // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
+    ShadowRays escaped_rays;
+    LightBatch batch;
     std::array<Group, 2> groups{Group{false, {}}, Group{true, {}}};
-    std::vector<Stand> stands;
+    std::vector<PathVertex> vertices;
     std::vector<glm::vec2> lobe_draws;
     std::vector<glm::vec2> brdf_draws;
     std::vector<Bounce> bounces;
-    std::vector<trace::Ray> ways;
-    std::vector<SurfacePoint> meetings;
-    std::vector<Path> going;
+    std::vector<trace::Ray> bounce_rays;
+    std::vector<SurfacePoint> hits;
+    std::vector<Path> next_paths;
     for (int step = 1; step <= bounces_ && !paths.empty(); ++step) {
         const bool last = step == bounces_;
-        feelers.clear();
-        endings.clear();
-        stands.clear();
+        shadow_rays.clear();
+        escaped_rays.clear();
+        vertices.clear();
         bounces.clear();
-        stands.reserve(paths.size());
+        vertices.reserve(paths.size());
         for (Path& path : paths) {
             const Frame frame{glm::vec3(path.point.normal)};
-            stands.push_back({&path, frame, frame.toLocal(glm::vec3(-path.direction))});
+            vertices.push_back({&path, frame, frame.toLocal(glm::vec3(-path.direction))});
         }
-        // The draws of a step are always the same ones, so that each keeps its stratification.
-        gatherGroups(groups, stands, [](const Stand& stand) { return stand.path->point.bed; });
-        for (const Group& group : groups) feelEnvironment(group, stands, samplers, feelers, looks);
-        looks.pixels.clear();
-        for (const Stand& stand : stands) {
-            feelLights(stand, samplers[stand.path->pixel], feelers);
-            looks.pixels.push_back(stand.path->pixel);
+        // Every step draws the same dimensions in the same order, so that each dimension keeps its stratification.
+        gatherGroups(groups, vertices, [](const PathVertex& vertex) { return vertex.path->point.bed; });
+        for (const Group& group : groups) sampleEnvironment(group, vertices, samplers, shadow_rays, batch);
+        batch.pixels.clear();
+        for (const PathVertex& vertex : vertices) {
+            sampleLights(vertex, samplers[vertex.path->pixel], shadow_rays);
+            batch.pixels.push_back(vertex.path->pixel);
         }
-        lobe_draws.resize(stands.size());
-        brdf_draws.resize(stands.size());
-        next2DStream(samplers, looks.pixels, lobe_draws);
-        next2DStream(samplers, looks.pixels, brdf_draws);
-        for (std::size_t n = 0; n < stands.size(); ++n) {
-            Stand& stand = stands[n];
-            const std::optional<Bounce> bounce = scatter(stand, lobe_draws[n].x, brdf_draws[n]);
+        lobe_draws.resize(vertices.size());
+        brdf_draws.resize(vertices.size());
+        next2DStream(samplers, batch.pixels, lobe_draws);
+        next2DStream(samplers, batch.pixels, brdf_draws);
+        for (std::size_t n = 0; n < vertices.size(); ++n) {
+            PathVertex& vertex = vertices[n];
+            const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n].x, brdf_draws[n]);
             if (!bounce) continue;
-            sums[stand.path->pixel] += stand.path->throughput * scene_.ambient;
+            sums[vertex.path->pixel] += vertex.path->throughput * scene_.ambient;
             bounces.push_back(*bounce);
         }
         gatherGroups(groups, bounces, [](const Bounce& bounce) { return bounce.from->path->point.bed; });
-        for (const Group& group : groups) lookWhereTheyGo(group, bounces, looks);
+        for (const Group& group : groups) evalEscaped(group, bounces, batch);
         if (last) std::erase_if(bounces, [](const Bounce& b) { return !(maxComponent(b.escaped) > 0.0f); });
-        const bool only_escape = last && lamps_.empty();
+        const bool only_escape = last && extended_lights_.empty();
         if (only_escape)
             for (const Bounce& bounce : bounces) {
                 const Path& path = *bounce.from->path;
-                endings.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
+                escaped_rays.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
             }
-        counts.shadow += feelers.rays.size();
+        counts.shadow += shadow_rays.rays.size();
         counts.bounce += bounces.size();
-        gather(feelers, tracer, sums);
-        gather(endings, tracer, sums);
+        addUnoccluded(shadow_rays, tracer, sums);
+        addUnoccluded(escaped_rays, tracer, sums);
         if (only_escape) break;
 
-        ways.clear();
-        for (const Bounce& bounce : bounces) ways.push_back(bounce.ray);
-        meetings.resize(ways.size());
-        surfaces_.nearest(ways, tracer, meetings);
-        going.clear();
+        bounce_rays.clear();
+        for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
+        hits.resize(bounce_rays.size());
+        surfaces_.nearest(bounce_rays, tracer, hits);
+        next_paths.clear();
         for (std::size_t k = 0; k < bounces.size(); ++k) {
             const Path& path = *bounces[k].from->path;
             Color& sum = sums[path.pixel];
-            if (!std::isfinite(meetings[k].t)) {
+            if (!std::isfinite(hits[k].t)) {
                 sum += path.throughput * bounces[k].escaped;
                 continue;
             }
-            // Lamps stand in nobody's way, so that one may lie before the surface.
-            sum += path.throughput * fromLamps(bounces[k].ray, meetings[k].t, bounces[k].pdf);
-            if (!last) going.push_back({meetings[k], bounces[k].ray.direction, path.throughput, path.pixel});
+            // Lights occlude nothing, so one may lie in front of the surface.
+            sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
+            if (!last) next_paths.push_back({hits[k], bounces[k].ray.direction, path.throughput, path.pixel});
         }
-        paths.swap(going);
+        paths.swap(next_paths);
     }
 
-    ways.clear();
+    std::vector<trace::Ray> backdrop_rays;
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeOf(points[n]) > 0.0f) ways.push_back(rays[n]);
-    std::vector<Color> behind(ways.size(), Color(0.0f));
-    const bool backdrop = surfaces_.backdrop(ways, behind);
+        if (fadeOf(points[n]) > 0.0f) backdrop_rays.push_back(rays[n]);
+    std::vector<Color> behind(backdrop_rays.size(), Color(0.0f));
+    const bool backdrop = surfaces_.backdrop(backdrop_rays, behind);
     for (std::size_t n = 0, faded = 0; n < rays.size(); ++n) {
         const float fade = fadeOf(points[n]);
         Color color = (1.0f - fade) * sums[n];

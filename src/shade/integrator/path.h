@@ -1,4 +1,4 @@
-// Light as it travels: paths from the camera, joined to the lights at every bounce.
+// Path tracing from the camera, with next event estimation and multiple importance sampling.
 #pragma once
 
 #include "shade/environment/bed_light.h"
@@ -11,12 +11,14 @@
 
 namespace stratum::shade {
 
-/// Path tracing. At each of `bounces` scattering events on the print the environment is sampled both by its own density
-/// and by the BRDF's, joined by multiple importance sampling; on the bed by BedLight first of all. Lamps are summed;
-/// those with extent are sampled in both ways, too. Unbiased for paths of that length; nothing is clamped.
+/// Path tracing with `bounces` scattering events. At each of them the environment is sampled by its own density and by
+/// the BRDF's, combined by multiple importance sampling; on the bed BedLight takes the place of the environment's
+/// density. Every light is sampled at every vertex; lights with extent also by the BRDF. Unbiased for paths of that
+/// length; nothing is clamped.
 ///
-/// All paths of a stream take each step together, so that rays of one kind are traced as a stream: first the shadow
-/// rays of a bounce, then the rays that go on. A path's result depends on its own ray and sampler alone.
+/// All paths of a stream advance together by one vertex a step, so that rays of one kind are traced as a stream: first
+/// the shadow rays of a step, then the rays drawn from the BRDFs. The result of a path depends on its own ray and
+/// sampler alone.
 class PathIntegrator final : public Integrator {
 public:
     PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces);
@@ -28,63 +30,67 @@ protected:
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
-    /// A path on its way. It stands on a surface.
+    /// A path up to its current vertex.
     struct Path {
         SurfacePoint point;
         glm::dvec3 direction;  // of the ray that met the point
         Color throughput{1.0f};
         std::size_t pixel = 0;
     };
-    /// Rays that bring light home unless something stands in their way.
-    struct Feelers {
+    /// Rays, and the light that each adds to its pixel if it is unoccluded.
+    struct ShadowRays {
         std::vector<trace::Ray> rays;
-        std::vector<Color> light;  // premultiplied by the throughput
+        std::vector<Color> light;  // times the throughput of the path
         std::vector<std::size_t> pixel;
         void add(const trace::Ray& ray, const Color& value, std::size_t to);
         void clear();
     };
-    /// A path in the frame of the surface that it stands on.
-    struct Stand {
+    /// The current vertex of a path, with its shading frame.
+    struct PathVertex {
         Path* path;
         Frame frame;
-        glm::vec3 wo;  // local, back along the path
+        glm::vec3 wo;  // unit, in `frame`, towards the previous vertex
     };
-    /// A ray drawn from the BRDF, and what it brings home if it meets nothing.
+    /// A ray drawn from the BRDF.
     struct Bounce {
-        const Stand* from;
+        const PathVertex* from;
         trace::Ray ray;
-        glm::vec3 way;  // its direction
+        glm::vec3 direction;  // of ray
         float pdf;
-        Color escaped;
+        Color escaped;  // radiance along it if it hits nothing, weighted by MIS
     };
-    /// What is lit in one way: by BedLight, or by the environment.
+    /// Indices of vertices or bounces whose light comes from one density: on the bed BedLight's, else the
+    /// environment's.
     struct Group {
         bool bed;
         std::vector<std::size_t> members;
     };
-    /// Samples of light for a group.
-    struct Looks {
-        std::vector<std::size_t> pixels;  // whose samplers draw
+    /// Samples of light for a group: the input and output of one call of sampleStream or evalStream.
+    struct LightBatch {
+        std::vector<std::size_t> pixels;  // indices of the samplers
         std::vector<glm::vec2> u;
-        std::vector<glm::vec3> ways, normals;
+        std::vector<glm::vec3> directions, normals;
         std::vector<EnvironmentSample> samples;
         void resize(std::size_t count);
     };
 
-    void feelEnvironment(const Group& group, std::span<const Stand> stands, std::span<Sampler> samplers,
-                         Feelers& feelers, Looks& looks) const;
-    void feelLights(const Stand& stand, Sampler& sampler, Feelers& feelers) const;
-    /// Scatters a path: nothing if it ends. Changes its throughput.
-    std::optional<Bounce> scatter(Stand& stand, float lobe_draw, const glm::vec2& brdf_draw) const;
-    void lookWhereTheyGo(const Group& group, std::span<Bounce> bounces, Looks& looks) const;
-    /// What the lamps with extent add to a ray drawn from the BRDF that goes on freely up to t.
-    Color fromLamps(const trace::Ray& ray, double t, float pdf) const;
-    void gather(const Feelers& feelers, trace::Tracer& tracer, std::span<Color> sums) const;
+    void sampleEnvironment(const Group& group, std::span<const PathVertex> vertices, std::span<Sampler> samplers,
+                           ShadowRays& shadow_rays, LightBatch& batch) const;
+    /// Adds one shadow ray for each light.
+    void sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const;
+    /// Draws the next direction of a path and updates its throughput; nothing if the path ends.
+    std::optional<Bounce> scatter(PathVertex& vertex, float lobe_draw, const glm::vec2& brdf_draw) const;
+    /// Adds the environment's radiance to Bounce::escaped.
+    void evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const;
+    /// MIS-weighted radiance of the lights with extent that a ray drawn from the BRDF hits up to the distance t.
+    Color hitLights(const trace::Ray& ray, double t, float pdf) const;
+    /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels.
+    void addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
 
     const SceneDescription& scene_;
     std::unique_ptr<const BedLight> bed_light_;
     int bounces_;
-    std::vector<const Light*> lamps_;  // those with extent
+    std::vector<const Light*> extended_lights_;  // of the scene, see Light::hasExtent
 };
 
 }  // namespace stratum::shade

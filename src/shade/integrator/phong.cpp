@@ -17,7 +17,7 @@ PhongIntegrator::PhongIntegrator(const SceneDescription& scene, const trace::Int
     lights_.push_back(std::make_shared<DirectionalLight>(glm::vec3(glm::normalize(to_light)), Color(0.8f)));
 }
 
-/// Light by the model, without mirrors and without the base colour.
+/// I of the model, without the mirror term and without the base color.
 Color PhongIntegrator::local(const SurfacePoint& point, const glm::vec3& view, TraceContext& context) const {
     const glm::vec3 n(point.normal);
     Color sum = options_.ambient * ambient_;

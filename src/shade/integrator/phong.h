@@ -1,4 +1,4 @@
-// The shading of older renderers: for comparison with them, and for pictures that explain.
+// Phong shading: for comparison with older renderers, and for illustrations.
 #pragma once
 
 #include "shade/integrator/integrator.h"
@@ -11,9 +11,10 @@ namespace stratum::shade {
 /// Phong's model with hard shadows and mirrors:
 ///   I = ka Ia + sum over lights of visible Ii [kd max(0, n.l) + ks max(0, r.v)^shininess]
 ///   colour = (1 - kr) base I + kr (what the mirror shows), to a depth of five
-/// with base the reflectanceFactor of the surface. Lamps have the intensity of their text: a point's doesn't fall with
-/// distance, a directional's is its irradiance; those with extent shine from their middle. Ambient is --light ambient.
-/// Without any light: ambient 0.2 and one lamp of 0.8 from above the camera's left shoulder. The bed is no mirror.
+/// with base the reflectanceFactor of the surface. Ii is the number given with --light: the intensity of a point light
+/// (without distance falloff), the irradiance of a directional one; lights with extent are sampled at their center.
+/// Ia is --light ambient. Without any light: Ia = 0.2 and one directional light of 0.8 from above the camera's left
+/// shoulder. The bed has no mirror term.
 /// Sources: B. T. Phong, CACM 18(6) 1975; the terms, depth and defaults are those of Roukema, "SDFs versus polygons",
 /// 2023.
 class PhongIntegrator final : public Integrator {

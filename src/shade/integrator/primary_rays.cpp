@@ -24,8 +24,8 @@ using Batch = std::array<T, kBatch>;
 struct alignas(64) FirstDraws {
     Batch<std::uint32_t> block, index;  // of Sampler, before the first draw
 };
-struct alignas(64) Places {
-    Batch<double> x, y;  // pixels; on the way in, pixels' centres
+struct alignas(64) Positions {
+    Batch<double> x, y;  // pixels; as input the pixels' centers
 };
 struct alignas(64) Directions {
     Batch<double> x, y, z;
@@ -44,8 +44,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, 8>;
 using VD = hn::Vec<D>;
 
-// PixelFilter::offset of u, of which `bits` are the first 32 bits. A float holds 24 of them: 10 name the table's
-// interval and 14 the place in it, so that all is exact up to the interpolation.
+// PixelFilter::offset of u, whose first 32 bits are `bits`. A float holds 24 of them: 10 are the index of the table's
+// interval and 14 the position in it, so that everything before the interpolation is exact.
 HWY_INLINE VD quantile(const double* HWY_RESTRICT table, const std::uint32_t* HWY_RESTRICT bits) {
     static_assert(PixelFilter::kNodes == 1025);
     const D d;
@@ -60,7 +60,7 @@ HWY_INLINE VD quantile(const double* HWY_RESTRICT table, const std::uint32_t* HW
     return hn::Add(hn::Mul(hn::Sub(hn::Set(d, 1.0), w), here), hn::Mul(w, next));
 }
 
-void AddOffsets(const FirstDraws& draws, const double* HWY_RESTRICT table, Places& places) {
+void AddOffsets(const FirstDraws& draws, const double* HWY_RESTRICT table, Positions& positions) {
     const U u;
     const D d;
     alignas(64) Batch<std::uint32_t> x, y;
@@ -70,19 +70,19 @@ void AddOffsets(const FirstDraws& draws, const double* HWY_RESTRICT table, Place
         hn::Store(drawn.y, u, &y[n]);
     }
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        hn::Store(hn::Add(hn::Load(d, &places.x[n]), quantile(table, &x[n])), d, &places.x[n]);
-        hn::Store(hn::Add(hn::Load(d, &places.y[n]), quantile(table, &y[n])), d, &places.y[n]);
+        hn::Store(hn::Add(hn::Load(d, &positions.x[n]), quantile(table, &x[n])), d, &positions.x[n]);
+        hn::Store(hn::Add(hn::Load(d, &positions.y[n]), quantile(table, &y[n])), d, &positions.y[n]);
     }
 }
 
-void Pinhole(const Camera& camera, const Places& places, Directions& out) {
+void Pinhole(const Camera& camera, const Positions& positions, Directions& out) {
     const D d;
     const VD scale = hn::Set(d, camera.pixelSize());
     const VD half_width = hn::Set(d, 0.5 * camera.width());
     const VD half_height = hn::Set(d, 0.5 * camera.height());
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const VD x = hn::Mul(hn::Sub(hn::Load(d, &places.x[n]), half_width), scale);
-        const VD y = hn::Mul(hn::Sub(half_height, hn::Load(d, &places.y[n])), scale);
+        const VD x = hn::Mul(hn::Sub(hn::Load(d, &positions.x[n]), half_width), scale);
+        const VD y = hn::Mul(hn::Sub(half_height, hn::Load(d, &positions.y[n])), scale);
         const auto axis = [&](int k) {
             const VD forward_right =
                 hn::Add(hn::Set(d, camera.forward()[k]), hn::Mul(x, hn::Set(d, camera.right()[k])));
@@ -114,7 +114,7 @@ HWY_EXPORT(Pinhole);
 void primaryRays(const Camera& camera, const PixelFilter& filter, std::span<const glm::ivec2> pixels,
                  std::span<Sampler> samplers, std::span<trace::Ray> rays) {
     FirstDraws draws{};
-    Places places{};
+    Positions positions{};
     Directions directions;
     for (std::size_t first = 0; first < rays.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, rays.size() - first);
@@ -122,17 +122,17 @@ void primaryRays(const Camera& camera, const PixelFilter& filter, std::span<cons
             const Sampler& sampler = samplers[first + n];
             draws.block[n] = sampler.block();
             draws.index[n] = sampler.index();
-            places.x[n] = pixels[first + n].x + 0.5;
-            places.y[n] = pixels[first + n].y + 0.5;
+            positions.x[n] = pixels[first + n].x + 0.5;
+            positions.y[n] = pixels[first + n].y + 0.5;
         }
-        HWY_DYNAMIC_DISPATCH(AddOffsets)(draws, filter.quantiles().data(), places);
+        HWY_DYNAMIC_DISPATCH(AddOffsets)(draws, filter.quantiles().data(), positions);
         for (std::size_t n = 0; n < count; ++n) samplers[first + n].skip();
         if (camera.hasLens()) {
             for (std::size_t n = 0; n < count; ++n)
-                rays[first + n] = camera.ray({places.x[n], places.y[n]}, samplers[first + n].next2D());
+                rays[first + n] = camera.ray({positions.x[n], positions.y[n]}, samplers[first + n].next2D());
             continue;
         }
-        HWY_DYNAMIC_DISPATCH(Pinhole)(camera, places, directions);
+        HWY_DYNAMIC_DISPATCH(Pinhole)(camera, positions, directions);
         for (std::size_t n = 0; n < count; ++n) {
             trace::Ray& ray = rays[first + n];
             ray = trace::Ray();

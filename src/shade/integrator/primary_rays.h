@@ -1,4 +1,4 @@
-// Rays from the camera through the filters of pixels, many at a time.
+// Camera rays through the reconstruction filters of pixels, many at a time.
 #pragma once
 
 #include "shade/camera/camera.h"
@@ -11,9 +11,10 @@
 
 namespace stratum::shade {
 
-/// rays[n] goes through pixels[n] by the first two numbers of samplers[n], which must just have been started, and the
-/// lens, if there is one, by the next two; the samplers are left behind them. The bits are those of
-/// `camera.ray(pixel + 0.5 + filter.offset(sampler.next2D()))`, whatever the processor. All spans are of one length.
+/// Sets rays[n] to a ray through pixels[n]. The position in the pixel is from the first two numbers of samplers[n],
+/// which must just have been started; the position on the lens, if there is one, is from the next two. The samplers
+/// advance past them. The bits are those of `camera.ray(pixel + 0.5 + filter.offset(sampler.next2D()))` on every
+/// processor. All spans are of one length.
 void primaryRays(const Camera& camera, const PixelFilter& filter, std::span<const glm::ivec2> pixels,
                  std::span<Sampler> samplers, std::span<trace::Ray> rays);
 

@@ -22,10 +22,10 @@ namespace {
 
 constexpr int kMaxSide = 32768;
 constexpr int kMaxSpp = 65536;
-/// Of a pixel, before anybody asks how noisy it is (RenderOptions::noise): of fewer, a highlight that is met by one
-/// sample in ten is often not seen at all, and its tile taken for good enough.
+/// Samples of a pixel before the first estimate of its error (RenderOptions::noise): with fewer, a highlight that one
+/// sample in ten hits is often missed, and its tile is stopped too early.
 constexpr int kFirstSamples = 16;
-/// The same by the clock, which comes back to every tile.
+/// The same with --time, where a tile can get more samples later.
 constexpr int kClockSamples = 4;
 
 /// What all tiles of a render share.
@@ -39,7 +39,7 @@ public:
           progress_(progress),
           integrator_(makeIntegrator(options.integrator, scene, print)),
           recorder_(scene, print, options.aovs),
-          // How many samples a tile gets depends on all of its pixels: without the rest of it, a crop would differ.
+          // With --noise the number of samples of a tile depends on all of its pixels, so a crop needs whole tiles.
           region_(options.noise > 0.0 ? wholeTiles(options.region(), options.width, options.height) : options.region()),
           boxes_(tilesOf(region_)),
           pixels_(static_cast<std::uint64_t>(region_.width()) * static_cast<std::uint64_t>(region_.height())),
@@ -94,8 +94,7 @@ private:
     RenderState state_;
 };
 
-/// What the picture depends on: the options as text, what the print and the scene were made from if the caller says so,
-/// and what they look like to a few thousand samples.
+/// Everything the picture depends on: the options as text, RenderOptions::source, and a hash of a few thousand samples.
 std::string Renderer::identity() const {
     constexpr int kProbes = 4096;
     TileWorker worker = makeWorker();
@@ -135,8 +134,7 @@ void Renderer::tileByTile() {
     std::optional<Checkpoint> checkpoint;
     if (!options_.checkpoint.empty()) {
         checkpoint.emplace(options_.checkpoint, identity());
-        if (!checkpoint->read(state_))
-            checkpoint->write(checkpoint->bytesOf(state_));  // a file that can't be written fails now
+        if (!checkpoint->read(state_)) checkpoint->write(checkpoint->bytesOf(state_));  // an unwritable path fails now
     }
     std::vector<std::size_t> todo;
     for (std::size_t n = 0; n < boxes_.size(); ++n)
@@ -169,7 +167,7 @@ void Renderer::tileByTile() {
                 bytes = checkpoint->bytesOf(state_);
                 writing = true;
             }
-            // A disc may take long; the other threads go on meanwhile.
+            // Writing may take long; the other threads continue meanwhile.
             checkpoint->write(bytes);
             const std::lock_guard lock(mutex);
             written = Clock::now();
@@ -195,7 +193,7 @@ void Renderer::byTheClock() {
             TileWorker& worker = workers_.local();
             for (std::size_t n = first; n != last; ++n) {
                 Tile& tile = tiles[todo[n]];
-                // The first samples are taken whatever the clock says: every pixel needs some.
+                // The first samples are taken even after the deadline: every pixel needs some.
                 if (tile.samples() > 0 && elapsed() >= options_.seconds) return;
                 sample(tile, std::min(std::max(kClockSamples, 2 * tile.samples()), options_.spp), worker);
                 if (!progress_) continue;
@@ -206,7 +204,7 @@ void Renderer::byTheClock() {
             }
         });
         if (elapsed() >= options_.seconds) break;
-        // The worse half of what is not good enough yet.
+        // Next: the worse half of the tiles that are not finished.
         std::vector<std::pair<double, std::size_t>> errors;
         for (std::size_t n = 0; n < tiles.size(); ++n) {
             const double error = tiles[n].error();

@@ -1,4 +1,4 @@
-// From a scene to a film, on all cores, with the same bytes for any number of them.
+// Renders a scene into a film, on all cores, with the same bytes for any number of them.
 #pragma once
 
 #include "shade/film/film.h"
@@ -18,24 +18,25 @@ struct RenderOptions {
     int width = 1280;  ///< pixels, 1 to 32768
     int height = 960;  ///< pixels, 1 to 32768
     int spp = 16;      ///< samples a pixel, 1 to 65536; powers of two are best. With `noise`: at most
-    /// --noise: 0, or the relative standard error at which a tile of 32 x 32 pixels is good enough, in (0, 1]: its root
-    /// mean square over the tile, of luminance, against luminance^2 + 0.01. Begins with 16 samples and doubles.
+    /// --noise: 0, or the error at which a tile of 32 x 32 pixels is finished, in (0, 1]: root mean square over the
+    /// tile of the standard error of luminance over sqrt(luminance^2 + 0.01). Each tile gets 16 samples, then twice as
+    /// many, etc.
     double noise = 0.0;
-    /// --time: 0, or seconds. Every tile gets 4 samples; then those with the largest errors get twice as many, again
-    /// and again, until the time is over, or all reach `noise` or `spp`. What comes out depends on the machine and its
-    /// day.
+    /// --time: 0, or seconds. Every tile gets 4 samples; then those with the largest errors get twice as many,
+    /// repeatedly, until the time is over, or all reach `noise` or `spp`. The film is not reproducible: it depends on
+    /// the machine and its load.
     double seconds = 0.0;
     /// --checkpoint: empty, or a file that keeps the finished tiles. If it is there already, they are not rendered
     /// again, and the film has the bytes of a render without interruption. Not with `seconds`.
     std::filesystem::path checkpoint;
-    /// What print and scene were made from, as a line of text, e.g. hashes of files and options: a checkpoint of
-    /// another is refused. What isn't said here is told apart by what a few thousand samples see.
+    /// One line of text that identifies the input of print and scene, e.g. hashes of files and options: a checkpoint of
+    /// another is refused. Differences that it doesn't name are detected by comparing a few thousand samples.
     std::string source;
     double checkpoint_interval = 20.0;  ///< seconds between writings of that file
     std::vector<Aov> aovs;              ///< --aov: layers of the film
-    std::uint32_t seed = 0;             ///< another seed, another noise
+    std::uint32_t seed = 0;             ///< selects the noise pattern
     std::optional<PixelBox> crop;       ///< --crop: only this part of the same picture; must lie in the frame
-    int margin = 0;                     ///< pixels about the crop that are rendered and kept, too, inside the frame
+    int margin = 0;  ///< pixels around the crop, inside the frame, that are rendered and kept as well
     IntegratorOptions integrator;
 
     /// The crop with its margin, or the whole frame.
@@ -50,7 +51,7 @@ struct RenderResult {
     RayCounts rays;         ///< the same for any number of threads
 };
 
-/// Called now and then from any thread, never from two at once, with the number of finished pixels.
+/// Called from time to time from any thread, never from two at once, with the number of finished pixels.
 using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 /// Renders. Runs on the threads that TBB may use: limit them with tbb::global_control. The film depends on print, scene

@@ -33,7 +33,8 @@ SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, tra
     if (scene_.smooth_normals) {
         const glm::dvec3 smooth = tracer.shadingNormal(hit);
         const glm::dvec3 facing_us = facing > 0.0 ? -smooth : smooth;
-        // One that looks away from the viewer would show nothing: near the silhouette it gives way.
+        // A smooth normal that faces away from the viewer would render black: near silhouettes the geometric one is
+        // used.
         if (glm::dot(facing_us, ray.direction) < 0.0) point.normal = facing_us;
     }
     return point;
@@ -44,12 +45,12 @@ SurfacePoint Surfaces::onBed(const trace::Ray& ray, double t) const {
     point.position = ray.origin + t * ray.direction;
     point.position.z = scene_.bed->z;
     point.t = t;
-    const glm::dvec2 place(point.position.x, point.position.y);
-    const BedTexture::Finish& finish = scene_.bed->texture.at(place);
+    const glm::dvec2 xy(point.position.x, point.position.y);
+    const BedTexture::Finish& finish = scene_.bed->texture.at(xy);
     point.brdf = finish.brdf.get();
     point.albedo = finish.albedo;
-    const glm::dvec3 bump = scene_.bed->texture.normal(place);
-    // As on the print: what looks away from the viewer would show nothing.
+    const glm::dvec3 bump = scene_.bed->texture.normal(xy);
+    // As on the print: a normal that faces away from the viewer would render black.
     if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
     point.bed = true;
     return point;
@@ -72,7 +73,8 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, 
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<trace::Hit> hits;
     hits.resize(rays.size());
-    // Of an earlier scene, perhaps; who has but one object, or no parts, says nothing of them.
+    // The hits may be those of an earlier scene, and intersectors of one object or without parts don't set these
+    // fields.
     for (trace::Hit& hit : hits) hit.object = hit.part = 0;
     static thread_local std::vector<std::optional<double>> beds;
     if (scene_.bed) {
@@ -104,18 +106,18 @@ bool Surfaces::occluded(const trace::Ray& ray, trace::Tracer& tracer) const {
 void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
                         std::span<std::uint8_t> blocked) const {
     if (!scene_.bed) return tracer.occludedStream(rays, blocked);
-    // What the bed stops needs no walk through the print.
+    // Rays that hit the bed are not traced through the print.
     std::vector<trace::Ray> others;
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> ray_of;
     for (std::size_t n = 0; n < rays.size(); ++n) {
         blocked[n] = scene_.bed->intersect(rays[n]) ? 1 : 0;
         if (blocked[n] != 0) continue;
         others.push_back(rays[n]);
-        places.push_back(n);
+        ray_of.push_back(n);
     }
     std::vector<std::uint8_t> answers(others.size());
     tracer.occludedStream(others, answers);
-    for (std::size_t k = 0; k < places.size(); ++k) blocked[places[k]] = answers[k];
+    for (std::size_t k = 0; k < ray_of.size(); ++k) blocked[ray_of[k]] = answers[k];
 }
 
 trace::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {
@@ -140,10 +142,10 @@ bool Surfaces::backdrop(std::span<const trace::Ray> rays, std::span<Color> radia
         return true;
     }
     if (!scene_.environment->visible()) return false;
-    std::vector<glm::vec3> ways;
-    ways.reserve(rays.size());
-    for (const trace::Ray& ray : rays) ways.emplace_back(ray.direction);
-    scene_.environment->radianceStream(ways, radiances);
+    std::vector<glm::vec3> directions;
+    directions.reserve(rays.size());
+    for (const trace::Ray& ray : rays) directions.emplace_back(ray.direction);
+    scene_.environment->radianceStream(directions, radiances);
     return true;
 }
 

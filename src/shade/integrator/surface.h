@@ -1,4 +1,4 @@
-// Everything that a ray can meet: the print and the bed.
+// Everything that a ray can hit: the print and the bed.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -16,13 +16,13 @@ namespace stratum::shade {
 /// A point where light is scattered. World space.
 struct SurfacePoint {
     glm::dvec3 position{0.0};
-    glm::dvec3 normal{0.0, 0.0, 1.0};     ///< unit, to shade with, on the side that the ray came from
-    glm::dvec3 geometric{0.0, 0.0, 1.0};  ///< unit, to leave along; the same but for smooth normals
+    glm::dvec3 normal{0.0, 0.0, 1.0};     ///< unit, for shading, on the side of the ray's origin
+    glm::dvec3 geometric{0.0, 0.0, 1.0};  ///< unit, to offset new rays along; differs only with smooth normals
     double t = 0.0;                       ///< along the ray, world units
     const Brdf* brdf = nullptr;
     Color albedo{0.0f};  ///< reflectanceFactor of brdf
     bool bed = false;
-    /// By Label: what was printed here, if the scene asks for it and the object knows; -1 if not.
+    /// By Label: values at this point; -1 if the scene doesn't request the label or the object doesn't have it.
     std::array<float, kLabels> labels{-1.0f, -1.0f, -1.0f};
 };
 
@@ -38,14 +38,14 @@ public:
     bool occluded(const trace::Ray& ray, trace::Tracer& tracer) const;
     /// blocked[i] is 1 or 0. `blocked` is as long as `rays`.
     void occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
-    /// A ray that leaves a point without meeting the same surface again.
+    /// A ray from a point, offset so that it doesn't hit the same surface again.
     /// @param direction  world space, near unit length
     trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const;
     /// Share of the backdrop in what the camera sees of this point, 0 to 1.
     float fade(const SurfacePoint& point) const;
-    /// What the camera sees where there is nothing.
+    /// Radiance that the camera sees along a ray that hits nothing; false if there is no backdrop.
     bool backdrop(const trace::Ray& ray, Color& radiance) const;
-    /// The same for many rays; false if there is nothing behind any of them. `radiances` is as long as `rays`.
+    /// The same for many rays. `radiances` is as long as `rays`.
     bool backdrop(std::span<const trace::Ray> rays, std::span<Color> radiances) const;
 
 private:

@@ -9,8 +9,8 @@
 namespace stratum::shade {
 namespace {
 
-constexpr int kTile = 32;              // pixels a side: work enough for a task, few enough for balance
-constexpr std::size_t kStream = 4096;  // samples on the way at a time: enough to fill vectors, few enough for a cache
+constexpr int kTile = 32;              // pixels a side: large enough for a task, small enough for load balance
+constexpr std::size_t kStream = 4096;  // samples at a time: enough to fill vectors, few enough for the cache
 
 }  // namespace
 
@@ -52,20 +52,20 @@ Tile::Tile(const PixelBox& box, const AovRecorder& recorder)
 
 void Tile::sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                   const PixelFilter& filter, TileWorker& worker) {
-    // Samples go to the integrator in streams, pixel by pixel, and are summed in that order.
+    // The integrator gets the samples in streams, pixel by pixel; they are summed in that order.
     const auto each = static_cast<std::size_t>(target - samples_);
     const std::size_t most = std::min(kStream, sums_.size() * each);
-    worker.places.resize(most);
+    worker.positions.resize(most);
     worker.rays.resize(most);
     worker.samplers.resize(most, worker.sampler);
     worker.points.resize(most);
     worker.pixels.resize(most);
     std::size_t waiting = 0;
-    std::size_t pixel = 0;  // the one that is summed up,
-    std::size_t taken = 0;  // and how many of its samples are in
+    std::size_t pixel = 0;  // the pixel being summed
+    std::size_t taken = 0;  // its samples so far
     const auto flush = [&] {
-        primaryRays(camera, filter, std::span(worker.places).first(waiting), std::span(worker.samplers).first(waiting),
-                    std::span(worker.rays).first(waiting));
+        primaryRays(camera, filter, std::span(worker.positions).first(waiting),
+                    std::span(worker.samplers).first(waiting), std::span(worker.rays).first(waiting));
         integrator.radianceStream(std::span(worker.rays).first(waiting), std::span(worker.samplers).first(waiting),
                                   *worker.tracer, rays_, std::span(worker.points).first(waiting),
                                   std::span(worker.pixels).first(waiting));
@@ -84,7 +84,7 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
             sampler.start(x, y, static_cast<std::uint32_t>(samples_));
             for (int s = samples_; s < target; ++s, sampler.startNext()) {
                 worker.samplers[waiting] = sampler;
-                worker.places[waiting] = {x, y};
+                worker.positions[waiting] = {x, y};
                 if (++waiting == kStream) flush();
             }
         }

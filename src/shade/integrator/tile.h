@@ -1,4 +1,4 @@
-// A square of pixels in the making: samples go in, in any number of goes, and means come out.
+// A square of pixels that accumulates samples, in one or several calls, and returns their means.
 #pragma once
 
 #include "shade/camera/filter.h"
@@ -12,26 +12,26 @@
 
 namespace stratum::shade {
 
-/// What a thread has to itself.
+/// State of one thread.
 struct TileWorker {
     std::unique_ptr<trace::Tracer> tracer;
-    Sampler sampler;  // a pattern: copied for every sample
-    // Samples on the way.
-    std::vector<glm::ivec2> places;  // pixels
+    Sampler sampler;  // copied for every sample
+    // The current stream of samples.
+    std::vector<glm::ivec2> positions;  // pixels
     std::vector<trace::Ray> rays;
     std::vector<Sampler> samplers;
-    std::vector<SurfacePoint> points;  // what they meet first
+    std::vector<SurfacePoint> points;  // first hits
     std::vector<Pixel> pixels;
 };
 
-/// The sums of a tile's samples. Adding samples [0, 8) and then [8, 16) gives the bits of [0, 16) at once, whichever
-/// thread does it: a tile can be taken up again.
+/// The sums of a tile's samples. Adding samples [0, 8) and then [8, 16) gives the same bits as [0, 16) at once, on any
+/// thread.
 class Tile {
 public:
-    /// @param recorder  of the layers; only its size is kept
+    /// @param recorder  of the layers; only its size is stored
     Tile(const PixelBox& box, const AovRecorder& recorder);
 
-    /// Takes samples samples(), ..., target - 1 of every pixel.
+    /// Adds samples samples() to target - 1 of every pixel.
     void sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                 const PixelFilter& filter, TileWorker& worker);
     /// Root mean square over the pixels of the relative standard error of luminance, as RenderOptions::noise counts it.
@@ -61,10 +61,10 @@ private:
     RayCounts rays_;
 };
 
-/// The tiles of a region, row by row. They lie on the frame's grid; those at the region's edges are cut off there.
+/// The tiles of a region, row by row. They are aligned to the frame; those at the region's edges are clipped to it.
 std::vector<PixelBox> tilesOf(const PixelBox& region);
 
-/// The smallest region of whole tiles about another, in a frame of that size.
+/// The smallest region of whole tiles that contains `region`, in a frame of that size.
 PixelBox wholeTiles(const PixelBox& region, int width, int height);
 
 }  // namespace stratum::shade

@@ -38,11 +38,11 @@ std::optional<LightSample> SunLight::sample(const glm::dvec3&, const glm::vec2& 
     return result;
 }
 
-std::optional<LightMeeting> SunLight::meet(const trace::Ray& ray) const {
+std::optional<LightHit> SunLight::intersect(const trace::Ray& ray) const {
     // |a - b|^2 = 2 (1 - cos) has the digits that the dot product lacks.
     const glm::dvec3 apart = ray.direction - glm::dvec3(to_light_);
     if (0.5 * glm::dot(apart, apart) > lift_) return std::nullopt;
-    return LightMeeting{std::numeric_limits<double>::infinity(), radiance_, pdf_};
+    return LightHit{std::numeric_limits<double>::infinity(), radiance_, pdf_};
 }
 
 }  // namespace stratum::shade

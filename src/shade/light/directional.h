@@ -29,7 +29,7 @@ public:
     /// @param diameter    degrees, above 0 and at most 90
     SunLight(const glm::vec3& to_light, const Color& irradiance, float diameter);
     std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
-    std::optional<LightMeeting> meet(const trace::Ray& ray) const override;
+    std::optional<LightHit> intersect(const trace::Ray& ray) const override;
     bool hasExtent() const override { return true; }
 
 private:

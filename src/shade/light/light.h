@@ -23,7 +23,7 @@ struct LightSample {
 };
 
 /// Where a ray meets a lamp.
-struct LightMeeting {
+struct LightHit {
     double t = std::numeric_limits<double>::infinity();  ///< world units along the ray
     Color radiance{0.0f};
     float pdf = 0.0f;  ///< of sample() in the ray's direction from the ray's origin, per steradian
@@ -38,7 +38,7 @@ public:
     /// @param u  uniform in [0, 1)^2; a light without extent ignores it
     virtual std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const = 0;
     /// For lights with extent, so that a BRDF's samples can find them.
-    virtual std::optional<LightMeeting> meet(const trace::Ray&) const { return std::nullopt; }
+    virtual std::optional<LightHit> intersect(const trace::Ray&) const { return std::nullopt; }
     /// Whether sample() draws, i.e. has another answer for another u.
     virtual bool hasExtent() const { return false; }
 };

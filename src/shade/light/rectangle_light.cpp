@@ -88,7 +88,7 @@ std::optional<LightSample> RectangleLight::sample(const glm::dvec3& point, const
     return LightSample{glm::vec3(way / distance), distance, radiance_, density};
 }
 
-std::optional<LightMeeting> RectangleLight::meet(const trace::Ray& ray) const {
+std::optional<LightHit> RectangleLight::intersect(const trace::Ray& ray) const {
     const double facing = glm::dot(ray.direction, z_);
     if (facing == 0.0) return std::nullopt;
     const double t = glm::dot(centre_ - ray.origin, z_) / facing;
@@ -98,7 +98,7 @@ std::optional<LightMeeting> RectangleLight::meet(const trace::Ray& ray) const {
     const View v = viewFrom(ray.origin);
     const double pdf =
         v.solid_angle > 1e-7 ? 1.0 / v.solid_angle : t * t / (std::abs(facing) * 4.0 * half_x_ * half_y_);
-    return LightMeeting{t, radiance_, static_cast<float>(pdf)};
+    return LightHit{t, radiance_, static_cast<float>(pdf)};
 }
 
 }  // namespace stratum::shade

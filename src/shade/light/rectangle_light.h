@@ -12,7 +12,7 @@ public:
     /// @param half_u, half_v  perpendicular. World units
     RectangleLight(const glm::dvec3& centre, const glm::dvec3& half_u, const glm::dvec3& half_v, const Color& radiance);
     std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
-    std::optional<LightMeeting> meet(const trace::Ray& ray) const override;
+    std::optional<LightHit> intersect(const trace::Ray& ray) const override;
     bool hasExtent() const override { return true; }
 
 private:

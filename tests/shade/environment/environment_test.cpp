@@ -94,7 +94,7 @@ TEST_P(Environments, BedLightSamplesItsDensity) {
         return s.direction;
     };
     EXPECT_LT(test::chiSquaredZ(
-                  {0, 0, 1}, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(light->toward(d).pdf); },
+                  {0, 0, 1}, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(light->eval(d).pdf); },
                   300000, 2),
               4.0);
 }
@@ -105,7 +105,7 @@ TEST_P(Environments, BedLightIsPositiveWhereLightIs) {
     overSphere(
         [&](const glm::vec3& d) {
             if (d.z > 0.0f && shade::maxComponent(env->radiance(d)) > 0.0f) {
-                EXPECT_GT(light->toward(d).pdf, 0.0f);
+                EXPECT_GT(light->eval(d).pdf, 0.0f);
             }
             return 0.0;
         },
@@ -132,7 +132,7 @@ TEST_P(Environments, LightsAMattSurfaceTogetherWithItsCosine) {
                     v += shade::luminance(s.radiance) * c / (s.pdf + c * shade::kInvPi);
                 }
                 const glm::vec3 way = frame.toWorld(shade::toCosineHemisphere(u));
-                const auto there = env->toward(way, normal);
+                const auto there = env->eval(way, normal);
                 if (const float c = cosine(way); c > 0.0f)
                     v += shade::luminance(there.radiance) * c / (there.pdf + c * shade::kInvPi);
                 estimate += double(v);

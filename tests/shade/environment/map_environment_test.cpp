@@ -143,7 +143,7 @@ TEST(MapEnvironment, OneLookGivesRadianceAndDensity) {
     for (int n = 0; n < 1000; ++n) {
         const glm::vec3 d = shade::toSphere({(n + 0.5f) / 1000.0f, std::fmod(0.618f * n, 1.0f)});
         const glm::vec3 normal = shade::toSphere({std::fmod(0.755f * n, 1.0f), std::fmod(0.57f * n, 1.0f)});
-        const auto there = env.toward(d, normal);
+        const auto there = env.eval(d, normal);
         EXPECT_EQ(there.radiance, env.radiance(d));
         EXPECT_EQ(there.pdf, env.pdf(d, normal));
         EXPECT_EQ(there.direction, d);

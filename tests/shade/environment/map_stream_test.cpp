@@ -85,10 +85,10 @@ protected:
             }
             // Not where samples lie: some are on the edges of cells, where rounding decides.
             for (std::size_t n = 0; n < count; ++n) ways[n] = draws.normals[(7 * n + 3) % count];
-            environment.towardStream(ways, draws.normals, there);
+            environment.evalStream(ways, draws.normals, there);
             for (std::size_t n = 0; n < count; ++n) {
-                expectSame(there[n], environment.toward(ways[n], draws.normals[n]));
-                if (HasFatalFailure()) FAIL() << "toward, " << n;
+                expectSame(there[n], environment.eval(ways[n], draws.normals[n]));
+                if (HasFatalFailure()) FAIL() << "eval, " << n;
             }
             std::vector<Color> seen(count);
             environment.radianceStream(ways, seen);
@@ -99,10 +99,10 @@ protected:
                     expectSame(samples[n], bed->sample(strategy, draws.u[n]));
                     if (HasFatalFailure()) FAIL() << strategy << " of the bed, " << n;
                 }
-                bed->towardStream(draws.normals, there);
+                bed->evalStream(draws.normals, there);
                 for (std::size_t n = 0; n < count; ++n) {
-                    expectSame(there[n], bed->toward(draws.normals[n]));
-                    if (HasFatalFailure()) FAIL() << strategy << " toward from the bed, " << n;
+                    expectSame(there[n], bed->eval(draws.normals[n]));
+                    if (HasFatalFailure()) FAIL() << strategy << " eval from the bed, " << n;
                 }
             }
         }
@@ -127,9 +127,9 @@ TEST_P(MapStream, LooksStraightUpAndDown) {
     const std::vector<glm::vec3> ways = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {-1, -0.0f, 0}};
     const std::vector<glm::vec3> normals(ways.size(), glm::vec3(0, 0, 1));
     std::vector<EnvironmentSample> there(ways.size());
-    environment->towardStream(ways, normals, there);
+    environment->evalStream(ways, normals, there);
     for (std::size_t n = 0; n < ways.size(); ++n) {
-        const EnvironmentSample alone = environment->toward(ways[n], normals[n]);
+        const EnvironmentSample alone = environment->eval(ways[n], normals[n]);
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(there[n].radiance[k], alone.radiance[k], 1e-4f) << n;
         EXPECT_NEAR(there[n].pdf, alone.pdf, 1e-3f * alone.pdf) << n;
     }
@@ -142,7 +142,7 @@ TEST_P(MapStream, HasTheSameBitsOnEveryProcessor) {
     const auto all = [&] {
         std::vector<EnvironmentSample> samples(2000);
         environment->sampleStream(0, draws.u, draws.normals, std::span(samples).first(1000));
-        environment->towardStream(draws.normals, draws.normals, std::span(samples).last(1000));
+        environment->evalStream(draws.normals, draws.normals, std::span(samples).last(1000));
         return samples;
     };
     const auto here = all();

@@ -23,7 +23,7 @@ TEST(DirectionalLight, IsTheSameEverywhere) {
         EXPECT_EQ(s->pdf, 0.0f);
     }
     EXPECT_FALSE(light.hasExtent());
-    EXPECT_FALSE(light.meet({}));
+    EXPECT_FALSE(light.intersect({}));
 }
 
 TEST(SunLight, SamplesItsDensity) {
@@ -33,7 +33,7 @@ TEST(SunLight, SamplesItsDensity) {
         const auto density = [&](const glm::vec3& d) {
             trace::Ray ray;
             ray.direction = glm::normalize(glm::dvec3(d));
-            const auto met = sun.meet(ray);
+            const auto met = sun.intersect(ray);
             return met ? double(met->pdf) : 0.0;
         };
         const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> {
@@ -63,7 +63,7 @@ TEST(SunLight, IsAsBrightAndAsWideAsItSays) {
                 trace::Ray ray;
                 ray.direction = glm::normalize(glm::dvec3(s->direction));
                 if (angle < 0.49 * double(diameter) * std::numbers::pi / 180.0) {
-                    const auto met = sun.meet(ray);
+                    const auto met = sun.intersect(ray);
                     ASSERT_TRUE(met);
                     EXPECT_EQ(met->pdf, s->pdf);
                     EXPECT_EQ(met->radiance, s->light);
@@ -75,7 +75,7 @@ TEST(SunLight, IsAsBrightAndAsWideAsItSays) {
     }
     trace::Ray ray;
     ray.direction = {0, 0, 1};
-    EXPECT_FALSE(shade::SunLight({1, 0, 0}, Color(1.0f), 90.0f).meet(ray));
+    EXPECT_FALSE(shade::SunLight({1, 0, 0}, Color(1.0f), 90.0f).intersect(ray));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(RectangleLight, SamplesItsDensity) {
         trace::Ray ray;
         ray.origin = point;
         ray.direction = glm::normalize(glm::dvec3(d));
-        const auto met = light.meet(ray);
+        const auto met = light.intersect(ray);
         return met ? double(met->pdf) : 0.0;
     };
     const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> { return light.sample(point, u)->direction; };
@@ -67,7 +67,7 @@ TEST(RectangleLight, SamplesAndMeetingsAgree) {
             trace::Ray ray;
             ray.origin = point;
             ray.direction = glm::normalize(glm::dvec3(s->direction));
-            const auto met = light.meet(ray);
+            const auto met = light.intersect(ray);
             ASSERT_TRUE(met);
             EXPECT_NEAR(met->t, s->distance, 1e-5);
             EXPECT_NEAR(met->pdf, s->pdf, 1e-5f * s->pdf);
@@ -81,7 +81,7 @@ TEST(RectangleLight, SamplesAndMeetingsAgree) {
     trace::Ray away;
     away.origin = point;
     away.direction = {0, 0, -1};
-    EXPECT_FALSE(light.meet(away));
+    EXPECT_FALSE(light.intersect(away));
 }
 
 // Which half edge is named first is no way to say where a lamp shines.
@@ -99,9 +99,9 @@ TEST(RectangleLight, ShinesToBothSides) {
             trace::Ray ray;
             ray.origin = point;
             ray.direction = glm::normalize(glm::dvec3(s->direction));
-            const auto meeting = light.meet(ray);
-            ASSERT_TRUE(meeting) << side;
-            EXPECT_NEAR(meeting->pdf, s->pdf, 1e-5f * s->pdf);
+            const auto hit = light.intersect(ray);
+            ASSERT_TRUE(hit) << side;
+            EXPECT_NEAR(hit->pdf, s->pdf, 1e-5f * s->pdf);
         }
     }
     EXPECT_FLOAT_EQ(light.sample({0.2, 0.4, 2}, {0.5f, 0.5f})->pdf, light.sample({0.2, 0.4, 4}, {0.5f, 0.5f})->pdf);

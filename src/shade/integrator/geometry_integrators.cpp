@@ -1,4 +1,4 @@
-#include "shade/integrator/feature.h"
+#include "shade/integrator/geometry_integrators.h"
 
 namespace stratum::shade {
 
@@ -11,7 +11,7 @@ Pixel NormalIntegrator::seen(const trace::Ray&, const SurfacePoint* first, Trace
 Pixel DepthIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
     if (first == nullptr) return {};
     const float alpha = 1.0f - surfaces_.fade(*first);
-    // A bed that the camera grazes is almost infinitely far away: 0 times that must be 0.
+    // At grazing angles the distance to the bed can overflow: 0 times that must be 0.
     return alpha > 0.0f ? Pixel{Color(static_cast<float>(first->t)) * alpha, alpha} : Pixel{};
 }
 

@@ -1,4 +1,4 @@
-#include "shade/integrator/feature.h"
+#include "shade/integrator/geometry_integrators.h"
 
 #include "shade/analytic_prints.h"
 
@@ -7,7 +7,7 @@
 namespace stratum {
 namespace {
 
-TEST(Features, OfASphere) {
+TEST(GeometryIntegrators, OfASphere) {
     const auto ball = test::sphere({0, 0, 0}, 2.0);
     shade::SceneOptions options;
     options.bed = false;

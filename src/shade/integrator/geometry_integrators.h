@@ -1,4 +1,5 @@
-// What the geometry is, not what it looks like: normals and depth, for checking and for computer vision.
+// Integrators of geometry instead of light: normals, depth, positions, masks and labels, for checks and computer
+// vision.
 #pragma once
 
 #include "shade/integrator/integrator.h"
@@ -6,7 +7,7 @@
 
 namespace stratum::shade {
 
-/// World-space unit normals, on the side that is seen. Alpha 0 where there is nothing; the far bed fades out.
+/// World-space unit normals that face the camera. Alpha is 0 where nothing is hit; the far bed fades out.
 class NormalIntegrator final : public Integrator {
 public:
     NormalIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
@@ -16,7 +17,7 @@ protected:
     Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
-/// Distance from the eye in world units. Alpha 0 where there is nothing; the far bed fades out.
+/// Distance from the eye in world units. Alpha is 0 where nothing is hit; the far bed fades out.
 class DepthIntegrator final : public Integrator {
 public:
     DepthIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
@@ -26,7 +27,7 @@ protected:
     Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
-/// World-space positions. Alpha 0 where there is nothing; the far bed fades out.
+/// World-space positions. Alpha is 0 where nothing is hit; the far bed fades out.
 class PositionIntegrator final : public Integrator {
 public:
     PositionIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
@@ -36,7 +37,7 @@ protected:
     Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
-/// 1 on the print, 0 on the bed and beside both; alpha is the same.
+/// 1 on the print, 0 on the bed and where nothing is hit; alpha is the same.
 class MaskIntegrator final : public Integrator {
 public:
     MaskIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
@@ -46,8 +47,8 @@ protected:
     Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
 };
 
-/// What was printed, each number in a flat colour (categoryColor), the bed and what doesn't know are black; alpha is 1
-/// on the print. Numbers themselves are layers beside a picture, see Aov. scene.labels must have the label.
+/// A label (layer, tool or feature), each number in a flat color (categoryColor). The bed and surfaces without the
+/// label are black; alpha is 1 on the print. Aov has the numbers themselves. scene.labels must have the label.
 class LabelIntegrator final : public Integrator {
 public:
     LabelIntegrator(const SceneDescription& scene, const trace::Intersector& print, Label label)
