@@ -1,6 +1,6 @@
 #include "gcode/slicer/settings.h"
 
-#include "gcode/slicer/ending.h"
+#include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
 #include "gcode/toolpath/color.h"
 

@@ -1,17 +1,17 @@
-#include "gcode/slicer/ending.h"
+#include "gcode/slicer/truncation.h"
 
 #include <gtest/gtest.h>
 
 namespace stratum::gcode {
 namespace {
 
-TEST(Ending, OfUnknownSlicersTheLastLineTells) {
+TEST(Truncation, OfUnknownSlicersTheLastLineTells) {
     EXPECT_EQ(findCut("G1 X1\nG1 X2 E3", ""), "the last line has no end");
     for (const auto* whole : {"", "G1 X1\n", "G1 X1\r", "G1 X1\nM84 ; disable steppers", "G1 X1\n; done"})
         EXPECT_EQ(findCut(whole, ""), "") << whole;
 }
 
-TEST(Ending, AWordThatBreaksOff) {
+TEST(Truncation, AWordThatBreaksOff) {
     for (const auto* cut : {"G1 X1\nG", "G1 X1\nM", "G1 X1\nT", "G1 X1\nM104 S", "G1 X1\nM204 P800 T"})
         EXPECT_EQ(findCut(cut, ""), "the last line breaks off amid a word") << cut;
     for (const auto* whole : {"G1 X1\nM84 X Y E", "G1 X1\nG28 X", "G1 X1\nM104 S0", "G1 X1\nEND_PRINT", "G1 X1\n;S",
@@ -19,7 +19,7 @@ TEST(Ending, AWordThatBreaksOff) {
         EXPECT_EQ(findCut(whole, ""), "") << whole;
 }
 
-TEST(Ending, OfKnownOnesTheTrailer) {
+TEST(Truncation, OfKnownOnesTheTrailer) {
     EXPECT_NE(findCut("G1 X1\n", "PrusaSlicer 2.5.0").find("what PrusaSlicer writes"), std::string::npos);
     EXPECT_EQ(findCut("G1 X1\n; filament used [mm] = 1\n", "PrusaSlicer 2.5.0"), "");
     EXPECT_NE(findCut("; filament used [mm] = 1\nG1 X1\n", "PrusaSlicer 2.6.0"), "");  // in its header

@@ -1,4 +1,4 @@
-#include "gcode/slicer/ending.h"
+#include "gcode/slicer/truncation.h"
 
 #include "gcode/text/lexer.h"
 
