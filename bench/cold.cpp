@@ -4,9 +4,9 @@
 // host has taken back costs ten times one that it has not, and both should find the machine in the same state. They
 // take turns. Set GLIBC_TUNABLES=glibc.malloc.hugetlb=1, as the tools do for themselves, to build in huge pages.
 #include "base/parallel_for.h"
-#include "study/own_process.h"
+#include "study/cost/own_process.h"
+#include "study/cost/times.h"
 #include "study/print.h"
-#include "study/times.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 

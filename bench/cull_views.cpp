@@ -4,8 +4,8 @@
 // hit, as ambient occlusion has them. Counts rays that end elsewhere and says where.
 #include "base/parallel_for.h"
 #include "march/brick/brick_intersector.h"
+#include "study/cost/times.h"
 #include "study/print.h"
-#include "study/times.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"

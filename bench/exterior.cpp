@@ -2,8 +2,8 @@
 //
 // The peer is OpenVDB's extractEnclosedRegion, which finds the enclosed voids of a grid that has been built whole.
 #include "export/vdb_file.h"
+#include "study/cost/times.h"
 #include "study/print.h"
-#include "study/times.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"

@@ -1,8 +1,8 @@
 // How far pictures are from a reference: the figures of docs/benchmarks.md, "Pictures".
 #include "shade/film/exr_reader.h"
 #include "shade/film/film.h"
-#include "study/flip.h"
-#include "study/image_error.h"
+#include "study/picture/flip.h"
+#include "study/picture/image_error.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 // What a series of partial prints costs: the final grid alone against N steps that end with it, in one process.
 //
 // Both in memory that the process has used before; nothing is written.
+#include "study/cost/times.h"
 #include "study/print.h"
-#include "study/times.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 

@@ -3,8 +3,8 @@
 // Peers: ParticlesToLevelSet (spheres along each bead, as users of OpenVDB do it), meshToVolume of the beads
 // tessellated as tubes of 10 vertices a section. Runs are interleaved; medians and the spread are printed, times per
 // active voxel of the grid that this project makes.
+#include "study/cost/times.h"
 #include "study/print.h"
-#include "study/times.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"

@@ -1,8 +1,8 @@
 // vdbstudy itself has no ray tracer of polygons; bench_vdbstudy has.
-#include "study/seed_peers.h"
+#include "study/polygons/peer_tracers.h"
 
 namespace stratum::study {
 
-SeedPeers seedPeers() { return {}; }
+PeerTracers peerTracers() { return {}; }
 
 }  // namespace stratum::study

@@ -7,12 +7,12 @@
 #include "run_files.h"
 
 #include "base/error.h"
-#include "study/geometry.h"
-#include "study/memory.h"
-#include "study/need.h"
-#include "study/render.h"
-#include "study/seeds.h"
-#include "study/stability.h"
+#include "study/cost/memory.h"
+#include "study/cost/need.h"
+#include "study/geometry/geometry.h"
+#include "study/picture/render.h"
+#include "study/polygons/polygons.h"
+#include "study/stability/stability.h"
 
 #include <fmt/format.h>
 
@@ -37,8 +37,8 @@ Examples:
   vdbstudy stability -o studies                     a hundred cases that could go wrong
   vdbstudy render part.gcode -o studies             error of pictures against run time
   vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost
-  vdbstudy seeds --scenes data/scenes/*.json -o studies
-  vdbstudy seeds prints/ -o studies                 level sets beside beads and prisms)";
+  vdbstudy polygons --scenes data/scenes/*.json -o studies
+  vdbstudy polygons prints/ -o studies              level sets beside beads and prisms)";
 
 struct Options {
     tools::CommonOptions common;
@@ -47,7 +47,7 @@ struct Options {
     study::GeometryOptions geometry;
     study::NeedOptions need;
     study::RenderStudyOptions render;
-    study::SeedsOptions seeds;
+    study::PolygonsOptions polygons;
 };
 
 // A verb, and the study that it asks for.
@@ -111,27 +111,28 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
     verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
-    CLI::App* seeds = addVerb(app, o, "seeds", "Level sets and formulas beside polygons and beads: the two theses");
-    seeds->add_option("PRINT", o.seeds.prints, "Prints, or folders of them; *.json are scenes")
+    CLI::App* polygons = addVerb(app, o, "polygons", "Level sets and formulas beside polygons and beads");
+    polygons->add_option("PRINT", o.polygons.prints, "Prints, or folders of them; *.json are scenes")
         ->type_name("FILE.gcode|DIR|SCENE.json");
-    seeds
-        ->add_option("--scenes", o.seeds.scenes, "A scene of spheres, boxes and cylinders; may be given again for more")
+    polygons
+        ->add_option("--scenes", o.polygons.scenes,
+                     "A scene of spheres, boxes and cylinders; may be given again for more")
         ->allow_extra_args(false)
         ->type_name("SCENE.json");
-    seeds->add_option("--env", o.seeds.environment, "Light of the prints, as vdbtrace takes it (default studio)")
+    polygons->add_option("--env", o.polygons.environment, "Light of the prints, as vdbtrace takes it (default studio)")
         ->type_name("SPEC|FILE");
-    seeds->add_option("--integrators", o.seeds.integrators, "Of the prints: path, ao (default both)")
+    polygons->add_option("--integrators", o.polygons.integrators, "Of the prints: path, ao (default both)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(tools::oneOf({"path", "ao"}))
         ->type_name("NAME,...");
-    seeds->add_option("--spp", o.seeds.spp, "Samples a pixel of the path-traced prints (default 32)")
+    polygons->add_option("--spp", o.polygons.spp, "Samples a pixel of the path-traced prints (default 32)")
         ->check(CLI::Range(1, 65536))
         ->type_name("N");
-    seeds->add_option("--frames", o.seeds.frames, "Of each scene (default 10)")
+    polygons->add_option("--frames", o.polygons.frames, "Of each scene (default 10)")
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
-    verbs.push_back({seeds, [&o] { return study::studySeeds(o.seeds, study::seedPeers(), o.study); }});
+    verbs.push_back({polygons, [&o] { return study::studyPolygons(o.polygons, study::peerTracers(), o.study); }});
     return verbs;
 }
 
@@ -140,13 +141,13 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     o.study.command.assign(argv, argv + argc);
     o.study.threads = o.common.threads;
     // A shell puts all names of a pattern after --scenes, of which the first is its own.
-    std::vector<std::string>& prints = o.seeds.prints;
+    std::vector<std::string>& prints = o.polygons.prints;
     const auto scenes = std::stable_partition(prints.begin(), prints.end(),
                                               [](const std::string& name) { return !name.ends_with(".json"); });
-    o.seeds.scenes.insert(o.seeds.scenes.end(), scenes, prints.end());
+    o.polygons.scenes.insert(o.polygons.scenes.end(), scenes, prints.end());
     prints.erase(scenes, prints.end());
     tools::RunFiles files;
-    for (const auto* inputs : {&o.memory.prints, &o.need.prints, &o.seeds.prints, &o.seeds.scenes})
+    for (const auto* inputs : {&o.memory.prints, &o.need.prints, &o.polygons.prints, &o.polygons.scenes})
         for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
     for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html"})

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
-#include "study/handmade.h"
+#include "study/geometry/handmade.h"
 
 #include <algorithm>
 #include <cmath>

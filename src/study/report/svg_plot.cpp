@@ -1,0 +1,191 @@
+#include "study/report/svg_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stratum::study {
+namespace {
+
+// Pixels.
+constexpr double kWidth = 860, kHeight = 440;
+constexpr double kLeft = 84, kRight = 640, kTop = 36, kBottom = 384;
+constexpr double kLegend = kRight + 22;
+
+// Distinct also to those who see no red or no green. Source: M. Okabe, K. Ito, "Color Universal Design", 2008.
+constexpr std::array<const char*, 8> kPalette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                              "#e69f00", "#56b4e9", "#000000", "#9a9a00"};
+
+class Axis {
+public:
+    Axis(bool logarithmic, double from, double to) : logarithmic_(logarithmic), from_(from), to_(to) {}
+
+    bool shows(double v) const { return std::isfinite(v) && (!logarithmic_ || v > 0); }
+    void include(double v) {
+        low_ = std::min(low_, v);
+        high_ = std::max(high_, v);
+    }
+    bool empty() const { return low_ > high_; }
+    // A little air, so that no mark lies on the frame.
+    void settle() {
+        if (logarithmic_) {
+            const double air = std::max(std::pow(high_ / low_, 0.06), 1.05);
+            low_ /= air;
+            high_ *= air;
+        } else {
+            const double air = high_ > low_ ? 0.06 * (high_ - low_) : std::max(std::abs(high_) * 0.1, 1e-12);
+            low_ -= air;
+            high_ += air;
+        }
+    }
+    double pixel(double v) const {
+        const double t = logarithmic_ ? std::log(v / low_) / std::log(high_ / low_) : (v - low_) / (high_ - low_);
+        return from_ + t * (to_ - from_);
+    }
+    std::vector<double> ticks() const { return axisTicks(low_, high_, logarithmic_); }
+
+private:
+    bool logarithmic_;
+    double from_, to_;
+    double low_ = 1e300, high_ = -1e300;
+};
+
+std::string number(double v) {
+    const double size = std::abs(v);
+    if (size >= 1e9) return fmt::format("{:g} G", v * 1e-9);
+    if (size >= 1e6) return fmt::format("{:g} M", v * 1e-6);
+    if (size >= 1e4) return fmt::format("{:g} k", v * 1e-3);
+    return fmt::format("{:g}", v);
+}
+
+std::string mark(std::size_t shape, double x, double y, const char* color) {
+    constexpr double r = 4;
+    switch (shape % 4) {
+        case 0:
+            return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{}' fill='{}'/>", x, y, r, color);
+        case 1:
+            return fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{}' height='{}' fill='{}'/>", x - r, y - r, 2 * r,
+                               2 * r, color);
+        case 2:
+            return fmt::format("<path d='M{:.1f} {:.1f}l{} {}h-{}z' fill='{}'/>", x, y - 1.2 * r, 1.2 * r, 2 * r,
+                               2.4 * r, color);
+        default:
+            return fmt::format("<path d='M{:.1f} {:.1f}l{} {}l-{} {}l-{} -{}z' fill='{}'/>", x, y - 1.3 * r, 1.3 * r,
+                               1.3 * r, 1.3 * r, 1.3 * r, 1.3 * r, 1.3 * r, color);
+    }
+}
+
+void drawAxes(std::string& svg, const Plot& plot, const Axis& x, const Axis& y) {
+    for (const double tick : x.ticks()) {
+        const double at = x.pixel(tick);
+        svg += fmt::format("<line x1='{0:.1f}' x2='{0:.1f}' y1='{1}' y2='{2}' stroke='#ddd'/>", at, kTop, kBottom);
+        svg += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>\n", at, kBottom + 18, number(tick));
+    }
+    for (const double tick : y.ticks()) {
+        const double at = y.pixel(tick);
+        svg += fmt::format("<line x1='{1}' x2='{2}' y1='{0:.1f}' y2='{0:.1f}' stroke='#ddd'/>", at, kLeft, kRight);
+        svg += fmt::format("<text x='{}' y='{:.1f}' text-anchor='end'>{}</text>\n", kLeft - 8, at + 4, number(tick));
+    }
+    svg += fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='#444'/>\n", kLeft, kTop,
+                       kRight - kLeft, kBottom - kTop);
+    svg += fmt::format("<text x='{}' y='{}' text-anchor='middle'>{}</text>\n", (kLeft + kRight) / 2, kBottom + 42,
+                       escapeMarkup(plot.x_label));
+    svg += fmt::format("<text transform='translate(18 {}) rotate(-90)' text-anchor='middle'>{}</text>\n",
+                       (kTop + kBottom) / 2, escapeMarkup(plot.y_label));
+}
+
+}  // namespace
+
+std::string escapeMarkup(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else if (c == '\'')
+            out += "&#39;";
+        else
+            out += c;
+    }
+    return out;
+}
+
+std::vector<double> axisTicks(double low, double high, bool logarithmic) {
+    std::vector<double> ticks;
+    if (logarithmic) {
+        const std::array<std::vector<int>, 3> ways{{{1}, {1, 2, 5}, {1, 2, 3, 4, 5, 6, 7, 8, 9}}};
+        for (const auto& digits : ways) {
+            ticks.clear();
+            const int last = static_cast<int>(std::ceil(std::log10(high)));
+            for (int decade = static_cast<int>(std::floor(std::log10(low))); decade <= last; ++decade)
+                for (const int digit : digits) {
+                    const double v = digit * std::pow(10.0, decade);
+                    if (v >= low && v <= high) ticks.push_back(v);
+                }
+            if (ticks.size() >= 3) return ticks;
+        }
+    }
+    const double raw = (high - low) / 6;
+    const double decade = std::pow(10.0, std::floor(std::log10(raw)));
+    double step = 10 * decade;
+    for (const double nice : {5.0, 2.0, 1.0})
+        if (nice * decade * (1 + 1e-9) >= raw) step = nice * decade;
+    ticks.clear();
+    const double first = std::ceil(low / step);
+    for (int n = 0; (first + n) * step <= high; ++n) ticks.push_back((first + n) * step);
+    return ticks;
+}
+
+std::string drawSvg(const Plot& plot) {
+    Axis x(plot.log_x, kLeft, kRight);
+    Axis y(plot.log_y, kBottom, kTop);
+    for (const Series& series : plot.series)
+        for (const auto& [px, py] : series.points)
+            if (x.shows(px) && y.shows(py)) {
+                x.include(px);
+                y.include(py);
+            }
+    const double height = std::max(kHeight, kTop + 20 * static_cast<double>(plot.series.size()) + 10);
+    std::string svg = fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
+        "font-family='sans-serif' font-size='12'>\n<rect width='{0}' height='{1}' fill='white'/>\n"
+        "<text x='{2}' y='22' text-anchor='middle' font-size='14' font-weight='bold'>{3}</text>\n",
+        kWidth, height, (kLeft + kRight) / 2, escapeMarkup(plot.title));
+    if (x.empty()) return svg + fmt::format("<text x='{}' y='{}'>no points</text></svg>\n", kLeft, kTop + 40);
+    x.settle();
+    y.settle();
+    drawAxes(svg, plot, x, y);
+    std::size_t next = 0;
+    double row = kTop + 12;
+    for (const Series& series : plot.series) {
+        const std::size_t shape = series.color >= 0 ? static_cast<std::size_t>(series.color) : next++;
+        const char* color = kPalette.at(shape % kPalette.size());
+        const char* dash = series.dashed ? " stroke-dasharray='6 4'" : "";
+        std::string path;
+        std::string marks;
+        for (const auto& [px, py] : series.points) {
+            if (!x.shows(px) || !y.shows(py)) continue;
+            path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', x.pixel(px), y.pixel(py));
+            marks += mark(shape, x.pixel(px), y.pixel(py), color);
+        }
+        if (series.joined && !path.empty())
+            svg += fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1.6'{}/>", path, color, dash);
+        svg += marks + '\n';
+        if (series.joined)
+            svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2}' y2='{2}' stroke='{3}' stroke-width='1.6'{4}/>",
+                               kLegend, kLegend + 26, row - 4, color, dash);
+        svg += mark(shape, kLegend + 13, row - 4, color);
+        svg += fmt::format("<text x='{}' y='{}'>{}</text>\n", kLegend + 34, row, escapeMarkup(series.name));
+        row += 20;
+    }
+    return svg + "</svg>\n";
+}
+
+}  // namespace stratum::study

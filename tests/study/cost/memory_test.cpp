@@ -1,0 +1,108 @@
+#include "study/cost/memory.h"
+
+#include "base/error.h"
+#include "corpus.h"
+#include "scratch_folder.h"
+#include "study/print.h"
+#include "study/report/result_table.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace stratum::study {
+namespace {
+
+std::vector<Row> rowsOf(const std::filesystem::path& csv) {
+    std::ifstream file(csv);
+    std::vector<Row> rows;
+    for (std::string line; std::getline(file, line);) rows.push_back(parseCsvLine(line));
+    return rows;
+}
+
+const std::string& cell(const std::vector<Row>& rows, std::size_t row, const std::string& column) {
+    const auto at = std::find(rows[0].begin(), rows[0].end(), column) - rows[0].begin();
+    return rows.at(row).at(static_cast<std::size_t>(at));
+}
+
+TEST(Memory, CountsWhatAGridHolds) {
+    const test::ScratchFolder folder;
+    const std::string print = (test::dataDir() / "gcode" / "tile.gcode").string();
+    StudyOptions common;
+    common.folder = folder.path();
+    common.command = {"vdbstudy"};
+    double last = 0;
+    common.progress = [&](double f) {
+        EXPECT_GT(f, last);
+        last = f;
+    };
+    const StudyReport report = studyMemory({{print}, {1, 2, 3}}, common);
+    EXPECT_EQ(last, 1);
+    EXPECT_EQ(report.rows, 6U);
+    EXPECT_EQ(report.resumed, 0U);
+    const auto rows = rowsOf(report.csv);
+    ASSERT_EQ(rows.size(), 7U);
+    // Last row but one: three voxels a layer, kept.
+    EXPECT_EQ(cell(rows, 5, "interior"), "keep");
+    const gcode::Toolpath toolpath = readPrint(print);
+    const auto beads = voxelize::selectBeads(toolpath, {});
+    openvdb::initialize();
+    const auto grid = voxelize::voxelize(toolpath, beads, latticeOf(toolpath, beads, 3));
+    EXPECT_EQ(cell(rows, 5, "active_voxels"), std::to_string(grid->activeVoxelCount()));
+    EXPECT_EQ(cell(rows, 5, "leaves"), std::to_string(grid->tree().leafCount()));
+    EXPECT_EQ(cell(rows, 5, "grid_bytes"), std::to_string(grid->memUsage()));
+    EXPECT_LT(std::stod(cell(rows, 5, "half_file_bytes")), std::stod(cell(rows, 5, "float_file_bytes")));
+    EXPECT_LT(std::stod(cell(rows, 6, "active_voxels")), std::stod(cell(rows, 5, "active_voxels")));
+    for (std::size_t n = 1; n < 7; ++n)
+        EXPECT_GT(std::stod(cell(rows, n, "peak_rss_bytes")), std::stod(cell(rows, n, "grid_bytes")));
+    // The extruded volume, by the file's own filament: 1.75 mm wide, within what prime lines take.
+    EXPECT_NEAR(std::stod(cell(rows, 5, "part_mm3")), toolpath.extruded_mm3, 0.05 * toolpath.extruded_mm3);
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        files += entry.is_regular_file() ? 1 : 0;
+    EXPECT_EQ(files, 2U);  // no scratch is left
+}
+
+TEST(Memory, AKilledRunGoesOn) {
+    const test::ScratchFolder folder;
+    const std::string print = (test::dataDir() / "gcode" / "tile.gcode").string();
+    StudyOptions common;
+    common.folder = folder.path();
+    common.progress = [&](double f) {
+        if (f > 0.4) throw std::runtime_error("killed");
+    };
+    EXPECT_THROW(studyMemory({{print}, {1, 2}}, common), std::runtime_error);
+    const auto before = rowsOf(folder / "memory.csv");
+    EXPECT_EQ(before.size(), 3U);
+    common.progress = {};
+    const StudyReport report = studyMemory({{print}, {1, 2}}, common);
+    EXPECT_EQ(report.resumed, 2U);
+    EXPECT_EQ(report.rows, 4U);
+    const auto after = rowsOf(folder / "memory.csv");
+    EXPECT_EQ(after[1], before[1]);  // not measured again: its times are the same
+}
+
+TEST(Memory, LeavesOutWhatDoesNotFit) {
+    const test::ScratchFolder folder;
+    StudyOptions common;
+    common.folder = folder.path();
+    MemoryOptions options{{(test::dataDir() / "gcode" / "tile.gcode").string()}, {2}};
+    options.memory_share = 1e-9;
+    const StudyReport report = studyMemory(options, common);
+    EXPECT_EQ(report.findings.size(), 2U);
+    EXPECT_EQ(cell(rowsOf(report.csv), 1, "status"), "left out: does not fit");
+}
+
+TEST(Memory, PassesOnWhatIsWrongWithAPrint) {
+    const test::ScratchFolder folder;
+    std::ofstream(folder / "bad.gcode") << "hello\n";
+    StudyOptions common;
+    common.folder = folder.path();
+    EXPECT_THROW(studyMemory({{(folder / "bad.gcode").string()}, {1}}, common), InputError);
+}
+
+}  // namespace
+}  // namespace stratum::study

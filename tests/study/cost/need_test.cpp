@@ -1,0 +1,43 @@
+#include "study/cost/need.h"
+
+#include "corpus.h"
+#include "scratch_folder.h"
+#include "study/report/result_table.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+namespace stratum::study {
+namespace {
+
+TEST(Need, SwitchesEachCapabilityOnAlone) {
+    const test::ScratchFolder folder;
+    StudyOptions common;
+    common.folder = folder.path();
+    common.quick = true;
+    const NeedOptions options{{(test::dataDir() / "gcode" / "tile.gcode").string()}, 1};
+    const StudyReport report = studyNeed(options, common);
+    EXPECT_EQ(report.rows, 16U);
+    std::ifstream file(report.csv);
+    std::map<std::string, Row> rows;
+    for (std::string line; std::getline(file, line);) {
+        const Row row = parseCsvLine(line);
+        rows[row.at(2)] = row;
+    }
+    const auto peak = [&](const char* name) { return std::stod(rows.at(name).at(7)); };
+    // Two grids of four bytes a voxel, and a table of 90 x 90 x 180 colours: both must show.
+    // What was counted while all is off is told, and what is over the limit found.
+    std::ofstream(folder.path() / "need_off.csv") << "capability,functions,instructions,percent\n"
+                                                     "lens,Camera::ray,12,0.01\ndenoiser,denoise,9000,2.5\n";
+    EXPECT_GT(peak("attribute grids"), peak("none") * 1.1);
+    EXPECT_GT(peak("measured material"), peak("none") + 12.0 * 90 * 90 * 180 * 0.9);
+    const StudyReport again = studyNeed(options, common);
+    EXPECT_EQ(again.resumed, 16U);
+    ASSERT_EQ(again.findings.size(), 1U);
+    EXPECT_NE(again.findings[0].find("denoiser"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stratum::study

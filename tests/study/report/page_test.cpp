@@ -1,0 +1,42 @@
+#include "study/report/page.h"
+
+#include "corpus.h"
+#include "scratch_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace stratum::study {
+namespace {
+
+TEST(Page, Base64OfTheStandardsExamples) {
+    const std::array<std::array<const char*, 2>, 5> examples{
+        {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foobar", "Zm9vYmFy"}}};
+    for (const auto& [plain, coded] : examples) EXPECT_EQ(base64(plain), coded);
+    EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
+}
+
+TEST(Page, HoldsAllThatItShowsAndNoFolders) {
+    const std::vector<std::string> command{"/home/me/bin/vdbstudy", "memory", "/data/a.gcode", "-o", "/data/out/"};
+    Page page("A & B", command);
+    page.heading("One");
+    page.table({"name", "value"}, {{"x<y", "1.5"}, {"bad", "failed"}}, "failed");
+    page.picture(test::sourceDir() / "docs/pictures/hull.png", "a hull");
+    const std::string html = page.html();
+    EXPECT_NE(html.find("<td class='n'>1.5</td>"), std::string::npos);
+    EXPECT_NE(html.find("x&lt;y"), std::string::npos);
+    EXPECT_NE(html.find("<tr class='marked'><td>bad"), std::string::npos);
+    EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_NE(html.find("<code>vdbstudy memory a.gcode -o out/</code>"), std::string::npos);
+    EXPECT_EQ(html.find("/home/"), std::string::npos);
+    EXPECT_EQ(html.find("http://"), std::string::npos);
+    const test::ScratchFolder folder;
+    page.write(folder / "p.html");
+    EXPECT_EQ(std::filesystem::file_size(folder / "p.html"), html.size());
+}
+
+TEST(Page, NamesTheMachine) { EXPECT_NE(machineLine().find("GB of memory"), std::string::npos); }
+
+}  // namespace
+}  // namespace stratum::study
