@@ -8,16 +8,18 @@ function(stratum_precompiled name)
   target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
 endfunction()
 
-stratum_precompiled(precompiled_openvdb HEADERS <openvdb/openvdb.h> LIBRARIES OpenVDB::openvdb)
+# OpenVDB; what is built with it links stratum_vdb, which has the trees that this header only declares.
+set(trees ${PROJECT_SOURCE_DIR}/src/vdb/tree_instances.h)
+stratum_precompiled(precompiled_openvdb HEADERS ${trees} LIBRARIES OpenVDB::openvdb)
 if(STRATUM_TOOLS)
   stratum_precompiled(precompiled_command_line HEADERS <CLI/CLI.hpp> <nlohmann/json.hpp>
     LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
-  stratum_precompiled(precompiled_tools HEADERS <CLI/CLI.hpp> <nlohmann/json.hpp> <openvdb/openvdb.h>
+  stratum_precompiled(precompiled_tools HEADERS <CLI/CLI.hpp> <nlohmann/json.hpp> ${trees}
     LIBRARIES OpenVDB::openvdb CLI11::CLI11 nlohmann_json::nlohmann_json)
 endif()
 if(STRATUM_TESTS)
   find_package(GTest REQUIRED)
   stratum_precompiled(precompiled_tests HEADERS <gtest/gtest.h> LIBRARIES GTest::gtest)
-  stratum_precompiled(precompiled_openvdb_tests HEADERS <gtest/gtest.h> <openvdb/openvdb.h>
+  stratum_precompiled(precompiled_openvdb_tests HEADERS <gtest/gtest.h> ${trees}
     LIBRARIES GTest::gtest OpenVDB::openvdb)
 endif()

@@ -9,6 +9,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # ondemand; shade knows the seam, trace, and nobody who is behind it.
 MAY_INCLUDE = {
     "base": set(),
+    "vdb": set(),  # not to be included from: part of the precompiled headers
     "gcode": {"base"},
     "motion": {"base", "gcode"},
     "voxelize": {"base", "gcode"},

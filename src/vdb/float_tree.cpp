@@ -1,0 +1,3 @@
+#include "vdb/tree_instances.h"
+
+STRATUM_TREE_INSTANCES(, FloatTree);
