@@ -1,4 +1,4 @@
-// The exact field of one bead, and the plan (xy) distance it is made of.
+// The exact field of one bead, and the distance in the plan (xy) that it is computed from.
 //
 // With rho the plan distance to the path and c = (width - height) / 2, a level bead is a plan capsule swept by a ball
 //     phi(p) = hypot(max(rho - c, 0), z - z_c) - height / 2        (mm, negative inside)
@@ -27,7 +27,7 @@ struct Bounds {
     double centre(int axis) const { return 0.5 * (min[axis] + max[axis]); }
 };
 
-/// A bead's path seen from above: a line segment or a circular arc. Distances are closed form; nothing is tessellated.
+/// A bead's path in the plan: a line segment or a circular arc. Distances are closed form; arcs are not tessellated.
 class PlanPath {
 public:
     PlanPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
@@ -49,7 +49,7 @@ public:
     /// Length in the plane, mm.
     double length() const { return length_; }
 
-    /// Extent of the centre line in x and y, mm; the z members are untouched.
+    /// Extent of the centre line in x and y, mm; the z members are not set.
     void bounds(double (&min)[2], double (&max)[2]) const;
 
 private:
@@ -74,7 +74,7 @@ struct Section {
 };
 Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
-/// How far a sloped bead reaches below its underside, as a fraction of its height, to weld it to what it rests on.
+/// How far a sloped bead is extended below its underside, as a fraction of its height, to weld it to the layer below.
 constexpr double kSlopedReach = 0.02;
 
 /// The field of one bead, level or sloped.
@@ -100,7 +100,7 @@ public:
     bool rod() const { return rod_; }
     /// Of the slope's angle; 1 for a level bead.
     double cosine() const { return cosine_; }
-    /// How far the underside is let down, mm; see kSlopedReach.
+    /// How far the underside is extended downwards, mm; see kSlopedReach.
     double reach() const { return reach_; }
 
 private:

@@ -14,10 +14,11 @@ double estimateActiveVoxels(const gcode::Toolpath& toolpath, std::span<const std
         const double height = static_cast<double>(toolpath.runOf(bead).height);
         const double length = gcode::beadLength(toolpath, bead);
         solid += length * gcode::sectionArea(static_cast<double>(bead.width), height);
-        // One side of a wall is seen, the others touch neighbours.
+        // One side of a wall is exposed, the others touch neighbours.
         surface += length * height;
     }
-    // Coarse voxels: all of the solid is within the band, and a band stands around it. Fine ones: two bands along it.
+    // Coarse voxels: the whole solid is within the band, plus a band around it. Fine ones: a band on each side of the
+    // surface.
     return std::min(solid + surface * band, 2 * surface * band) / (voxel_size * voxel_size * voxel_size);
 }
 

@@ -1,4 +1,4 @@
-// Which square columns a bead reaches, seen from above.
+// Finds the square columns that a bead reaches in the plan.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -36,7 +36,7 @@ public:
         : toolpath_(toolpath),
           edge_(edge),
           half_(half_span),
-          // The part in 1e9 keeps rounding on the safe side.
+          // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
 
     /// How far from its path a bead reaches the centres of columns, mm.
@@ -45,7 +45,7 @@ public:
         return section.half_flat + radiusOf(bead, section) + slack_;
     }
 
-    /// Columns whose centres lie in the box of the path, `limit` wider all around.
+    /// Columns whose centres lie in the box of the path, enlarged by `limit` on each side.
     ColumnRange range(const gcode::Bead& bead, double limit) const {
         double min[2] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1)};
         double max[2] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1)};
@@ -53,7 +53,7 @@ public:
         return {first(min[0] - limit), last(max[0] + limit), first(min[1] - limit), last(max[1] + limit)};
     }
 
-    /// Calls visit(i0, i1, j) for each row's run of columns [i0, i1].
+    /// Calls visit(i0, i1, j) for the columns [i0, i1] of each row j.
     template <typename Visit>
     void forEachColumn(const gcode::Bead& bead, Visit visit) const {
         const double reach = limit(bead);
@@ -66,8 +66,8 @@ public:
                 });
             return;
         }
-        // A straight bead's reach is a capsule: convex, so one run of columns a row. The run spans what the row cuts
-        // from the discs about the ends and from the two long sides.
+        // The area within reach of a straight bead is a capsule: convex, so one interval of columns a row. It is the
+        // row's intersection with the discs around the ends and with the rectangle between them.
         const double dx = bead.x1 - bead.x0;
         const double dy = bead.y1 - bead.y0;
         const double length = std::sqrt(dx * dx + dy * dy);
@@ -92,7 +92,7 @@ public:
             disc(bead.x1, bead.y1);
             for (const double turn : {-1.0, 1.0}) {
                 const double up = y - (bead.y0 + turn * side_y);
-                // 0 <= up / dy <= 1, written so that a level path divides nothing.
+                // 0 <= up / dy <= 1, written without the division, which a level path would make 0 / 0.
                 if (dy != 0 && up * dy >= 0 && std::abs(up) <= std::abs(dy))
                     include(bead.x0 + turn * side_x + up / dy * dx);
             }
@@ -104,8 +104,8 @@ public:
     }
 
 private:
-    // The columns of a row that lie within `reach` of an arc's circle: what the row cuts from a disc, less a hole. A
-    // little wider, for the two ends of an arc may differ in radius and rounding is not to lose any; the caller tests.
+    // The columns of a row that lie within `reach` of an arc's circle: the row's intersection with an annulus. Slightly
+    // too wide, because the two ends of an arc may differ in radius and because of rounding; the caller tests each.
     template <typename Visit>
     void forEachNearRing(const gcode::Bead& bead, double reach, const ColumnRange& columns, int j, Visit visit) const {
         const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];

@@ -13,13 +13,13 @@
 namespace stratum::voxelize {
 namespace {
 
-// Without a request: as fine as this many samples of the part's box allow, between these bounds. Three voxels a layer
-// show layer lines well; two is where they begin to look cut.
+// Without a request: the finest within these bounds for which the part's box has at most this many samples. Three
+// voxels a layer show layer lines well; with two they begin to look cut.
 constexpr int kFinestVoxelsPerLayer = 4;
 constexpr int kCoarsestVoxelsPerLayer = 2;
 constexpr double kComfortableActiveVoxels = 60e6;
-// Of the memory at hand, what a grid nobody asked a size for may take by its estimate, which can be off by a factor of
-// two or three.
+// Share of the available memory for the estimate of a grid of default size. The estimate can be off by a factor of two
+// or three.
 constexpr double kComfortableShare = 0.5;
 
 // A plane within this fraction of a voxel of a voxel plane is on it.
@@ -100,7 +100,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
                         "layer height is {:g} mm, try {:g}",
                         lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2), lattice.layer_height,
                         lattice.layer_height / 2));
-    // OpenVDB indexes with 32-bit integers; a factor of four is left for the band and for the tools of others.
+    // OpenVDB indexes with 32-bit integers; a factor of four is reserved for the band and for other tools.
     double farthest = 0;
     for (int axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});

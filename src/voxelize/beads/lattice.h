@@ -1,9 +1,9 @@
-// Where the voxels lie: size and origin, with voxel planes on layer planes.
+// The lattice of voxels: size and origin, with voxel planes on layer planes.
 //
-// Sampling a stack of beads on planes that miss the layer planes costs 0.42 voxel of error at every resolution; on
-// them the error falls with the voxel size. So the voxel is the layer height over a whole number, and the z origin is
-// on a layer plane. With one voxel a layer or fewer every sample would then lie where two layers touch, and none inside
-// a bead: there the planes are put half a voxel off.
+// Sampling a stack of beads on planes that miss the layer planes has an error of 0.42 voxel at every resolution; on
+// them the error falls with the voxel size. So the voxel size is the layer height over a whole number, and the z origin
+// is on a layer plane. With one voxel a layer or fewer every sample would then lie where two layers touch, and none
+// inside a bead: then the planes are shifted by half a voxel.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -17,7 +17,7 @@
 
 namespace stratum::voxelize {
 
-/// What the user asked for; at most one of the two.
+/// The user's request; at most one of voxel_size and voxels_per_layer.
 struct LatticeRequest {
     std::optional<double> voxel_size;     ///< mm
     std::optional<int> voxels_per_layer;  ///< 1..64
@@ -32,11 +32,11 @@ struct Lattice {
     double half_width = 3;     ///< voxels
     double layer_height = 0;   ///< mm, of most of the printed length
     double aligned_share = 0;  ///< share of the level beads' length whose bottom and top lie on voxel planes, 0..1
-    std::string reason;        ///< how the voxel size came about, for the report
-    std::string warning;       ///< what of the print so large a voxel loses; mostly empty
+    std::string reason;        ///< how the voxel size was chosen, for the report
+    std::string warning;       ///< which parts of the print are lost at this voxel size; usually empty
 
-    /// The value far outside, mm. A hair above the half-width: OpenVDB's checks divide it by the voxel size in floats
-    /// and must not get less than the half-width back.
+    /// The background value, mm. Slightly above the half-width: OpenVDB's checks divide it by the voxel size in floats,
+    /// and the quotient must not be less than the half-width.
     double background() const { return half_width * voxel_size * (1 + 1e-6); }
 };
 

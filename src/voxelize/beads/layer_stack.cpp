@@ -10,7 +10,7 @@
 namespace stratum::voxelize {
 namespace {
 
-// Centre plane and radius in whole nanometres: relative moves accumulate rounding that must not split a layer.
+// Centre plane and radius in whole nanometres, so that accumulated rounding of relative moves doesn't split a layer.
 using LayerKey = std::pair<std::int64_t, std::int64_t>;
 
 constexpr std::uint32_t kDirect = 0xffffffff;

@@ -1,4 +1,4 @@
-// Toolpath -> LayerStack: level beads grouped by centre plane and half-height, and what must be welded to what.
+// Toolpath -> LayerStack: level beads grouped by centre plane and half-height, and the pairs of layers to be welded.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -34,7 +34,7 @@ struct Extent {
     double z_min = 0, z_max = 0;
 };
 
-/// The selected beads, ranked by layer. A bead's rank is its place in this order; bins and columns name beads by it.
+/// The selected beads, ordered by layer. A bead's rank is its index in this order; bins and columns refer to it.
 struct LayerStack {
     std::vector<Layer> layers;         ///< ascending centre_z, then radius
     std::vector<Weld> welds;           ///< ordered by (upper, lower)

@@ -17,7 +17,7 @@ LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double 
     const double dx = bead.x1 - bead.x0;
     const double dy = bead.y1 - bead.y0;
     const double length = std::sqrt(dx * dx + dy * dy);
-    // A path of no length is a point: any direction will do.
+    // A path of no length is a point: its direction is arbitrary.
     const double ux = length > 0 ? dx / length : 1.0;
     const double uy = length > 0 ? dy / length : 0.0;
     const double px = x - bead.x0;

@@ -1,7 +1,8 @@
-// One bead as one leaf column sees it: its path relative to the middle of the column, small enough for floats.
+// A bead's path relative to the middle of one leaf column, in numbers small enough for floats.
 //
-// A float holds a coordinate of a metre to 0.06 um only, and a difference of two such coordinates no better. So what is
-// large is subtracted in double, once a bead and column; what is left is of the size of a leaf.
+// A float represents a coordinate of a metre to 0.06 um only, and a difference of two such coordinates is no more
+// precise. So coordinates are subtracted in double, once for each bead and column; the results are of the size of a
+// leaf.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -14,7 +15,7 @@ struct LocalLine {
     float nx, ny, n0;
     float ux, uy, lo, hi;
     float half_flat;
-    bool spans;  ///< the segment passes all samples of the column: its ends can be left out
+    bool spans;  ///< the segment's ends lie beyond all samples of the column, so they can be ignored
 };
 
 /// A circular path of one column. |v0 + q| - radius, with v0 the middle of the column from the centre, is written so
@@ -33,7 +34,7 @@ struct LocalArc {
     bool full;  ///< a whole turn: no ends
 };
 
-/// Whether the bead's path is an arc; one that starts or ends at its own centre is taken for its chord.
+/// Whether the bead's path is an arc; an arc that starts or ends at its own centre is treated as its chord.
 bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
 /// `x`, `y` (mm): the middle of the column's samples. `half_extent` (mm): its samples lie within that in x and y.

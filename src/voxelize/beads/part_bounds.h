@@ -1,4 +1,4 @@
-// Where the part stands among all that is printed with it.
+// Bounds of the printed part without skirts, towers and start lines.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -10,15 +10,15 @@
 
 namespace stratum::voxelize {
 
-/// How far a brim may reach beyond the part's box and still belong to it, mm.
+/// A brim counts as part of the box up to this distance from it, mm.
 inline constexpr double kBrimReach = 10;
 
-/// Bounds of the selected beads, mm, without what is printed beside the part: skirts, prime towers and custom G-code
-/// (start lines); of a brim only what lies within kBrimReach. If nothing else is selected: of all.
+/// Bounds of the selected beads, mm, without skirts, prime towers and custom G-code (start lines); a brim counts only
+/// within kBrimReach. If nothing else is selected: bounds of all selected beads.
 /// @param selection  indices into `toolpath.beads`, at least one
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
-/// The same box where a placement puts it, world units.
+/// The same box after a placement, world units.
 Bounds placed(const Bounds& bounds, const Placement& placement);
 
 }  // namespace stratum::voxelize

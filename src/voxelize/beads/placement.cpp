@@ -8,7 +8,7 @@ namespace stratum::voxelize {
 
 openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
     const double edge = lattice.voxel_size * placement.unit;
-    // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+    // OpenVDB treats a transform whose determinant is below 3e-15 as singular.
     constexpr double kSmallestEdge = 1.45e-5;
     if (edge < kSmallestEdge)
         throw UsageError(
@@ -18,7 +18,7 @@ openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placem
     auto transform = openvdb::math::Transform::createLinearTransform(edge);
     transform->postTranslate(openvdb::Vec3d(placement.offset[0] * placement.unit, placement.offset[1] * placement.unit,
                                             (placement.offset[2] + lattice.origin_z) * placement.unit));
-    // A quarter turn about x. Exact: rotations by angles would leave 6e-17 where zeros belong.
+    // A quarter turn about x. Exact: a rotation by an angle would have 6e-17 in place of zeros.
     if (placement.up_y) transform->postMult(openvdb::Mat4d(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
     return transform;
 }

@@ -1,4 +1,4 @@
-// Where a print's voxels lie in the world of a grid.
+// The transform from print space to a grid's world space.
 #pragma once
 
 #include "voxelize/beads/lattice.h"

@@ -14,8 +14,8 @@
 namespace stratum::voxelize {
 namespace {
 
-// Beads in parts of equal number. A part counts and later fills its own places, so the ranks of a column ascend for any
-// number of parts.
+// Beads in parts of equal number. A part counts and later fills its own entries, so the ranks of a column ascend for
+// any number of parts.
 constexpr std::size_t kMostParts = 16;
 constexpr std::size_t kFewestBeadsAPart = 4096;
 
@@ -30,7 +30,7 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     const std::size_t beads = stack.beads.size();
     std::size_t parts = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
 
-    // Bound the work by arithmetic alone before anything is visited or allocated.
+    // An upper bound by arithmetic, before anything is visited or allocated.
     std::vector<double> part_bounds(parts, 0.0);
     std::vector<ColumnRange> part_ranges(parts);
     parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
@@ -57,7 +57,7 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     first_i_ = all.i0;
     first_j_ = all.j0;
     const double columns = (static_cast<double>(all.i1) - all.i0 + 1) * (static_cast<double>(all.j1) - all.j0 + 1);
-    // A wide, empty bed must not cost a table a part.
+    // Without a table for each part if the bed is wide and mostly empty.
     while (parts > 1 && columns * static_cast<double>(parts) > 2 * bound + 1e6) parts /= 2;
     const double bytes = columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) +
                          bound * sizeof(std::uint32_t);
@@ -97,11 +97,11 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     ranks_ = HugeArray<std::uint32_t>(offsets_.back());
     parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p != end; ++p) {
-            std::uint32_t* places = next.data() + p * count;
+            std::uint32_t* next_entry = next.data() + p * count;
             for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank)
                 footprints.forEachColumn(beadAt(rank), [&](int i0, int i1, int j) {
                     for (std::size_t c = columnIndex(i0, j); i0 <= i1; ++i0, ++c)
-                        ranks_[offsets_[c] + places[c]++] = static_cast<std::uint32_t>(rank);
+                        ranks_[offsets_[c] + next_entry[c]++] = static_cast<std::uint32_t>(rank);
                 });
         }
     });

@@ -1,4 +1,4 @@
-// LayerStack -> which beads reach which leaf column: the 8 x 8 voxel columns that OpenVDB's leaves stand in.
+// LayerStack -> the beads that reach each leaf column, the 8 x 8 voxel columns of OpenVDB's leaves.
 #pragma once
 
 #include "base/huge_array.h"

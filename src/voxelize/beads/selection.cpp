@@ -31,7 +31,7 @@ std::optional<Number> parseNumber(std::string_view text) {
     return value;
 }
 
-// By layer, the index after the last bead of that layer and those below. Beads are looked at once, for all layers.
+// By layer, the index after the last bead of that layer and those below. One pass over the beads for all layers.
 std::vector<std::size_t> endsOfLayers(const gcode::Toolpath& toolpath) {
     std::vector<std::size_t> ends(std::size_t{toolpath.layer_count} + 1, 0);
     for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
@@ -43,7 +43,7 @@ std::vector<std::size_t> endsOfLayers(const gcode::Toolpath& toolpath) {
 }
 
 std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
-    // The margin keeps half of twenty equal beads at ten, whatever the rounding of the sum.
+    // With the margin, half of twenty equal beads is ten, however the sum is rounded.
     const double target = share * gcode::beadVolume(toolpath) * (1 - 1e-9);
     double sum = 0;
     for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
@@ -66,14 +66,14 @@ std::vector<double> endsOfBeads(const gcode::Toolpath& toolpath) {
     return ends;
 }
 
-/// A snapshot whose label waits for the others.
+/// A snapshot whose label is not yet padded to the length of the others.
 struct Cut {
     enum class Kind { percent, layer, seconds, minutes, hours, time_share, count_ } kind;
     double value;
     std::size_t bead_count;
 };
 
-// Digits behind the point that a number has, 6 at most.
+// Digits after the decimal point of a number, 6 at most.
 int decimalsOf(double value) {
     std::string text = fmt::format("{:.6f}", value);
     text.erase(text.find_last_not_of('0') + 1);
@@ -127,7 +127,7 @@ std::optional<Cut> momentOf(std::string_view text, const gcode::Toolpath& toolpa
     const bool share = named && unit == kSeconds.size();
     if (share && *value > 100) return std::nullopt;
     const std::vector<double> ends = endsOfBeads(toolpath);
-    // The margin keeps 100 % at all beads, whatever the rounding.
+    // With the margin, 100 % is all beads, however the sum is rounded.
     const double seconds =
         share ? *value / 100 * (ends.empty() ? 0 : ends.back()) * (1 + 1e-9) : *value * (named ? kSeconds[unit] : 60);
     const auto late = [seconds](double end) { return end > seconds; };

@@ -1,4 +1,4 @@
-// Which beads become voxels: layers, features, objects and partial prints.
+// Selects the beads to be voxelized: layers, features, objects and partial prints.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -14,7 +14,7 @@ namespace stratum::voxelize {
 
 /// A filter over beads; the default keeps all layers of the print, without prime lines.
 struct Selection {
-    std::uint32_t first_layer = 1;  ///< inclusive; 0 also takes what is extruded before the first layer (prime lines)
+    std::uint32_t first_layer = 1;  ///< inclusive; 0 includes what is extruded before the first layer (prime lines)
     std::uint32_t last_layer = 0xffffffff;
     std::array<bool, gcode::kFeatureCount> features;
     std::vector<std::uint16_t> objects;  ///< indices into Toolpath::objects; empty takes all beads, labelled or not
@@ -30,14 +30,14 @@ void parseLayers(std::string_view text, Selection& selection);
 /// of names for an unknown one.
 void parseFeatures(std::string_view text, Selection& selection);
 
-/// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 is what
-/// belongs to no object). Throws UsageError with the list of objects if there is none.
+/// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 are
+/// beads without an object). Throws UsageError with the list of objects if there is none.
 void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpath, Selection& selection);
 
-/// Indices of the selected beads, ascending. Throws InputError, saying what there is, if none is left.
+/// Indices of the selected beads, ascending. Throws InputError, with a list of what the print has, if there are none.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
 
-/// Whether such a list names a time, for which the toolpath's motion had better be planned.
+/// Whether such a list names a time, which needs a planned motion (Toolpath::timing) to be accurate.
 bool needsTiming(std::string_view snapshots);
 
 /// A partial print: everything printed before bead number `bead_count`.
@@ -47,9 +47,9 @@ struct Snapshot {
 };
 
 /// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40), "every:10" (after each 10 layers)
-/// and "time:90" (what lies there after 90 minutes; also time:5400s, time:90m, time:1.5h, and time:50%, of the time to
-/// the last bead). Time is Toolpath::timing's; without one, that of extruding at the speeds asked for. In print order,
-/// without doubles. Throws UsageError, which names the option that the text is of.
+/// and "time:90" (everything printed after 90 minutes; also time:5400s, time:90m, time:1.5h, and time:50%, of the time
+/// to the last bead). Times are those of Toolpath::timing; without it, of extruding at the programmed speeds. In print
+/// order, without duplicates. Throws UsageError, which names the option of the text.
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath,
                                      std::string_view option = "--snapshots");
 

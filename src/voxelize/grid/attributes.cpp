@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "
                                                  "object", "width", "speed",   "color"};
 constexpr float kGrey = 0.8f;
 
-// IEC 61966-2-1, by a table: a colour is asked for at every voxel.
+// IEC 61966-2-1, by a table, because every voxel needs a color.
 float linear(std::uint8_t srgb) {
     static const std::array<float, 256> kTable = [] {
         std::array<float, 256> table{};

@@ -1,4 +1,4 @@
-// What each voxel was printed as: grids of bead attributes beside the surface.
+// Grids of bead attributes: layer, feature, tool, etc. of the bead nearest to each voxel.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -12,16 +12,16 @@
 
 namespace stratum::voxelize {
 
-/// One grid each, named as written here, of the surface's transform and active voxels; a voxel takes the bead whose
-/// surface is nearest.
+/// One grid each, with the name written here and with the surface's transform and active voxels; a voxel has the value
+/// of the bead whose surface is nearest.
 enum class Attribute : std::uint8_t {
     layer,    ///< Int32: 1, 2, ...
-    time,     ///< float: seconds from the program's begin to the bead (Toolpath::timing); without a plan, of extruding
+    time,     ///< float: seconds from the program's start to the bead (Toolpath::timing); without a plan, of extruding
     feature,  ///< Int32: see gcode::Feature; metadata "names" lists them
     tool,     ///< Int32: T number
     object,   ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
     width,    ///< float: mm
-    speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the one asked for
+    speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
     color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 grey where it has none
 };
 
@@ -29,7 +29,7 @@ enum class Attribute : std::uint8_t {
 std::vector<Attribute> parseGrids(std::string_view text);
 std::string_view attributeName(Attribute attribute);
 
-/// What its grid holds: Int32, float or Vec3f.
+/// The value type of its grid: Int32, float or Vec3f.
 enum class AttributeKind : std::uint8_t { integer, number, color };
 AttributeKind attributeKind(Attribute attribute);
 
@@ -44,7 +44,7 @@ public:
 
 private:
     const gcode::Toolpath& toolpath_;
-    std::vector<float> start_;  // by bead, seconds; only if time is wanted
+    std::vector<float> start_;  // by bead, seconds; only with Attribute::time
 };
 
 /// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.
@@ -52,7 +52,7 @@ std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& to
                                                        std::span<const Attribute> attributes,
                                                        const openvdb::FloatGrid& surface);
 
-/// Fills the leaf of `grid` at `origin`, if there is one: the voxels of `ranks` that name a bead.
+/// Fills the leaf of `grid` at `origin`, if there is one: the voxels that have a bead in `ranks`.
 void fillLeaf(openvdb::GridBase& grid, Attribute attribute, const openvdb::Coord& origin, const BeadAttributes& values,
               std::span<const std::uint32_t> beads_of_voxels);
 

@@ -56,7 +56,7 @@ double insideShare(const Samples& s, int x, int y, int z) {
 }
 
 double insideCells(const Samples& s) {
-    // A bit a sample: whole and empty cells are found eight at a time.
+    // One bit for each sample: full and empty cells are found eight at a time.
     std::uint32_t negative[kEdge][kEdge];
     for (int x = 0; x < kEdge; ++x)
         for (int y = 0; y < kEdge; ++y) {
@@ -77,7 +77,7 @@ double insideCells(const Samples& s) {
     return sum;
 }
 
-// Leaves lie in a regular order, so that every n-th would be of a kind (splitmix64's last step).
+// A hash (splitmix64's last step), because leaves are in a regular order and every n-th would be a biased sample.
 std::uint64_t scattered(std::uint64_t n) {
     n = (n + 1) * 0x9e3779b97f4a7c15U;
     n = (n ^ n >> 30) * 0xbf58476d1ce4e5b9U;

@@ -2,7 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "voxelize/leaf/leaf_mask.h"
-#include "voxelize/leaf/leaf_places.h"
+#include "voxelize/leaf/leaf_positions.h"
 
 #include <tbb/concurrent_vector.h>
 
@@ -21,17 +21,17 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// A leaf position that the flood has reached. Only the thread that works on its column writes; the words of `reached`
-// are read by others meanwhile. They only ever gain bits, and whoever gains a bit queues the neighbours it concerns, so
-// what a reader misses it sees in the next round. That is why queueing releases what was written before it, and taking
-// from the queue acquires it.
+// A leaf position that the flood has reached. Only the thread that works on its column writes; other threads read the
+// words of `reached` meanwhile. Bits are only ever set, and the thread that sets a bit queues the neighbours that it
+// concerns, so a bit that a reader misses is seen in the next round. For that, queueing is a release operation, and
+// taking from the queue an acquire operation.
 struct Cell {
-    std::unique_ptr<Leaf> leaf;  // null if nothing is to be built, or all is outside or inside
+    std::unique_ptr<Leaf> leaf;  // null if leaves are only looked up, or if all samples are outside or inside
     bool surface = false;
-    LeafMask wide;     // samples that the flood may take
-    LeafMask outside;  // samples with phi >= 0
-    LeafMask settled;  // what was reached, once the flood is over
-    LeafMask shown;    // of those, what is seen from outside: what was reached and a little around it
+    LeafMask passable;  // samples that the flood may take
+    LeafMask outside;   // samples with phi >= 0
+    LeafMask settled;   // a copy of `reached` after the flood
+    LeafMask shown;     // samples outside that are shown: those reached and those up to ExteriorRule::depth around them
     std::array<std::atomic<std::uint64_t>, 8> reached{};
 
     LeafMask load() const {
@@ -44,7 +44,7 @@ struct Cell {
     }
 };
 
-constexpr std::uint32_t kUnseen = 0xffffffff;
+constexpr std::uint32_t kUnvisited = 0xffffffff;
 constexpr std::size_t kColumnGrain = 8;
 
 constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
@@ -60,21 +60,21 @@ bool touchesFace(const LeafMask& mask, const int (&face)[3]) {
 
 class Flood {
 public:
-    // `whole`: a grid of all leaves, to look them up in; null to evaluate them.
+    // `whole`: a grid of all leaves in which they are looked up; null to evaluate them.
     Flood(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const ExteriorRule& rule,
           const openvdb::FloatTree* whole)
-        : bins_(bins), columns_(columns), end_(end), rule_(rule), whole_(whole), places_(bins, columns, end) {}
+        : bins_(bins), columns_(columns), end_(end), rule_(rule), whole_(whole), positions_(bins, columns, end) {}
 
     ExteriorCounts run(LeavesByColumn& leaves, const std::function<void(double)>& progress) {
         begin();
-        openAir();
+        floodGaps();
         while (anyQueued()) {
             ++counts_.rounds;
             spread();
-            openAir();
-            if (progress) progress(static_cast<double>(cells_.size()) / static_cast<double>(places_.slotCount()));
+            floodGaps();
+            if (progress) progress(static_cast<double>(cells_.size()) / static_cast<double>(positions_.slotCount()));
         }
-        lookAround();
+        findShown();
         collect(leaves);
         if (progress) progress(1);
         counts_.evaluate_seconds = evaluate_seconds_.load();
@@ -83,42 +83,44 @@ public:
     }
 
 private:
-    using Run = LeafPlaces::Run;
-    using Place = LeafPlaces::Place;
+    using Interval = LeafPositions::Interval;
+    using SlotOrGap = LeafPositions::SlotOrGap;
 
     void begin() {
         const auto start = Clock::now();
-        const std::size_t slots = places_.slotCount();
+        const std::size_t slots = positions_.slotCount();
         counts_.positions = slots;
         cells_of_ = std::vector<std::atomic<std::uint32_t>>(slots);
-        for (auto& cell : cells_of_) cell.store(kUnseen, std::memory_order_relaxed);
+        for (auto& cell : cells_of_) cell.store(kUnvisited, std::memory_order_relaxed);
         queued_ = std::vector<std::atomic<std::uint8_t>>(slots);
         near_ = std::vector<std::atomic<std::uint8_t>>(slots);
         dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
-        air_ = std::vector<std::atomic<std::uint8_t>>(places_.airCount());
-        // The air outside the rectangle of columns is open, and with it the air below and above every column.
+        gap_reached_ = std::vector<std::atomic<std::uint8_t>>(positions_.gapCount());
+        // The space outside the rectangle of columns is reached from the start, and so are the gaps below and above
+        // every column.
         for (std::size_t c = 0; c < bins_.size(); ++c) {
-            const std::size_t airs = places_.airCount(c);
-            reachAir(c, 0);
-            reachAir(c, airs - 1);
-            const int i = places_.columnI(c);
-            const int j = places_.columnJ(c);
-            if (i > 0 && j > 0 && places_.inside(i + 1, j + 1)) continue;
-            for (std::size_t n = 1; n + 1 < airs; ++n) reachAir(c, n);
-            for (const Run& run : places_.runsOf(c))
-                for (int k = run.first; k <= run.last; ++k) queue(c, run.slotOf(k));
+            const std::size_t gaps = positions_.gapCount(c);
+            reachGap(c, 0);
+            reachGap(c, gaps - 1);
+            const int i = positions_.columnI(c);
+            const int j = positions_.columnJ(c);
+            if (i > 0 && j > 0 && positions_.inside(i + 1, j + 1)) continue;
+            for (std::size_t n = 1; n + 1 < gaps; ++n) reachGap(c, n);
+            for (const Interval& interval : positions_.intervalsOf(c))
+                for (int k = interval.first; k <= interval.last; ++k) queue(c, interval.slotOf(k));
         }
         addThreadSeconds(secondsSince(start));
     }
 
-    void reachAir(std::size_t c, std::size_t n) {
-        if (air_[places_.firstAir(c) + n].exchange(1, std::memory_order_relaxed) == 0) new_air_.push_back({c, n});
+    void reachGap(std::size_t c, std::size_t n) {
+        if (gap_reached_[positions_.firstGap(c) + n].exchange(1, std::memory_order_relaxed) == 0)
+            new_gaps_.push_back({c, n});
     }
 
     void queue(std::size_t c, std::size_t slot) {
         near_[slot].store(1, std::memory_order_relaxed);
-        // Exchanges, not stores: two threads may queue one leaf, and who takes it must see what both have reached. A
-        // store would hide the first thread's.
+        // Exchanges, not stores: two threads may queue one leaf, and the thread that takes it must see the writes of
+        // both. A store would break the release sequence of the first.
         queued_[slot].exchange(1, std::memory_order_release);
         dirty_[c].exchange(1, std::memory_order_release);
     }
@@ -128,34 +130,34 @@ private:
                            [](const auto& flag) { return flag.load(std::memory_order_relaxed) != 0; });
     }
 
-    // Open air spreads to the air beside it and queues the leaves that it touches.
-    void openAir() {
+    // Spreads from reached gaps to the gaps beside them, and queues the leaves that they touch.
+    void floodGaps() {
         const auto start = Clock::now();
-        new_air_.insert(new_air_.end(), found_air_.begin(), found_air_.end());
-        found_air_.clear();
-        while (!new_air_.empty()) {
-            const auto [c, n] = new_air_.back();
-            new_air_.pop_back();
-            const auto runs = places_.runsOf(c);
-            const int low = n > 0 ? runs[n - 1].last + 1 : std::numeric_limits<int>::min() + 1;
-            const int high = n < runs.size() ? runs[n].first - 1 : std::numeric_limits<int>::max() - 1;
-            if (n > 0) queue(c, runs[n - 1].slotOf(runs[n - 1].last));
-            if (n < runs.size()) queue(c, runs[n].slot);
+        new_gaps_.insert(new_gaps_.end(), found_gaps_.begin(), found_gaps_.end());
+        found_gaps_.clear();
+        while (!new_gaps_.empty()) {
+            const auto [c, n] = new_gaps_.back();
+            new_gaps_.pop_back();
+            const auto intervals = positions_.intervalsOf(c);
+            const int low = n > 0 ? intervals[n - 1].last + 1 : std::numeric_limits<int>::min() + 1;
+            const int high = n < intervals.size() ? intervals[n].first - 1 : std::numeric_limits<int>::max() - 1;
+            if (n > 0) queue(c, intervals[n - 1].slotOf(intervals[n - 1].last));
+            if (n < intervals.size()) queue(c, intervals[n].slot);
             for (int dx = -1; dx <= 1; ++dx)
                 for (int dy = -1; dy <= 1; ++dy) {
-                    const int i = places_.columnI(c) + dx;
-                    const int j = places_.columnJ(c) + dy;
-                    if ((dx == 0 && dy == 0) || !places_.inside(i, j)) continue;
-                    const std::size_t beside = places_.columnAt(i, j);
-                    const auto other = places_.runsOf(beside);
-                    for (const Run& run : other)
-                        for (int k = std::max(run.first, low - 1); k <= std::min(run.last, high + 1); ++k)
-                            queue(beside, run.slotOf(k));
+                    const int i = positions_.columnI(c) + dx;
+                    const int j = positions_.columnJ(c) + dy;
+                    if ((dx == 0 && dy == 0) || !positions_.inside(i, j)) continue;
+                    const std::size_t beside = positions_.columnAt(i, j);
+                    const auto other = positions_.intervalsOf(beside);
+                    for (const Interval& interval : other)
+                        for (int k = std::max(interval.first, low - 1); k <= std::min(interval.last, high + 1); ++k)
+                            queue(beside, interval.slotOf(k));
                     if (dx != 0 && dy != 0) continue;
                     for (std::size_t m = 0; m <= other.size(); ++m) {
                         const int from = m > 0 ? other[m - 1].last + 1 : std::numeric_limits<int>::min() + 1;
                         const int to = m < other.size() ? other[m].first - 1 : std::numeric_limits<int>::max() - 1;
-                        if (std::max(from, low) <= std::min(to, high)) reachAir(beside, m);
+                        if (std::max(from, low) <= std::min(to, high)) reachGap(beside, m);
                     }
                 }
         }
@@ -164,11 +166,11 @@ private:
 
     const LeafMask* reachedAt(int i, int j, int k, LeafMask& storage) const {
         static const LeafMask kAll = LeafMask::full();
-        if (!places_.inside(i, j)) return &kAll;
-        const Place place = places_.at(places_.columnAt(i, j), k);
-        if (!place.slot) return air_[place.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
-        const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
-        if (cell == kUnseen) return nullptr;
+        if (!positions_.inside(i, j)) return &kAll;
+        const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k);
+        if (!at.is_slot) return gap_reached_[at.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
+        const std::uint32_t cell = cells_of_[at.index].load(std::memory_order_acquire);
+        if (cell == kUnvisited) return nullptr;
         storage = cells_[cell].load();
         return storage.empty() ? nullptr : &storage;
     }
@@ -176,19 +178,19 @@ private:
     LeafMask seedsOf(std::size_t c, int k) const {
         LeafMask storage[7];
         Neighbourhood around{};
-        const int i = places_.columnI(c);
-        const int j = places_.columnJ(c);
+        const int i = positions_.columnI(c);
+        const int j = positions_.columnJ(c);
         around[neighbourIndex(0, 0, 0)] = reachedAt(i, j, k, storage[6]);
         for (std::size_t n = 0; n < 6; ++n) {
             const auto [dx, dy, dz] = kFaces[n];
             around[neighbourIndex(dx, dy, dz)] = reachedAt(i + dx, j + dy, k + dz, storage[n]);
         }
-        return besides(around);
+        return dilateFaces(around);
     }
 
-    // What is known of a leaf position once the flood is over: open air, a cell, or nothing (both empty).
+    // A leaf position after the flood: a reached gap, a cell, or neither.
     struct Known {
-        bool air = false;
+        bool reached_gap = false;
         const Cell* cell = nullptr;
     };
     using Around = std::array<Known, 27>;
@@ -197,20 +199,20 @@ private:
         Around known{};
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = places_.columnI(c) + dx;
-                const int j = places_.columnJ(c) + dy;
-                const bool there = places_.inside(i, j);
+                const int i = positions_.columnI(c) + dx;
+                const int j = positions_.columnJ(c) + dy;
+                const bool there = positions_.inside(i, j);
                 for (int dz = -1; dz <= 1; ++dz) {
                     Known& out = known[neighbourIndex(dx, dy, dz)];
                     if (!there) {
-                        out.air = true;
+                        out.reached_gap = true;
                         continue;
                     }
-                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
-                    if (!place.slot) {
-                        out.air = air_[place.index].load(std::memory_order_relaxed) != 0;
-                    } else if (const std::uint32_t cell = cells_of_[place.index].load(std::memory_order_acquire);
-                               cell != kUnseen) {
+                    const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k + dz);
+                    if (!at.is_slot) {
+                        out.reached_gap = gap_reached_[at.index].load(std::memory_order_relaxed) != 0;
+                    } else if (const std::uint32_t cell = cells_of_[at.index].load(std::memory_order_acquire);
+                               cell != kUnvisited) {
                         out.cell = &cells_[cell];
                     }
                 }
@@ -222,13 +224,13 @@ private:
         static const LeafMask kAll = LeafMask::full();
         Neighbourhood out{};
         for (std::size_t n = 0; n < out.size(); ++n)
-            out[n] = around[n].air ? &kAll : around[n].cell != nullptr ? &(around[n].cell->*mask) : nullptr;
+            out[n] = around[n].reached_gap ? &kAll : around[n].cell != nullptr ? &(around[n].cell->*mask) : nullptr;
         return out;
     }
 
     Cell& cellAt(LeafColumn& column, bool& opened, std::size_t c, int k, std::size_t slot, double& evaluating) {
         const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
-        if (known != kUnseen) return cells_[known];
+        if (known != kUnvisited) return cells_[known];
         const auto start = Clock::now();
         const auto it = cells_.emplace_back();
         Cell& cell = *it;
@@ -246,9 +248,9 @@ private:
             leaf = cell.leaf.get();
         }
         cell.surface = leaf != nullptr;
-        if (content == LeafContent::outside) cell.wide = cell.outside = LeafMask::full();
+        if (content == LeafContent::outside) cell.passable = cell.outside = LeafMask::full();
         if (leaf != nullptr) {
-            maskFrom(leaf->buffer().data(), rule_.clearance, cell.wide.word.data());
+            maskFrom(leaf->buffer().data(), rule_.clearance, cell.passable.word.data());
             maskFrom(leaf->buffer().data(), 0, cell.outside.word.data());
         }
         cells_of_[slot].store(static_cast<std::uint32_t>(it - cells_.begin()), std::memory_order_release);
@@ -256,21 +258,21 @@ private:
         return cell;
     }
 
-    // The leaves around one that is reached will be looked at when the flood is over.
+    // Marks the leaves around a reached one: they are examined after the flood.
     void markNear(std::size_t c, int k) {
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = places_.columnI(c) + dx;
-                const int j = places_.columnJ(c) + dy;
-                if (!places_.inside(i, j)) continue;
+                const int i = positions_.columnI(c) + dx;
+                const int j = positions_.columnJ(c) + dy;
+                if (!positions_.inside(i, j)) continue;
                 for (int dz = -1; dz <= 1; ++dz) {
-                    const Place place = places_.at(places_.columnAt(i, j), k + dz);
-                    if (place.slot) near_[place.index].store(1, std::memory_order_relaxed);
+                    const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k + dz);
+                    if (at.is_slot) near_[at.index].store(1, std::memory_order_relaxed);
                 }
             }
     }
 
-    // One round: every queued leaf takes in what its neighbours have reached.
+    // One round: the flood enters every queued leaf from its neighbours.
     void spread() {
         parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
             const auto start = Clock::now();
@@ -279,9 +281,9 @@ private:
             for (std::size_t c = first; c != last; ++c) {
                 if (dirty_[c].exchange(0, std::memory_order_acquire) == 0) continue;
                 bool opened = false;
-                for (const Run& run : places_.runsOf(c))
-                    for (int k = run.first; k <= run.last; ++k) {
-                        const std::size_t slot = run.slotOf(k);
+                for (const Interval& interval : positions_.intervalsOf(c))
+                    for (int k = interval.first; k <= interval.last; ++k) {
+                        const std::size_t slot = interval.slotOf(k);
                         if (queued_[slot].exchange(0, std::memory_order_acquire) == 0) continue;
                         visit(column, opened, c, k, slot, evaluating);
                     }
@@ -296,22 +298,22 @@ private:
         if (seeds.empty()) return;
         Cell& cell = cellAt(column, opened, c, k, slot, evaluating);
         const LeafMask before = cell.load();
-        const LeafMask after = floodWithin(cell.wide, seeds);
+        const LeafMask after = floodWithin(cell.passable, seeds);
         if (after == before) return;
         cell.store(after);
         if (before.empty()) markNear(c, k);
         LeafMask gained;
         for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
         for (const auto& face : kFaces) {
-            const int i = places_.columnI(c) + face[0];
-            const int j = places_.columnJ(c) + face[1];
-            if (!places_.inside(i, j) || !touchesFace(gained, face)) continue;
-            const std::size_t beside = places_.columnAt(i, j);
-            const Place place = places_.at(beside, k + face[2]);
-            if (place.slot) {
-                queue(beside, place.index);
-            } else if (air_[place.index].exchange(1, std::memory_order_relaxed) == 0) {
-                found_air_.push_back({beside, place.index - places_.firstAir(beside)});
+            const int i = positions_.columnI(c) + face[0];
+            const int j = positions_.columnJ(c) + face[1];
+            if (!positions_.inside(i, j) || !touchesFace(gained, face)) continue;
+            const std::size_t beside = positions_.columnAt(i, j);
+            const SlotOrGap at = positions_.at(beside, k + face[2]);
+            if (at.is_slot) {
+                queue(beside, at.index);
+            } else if (gap_reached_[at.index].exchange(1, std::memory_order_relaxed) == 0) {
+                found_gaps_.push_back({beside, at.index - positions_.firstGap(beside)});
             }
         }
     }
@@ -325,9 +327,9 @@ private:
             LeafColumn& column = columns_();
             for (std::size_t c = first; c != last; ++c) {
                 bool opened = false;
-                for (const Run& run : places_.runsOf(c))
-                    for (int k = run.first; k <= run.last; ++k) {
-                        const std::size_t slot = run.slotOf(k);
+                for (const Interval& interval : positions_.intervalsOf(c))
+                    for (int k = interval.first; k <= interval.last; ++k) {
+                        const std::size_t slot = interval.slotOf(k);
                         if (near_[slot].load(std::memory_order_relaxed) != 0)
                             body(c, k, slot, [&]() -> Cell& { return cellAt(column, opened, c, k, slot, evaluating); });
                     }
@@ -337,36 +339,37 @@ private:
         });
     }
 
-    // What the flood left out for being narrow is seen all the same where it is shallow.
-    void lookAround() {
+    // Adds openings that are too narrow for the flood, up to ExteriorRule::depth.
+    void findShown() {
         for (Cell& cell : cells_) cell.settled = cell.load();
-        // First all leaves that matter, then what is shown of each: a look at a neighbour must find it complete.
+        // First evaluates all leaves that are needed, then finds the shown samples: these depend on complete
+        // neighbours.
         forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
-            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen &&
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnvisited &&
                 anyWithin(masksOf(around(c, k), &Cell::settled), rule_.depth))
                 cell();
         });
         forEachNear([this](std::size_t c, int k, std::size_t slot, const auto& cell) {
-            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnseen) return;
+            if (cells_of_[slot].load(std::memory_order_relaxed) == kUnvisited) return;
             const Around known = around(c, k);
             cell().shown = spreadThrough(masksOf(known, &Cell::outside), masksOf(known, &Cell::settled), rule_.depth);
         });
     }
 
-    // Keeps what lies within the band of what is shown, and turns the rest inside.
+    // Keeps the voxels within the band around shown ones, and turns the others inside.
     void collect(LeavesByColumn& leaves) {
         std::atomic<std::size_t> kept{0};
         std::atomic<std::size_t> kept_voxels{0};
         forEachNear([&](std::size_t c, int k, std::size_t slot, const auto& of) {
             const std::uint32_t known = cells_of_[slot].load(std::memory_order_relaxed);
-            if (known != kUnseen && !cells_[known].surface) return;
+            if (known != kUnvisited && !cells_[known].surface) return;
             const Neighbourhood shown = masksOf(around(c, k), &Cell::shown);
-            if (known == kUnseen && !anyWithin(shown, static_cast<int>(rule_.band))) return;
-            const LeafMask near = withinReach(shown, rule_.band);
+            if (known == kUnvisited && !anyWithin(shown, static_cast<int>(rule_.band))) return;
+            const LeafMask near = dilateBall(shown, rule_.band);
             if (near.empty()) return;
             Cell& cell = of();
             if (!cell.surface) return;
-            // What goes: outside but not seen, or inside and far from what is.
+            // Dropped: samples outside that are not shown, and samples inside that are far from shown ones.
             LeafMask drop;
             for (std::size_t x = 0; x < 8; ++x)
                 drop.word[x] = (cell.outside.word[x] & ~cell.shown.word[x]) | (~cell.outside.word[x] & ~near.word[x]);
@@ -410,17 +413,17 @@ private:
     const std::uint32_t end_;
     const ExteriorRule rule_;
     const openvdb::FloatTree* const whole_;
-    const LeafPlaces places_;
+    const LeafPositions positions_;
 
     std::vector<std::atomic<std::uint32_t>> cells_of_;  // by slot: index into cells_
     tbb::concurrent_vector<Cell> cells_;
-    std::vector<std::atomic<std::uint8_t>> queued_, near_;  // by slot
-    std::vector<std::atomic<std::uint8_t>> dirty_, air_;    // by column, by air
-    struct Air {
+    std::vector<std::atomic<std::uint8_t>> queued_, near_;        // by slot
+    std::vector<std::atomic<std::uint8_t>> dirty_, gap_reached_;  // by column, by gap
+    struct Gap {
         std::size_t column, number;
     };
-    std::vector<Air> new_air_;
-    tbb::concurrent_vector<Air> found_air_;
+    std::vector<Gap> new_gaps_;
+    tbb::concurrent_vector<Gap> found_gaps_;
     std::atomic<double> thread_seconds_{0}, evaluate_seconds_{0};
     ExteriorCounts counts_;
 };

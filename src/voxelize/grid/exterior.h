@@ -1,17 +1,17 @@
-// Builds only what the outside can reach.
+// Builds only the leaves that are reachable from outside the part.
 //
-// A closed print is mostly inner surfaces: infill, channels between beads. The flood starts in the open air around the
-// part and evaluates a leaf when it arrives there, so leaves that no outside point reaches never exist.
+// Most surfaces of a closed print are inside: infill, channels between beads. A flood fill starts around the part and
+// evaluates a leaf when it arrives there, so leaves that it doesn't reach are never built.
 //
-// Printed parts are not tight: between beads laid side by side runs a channel, 0.27 layer heights wide where the
-// planned spacing is kept, and somewhere it meets the outside. So the flood takes only samples that keep a clearance
-// from the surface (a gap of twice the clearance is the narrowest it passes); what lies around them, up to a depth, is
-// shown whatever its width: grooves, steps, the sides of layers.
+// Printed parts are not airtight: between beads laid side by side there is a channel, 0.27 layer heights wide at the
+// planned spacing, which reaches the outside somewhere. So the flood takes only samples whose distance to the surface
+// is at least a clearance (the narrowest opening it passes is twice the clearance). Voxels around the flood, up to a
+// depth, are shown whatever their width: grooves, steps, the sides of layers.
 #pragma once
 
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
-#include "voxelize/leaf/leaf_places.h"
+#include "voxelize/leaf/leaf_positions.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@
 namespace stratum::voxelize {
 
 struct ExteriorCounts {
-    std::size_t positions = 0;  ///< leaf positions that `keep` would have to evaluate
+    std::size_t positions = 0;  ///< leaf positions that Interior::keep would evaluate
     std::size_t evaluated = 0;
     std::size_t kept = 0;         ///< leaves
     std::size_t kept_voxels = 0;  ///< active ones
@@ -34,23 +34,23 @@ struct ExteriorCounts {
 struct ExteriorRule {
     float background = 0;  ///< world units
     float clearance = 0;   ///< world units: the flood passes where phi is at least this
-    int depth = 3;         ///< voxels, 1..8: narrow places are shown this far from where the flood came
-    double band = 2;       ///< voxels, 1..8: inside, what is this near to something shown stays active
+    int depth = 3;         ///< voxels, 1..8: openings narrower than the flood passes are shown up to this depth
+    double band = 2;       ///< voxels, 1..8: voxels inside the solid stay active within this distance of shown ones
 };
 
 /// Leaves with at least one active voxel, by column.
 using LeavesByColumn = std::vector<std::vector<std::unique_ptr<Leaf>>>;
 
-/// Fills `leaves`. Values that are shown are those of the
-/// whole level set, and so are those inside near them; every other voxel is inside. Parallel; the result does not
-/// depend on the number of threads. How many leaves will be reached nobody knows before: `progress` gets the share of
-/// all positions reached so far, and 1 at the end; one thread at a time.
+/// Fills `leaves`. Shown voxels, and voxels inside within the band around them, have the values of the whole level set;
+/// every other voxel is inside. Parallel; the result does not depend on the number of threads. The number of leaves is
+/// unknown in advance: `progress` gets the share of all positions reached so far, and 1 at the end; one thread at a
+/// time.
 ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const ExteriorRule& rule, LeavesByColumn& leaves,
                               const std::function<void(double)>& progress = {});
 
-/// What buildReachable would keep, found in the whole grid of the same beads, which must not change meanwhile: no
-/// distance is evaluated.
+/// Counts what buildReachable would keep. Reads the values from the whole grid of the same beads, which must not change
+/// meanwhile, and evaluates no distance.
 ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const ExteriorRule& rule, const openvdb::FloatTree& whole);
 

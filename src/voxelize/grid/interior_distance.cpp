@@ -20,7 +20,7 @@ void sweepInterior(openvdb::FloatGrid& grid) {
             for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
                 if (*voxel >= 0) continue;
                 const float value = other->getValue(voxel.pos());
-                // The sweep can't make solid air: a zero crossing that rounds to the other side keeps its sign.
+                // The sweep must not change signs: a zero crossing that rounds to the other side keeps its sign.
                 voxel.setValue(value < 0 ? std::max(value, -background) : *voxel);
                 if (*voxel <= -background) voxel.setValueOff();
             }

@@ -80,7 +80,7 @@ double lostShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t>
         std::vector<Nearby> near;
         for (const std::uint32_t index : selection) {
             const gcode::Bead& bead = toolpath.beads[index];
-            // By height first, which needs no field; half a bead's width is room enough above and below.
+            // Filters by height first, without evaluating fields, with a margin of half a bead's width above and below.
             const double margin = static_cast<double>(toolpath.runOf(bead).height) + static_cast<double>(bead.width);
             if (std::max<double>(bead.z0, bead.z1) + margin < around.min[2] ||
                 std::min<double>(bead.z0, bead.z1) - margin > around.max[2])

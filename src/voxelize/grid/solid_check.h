@@ -1,4 +1,4 @@
-// Whether a lattice can hold the solid that the beads are: checks that need no grid, or little of one.
+// Checks whether a lattice is fine enough for the solid of the beads, without a grid or with a few leaves of it.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -11,15 +11,15 @@
 namespace stratum::voxelize {
 
 /// Share (0..1) of the beads whose middle is not solid on the lattice: the field of the union, exact at the eight
-/// samples around it and trilinear between them, is not negative there. Of at most 512 beads, of 16 places along the
-/// print, each 32 in a row: a share of a few per cent is good to a few per cent. Lists the beads near those places and
-/// looks at no others. `selection` ascending, not empty.
+/// samples around it and trilinear between them, is not negative there. Tests at most 512 beads: 32 consecutive ones at
+/// 16 positions along the print. So a share of a few per cent is accurate to a few per cent. Only beads near those are
+/// evaluated. `selection` ascending, not empty.
 double lostShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice);
 
-/// What the beads of `selection` hold if none overlaps: lengths times section areas, mm^3.
+/// Volume of the beads of `selection` without overlaps: lengths times section areas, mm^3.
 double depositedVolume(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
-/// How far (as a share of the deposited volume) an enclosed one may be from it before a report should say so. Beads
+/// Relative difference of the enclosed from the deposited volume above which a report should mention it. Beads
 /// overlap where they cross and turn, and gaps narrower than a voxel are filled: see docs/level_set.md for real prints.
 constexpr double kVolumeDoubt = 0.15;
 

@@ -83,8 +83,8 @@ int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::sp
     int best = kFewestVoxelsPerLayer;
     for (int count = best + 1; count <= kMostWithinBudget; ++count) {
         const double finer = static_cast<double>(count) / kFewestVoxelsPerLayer;
-        // What is culled grows like a surface (see estimateBytes). The rest grows no slower, up to a third that leaves
-        // which are partly empty make of it: no need to list what that alone rules out.
+        // A culled grid grows like a surface (see estimateBytes). A full grid grows at least as fast, up to a third
+        // because of partly empty leaves; sizes that this bound excludes are not counted exactly.
         const double least = coarsest * finer * finer;
         if (least > (interior == Interior::cull ? 1 : 1.5) * budget) break;
         lattice.voxel_size = lattice.layer_height / count;

@@ -46,7 +46,7 @@ private:
     std::mutex mutex_;
 };
 
-// When culling, voxels: the masks look one leaf far.
+// With culling, in voxels: the masks cover only the neighbouring leaves.
 constexpr double kDeepestBand = 8;
 constexpr double kChannelRadius = 0.15;  // layer heights
 constexpr std::size_t kColumnGrain = 16;
@@ -59,10 +59,10 @@ std::size_t memoryLimit(const VoxelizeOptions& options) {
     return options.memory_limit != 0 ? options.memory_limit : availableMemory();
 }
 
-// The estimate can be off by about that; culling leaves most of it out.
+// The estimate can be off by about this factor; culling builds only a fraction of it.
 double estimateMargin(Interior interior) { return interior == Interior::keep ? 3 : 30; }
 
-// Refuses what is hopeless by arithmetic alone, before any list is made. The exact bound follows from the bins.
+// Refuses clearly too large grids by arithmetic, before any list is made. The exact bound follows from the bins.
 LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                          const Lattice& lattice, const VoxelizeOptions& options, double estimate) {
     const auto limit = static_cast<double>(memoryLimit(options));
@@ -117,7 +117,7 @@ struct Voxelizer::State {
 };
 
 void Voxelizer::State::refuseIfTooLarge() {
-    // Culling builds a fraction that only the flood can tell. What clearly fits needs no counting.
+    // Culling builds a fraction that is unknown before the flood. Grids that clearly fit are not counted.
     if (options.interior == Interior::cull) return;
     if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
     std::atomic<std::size_t> leaf_bound{0};
@@ -221,7 +221,7 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
     else
         state_->buildReached(end);
     state_->printed = end;
-    // Tiles get the sign of the leaves beside them; leaves know theirs.
+    // Tiles get the sign of the adjacent leaves; leaves have theirs already.
     openvdb::tools::signedFloodFill(state_->grid->tree(), true, 1, 1);
     state_->report.build_seconds = secondsSince(start);
     return state_->grid;

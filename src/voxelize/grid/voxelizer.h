@@ -17,12 +17,12 @@
 
 namespace stratum::voxelize {
 
-/// What becomes of surfaces that no outside point can reach.
+/// Treatment of surfaces that are not reachable from outside.
 enum class Interior : std::uint8_t {
-    keep,  ///< all are there: infill, gaps between beads
-    cull,  ///< they are filled, and their leaves never built. What stays has the same bits; gaps narrower than a
-           ///< voxel, or 0.3 layer heights, are filled from three voxels below where the outside comes to; see
-           ///< exterior.h
+    keep,  ///< all are kept: infill, gaps between beads
+    cull,  ///< they are filled, and their leaves are not built. The remaining surface has the same bits; gaps
+    ///< narrower than a voxel, or than 0.3 layer heights, are filled below a depth of three voxels; see
+    ///< exterior.h
 };
 
 struct VoxelizeOptions {
@@ -30,11 +30,11 @@ struct VoxelizeOptions {
     Interior interior = Interior::keep;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
-    /// Called now and then with the fraction done, 0..1, from any of the working threads, one call at a time.
+    /// Called from time to time with the fraction done, 0..1, from any of the working threads, one call at a time.
     std::function<void(double)> progress;
 };
 
-/// What the last build did, for reports.
+/// Statistics of the last build, for reports.
 struct VoxelizeReport {
     std::size_t leaf_positions = 0;  ///< that beads touch
     std::size_t leaves_evaluated = 0;
@@ -45,20 +45,20 @@ struct VoxelizeReport {
     double build_seconds = 0;     ///< wall, the exterior included
 };
 
-/// What Interior::cull would leave of a grid.
+/// What Interior::cull would keep of a grid.
 struct CullForecast {
     std::size_t leaves = 0;
     std::size_t active_voxels = 0;
 };
 
-/// Voxelizes a print, whole or as a series of ever more of it on one lattice. Layers and bins are made once; each step
-/// evaluates the leaves that new beads touch.
+/// Voxelizes a print, whole or as a series of growing partial prints on one lattice. Layers and bins are made once;
+/// each step evaluates the leaves that new beads touch.
 ///
 /// Values outside the solid are signed distances to the union, exact to float rounding; inside they are negative
 /// everywhere (layers are welded) but a bound, not a distance. Active voxels are those within the half-width; with
 /// Interior::cull those inside only within the half-width less one (at most 8 voxels) of a sample seen from outside.
-/// Inactive voxels and tiles hold plus or minus the background. Every voxel's sign is set: a signed flood fill changes
-/// nothing. Parallel through TBB; the result does not depend on the number of threads, nor on the steps before it.
+/// Inactive voxels and tiles have plus or minus the background. Every voxel's sign is set: a signed flood fill changes
+/// nothing. Parallel with TBB; the result does not depend on the number of threads, nor on the steps before it.
 class Voxelizer {
 public:
     /// `selection`: indices into toolpath.beads, ascending. `toolpath` and `lattice` must outlive the object. Throws
@@ -69,16 +69,16 @@ public:
     Voxelizer(const Voxelizer&) = delete;
     Voxelizer& operator=(const Voxelizer&) = delete;
 
-    /// Brings the grid to what is printed by the selected beads before index `end` of the toolpath; steps may only
-    /// grow. The grid stays this object's and changes with the next step.
+    /// Advances the grid to the selected beads before index `end` of the toolpath; `end` must not decrease. The grid
+    /// belongs to this object and changes with the next step.
     openvdb::FloatGrid::Ptr printUntil(std::uint32_t end);
     openvdb::FloatGrid::Ptr printAll() { return printUntil(0xffffffff); }
 
-    /// Attribute grids over the active voxels of the grid as it is now, in the given order. Progress runs anew.
+    /// Attribute grids over the active voxels of the current grid, in the given order. Progress restarts at 0.
     std::vector<openvdb::GridBase::Ptr> attributes(std::span<const Attribute> wanted) const;
 
-    /// What Interior::cull would keep of the grid as it is now, which Interior::keep built. Looks the leaves up and
-    /// evaluates nothing, yet costs about a third of a build.
+    /// Counts what Interior::cull would keep of the current grid, which Interior::keep built. Reads existing leaves
+    /// instead of evaluating distances; takes about a third of the time of a build.
     CullForecast forecastCull() const;
 
     const VoxelizeReport& report() const;

@@ -8,7 +8,7 @@
 namespace stratum::voxelize {
 namespace {
 
-// `z` (mm): the height that the kernel's z counts from.
+// `z` (mm): the origin of the kernel's z.
 LocalRod localRod(const gcode::Bead& bead, const BeadField& field, double drop, double x, double y, double z,
                   double scale) {
     const double dx = bead.x1 - bead.x0;
@@ -16,7 +16,7 @@ LocalRod localRod(const gcode::Bead& bead, const BeadField& field, double drop, 
     const double dz = bead.z1 - bead.z0;
     const double plan = std::sqrt(dx * dx + dy * dy);
     const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
-    // n: level, across the path; u: along it; b = u x n. A vertical or empty path leaves the direction of n open.
+    // n: level, across the path; u: along it; b = u x n. For a vertical or empty path the direction of n is arbitrary.
     const double nx = plan > 0 ? -dy / plan : 0.0;
     const double ny = plan > 0 ? dx / plan : 1.0;
     const double ux = length > 0 ? dx / length : 1.0;
@@ -53,7 +53,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
     const gcode::Bead& bead = toolpath_.beads[stack_.beads[direct.rank]];
     const BeadField field(toolpath_, bead);
     const double drop = sectionOf(toolpath_, bead).drop;
-    // Heights count from the middle of the leaf.
+    // Heights are relative to the middle of the leaf.
     const double z_middle = sampleZ(k0) + 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
     const auto forEachPlane = [&](auto visit) {
         for (std::size_t z = 0; z < planes.size(); ++z) {
@@ -80,7 +80,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
         const double z0 = bead.z0 - drop + along * climb - z_middle;
         slopedLine(grid_, line, static_cast<float>(z0 * scale_), static_cast<float>(climb), sides2, centre_z);
     } else {
-        // Helices of flat beads are rare; the angle along one has no short form.
+        // Helices of flat beads are rare, and the angle along one has no closed form.
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (i_ + static_cast<int>(c / 8)) * lattice_.voxel_size;
             const double y = (j_ + static_cast<int>(c % 8)) * lattice_.voxel_size;

@@ -34,7 +34,7 @@ LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
 }
 
 void LeafColumn::mergeRanges() {
-    // Those of the layers come first and ascend.
+    // Ranks of the layers come first, ascending.
     const auto rest = std::is_sorted_until(ranges_.begin(), ranges_.end());
     std::sort(rest, ranges_.end());
     std::inplace_merge(ranges_.begin(), rest, ranges_.end());
@@ -84,7 +84,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     window_.clear();
     welds_.clear();
     radii_.clear();
-    // A few beads are soon wanted, and lie apart in memory.
+    // Prefetch: the next beads are scattered in memory.
     constexpr std::size_t kFew = 128;
     const bool few = ranks.size() <= kFew;
     for (std::uint32_t e = 0; e < ranks.size(); ++e) {
@@ -100,7 +100,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
             column_layers_.back().last = e + 1;
         }
     }
-    // Rank breaks ties, so that the order never depends on the sort.
+    // Ties are broken by rank, so that the order does not depend on the sort algorithm.
     std::sort(direct_.begin(), direct_.end(), [](const DirectBead& a, const DirectBead& b) {
         return std::pair{a.z_min, a.rank} < std::pair{b.z_min, b.rank};
     });
@@ -116,7 +116,7 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
         }
         if (!any) continue;
         const Layer& l = stack_.layers[source.layer];
-        // A new bead can weld what lies below it: up to its own centre plane, so no farther than its own band.
+        // A new bead can be welded to the layer below: up to its own centre plane, so within its own band.
         ranges_.push_back(
             leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
     }
@@ -136,7 +136,7 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
     for (std::uint32_t e = source.first; e < source.last; ++e) {
         const std::uint32_t rank = ranks_[e];
-        // The beads of a column lie apart in memory: ask for one early.
+        // Prefetch: the beads of a column are scattered in memory.
         constexpr std::uint32_t kAhead = 6;
         if (e + kAhead < ranks_.size()) __builtin_prefetch(&toolpath_.beads[stack_.beads[ranks_[e + kAhead]]]);
         if (stack_.beads[rank] >= end_) continue;
@@ -192,13 +192,13 @@ void LeafColumn::addWelds(const PlanLayer& upper) {
 }
 
 void LeafColumn::moveWindow(double z_min, double z_max) {
-    // A layer stays while its band reaches the leaf, and a little longer for what rests on it across a gap.
+    // A layer stays while its band reaches the leaf, and slightly longer, for welds to layers that rest on it.
     const auto reach = [this](double radius) { return radius + band_ + weldGap(radius); };
     const auto passed = [&](std::uint32_t slot) {
         const PlanLayer& plan = slots_[slot];
         return plan.centre_z + reach(plan.radius) < z_min;
     };
-    // In order, for ties go to the first.
+    // In order, because the first of equally near beads is the owner.
     std::size_t kept = 0;
     for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
     if (kept != window_.size()) {
@@ -264,7 +264,7 @@ LeafContent LeafColumn::evaluate(int leaf_k, std::size_t planes) {
     for (std::size_t n = first_direct_; n < direct_.size() && direct_[n].z_min <= z_max; ++n) {
         if (direct_[n].z_max < z_min) continue;
         expandDirect(direct_[n], k0, std::span(phi_.plane).first(kLeafPlanes));
-        // As the leaf above has it, to the bit: relative to that one's middle.
+        // Relative to the middle of the leaf above, so that the bits are those of that leaf.
         if (planes > kLeafPlanes) expandDirect(direct_[n], k0 + kLeafDim, std::span(phi_.plane).subspan(kLeafPlanes));
     }
     return clampLeaf(phi_, planes, background);
@@ -273,7 +273,7 @@ LeafContent LeafColumn::evaluate(int leaf_k, std::size_t planes) {
 std::unique_ptr<Leaf> LeafColumn::makeLeaf() const {
     const auto background = static_cast<float>(band_ * scale_);
     const openvdb::Coord origin(i_, j_, leaf_k_ * kLeafDim);
-    // Partial: the values are written once, below, not twice.
+    // A partial leaf: its values are not initialized, because they are written below.
     auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, background, false);
     leaf->allocate();
     std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];

@@ -23,36 +23,36 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 using LeafRange = std::pair<int, int>;
 
 /// Scratch of one thread: opens columns one after the other and evaluates their leaves from the bottom up. Plan fields
-/// live in a window that moves up with the leaves, so a column costs what meets one leaf, however tall it is.
+/// are kept in a window that moves up with the leaves, so memory is that of the layers that overlap one leaf.
 class LeafColumn {
 public:
-    /// `scale` turns mm into the grid's world unit. The references must outlive the object. With `owners` the nearest
-    /// bead is remembered as well; see owners().
+    /// `scale` is in world units a mm. The references must outlive the object. With `owners` the nearest bead of each
+    /// voxel is recorded as well; see owners().
     LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
                bool owners = false);
 
-    /// Takes up the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
-    /// toolpath of `end` or more aren't printed yet.
+    /// Opens the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
+    /// toolpath of `end` or more are left out.
     void open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end);
 
-    /// The leaves that the open column's beads from index `begin` on can touch: ascending, apart. Valid until the next
-    /// call.
+    /// The leaves that the open column's beads from index `begin` on can touch: ascending and disjoint. Valid until the
+    /// next call.
     std::span<const LeafRange> touched(std::uint32_t begin = 0);
 
     /// An upper bound on the leaves of a column, from z extents alone; does not open it.
     std::size_t countLeaves(std::span<const std::uint32_t> ranks);
 
-    /// Evaluates a leaf of the open column, `planes` of it: its own eight, or also the one above. `leaf_k` must ascend
-    /// from call to call until the next open().
+    /// Evaluates a leaf of the open column: its eight planes, or with `planes` = kMostPlanes also the plane above.
+    /// `leaf_k` must ascend from call to call until the next open().
     LeafContent evaluate(int leaf_k, std::size_t planes = kLeafPlanes);
 
-    /// A new leaf with what evaluate() has just found to be surface.
+    /// A new leaf with the values of the last evaluate(), which must have returned LeafContent::surface.
     std::unique_ptr<Leaf> makeLeaf() const;
     /// The values of evaluate(), clamped to the background, world units.
     const LeafPlanes& planes() const { return phi_; }
 
-    /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; the
-    /// earlier bead of equals. Only with `owners`, and only where a bead is within the band.
+    /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; of
+    /// equally near beads the earlier one. Only with `owners`, and only where a bead is within the band.
     void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
 
 private:

@@ -150,7 +150,8 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
                 value = hn::Min(value, hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius)));
             }
             for (std::uint32_t w = weld; w != weld_end; ++w) {
-                // A bound, not a distance: taken only where it is negative, for far outside it can undercut.
+                // A bound, not a distance: used only where it is negative, because outside it can be below the
+                // distance.
                 const VF body = hn::Max(hn::Load(f, leaf.welds[w].d->v + c), hn::Set(f, leaf.welds[w].bound));
                 value = hn::IfThenElse(hn::Lt(body, hn::Zero(f)), hn::Min(value, body), value);
             }

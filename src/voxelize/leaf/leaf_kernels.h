@@ -4,7 +4,7 @@
 // 754 rounds exactly (no fused multiply-add, no estimate), so all instruction sets give the same bytes.
 //
 // A column has 64 samples, x * 8 + y as in a leaf; q is a sample relative to the middle of the column. A leaf is kept
-// as eight planes of 64, plane by plane in z, until it is stored; who needs it evaluates the plane above it as well.
+// as eight planes of 64, plane by plane in z, until it is stored; optionally the plane above it is evaluated as well.
 // World units throughout.
 #pragma once
 
@@ -26,7 +26,7 @@ struct alignas(64) PlanField {
     float v[kColumnSamples];
 };
 
-/// 512 values of a leaf, plane by plane, and perhaps the plane above it.
+/// 512 values of a leaf, plane by plane, and optionally the plane above it.
 struct alignas(64) LeafPlanes {
     PlanField plane[kMostPlanes];
 };
@@ -64,12 +64,13 @@ struct PlaneTerms {
     std::uint32_t first, last;
     float radius;
 };
-/// What fills the gap between two layers that touch: max(d, bound), taken where that is negative. `bound` must be.
+/// The body that closes the plane between two touching layers: max(d, bound), used where it is negative. `bound` must
+/// be negative.
 struct PlaneWeldTerm {
     const PlanField* d = nullptr;
     float bound = 0;
 };
-/// What layers give to a leaf. Plane z has groups group_end[z - 1]..group_end[z] - 1 and welds likewise, from 0.
+/// The terms of all layers in a leaf. Plane z has groups group_end[z - 1]..group_end[z] - 1 and welds likewise, from 0.
 struct LeafTerms {
     std::size_t planes = kLeafPlanes;  ///< or kMostPlanes
     std::vector<PlaneTerm> terms;
@@ -84,7 +85,7 @@ struct LeafTerms {
         welds.clear();
     }
 };
-/// phi = min over groups (sqrt(min over terms (sides2 + dz2)) - radius) and welds, and `background` where nothing is.
+/// phi = min over groups (sqrt(min over terms (sides2 + dz2)) - radius) and welds, or `background` without any terms.
 void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi);
 
 /// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its centre line.
@@ -106,10 +107,10 @@ struct LocalRod {
 };
 void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi);
 
-/// What a finished leaf holds.
+/// The contents of a finished leaf.
 enum class LeafContent : std::uint8_t { outside, inside, surface };
 
-/// Clamps so many planes to +-background and says what they hold. Surface: some value is strictly within the
+/// Clamps that many planes to +-background and returns their contents. Surface: some value is strictly within the
 /// background.
 LeafContent clampLeaf(LeafPlanes& phi, std::size_t planes, float background);
 /// Writes the leaf's planes in leaf order (z fastest).

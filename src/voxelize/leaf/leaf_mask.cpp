@@ -6,7 +6,7 @@
 namespace stratum::voxelize {
 namespace {
 
-// Bits whose z is one of 0..7-n or n..7: what a shift by n along z may keep.
+// Bits whose z is one of 0..7-n or n..7: those that a shift by n along z keeps in the leaf.
 constexpr std::uint64_t lowZ(int n) { return 0x0101010101010101u * (0xffu >> n); }
 constexpr std::uint64_t highZ(int n) { return 0x0101010101010101u * ((0xffu << n) & 0xffu); }
 
@@ -74,10 +74,10 @@ bool anyWithin(const Neighbourhood& around, int reach) {
     return false;
 }
 
-LeafMask withinReach(const Neighbourhood& around, double reach) {
+LeafMask dilateBall(const Neighbourhood& around, double reach) {
     const int r = static_cast<int>(reach);
     const int edge = 8 + 2 * r;
-    // Rows widened along z, by how far; not initialized, for few are used.
+    // Rows dilated along z, by radius. Not initialized, because few are used.
     Rows wide[kFarthestReach + 1];
     fillRows(around, r, wide[0]);
     for (int n = 1; n <= r; ++n)
@@ -111,7 +111,7 @@ LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, in
     fillRows(seeds, steps, reached);
     const int edge = 8 + 2 * steps;
     for (int step = 1; step <= steps; ++step) {
-        // What is farther from the middle than the steps that are left can't get there.
+        // Rows that the remaining steps can't bring into the middle leaf are skipped.
         const int first = step - 1;
         const int last = edge - step;
         for (int x = first; x <= last; ++x) {
@@ -133,7 +133,7 @@ LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, in
     return middleOf(reached, steps);
 }
 
-LeafMask besides(const Neighbourhood& around) {
+LeafMask dilateFaces(const Neighbourhood& around) {
     const auto at = [&](int dx, int dy, int dz, std::size_t x) {
         const LeafMask* mask = around[neighbourIndex(dx, dy, dz)];
         return mask == nullptr ? std::uint64_t{0} : mask->word[x];

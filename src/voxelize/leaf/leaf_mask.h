@@ -31,24 +31,24 @@ constexpr std::size_t neighbourIndex(int dx, int dy, int dz) {
            static_cast<std::size_t>(dz + 1);
 }
 
-/// Farthest that a bit can be seen from in the functions below, voxels.
+/// The largest distance in the functions below, voxels.
 constexpr int kFarthestReach = 8;
 
-/// Whether a bit of the neighbourhood lies within `reach` voxels, along each axis, of the middle leaf, or in it.
+/// Whether the neighbourhood has a bit in the middle leaf or at most `reach` voxels from it along each axis.
 bool anyWithin(const Neighbourhood& around, int reach);
 
-/// What of the middle leaf lies within `reach` voxels (Euclidean, at most kFarthestReach) of a bit of the
-/// neighbourhood.
-LeafMask withinReach(const Neighbourhood& around, double reach);
+/// The middle leaf of the neighbourhood's dilation by a ball of radius `reach` voxels (at most kFarthestReach).
+LeafMask dilateBall(const Neighbourhood& around, double reach);
 
-/// What of the middle leaf the bits of `seeds` reach in at most `steps` (1..kFarthestReach) steps over faces, edges and
-/// corners through `open`. Seeds count as reached, open or not.
+/// The middle leaf of the voxels that `seeds` reach in at most `steps` (1..kFarthestReach) steps over faces, edges and
+/// corners through `open` (a geodesic dilation). Seeds count as reached, open or not.
 LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, int steps);
 
-/// What of the middle leaf shares a face with a bit of the neighbourhood, or is such a bit itself.
-LeafMask besides(const Neighbourhood& around);
+/// The middle leaf of the neighbourhood's dilation by the six face neighbours.
+LeafMask dilateFaces(const Neighbourhood& around);
 
-/// The bits of `open` that `seeds` reach through `open`, from face to face. `seeds` outside `open` are dropped.
+/// The bits of `open` that `seeds` reach through `open` over faces, inside one leaf. `seeds` outside `open` are
+/// dropped.
 LeafMask floodWithin(const LeafMask& open, const LeafMask& seeds);
 
 }  // namespace stratum::voxelize

@@ -1,4 +1,4 @@
-// LeafColumn's answer to whose surface is nearest.
+// LeafColumn::owners: the bead whose surface is nearest to each voxel.
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/leaf/leaf_column.h"
 

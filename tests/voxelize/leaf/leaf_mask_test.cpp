@@ -67,7 +67,7 @@ TEST(LeafMask, WithinReachIsABall) {
         const Block block = randomBlock(reach > 4 ? 0.0005 : 0.005, 5);
         const auto masks = block.masks();
         const int r = static_cast<int>(reach);
-        expectMiddle(withinReach(pointersTo(masks), reach), [&](int x, int y, int z) {
+        expectMiddle(dilateBall(pointersTo(masks), reach), [&](int x, int y, int z) {
             for (int dx = -r; dx <= r; ++dx)
                 for (int dy = -r; dy <= r; ++dy)
                     for (int dz = -r; dz <= r; ++dz)
@@ -94,7 +94,7 @@ TEST(LeafMask, AnyWithinLooksAsFarAsAsked) {
 TEST(LeafMask, BesidesIsAFaceAway) {
     const Block block = randomBlock(0.02, 7);
     const auto masks = block.masks();
-    expectMiddle(besides(pointersTo(masks)), [&](int x, int y, int z) {
+    expectMiddle(dilateFaces(pointersTo(masks)), [&](int x, int y, int z) {
         return block.get(x, y, z) || block.get(x - 1, y, z) || block.get(x + 1, y, z) || block.get(x, y - 1, z) ||
                block.get(x, y + 1, z) || block.get(x, y, z - 1) || block.get(x, y, z + 1);
     });

@@ -1,10 +1,10 @@
-#include "voxelize/leaf/leaf_places.h"
+#include "voxelize/leaf/leaf_positions.h"
 
 #include "base/parallel_for.h"
 
 namespace stratum::voxelize {
 
-LeafPlaces::LeafPlaces(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end)
+LeafPositions::LeafPositions(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end)
     : columns_i_(static_cast<int>(bins.columnsI())), columns_j_(static_cast<int>(bins.columnsJ())) {
     constexpr std::size_t kColumnGrain = 8;
     std::vector<std::vector<LeafRange>> ranges(bins.size());
@@ -17,22 +17,22 @@ LeafPlaces::LeafPlaces(const PlanBins& bins, const ColumnSource& columns, std::u
             ranges[c].assign(touched.begin(), touched.end());
         }
     });
-    run_offsets_.assign(bins.size() + 1, 0);
+    interval_offsets_.assign(bins.size() + 1, 0);
     for (std::size_t c = 0; c < bins.size(); ++c) {
         for (const auto& [first, last] : ranges[c]) {
-            runs_.push_back({first, last, static_cast<std::uint32_t>(slot_count_)});
+            intervals_.push_back({first, last, static_cast<std::uint32_t>(slot_count_)});
             slot_count_ += static_cast<std::size_t>(last - first) + 1;
         }
-        run_offsets_[c + 1] = runs_.size();
+        interval_offsets_[c + 1] = intervals_.size();
     }
 }
 
-LeafPlaces::Place LeafPlaces::at(std::size_t column, int k) const {
-    const auto runs = runsOf(column);
+LeafPositions::SlotOrGap LeafPositions::at(std::size_t column, int k) const {
+    const auto intervals = intervalsOf(column);
     std::size_t n = 0;
-    while (n < runs.size() && runs[n].last < k) ++n;
-    if (n < runs.size() && runs[n].first <= k) return {true, runs[n].slotOf(k)};
-    return {false, firstAir(column) + n};
+    while (n < intervals.size() && intervals[n].last < k) ++n;
+    if (n < intervals.size() && intervals[n].first <= k) return {true, intervals[n].slotOf(k)};
+    return {false, firstGap(column) + n};
 }
 
 }  // namespace stratum::voxelize
