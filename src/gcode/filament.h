@@ -1,4 +1,4 @@
-// Which filament E counts, where the file does not say: what its own sums and sections tell.
+// Finds the filament diameter of a file that does not state it, from the file's own sums and from its sections.
 // Sources: CuraEngine gcodeExport.cpp (Griffin headers state volumes, E is length); measured from files (filament.cpp).
 #pragma once
 
@@ -9,13 +9,12 @@
 
 namespace stratum::gcode {
 
-/// Fills filament_diameter, filament_mm, extruded_mm3, extrusion_rule and the footers. Beads' widths are areas in mm^2
-/// still; they are scaled, with a warning, where the volume in a Griffin header tells the diameter that nothing else
-/// does.
+/// Fills filament_diameter, filament_mm, extruded_mm3, extrusion_rule and the footers. On entry the beads' widths are
+/// areas in mm^2; they are scaled, with a warning, if the diameter is known only from the volume in a Griffin header.
 void takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpath, WarningLog& warnings);
 
-/// Warns of tools whose sections stand to the first tool's as filaments of 1.75 and 2.85 mm do: a slicer that was told
-/// different diameters writes so, and only --filament-diameter can say it. Widths are widths.
+/// Warns of tools whose sections have a ratio to the first tool's like that of filaments of 1.75 and 2.85 mm: a slicer
+/// with different diameters by tool writes such files, and --filament-diameter must state them. Widths are in mm.
 void warnOfMixedFilaments(const Machine& machine, const Toolpath& toolpath, WarningLog& warnings);
 
 }  // namespace stratum::gcode

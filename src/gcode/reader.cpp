@@ -41,7 +41,7 @@ void checkOptions(const ReadOptions& options) {
                     name, counts.travels, counts.stationary));
 }
 
-// What a file lost at a block's end leaves no other trace.
+// A file truncated at a block's end has no other fault.
 void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_line, WarningLog& warnings) {
     if (program.filament_mm && filament_mm < 0.99 * *program.filament_mm)
         warnings.add(
@@ -51,7 +51,7 @@ void warnIfShort(double filament_mm, const Program& program, std::uint32_t last_
             last_line);
 }
 
-// What the container says counts where the text is silent.
+// The container's statements are used only where the text has none.
 void takeStated(const StatedFacts& text, const StatedFacts& container, StatedFacts& stated) {
     stated = text;
     if (!stated.seconds) stated.seconds = container.seconds;
@@ -60,7 +60,7 @@ void takeStated(const StatedFacts& text, const StatedFacts& container, StatedFac
     if (stated.materials.empty()) stated.materials = container.materials;
 }
 
-// By tool; a ufp lists each material once, so that its list means tools only where it is as long as theirs.
+// By tool; a ufp lists each material once, so its list is by tool only if it is as long as the list of tools.
 void takeColors(const Program& program, Toolpath& toolpath) {
     const std::vector<std::optional<Rgb>>& colors = program.facts.filament_colors;
     if (!toolpath.tool_colors.empty() || colors.empty()) return;
@@ -89,7 +89,7 @@ void nameObjects(const Program& program, Toolpath& toolpath) {
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
     checkOptions(options);
-    // Unpacking takes about as long as reading what came out of it.
+    // Unpacking takes about as long as parsing.
     constexpr double kUnpackingShare = 0.5;
     Progress unpacking;
     if (options.progress) unpacking = [&options](double fraction) { options.progress(kUnpackingShare * fraction); };

@@ -1,4 +1,4 @@
-// bytes -> Toolpath: the one entrance of this room.
+// Bytes -> Toolpath: the entry point of this library.
 #pragma once
 
 #include "gcode/machine/read_options.h"
@@ -8,7 +8,7 @@
 
 namespace stratum::gcode {
 
-/// Reads one G-code program, out of its container if it has one (container.h). `name` stands in messages. Throws
+/// Reads one G-code program, also inside a container (container.h). `name` is used in messages. Throws
 /// InputError (with "name:line: ...") for bytes that are not G-code, unusable numbers, or a program that deposits
 /// nothing; UsageError for options out of range. Single-threaded, re-entrant.
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options = {});

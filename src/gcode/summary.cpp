@@ -52,7 +52,7 @@ std::vector<Value> inUse(const std::vector<Value>& by_tool, const Toolpath& tool
     return values;
 }
 
-// One line with what the file says, or none.
+// One line of the file's statements, or none.
 void describeStated(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const StatedFacts& stated = toolpath.stated;
     std::vector<std::string> parts;

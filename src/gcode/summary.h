@@ -1,4 +1,4 @@
-// What a person wants to know about a toolpath, as a few lines of text.
+// A summary of a toolpath in a few lines of text.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -10,7 +10,7 @@
 
 namespace stratum::gcode {
 
-/// Of one feature or object: what lies under its name.
+/// Totals of one feature or object.
 struct FeatureTotal {
     std::size_t beads = 0;
     double length = 0;  ///< mm
@@ -20,12 +20,12 @@ struct FeatureTotal {
 /// By Feature.
 std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 
-/// By index into Toolpath::objects; [0] is what belongs to none.
+/// By index into Toolpath::objects; [0] are beads without an object.
 std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath);
 
-/// What the file states (time, weight, material, nozzle, printer, layer heights); slicer, container and firmware rules
-/// with their reason; layers, beads, length, volume; filament per tool beside what the file itself says; features;
-/// objects; warnings with count and first line. Ends with a line end.
+/// Statements of the file (time, weight, material, nozzle, printer, layer heights); slicer, container and firmware
+/// rules with their reason; layers, beads, length, volume; filament per tool, read and stated; features; objects;
+/// warnings with count and first line. Ends with a newline.
 std::string summarize(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

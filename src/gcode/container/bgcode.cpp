@@ -17,8 +17,8 @@ constexpr std::size_t kMostMetadata = std::size_t{4} << 20;  // slicers write 10
 
 enum GcodeEncoding : std::uint16_t { kPlainText, kMeatPack, kMeatPackWithComments };
 
-// A file cut between two blocks is whole in every other respect. But PrusaSlicer marks the progress with M73, and its
-// last mark, before the end script, is "M73 P100 R0". "" if all is well, or nothing is known.
+// A file truncated between two blocks has no other fault. But PrusaSlicer writes progress as M73, and its last one,
+// before the end script, is "M73 P100 R0". "" if it is there, or if there is no M73.
 std::string findLostEnd(std::string_view text) {
     constexpr std::size_t kReach = std::size_t{1} << 20;  // marks come at every per cent or minute
     constexpr std::string_view kMark = "\nM73 P";

@@ -7,8 +7,8 @@ namespace stratum::gcode {
 
 bool isBgcode(std::string_view bytes);
 
-/// Unpacks the G-code blocks in order and puts the metadata behind them as comments, "; key = value", where ASCII files
-/// of the same slicer have it. Checks the CRC32 of every block if the file has them; thumbnails are never decoded.
+/// Unpacks the G-code blocks in order and appends the metadata as comments, "; key = value", as in ASCII files of the
+/// same slicer. Checks the CRC32 of every block if the file has them; thumbnails are not decoded.
 /// Throws InputError that names the block and its offset.
 Program openBgcode(std::string_view bytes, std::string_view name, const ContainerLimits& limits,
                    const Progress& progress = {});

@@ -19,7 +19,7 @@ constexpr std::size_t kMostBlocks = std::size_t{1} << 20;  // of at most 64 KiB 
 constexpr std::array<std::string_view, 6> kTypeNames{"file metadata",    "G-code",         "slicer metadata",
                                                      "printer metadata", "print metadata", "thumbnail"};
 
-// What no honest compressor exceeds, so that a header can't ask for memory that its data would never fill.
+// Largest ratio of each compression, so that a damaged header can't request more memory than its data can fill.
 std::size_t mostUnpacked(BlockCompression compression, std::size_t packed) {
     switch (compression) {
         case BlockCompression::none:
@@ -39,7 +39,7 @@ std::string_view inflateAll(std::string_view packed, std::span<char> out) {
     z_stream& stream = inflater.stream;
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
     stream.avail_in = static_cast<uInt>(packed.size());
-    // zlib refuses a null pointer even where nothing is to be written.
+    // zlib refuses a null pointer even for an output of 0 bytes.
     Bytef nothing = 0;
     stream.next_out = out.empty() ? &nothing : reinterpret_cast<Bytef*>(out.data());
     stream.avail_out = static_cast<uInt>(out.size());

@@ -1,4 +1,4 @@
-// The blocks of a binary G-code file: found, bounded, checked, unpacked. What they mean is bgcode.cpp's.
+// Reads the blocks of a binary G-code file: bounds, checksums, decompression. bgcode.cpp interprets them.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,7 @@ public:
     /// Undoes the compression. `out` has block.size bytes.
     void unpack(const Block& block, std::span<char> out) const;
 
-    /// Throws an InputError that names the block, its place and what is wrong with it.
+    /// Throws an InputError that names the block, its byte offset and the fault.
     [[noreturn]] void fail(const Block& block, std::string_view what) const;
 
 private:

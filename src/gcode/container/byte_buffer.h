@@ -1,4 +1,4 @@
-// Bytes that grow without being cleared first and, when large, without being copied: realloc moves pages, not bytes.
+// A growing buffer that is neither cleared nor, when large, copied: realloc moves pages, not bytes.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ public:
         capacity_ = capacity;
     }
 
-    /// Appends `count` bytes whose values are yet unknown and returns where they start.
+    /// Appends `count` uninitialized bytes and returns a pointer to them.
     char* extend(std::size_t count) {
         if (count > capacity_ - size_) reserve(std::max(size_ + count, capacity_ + capacity_ / 2));
         char* start = data_.get() + size_;
@@ -49,7 +49,7 @@ public:
         if (!bytes.empty()) std::copy(bytes.begin(), bytes.end(), extend(bytes.size()));
     }
 
-    /// Forgets what lies behind the first `size` bytes; size <= size().
+    /// Truncates to `size` bytes; size <= size().
     void truncate(std::size_t size) { size_ = size; }
 
 private:

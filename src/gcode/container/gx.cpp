@@ -27,14 +27,14 @@ bool followsTheThumbnail(std::string_view bytes, std::size_t text, std::size_t b
     return text >= kPngEnd && bytes.substr(text - kPngEnd, 4) == "IEND";
 }
 
-// Whether what stands before `text` is more of the text: then the offset is wrong, and a part would be lost unseen.
+// Whether the bytes before `text` are also text: then the offset is wrong, and a part would be lost unnoticed.
 bool cutsIntoText(std::string_view bytes, std::size_t text) {
     constexpr std::size_t kLook = 256;
     const std::string_view before = bytes.substr(text - std::min(text, kLook), std::min(text, kLook));
     const auto printable = [](char c) {
         return std::isprint(static_cast<unsigned char>(c)) != 0 || c == '\n' || c == '\r' || c == '\t';
     };
-    // An image of one grey is printable too, but has no line ends.
+    // An image of a single gray level is also printable, but has no line ends.
     const std::string_view near = before.substr(before.size() - std::min<std::size_t>(before.size(), 16));
     return std::all_of(near.begin(), near.end(), printable) && before.find('\n') != std::string_view::npos;
 }

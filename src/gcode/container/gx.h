@@ -11,8 +11,8 @@ namespace stratum::gcode {
 
 bool isGx(std::string_view bytes);
 
-/// Finds the text; it stays a view of `bytes`. Throws InputError if the header is cut off or its offset of the text
-/// can't be right.
+/// Finds the text, as a view of `bytes`. Throws InputError if the header is truncated or its offset of the text is
+/// impossible.
 Program openGx(std::string_view bytes, std::string_view name);
 
 }  // namespace stratum::gcode

@@ -29,7 +29,7 @@ Program openGzip(std::string_view bytes, std::string_view name, const ContainerL
     const std::size_t most = limits.bytesFrom(bytes.size());
     Program program;
     program.format = "gzip";
-    // The last four bytes are the size of the last, usually the only, member. A hint; it may lie.
+    // The last four bytes are the size of the last, usually the only, member: a hint that may be wrong.
     if (bytes.size() >= 18)
         program.unpacked.reserve(std::min({std::size_t{littleEndian(bytes, bytes.size() - 4, 4)} + 1, most,
                                            bytes.size() * std::size_t{kDeflateMostRatio}}));

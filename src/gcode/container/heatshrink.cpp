@@ -8,7 +8,7 @@
 namespace stratum::gcode {
 namespace {
 
-// The most significant bit comes first. Past the end there are zeros, and `missing` tells.
+// The most significant bit comes first. Past the end it returns zeros and sets `missing`.
 class BitReader {
 public:
     explicit BitReader(std::string_view bytes) : next_(bytes.data()), end_(bytes.data() + bytes.size()) {}

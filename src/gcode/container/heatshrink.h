@@ -8,7 +8,7 @@
 namespace stratum::gcode {
 
 /// Fills all of `out` from `packed`. Window and lookahead in bits: 4 to 15, and 3 to one less than the window. Returns
-/// "" or what is wrong with the bytes, as the end of a sentence. Never reads or writes outside; thread-safe.
+/// "" or the fault in the bytes, as the end of a sentence. Never reads or writes out of bounds; thread-safe.
 [[nodiscard]] std::string_view decodeHeatshrink(std::string_view packed, int window_bits, int lookahead_bits,
                                                 std::span<char> out);
 

@@ -1,4 +1,4 @@
-// zlib's decompressor with an owner.
+// RAII wrapper of zlib's decompressor.
 #pragma once
 
 #include <zlib.h>
@@ -18,13 +18,13 @@ public:
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 
-    /// What zlib says about the last error, for messages.
+    /// zlib's text of the last error, for messages.
     std::string_view reason() const { return stream.msg != nullptr ? stream.msg : "the data does not fit together"; }
 
     z_stream stream{};
 };
 
-/// Deflate makes nothing smaller than this many times: 258 bytes from 2 bits.
+/// Largest ratio of deflate: 258 bytes from 2 bits.
 inline constexpr unsigned kDeflateMostRatio = 1032;
 
 }  // namespace stratum::gcode

@@ -1,4 +1,4 @@
-// The bytes of an input as they are on the disk or come through a pipe.
+// The bytes of an input file or of standard input.
 #pragma once
 
 #include "base/mapped_file.h"

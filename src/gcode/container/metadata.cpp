@@ -15,7 +15,7 @@ std::string_view trim(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-// A comment ends at any line end; a value that had one inside must not become a command.
+// Removes line ends: the rest of a value behind one would be read as a command.
 std::string oneLine(std::string_view text) {
     std::string line(text);
     std::replace(line.begin(), line.end(), '\r', ' ');

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// A binary STL says nothing at its start, but its size follows from its triangle count.
+// A binary STL has no signature, but its size follows from its triangle count.
 bool isBinaryStl(std::string_view bytes) {
     constexpr std::size_t kHeader = 80;
     if (bytes.size() < kHeader + 4) return false;

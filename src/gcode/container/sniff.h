@@ -1,12 +1,12 @@
-// Tells G-code from what is given by mistake, by content, never by name.
+// Rejects files that are not G-code, by content, never by name.
 #pragma once
 
 #include <string_view>
 
 namespace stratum::gcode {
 
-/// Throws InputError, naming what the bytes are and what to do, if they are empty, a container (after one was
-/// opened already), a STL model, or binary. Cheap: looks at the beginning only.
+/// Throws InputError, with the kind of the bytes and the remedy, if they are empty, a container (inside another one),
+/// an STL model, or binary. Cheap: reads the beginning only.
 void refuseOtherFormats(std::string_view bytes, std::string_view name);
 
 }  // namespace stratum::gcode

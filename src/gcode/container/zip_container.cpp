@@ -21,7 +21,7 @@ using namespace std::string_view_literals;
 constexpr zip_int64_t kMostEntries = 65536;
 constexpr std::size_t kChunk = std::size_t{16} << 20;  // between two reports of progress
 
-// libzip's errors carry their text only for as long as they live.
+// libzip's error texts are valid only during the lifetime of the error object.
 std::string reasonOf(zip_error_t& error) {
     std::string reason = zip_error_strerror(&error);
     zip_error_fini(&error);
@@ -59,7 +59,7 @@ struct Plate {
     zip_uint64_t index = 0;
 };
 
-// What a zip has for us.
+// The relevant entries of a zip file.
 struct Contents {
     std::vector<Plate> plates;
     std::optional<zip_uint64_t> ufp_model;
@@ -136,7 +136,7 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
                          status.size, status.comp_size, most));
     const std::unique_ptr<zip_file_t, Discard> file(zip_fopen_index(archive, index, 0));
     if (!file) fail(fmt::format("can't be unzipped ({}); copy or export the file again", zip_strerror(archive)));
-    // One byte more than there should be: only the read that finds the end checks size and CRC32.
+    // One byte more than the size: libzip checks size and CRC32 only in the read that reaches the end.
     char* const start = text.extend(status.size + 1);
     std::size_t done = 0;
     while (done <= status.size) {
@@ -157,7 +157,7 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
     text.truncate(done);
 }
 
-// A small file beside the G-code; empty if it can't be had, for the print can be read without it.
+// A small file beside the G-code; empty if it can't be read, because the print does not need it.
 std::string unpackAside(zip_t* archive, zip_uint64_t index, std::string_view name) {
     constexpr std::size_t kMost = std::size_t{1} << 20;
     try {

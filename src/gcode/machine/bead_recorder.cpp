@@ -12,7 +12,7 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kSameZ = 1e-6;  // mm; what relative moves lose in rounding, far below what a file can write
+constexpr double kSameZ = 1e-6;  // mm; rounding of relative moves, far below the precision of files
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
             break;
         case Tag::Kind::height:
-            // Slicers print float noise (0.199999); a micrometre is finer than any of them means.
+            // Slicers write rounding errors (0.199999); a micrometre is finer than any intended height.
             next_.height = static_cast<float>(std::max(std::round(tag.height * 1000), 1.0) / 1000);
             break;
         case Tag::Kind::layer_change:
@@ -63,12 +63,12 @@ void BeadRecorder::changeFilament(std::uint32_t line) {
 
 void BeadRecorder::markLayer(const Tag& mark) {
     if (!layer_marks_) {
-        // The file has marks, so what was counted by z until now came before the first layer.
+        // The file has marks, so the beads counted by z so far came before the first layer.
         layer_marks_ = true;
         for (Run& run : toolpath_.runs) run.layer = 0;
         next_.layer = 0;
     }
-    // One layer, announced once for each process that prints in it.
+    // One layer, marked once by each process that prints in it.
     if (!(mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ)) ++next_.layer;
     mark_z_ = mark.z;
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
@@ -114,7 +114,7 @@ void BeadRecorder::add(const Point& from, const Point& to, const std::optional<A
                        std::uint32_t line) {
     const bool sloped = std::abs(to.z - from.z) > kSameZ;
     if (!layer_marks_) countLayer(from, to, sloped);
-    // Where the height is yet to be found, a run is of one level, for the level decides.
+    // If the height is unknown, a run has one level, because the height will follow from the level.
     const double run_z = sloped ? std::numeric_limits<double>::quiet_NaN() : to.z;
     const bool same_level =
         !run_z_.empty() && (next_.height > 0 || (sloped ? std::isnan(run_z_.back()) : run_z_.back() == run_z));
@@ -126,7 +126,7 @@ void BeadRecorder::add(const Point& from, const Point& to, const std::optional<A
     bead.width = static_cast<float>(volume / length);
     bead.run = static_cast<std::uint32_t>(toolpath_.runs.size() - 1);
     if (arc) {
-        // Room at once: growing would hold them twice, and pages that are never touched cost nothing.
+        // Reserves everything at once: growing would need the memory twice, and untouched pages cost nothing.
         if (toolpath_.arcs.empty()) toolpath_.arcs.reserve(toolpath_.beads.capacity() / 2);
         bead.arc = static_cast<std::int32_t>(toolpath_.arcs.size());
         toolpath_.arcs.push_back(*arc);

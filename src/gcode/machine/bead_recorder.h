@@ -1,4 +1,4 @@
-// Turns extruding moves and slicer tags into beads, runs, arcs, layers and objects. Knows no commands.
+// Converts extruding moves and slicer tags into beads, runs, arcs, layers and objects.
 #pragma once
 
 #include "gcode/slicer/slicer_tags.h"
@@ -14,12 +14,12 @@
 
 namespace stratum::gcode {
 
-/// Grows a Toolpath. Layers are counted by the slicer's marks; until the first mark comes, and in files without any,
-/// by the z at which material is laid: a new layer begins where z rises above the current layer's, or falls back to
-/// the first layer's (the next of several objects printed one after another). Travel never counts.
+/// Builds a Toolpath. Layers are counted by the slicer's marks; before the first mark, and in files without any, by the
+/// z of extrusion: a new layer begins if z rises above the current layer's, or returns to the first layer's (the next
+/// of several objects printed one after another). Travel doesn't count.
 class BeadRecorder {
 public:
-    /// `nominal_height` (mm) tells a spiral's layers apart.
+    /// `nominal_height` (mm) separates the layers of a spiral.
     BeadRecorder(double nominal_height, std::size_t expected_beads, WarningLog& warnings);
 
     void tag(const Tag& tag, std::uint32_t line);
@@ -27,11 +27,11 @@ public:
     void setSpeed(double speed) { next_.speed = static_cast<float>(speed); }
     void startObject(std::string_view name, std::uint32_t line);
     void stopObject() { next_.object = 0; }
-    /// Gives the object in force another name, unless one of that name exists: then that one is in force.
+    /// Renames the current object; if another object has that name, it becomes the current one.
     void renameObject(std::string_view name, std::uint32_t line);
-    /// M600: the filament is changed by hand. Remarks where no tag has named the new colour.
+    /// M600: a manual change of filament. Warns if no tag has stated the new color.
     void changeFilament(std::uint32_t line);
-    /// mm, as tagged; 0 if it is yet to be found.
+    /// mm, as tagged; 0 if unknown.
     double height() const { return static_cast<double>(next_.height); }
 
     /// Adds a bead of `volume` mm^3 whose path is `length` mm long (> 0).
@@ -52,7 +52,7 @@ private:
     Run next_;
     double nominal_height_;
     bool layer_marks_ = false;
-    std::optional<double> mark_z_;  // of the layer mark in force, if it said so
+    std::optional<double> mark_z_;  // of the last layer mark, if it states z
     double first_z_ = 0;
     double layer_z_ = 0;
     std::unordered_map<std::string, std::uint16_t> object_index_;

@@ -29,7 +29,7 @@ std::string_view trim(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-// G54..G59 and G59.1..G59.3 as Frame counts them.
+// The number of G54..G59 and G59.1..G59.3 in Frame.
 std::size_t workspaceOf(const Command& command) {
     return static_cast<std::size_t>(command.code - 53 + (command.code == 59 ? std::clamp(command.subcode, 0, 3) : 0));
 }
@@ -81,7 +81,7 @@ void Machine::refuse(std::string_view what) const { throw InputError(fmt::format
 
 void Machine::run(const Line& line) {
     line_ = line.number;
-    // The comment first: Slic3r names a move's feature behind it.
+    // The comment first: Slic3r writes the feature of a move behind the move.
     if (!line.comment.empty()) {
         const Tag tag = parseTag(line.comment);
         if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
@@ -104,7 +104,8 @@ void Machine::run(const Line& line) {
 void Machine::execute(const Command& command) {
     switch (command.kind) {
         case Command::Kind::words:
-            if (hasAxis(command) || command.has('E') || drivingLetter(command) != 0) move(command, motion_);
+            if (!hasAxis(command)) useExtruderOf(extruderAxis(command));
+            if (hasAxis(command) || extruderAxis(command) != 0) move(command, motion_);
             return;
         case Command::Kind::foreign:
             return remarkForeign(command);
@@ -157,9 +158,9 @@ void Machine::executeG(const Command& command) {
         case 59:
             return frame_.select(workspaceOf(command));
         case 60:
-            return storePlace(command);
+            return storePosition(command);
         case 61:
-            return returnToPlace(command);
+            return returnToPosition(command);
         case 90:
         case 91:
             return setAbsolute(command);
@@ -201,7 +202,7 @@ void Machine::executeM(const Command& command) {
 }
 
 void Machine::selectTool(const Command& command) {
-    // Numbers from 255 up are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
+    // Numbers of 255 and above are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
     if (command.code < 0 || command.code >= 255) return;
     constexpr int kToolChange = 2;  // the slot that RepRapFirmware fills itself
     if (firmware_ == Firmware::reprap) stored_.insert_or_assign(kToolChange, Stored{frame_.position(), e_});
@@ -212,13 +213,13 @@ void Machine::useTool(std::size_t tool) {
     if (moves_ != nullptr) moves_->changeTool(tool_, tool);
     tool_ = tool;
     recorder_.setTool(static_cast<std::uint8_t>(tool));
-    // PrusaSlicer and its kin subtract a nozzle's offset themselves; offsets that the firmware knows (M218, G10 P) are
-    // its business: the program's numbers are where material goes.
+    // PrusaSlicer and its derivatives subtract a nozzle's offset from the coordinates. Offsets that the firmware
+    // applies (M218, G10 P) are ignored: there the program's coordinates are those of the material.
     const auto& offsets = settings_.tool_offsets;
     if (!offsets.empty()) frame_.setToolOffset(tool < offsets.size() ? offsets[tool] : Point{});
 }
 
-double Machine::placeOf(const Command& command, char letter) const {
+double Machine::coordinateOf(const Command& command, char letter) const {
     // As in Marlin, an axis without a number is set to 0.
     const double value = command.hasValue(letter) ? command.value(letter) * unit_ : 0;
     if (!(std::abs(value) <= kMaxCoordinate))
@@ -237,8 +238,9 @@ void Machine::setOffsets(const Command& command) {
     const std::size_t workspace = number < 1 ? frame_.workspace() : static_cast<std::size_t>(number);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!command.hasValue(kAxes[axis])) continue;
-        const double value = placeOf(command, kAxes[axis]);
-        kind == 2 ? frame_.setOrigin(workspace, axis, value) : frame_.setPlace(workspace, axis, value);
+        const double value = coordinateOf(command, kAxes[axis]);
+        kind == 2 ? frame_.setWorkspaceOrigin(workspace, axis, value)
+                  : frame_.setWorkspacePosition(workspace, axis, value);
     }
 }
 
@@ -248,16 +250,17 @@ void Machine::home(const Command& command) {
 }
 
 void Machine::setPosition(const Command& command) {
-    if (command.subcode == 1) return frame_.dropNames();
-    if (command.subcode == 2) return frame_.suspendNames();
-    if (command.subcode == 3) return frame_.resumeNames();
+    if (command.subcode == 1) return frame_.clearG92Offsets();
+    if (command.subcode == 2) return frame_.suspendG92Offsets();
+    if (command.subcode == 3) return frame_.resumeG92Offsets();
     if (command.subcode != 0) return;
-    const char letter = drivingLetter(command);
-    const bool extruder = command.has('E') || letter != 0;
+    const char letter = extruderAxis(command);
+    useExtruderOf(letter);
+    const bool extruder = letter != 0;
     const bool bare = !hasAxis(command) && !extruder;
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (bare || (command.has(kAxes[axis]) && !command.isExpression(kAxes[axis])))
-            frame_.rename(axis, placeOf(command, kAxes[axis]));
+            frame_.setG92Position(axis, coordinateOf(command, kAxes[axis]));
     if ((!bare && !extruder) || (letter != 0 && command.isExpression(letter))) return;
     const double value = letter != 0 && command.hasValue(letter) ? command.value(letter) * eUnit() : 0;
     if (!std::isfinite(value)) refuse("the E of this G92 is no number; is the file damaged?");
@@ -272,7 +275,8 @@ void Machine::setAbsolute(const Command& command) {
     }
     absolute_ = absolute;
     if (firmware_ != Firmware::marlin) return;
-    // Marlin 2 lets G90 undo M83, Marlin 1 did not; slicers that set relative E count on the latter and send G90 after.
+    // In Marlin 2 G90 undoes M83, in Marlin 1 it did not; slicers that set relative E rely on the latter and send G90
+    // after.
     if (absolute && settings_.relative_e.value_or(false)) return;
     if (absolute && m83_ && settings_.extrusion.relative_after_g90) {
         e_absolute_ = false;
@@ -294,7 +298,7 @@ void Machine::remarkForeign(const Command& command) {
 
 void Machine::setHomeOffset(const Command& command) {
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (command.hasValue(kAxes[axis])) frame_.setShift(axis, placeOf(command, kAxes[axis]));
+        if (command.hasValue(kAxes[axis])) frame_.setHomeOffset(axis, coordinateOf(command, kAxes[axis]));
 }
 
 void Machine::setVolumetric(const Command& command) {
@@ -327,7 +331,7 @@ void Machine::setFlow(const Command& command) {
     if (!command.hasValue('S')) return;
     const double percent = command.value('S');
     if (!(percent >= 0 && percent <= kMaxFactor)) refuse(fmt::format("M221 S{} is no flow in per cent", percent));
-    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100);  // one factor, whatever the tool
+    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100);  // one factor for all tools
     std::size_t tool = tool_;
     for (const char letter : {'T', 'D'})  // Marlin, RepRapFirmware
         if (command.hasValue(letter) && command.value(letter) >= 0 && command.value(letter) < 255)
@@ -337,7 +341,7 @@ void Machine::setFlow(const Command& command) {
 
 void Machine::labelObject(const Command& command) {
     if (objects_by_comment_) return;
-    // "S3", "Acube one", "S3 A\"cube one\"": the name is the rest of the line, and its letters are no words.
+    // "S3", "Acube one", "S3 A\"cube one\"": the name is the rest of the line; its letters are not parameters.
     std::string_view text = trim(command.text);
     const auto at = text.find_first_of("Aa");
     const bool named = at != std::string_view::npos && (at == 0 || text.substr(0, at).find_first_of("PUCT") > at);

@@ -1,8 +1,7 @@
 // The machine simulator: commands -> positions, extrusion, beads.
 //
-// Lengths are mm, E is mm of filament or mm^3, feed rates mm/s. Where nothing has been said the machine stands at 0.
-// Its methods live in machine.cpp (what commands set), machine_motion.cpp (moves and what they deposit) and
-// machine_macro.cpp (Klipper's named commands).
+// Lengths are mm, E is mm of filament or mm^3, feed rates mm/s. The machine starts at 0. The methods are in machine.cpp
+// (commands that set state), machine_motion.cpp (moves and extrusion) and machine_macro.cpp (Klipper's named commands).
 // Sources: marlinfw.org/docs/gcode (G0-G5, G10, G17-G20, G28, G53-G61, G90, G92, M82, M200, M206, M218, M220, M221,
 // M486); docs.duet3d.com (G1 R, G10, G53, G60, G92, M221, M486) and klipper3d.org/G-Codes.html (G90/G91 leave E alone
 // there).
@@ -28,7 +27,7 @@
 
 namespace stratum::gcode {
 
-/// What the machine did, for messages.
+/// Statistics for messages.
 struct MoveCounts {
     std::uint64_t commands = 0;    ///< G, M and T commands
     std::uint64_t travels = 0;     ///< moves without extrusion
@@ -39,28 +38,28 @@ struct MoveCounts {
 /// Executes lines one after another and hands extruding moves to a BeadRecorder. Print space is Frame's.
 class Machine {
 public:
-    /// `name` stands in messages. `settings` and `recorder` must outlive the machine.
+    /// `name` is used in messages. `settings` and `recorder` must outlive the machine.
     Machine(const Settings& settings, const ReadOptions& options, std::string_view name, BeadRecorder& recorder,
             WarningLog& warnings);
 
-    /// From now on the recorder, which must outlive the machine, is told everything that moves.
+    /// Sends all further motion to this recorder, which must outlive the machine.
     void recordMotion(MotionRecorder* moves) { moves_ = moves; }
 
-    /// Throws InputError "name:line: ..." for numbers that can't be meant.
+    /// Throws InputError "name:line: ..." for impossible numbers.
     void run(const Line& line);
 
     const MoveCounts& counts() const { return counts_; }
     Firmware firmware() const { return firmware_; }
     double filamentDiameter(std::size_t tool) const;
-    /// False where neither an option, nor the settings, nor M200 told the diameter, and E's volume depends on it.
+    /// False if E's volume depends on a diameter that neither an option, nor the settings, nor M200 gave.
     bool filamentKnown() const;
-    /// In words: what E counted at the end, and who said so.
+    /// In words: the unit of E at the end, and its source.
     std::string extrusionRule() const;
     double filamentMm() const { return filament_mm_; }
     double extrudedMm3() const { return extruded_mm3_; }
 
 private:
-    // What SAVE_GCODE_STATE keeps.
+    // Saved by SAVE_GCODE_STATE.
     struct Saved {
         Frame frame;
         double e = 0;
@@ -71,9 +70,9 @@ private:
         bool e_absolute = true;
     };
 
-    // What G60 keeps.
+    // Stored by G60.
     struct Stored {
-        Point place;
+        Point position;
         double e = 0;
     };
 
@@ -84,8 +83,8 @@ private:
     void selectTool(const Command& command);
     void useTool(std::size_t tool);
     void setOffsets(const Command& command);
-    void storePlace(const Command& command);
-    void returnToPlace(const Command& command);
+    void storePosition(const Command& command);
+    void returnToPosition(const Command& command);
     void setPosition(const Command& command);
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
@@ -95,14 +94,14 @@ private:
     void setFlow(const Command& command);
     void labelObject(const Command& command);
     void home(const Command& command);
-    double placeOf(const Command& command, char letter) const;
+    double coordinateOf(const Command& command, char letter) const;
 
     void setMacroOffset(std::string_view text);
     void saveState(std::string_view text);
     void restoreState(std::string_view text);
 
     void move(const Command& command, int motion);
-    /// Whether the firmware refuses a move with letters that have no number; remarks them in any case.
+    /// Whether the firmware refuses a move with letters that have no number; warns of them in any case.
     bool refusesLetters(const Command& command);
     /// The straight or, in the bed plane, circular path to the target.
     void runPath(const Point& target, const std::optional<Arc>& arc, double extrusion);
@@ -119,15 +118,18 @@ private:
     void setVelocityLimit(std::string_view text);
 
     double takeAxis(const Command& command, char letter, std::size_t axis) const;
-    /// The stored place that RepRapFirmware's R word names, or nullptr.
+    /// The stored position that RepRapFirmware's R word selects, or nullptr.
     const Point* restorePoint(const Command& command, int motion);
-    /// A stored place on the axes that are named, each moved by its number.
-    Point placeFrom(const Point& stored, const Command& command) const;
+    /// The stored position on the axes in the command, each plus its number; the current position on the others.
+    Point targetFrom(const Point& stored, const Command& command) const;
     double takeExtrusion(const Command& command);
-    char drivingLetter(const Command& command);
+    /// The letter whose number drives an extruder: E, or A or B on machines with these; 0 if the command has none.
+    char extruderAxis(const Command& command) const;
+    /// Switches to the tool of axis A or B; does nothing for other letters.
+    void useExtruderOf(char axis);
     void assumeExtruderMode();
-    /// The part of a push or pull of E that isn't spent on fetching unloaded filament back to the nozzle.
-    double leavesNozzle(double drive, bool in_place);
+    /// The part of a movement of E that is not needed to bring unloaded filament back to the nozzle.
+    double extrudedOf(double drive, bool in_place);
     double eUnit() const { return volumetric_ ? unit_ * unit_ * unit_ : unit_; }
     double filamentArea() const;
     [[noreturn]] void refuse(std::string_view what) const;
@@ -151,11 +153,11 @@ private:
     int motion_ = 0;   // the G0..G3 or G5 in force, for lines without a command
     bool absolute_ = true;
     bool e_absolute_ = true;
-    bool e_mode_known_ = false;    // by M82, M83, an option, or assumed
-    bool e_follows_axes_ = false;  // G90 or G91 has set it by Marlin's rule
-    bool m83_ = false;             // of M82 and M83 the latter came last
+    bool e_mode_known_ = false;    // from M82, M83, an option, or an assumption
+    bool e_follows_axes_ = false;  // the mode was set by G90 or G91 (Marlin's rule)
+    bool m83_ = false;             // the last of M82 and M83 was M83
     bool volumetric_ = false;
-    bool motor_on_ = false;  // between M101 and M103, where those are all there is
+    bool motor_on_ = false;  // between M101 and M103, in files without E
     std::size_t tool_ = 0;
     double feed_ = 0;
     double speed_factor_ = 1;
@@ -166,8 +168,8 @@ private:
     std::map<std::string, Saved, std::less<>> saved_;
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
-    MotionRecorder* moves_ = nullptr;  // nullptr: nobody asks how it moves
-    double drive_per_extrusion_ = 0;   // what E moves by what leaves the nozzle, of the move that is run
+    MotionRecorder* moves_ = nullptr;  // nullptr: motion is not recorded
+    double drive_per_extrusion_ = 0;   // of the current move: movement of E over extrusion at the nozzle
 
     MoveCounts counts_;
     double filament_mm_ = 0;

@@ -1,4 +1,4 @@
-// The machine's limits as a file's own settings tell them, and how long its changes of tool take.
+// The machine's limits and the durations of tool changes, from a file's settings.
 // Sources: the trailers and headers of PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio ("; machine_max_jerk_x =
 // 10,8": normal and silent mode); CuraEngine's defaults of fdmprinter.def.json, for its files state no limits.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace stratum::gcode {
 
-/// Bounds of what a limit may be: beyond them a number is damage, not a machine.
+/// Bounds of plausible limits: numbers beyond them are damaged.
 constexpr double kFastestAxis = 1e5;      // mm/s
 constexpr double kStrongestAxis = 1e7;    // mm/s^2
 constexpr double kWeakestAxis = 1e-2;     // mm/s^2
@@ -23,14 +23,14 @@ struct MachineSettings {
     double most_printing = 0;          ///< mm/s^2 that M204 can't exceed; 0: no bound
     double most_travel = 0;            ///< mm/s^2, likewise
     bool feedrate_per_minute = false;  ///< M203 counts mm/min (RepRapFirmware, Sprinter)
-    bool states_jerk = false;          ///< limits.jerk is the file's
-    bool rule_chosen = false;          ///< limits.rule is settled: no command changes it
+    bool states_jerk = false;          ///< limits.jerk is from the file
+    bool rule_chosen = false;          ///< limits.rule is fixed: commands don't change it
     std::vector<double> load;          ///< s by tool; may be short
     std::vector<double> unload;        ///< s by tool; may be short
     double change = 0;                 ///< s, of every change of tool
 };
 
-/// Reads the comments at both ends of a program. `rule` other than automatic is taken as it is.
+/// Reads the comments at both ends of a program. A `rule` other than automatic is used unchanged.
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule);
 
 }  // namespace stratum::gcode

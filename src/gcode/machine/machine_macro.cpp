@@ -1,4 +1,4 @@
-// Klipper's named commands: those that move the frame or change state, those that label objects, and the rest.
+// Klipper's named commands: frame offsets, saved states, object labels, and others.
 #include "gcode/machine/machine.h"
 #include "gcode/text/known_commands.h"
 #include "gcode/text/limits.h"
@@ -19,7 +19,7 @@ bool same(std::string_view text, std::string_view upper_case) {
                       [](char a, char b) { return upper(a) == b; });
 }
 
-// The value behind "KEY=" in the arguments, without quotes; nullopt if there is none. `key` is upper case.
+// The value of "KEY=" in the arguments, without quotes; nullopt if there is none. `key` is upper case.
 std::optional<std::string_view> argument(std::string_view text, std::string_view key) {
     while (!text.empty()) {
         const auto start = std::min(text.find_first_not_of(" \t"), text.size());
@@ -100,14 +100,14 @@ void Machine::setMacroOffset(std::string_view text) {
     const bool moves = numberArgument(text, "MOVE").value_or(0) != 0;
     Point target = frame_.position();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        double shift = frame_.shift(axis);
+        double shift = frame_.homeOffset(axis);
         if (const auto value = numberArgument(text, kAbsolute[axis]))
             shift = -*value;
         else if (const auto change = numberArgument(text, kRelative[axis]))
             shift -= *change;
         const double program = frame_.program(axis);
-        frame_.setShift(axis, shift);
-        // The nozzle follows at once, so that the program's coordinate stays what it was.
+        frame_.setHomeOffset(axis, shift);
+        // With MOVE the nozzle moves, and the program's coordinate stays; otherwise the nozzle stays.
         target[axis] = moves ? program + frame_.offset()[axis] : frame_.position()[axis];
     }
     if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
@@ -138,7 +138,7 @@ void Machine::restoreState(std::string_view text) {
     feed_ = saved.feed;
     speed_factor_ = saved.speed_factor;
     recorder_.setSpeed(feed_ * speed_factor_);
-    frame_.takeNames(saved.frame);
+    frame_.restoreOffsets(saved.frame);
     if (numberArgument(text, "MOVE").value_or(0) == 0) return;
     Point target;
     for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = saved.frame.program(axis) + frame_.offset()[axis];

@@ -1,4 +1,4 @@
-// Moves: where they go, and what they leave behind.
+// Machine's moves and extrusion.
 #include "gcode/machine/machine.h"
 #include "gcode/text/limits.h"
 
@@ -14,16 +14,16 @@ namespace {
 constexpr double kNoMotion = 1e-9;  // mm
 constexpr double kFullTurn = 2 * std::numbers::pi;
 constexpr int kMostTurns = 100;  // Marlin's bound on P
-// Filament drawn back further than this, in mm, has left the nozzle: the longest retractions of Bowden printers are
-// 16 mm, unloading takes 50 and more.
+// Filament retracted further than this, in mm, is unloaded: the longest retractions of Bowden printers are 16 mm,
+// unloading takes 50 and more.
 constexpr double kUnloaded = 25;
-constexpr double kSwitchedHeight = 0.25;  // mm, of the printers that switched their extruders on and off
+constexpr double kSwitchedHeight = 0.25;  // mm, typical of printers with switched extruders (M101, M103)
 constexpr double kSwitchedAspect = 1.6;   // their usual width over height (Skeinforge's default)
 
 // Not std::hypot, which guards against overflow that kMaxCoordinate excludes, and costs a quarter of the reading time.
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
 
-// The number of a stored place; 0 where none is given, 255 for what is none.
+// The slot number of a stored position: 0 by default; clamped to [0, 255].
 int slotOf(const Command& command, char letter) {
     return command.hasValue(letter) ? static_cast<int>(std::clamp(command.value(letter), 0.0, 255.0)) : 0;
 }
@@ -43,19 +43,20 @@ double Machine::takeAxis(const Command& command, char letter, std::size_t axis) 
     return target;
 }
 
-char Machine::drivingLetter(const Command& command) {
+char Machine::extruderAxis(const Command& command) const {
     if (command.has('E')) return 'E';
     if (settings_.extrusion.drive != ExtrusionScan::Drive::axes_ab) return 0;
-    for (const char letter : {'A', 'B'}) {
-        if (!command.has(letter)) continue;
-        if (const std::size_t tool = letter == 'B' ? 1 : 0; tool != tool_) useTool(tool);
-        return letter;
-    }
-    return 0;
+    return command.has('A') ? 'A' : command.has('B') ? 'B' : '\0';
+}
+
+void Machine::useExtruderOf(char axis) {
+    if (axis != 'A' && axis != 'B') return;
+    if (const std::size_t tool = axis == 'B' ? 1 : 0; tool != tool_) useTool(tool);
 }
 
 double Machine::takeExtrusion(const Command& command) {
-    const char letter = drivingLetter(command);
+    const char letter = extruderAxis(command);
+    useExtruderOf(letter);
     if (letter == 0 || !command.hasValue(letter)) return 0;
     if (!e_mode_known_) assumeExtruderMode();
     const double value = command.value(letter) * eUnit();
@@ -68,8 +69,8 @@ double Machine::takeExtrusion(const Command& command) {
 }
 
 void Machine::assumeExtruderMode() {
-    // No M82 or M83 before the first extrusion: a start macro of the printer may hold it. The slicer's settings know,
-    // or the numbers do. MakerBot's machines know absolute A and B only.
+    // No M82 or M83 before the first extrusion: it may be in a start macro of the printer. The mode follows from the
+    // slicer's settings, or from the numbers. On MakerBot's machines A and B are always absolute.
     e_mode_known_ = true;
     if (settings_.relative_e) {
         e_absolute_ = !*settings_.relative_e;
@@ -116,10 +117,10 @@ void Machine::move(const Command& command, int motion) {
     }
     const Point& at = frame_.position();
     Point target{takeAxis(command, 'X', 0), takeAxis(command, 'Y', 1), takeAxis(command, 'Z', 2)};
-    if (const Point* stored = restorePoint(command, motion)) target = placeFrom(*stored, command);
+    if (const Point* stored = restorePoint(command, motion)) target = targetFrom(*stored, command);
     const double drive = takeExtrusion(command);
     const bool in_place = target.x == at.x && target.y == at.y && motion < 2;
-    double extrusion = drive != 0 ? leavesNozzle(drive, in_place) : 0;
+    double extrusion = drive != 0 ? extrudedOf(drive, in_place) : 0;
     const bool switched = motor_on_ && motion > 0 && settings_.extrusion.drive == ExtrusionScan::Drive::switched;
     if (extrusion > 0 || switched) {
         drive_per_extrusion_ = extrusion > 0 ? drive / extrusion : 0;
@@ -136,11 +137,11 @@ void Machine::move(const Command& command, int motion) {
     frame_.moveTo(target);
 }
 
-Point Machine::placeFrom(const Point& stored, const Command& command) const {
+Point Machine::targetFrom(const Point& stored, const Command& command) const {
     constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
     Point target = frame_.position();
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (command.has(kAxes[axis])) target[axis] = stored[axis] + placeOf(command, kAxes[axis]);
+        if (command.has(kAxes[axis])) target[axis] = stored[axis] + coordinateOf(command, kAxes[axis]);
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (!(std::abs(target[axis]) <= kMaxCoordinate))
             refuse(fmt::format("{} = {} is no place on a printer (limit {} mm); is the file damaged?", kAxes[axis],
@@ -151,13 +152,13 @@ Point Machine::placeFrom(const Point& stored, const Command& command) const {
 const Point* Machine::restorePoint(const Command& command, int motion) {
     if (firmware_ != Firmware::reprap || motion > 1 || !command.hasValue('R')) return nullptr;
     const auto found = stored_.find(slotOf(command, 'R'));
-    if (found != stored_.end()) return &found->second.place;
+    if (found != stored_.end()) return &found->second.position;
     warn("R names a place that was never stored; it is ignored");
     return nullptr;
 }
 
-void Machine::storePlace(const Command& command) {
-    if (command.has('Q')) return returnToPlace(command);
+void Machine::storePosition(const Command& command) {
+    if (command.has('Q')) return returnToPosition(command);
     if (!command.has('D')) {
         stored_.insert_or_assign(slotOf(command, 'S'), Stored{frame_.position(), e_});
     } else if (command.hasValue('D')) {
@@ -167,7 +168,7 @@ void Machine::storePlace(const Command& command) {
     }
 }
 
-void Machine::returnToPlace(const Command& command) {
+void Machine::returnToPosition(const Command& command) {
     const auto found = stored_.find(slotOf(command, command.has('Q') ? 'Q' : 'S'));
     if (found == stored_.end()) return warn("G61 to a place that was never stored; ignored");
     const Stored& stored = found->second;
@@ -175,7 +176,7 @@ void Machine::returnToPlace(const Command& command) {
     ++counts_.travels;
     const bool all = !command.has('X') && !command.has('Y') && !command.has('Z');
     if (all && command.has('E')) return;
-    const Point target = all ? stored.place : placeFrom(stored.place, command);
+    const Point target = all ? stored.position : targetFrom(stored.position, command);
     if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
     frame_.moveTo(target);
 }
@@ -281,9 +282,9 @@ std::optional<Arc> Machine::arcOf(const Command& command, const Point& target, b
     return arc;
 }
 
-double Machine::leavesNozzle(double drive, bool in_place) {
+double Machine::extrudedOf(double drive, bool in_place) {
     // Multi-material units swap filament while the head travels over the wipe tower (PrusaSlicer's "CP TOOLCHANGE"):
-    // metres of E that only fetch the filament back. Ordinary retractions are taken at the file's word.
+    // metres of E only bring the filament back. Ordinary retractions are not corrected.
     const double mm = volumetric_ ? drive / filamentArea() : drive;
     const std::size_t nozzle = settings_.shared_nozzle ? 0 : tool_;
     double& drawn_back = drawn_back_[nozzle];
@@ -335,7 +336,7 @@ void Machine::deposit(const Point& target, const std::optional<Arc>& arc, double
     if (by_tool.size() <= tool_) by_tool.resize(tool_ + 1);
     by_tool[tool_] += filament;
     ++counts_.beads;
-    frame_.settle();
+    frame_.freezePrintSpace();
     const double flow = flow_[tool_];
     if (!(flow > 0)) return;
     extruded_mm3_ += volume * flow;

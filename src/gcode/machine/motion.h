@@ -1,7 +1,7 @@
-// What a program asks the machine to do, move by move: what a planner needs to find true times and speeds.
+// Limits, moves and waits of a program: the input of a motion planner that computes real times and speeds.
 //
-// Nobody records moves unless ReadOptions::motion names a sink. The sink sees limits, moves and waits in the order of
-// the program, on the reading thread, and keeps what it wants; nothing is stored here.
+// Moves are recorded only if ReadOptions::motion has a sink. The sink gets limits, moves and waits in program order, on
+// the reading thread; nothing is stored here.
 #pragma once
 
 #include "gcode/toolpath/arc.h"
@@ -16,9 +16,9 @@ namespace stratum::gcode {
 /// x, y, z and the extruder.
 constexpr std::size_t kMotionAxes = 4;
 
-/// How fast a machine may go from one move into the next.
+/// The rule for the speed at the corner between two moves.
 enum class CornerRule : std::uint8_t {
-    automatic,           ///< as the file suggests: readMachineSettings()
+    automatic,           ///< chosen from the file: readMachineSettings()
     jerk,                ///< a jump of speed by axis (Marlin 1.1 and legacy)
     slicer_jerk,         ///< the same as PrusaSlicer, SuperSlicer, Orca and Bambu Studio estimate it
     plan_jerk,           ///< one jump of the speed's vector in the plane (Marlin 1.0, CuraEngine's estimate)
@@ -26,9 +26,9 @@ enum class CornerRule : std::uint8_t {
     corner_velocity,     ///< Klipper's square corner velocity
 };
 
-/// What the machine can do, mm, s. Limits of one axis and of the whole move hold together.
+/// Limits of the machine, mm, s. Limits of single axes and of the whole move hold together.
 struct MachineLimits {
-    /// By axis; infinite: none. The defaults are PrusaSlicer's for a machine of which nothing is known.
+    /// By axis; infinite: none. The defaults are PrusaSlicer's for an unknown machine.
     std::array<double, kMotionAxes> speed{500, 500, 12, 120};
     std::array<double, kMotionAxes> acceleration{9000, 9000, 500, 10000};
     std::array<double, kMotionAxes> jerk{10, 10, 0.2, 2.5};       ///< mm/s
@@ -44,19 +44,19 @@ struct MachineLimits {
     CornerRule rule = CornerRule::jerk;
 };
 
-/// A move, or, of curves that beads can't hold, one of its pieces.
+/// A move, or one piece of a curve that beads can't represent.
 struct Move {
     static constexpr std::uint32_t kNoBead = 0xffffffff;
 
     std::array<double, kMotionAxes> delta{};  ///< mm; E in mm of filament, flow factor (M221) included
-    double speed = 0;                         ///< mm/s asked for along the path, or of E if nothing else moves
+    double speed = 0;                         ///< mm/s, programmed along the path, or of E if nothing else moves
     double sweep = 0;                         ///< radians; 0: straight
     PlanPoint center{};                       ///< mm from the start; of an arc
-    std::uint32_t bead = kNoBead;             ///< index into Toolpath::beads of what it lays, or kNoBead
+    std::uint32_t bead = kNoBead;             ///< index into Toolpath::beads of its bead, or kNoBead
     std::uint32_t line = 0;                   ///< 1-based line in the source
 };
 
-/// Takes what a program does, in its order.
+/// Receives a program's limits, moves and waits in program order.
 class MotionSink {
 public:
     MotionSink() = default;
@@ -67,8 +67,7 @@ public:
     /// They hold from the next move on. Called once before anything else.
     virtual void limits(const MachineLimits& limits) = 0;
     virtual void move(const Move& move) = 0;
-    /// Everything so far comes to rest, and `seconds` (>= 0) pass: G4, a change of tool, homing (which takes no time
-    /// that a file could tell).
+    /// The machine stops and waits for `seconds` (>= 0): G4, a change of tool, homing (its time is unknown: 0).
     virtual void wait(double seconds) = 0;
 };
 

@@ -15,7 +15,7 @@ constexpr double kNoMotion = 1e-12;          // mm
 constexpr double kLongestRetraction = 1000;  // mm
 constexpr std::array<char, kMotionAxes> kLetters{'X', 'Y', 'Z', 'E'};
 
-// Commands that let everything come to rest and take a time that no file can tell: homing, probing, heating, pauses.
+// Commands that stop the machine for an unknown time: homing, probing, heating, pauses.
 bool rests(const Command& command) {
     if (command.letter == 'G') return command.code == 28 || command.code == 29 || command.code == 30;
     switch (command.code) {
@@ -99,7 +99,7 @@ void MotionRecorder::setCorners(const Command& command, std::uint32_t line) {
     if (command.hasValue('S')) take(limits_.least_printing_speed, "M205 S", command.value('S'), 0, kFastestAxis, line);
     if (command.hasValue('T')) take(limits_.least_travel_speed, "M205 T", command.value('T'), 0, kFastestAxis, line);
     if (!command.hasValue('J')) return;
-    // J0 is what machines with classic jerk are told.
+    // J0 is written for machines with classic jerk.
     if (command.value('J') == 0) return suggest(settings_.limits.rule);
     if (take(limits_.junction_deviation, "M205 J", command.value('J'), 1e-6, kLongestDeviation, line))
         suggest(CornerRule::junction_deviation);
@@ -190,7 +190,7 @@ void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t lin
         take(limits_.cruise_ratio, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=", *limit.cruise_ratio, 0, 0.99, line);
     if (limit.to_deceleration && *limit.to_deceleration > 0)
         limits_.cruise_ratio = std::clamp(1 - *limit.to_deceleration / limits_.printing, 0.0, 0.99);
-    // Nobody else has this command.
+    // Only Klipper has this command.
     if (!settings_.states_jerk) suggest(CornerRule::corner_velocity);
     sink_.limits(limits_);
 }

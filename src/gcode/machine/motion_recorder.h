@@ -1,4 +1,4 @@
-// Turns what the machine simulator executes into limits, moves and waits for a MotionSink.
+// Converts the commands and moves of the machine simulator into limits, moves and waits for a MotionSink.
 // Sources: marlinfw.org/docs/gcode G004, M201, M203-M205, M207, M208; docs.duet3d.com M566; klipper3d.org/G-Codes.html
 // SET_VELOCITY_LIMIT; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)".
 #pragma once
@@ -24,7 +24,7 @@ struct VelocityLimit {
     std::optional<double> corner_velocity;  ///< mm/s
 };
 
-/// Limits that are no machine's (negative, zero, absurd, no number) are left as they were, with a warning.
+/// Impossible limits (negative, zero, beyond the bounds, no number) are ignored, with a warning.
 class MotionRecorder {
 public:
     /// The sink and the log must outlive it.
@@ -35,7 +35,7 @@ public:
     void velocityLimit(const VelocityLimit& limit, std::uint32_t line);
     void changeTool(std::size_t from, std::size_t to);
 
-    /// A move in print space. `filament` is the mm that E moves; `speed` mm/s, 0 where none was ever named.
+    /// A move in print space. `filament` is the movement of E in mm; `speed` is in mm/s, 0 if none was set yet.
     void move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament, double speed,
               std::uint32_t bead, std::uint32_t line);
 

@@ -1,4 +1,4 @@
-// Which colour a bead's filament has: the tool's, as the file states it, until the file changes it by hand.
+// The color of a bead's filament: that of the tool, as the file states it, until a manual change of filament.
 //
 // Sources: PrusaSlicer, OrcaSlicer and BambuStudio ("; filament_colour =", ";COLOR_CHANGE,T0,#RRGGBB").
 #pragma once
@@ -16,8 +16,8 @@ namespace stratum::gcode {
 /// sRGB of the filament of `toolpath.beads[bead]`; nullopt where the file states no colour for its tool.
 std::optional<Rgb> colorOf(const Toolpath& toolpath, std::size_t bead);
 
-/// The colours that the selected beads have, each once, in the order of first use; nullopt stands among them if beads
-/// without a stated colour do. `selection` holds indices into `toolpath.beads`.
+/// The distinct colors of the selected beads, in the order of first use; nullopt for beads without a stated color.
+/// `selection` has indices into `toolpath.beads`.
 std::vector<std::optional<Rgb>> distinctColors(const Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
 }  // namespace stratum::gcode

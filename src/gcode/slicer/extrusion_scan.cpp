@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kEnoughMoves = 400;
 constexpr std::size_t kFewestMoves = 12;
-// Of E that counts on, only wipes fall; of increments, about half are smaller than the one before.
+// Absolute E decreases only in wipes; of relative values about half are smaller than the one before.
 constexpr std::size_t kFallsInMoves = 4;
 
 class Scanner {
@@ -97,7 +97,7 @@ std::size_t findCommand(std::string_view bytes, std::string_view text, std::size
     return std::string_view::npos;
 }
 
-// Moves with E, and how many of them fall back, behind places where the mode is in question.
+// Counts moves with E, and those where E decreases, after the positions where the mode is unclear.
 struct Falls {
     std::size_t moves = 0;
     std::size_t falls = 0;
@@ -145,7 +145,7 @@ bool fallsBackAfterG90(std::string_view bytes) {
         }
         const auto line_end = std::min(bytes.find('\n', g90), bytes.size());
         found.count(bytes.substr(line_end));
-        m83 = line_end;  // still the mode in force as far as the slicer is concerned
+        m83 = line_end;  // the slicer still assumes this mode
     }
     return found.moves >= kFewestMoves && found.falls * kFallsInMoves > found.moves;
 }

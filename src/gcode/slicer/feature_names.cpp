@@ -11,7 +11,7 @@ struct Name {
     Feature feature;
 };
 
-// Names behind ";TYPE:" and its kin. One list for all slicers: where two use one word, they mean the same thing.
+// Names behind ";TYPE:" and similar tags. One list for all slicers: a name means the same in all of them.
 constexpr std::array kTypeNames{
     // PrusaSlicer, SuperSlicer
     Name{"perimeter", Feature::perimeter},
@@ -126,7 +126,7 @@ constexpr std::array kSegmentNames{
     Name{"travel", Feature::unknown},
 };
 
-// KISSlicer's "'Sparse Infill Path'". What only moves (Destring/Wipe/Jump) names no feature.
+// KISSlicer's "'Sparse Infill Path'". Paths without extrusion (Destring/Wipe/Jump) are no features.
 constexpr std::array kPathNames{
     Name{"perimeter", Feature::external_perimeter},
     Name{"loop", Feature::perimeter},

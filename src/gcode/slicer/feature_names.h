@@ -1,4 +1,4 @@
-// What each slicer calls the parts of a print, in this project's one vocabulary.
+// Maps each slicer's feature names to Feature.
 //
 // Sources: PrusaSlicer and SuperSlicer ExtrusionEntity.cpp (role names), OrcaSlicer and BambuStudio
 // ExtrusionEntity.cpp, CuraEngine gcodeExport.cpp, Slic3r GCode.pm, IceSL's printer profiles, KISSlicer and CraftWare
@@ -12,14 +12,14 @@
 
 namespace stratum::gcode {
 
-/// All of them: whatever the case of `name`, without blanks around it; nullopt if it isn't known. Behind ";TYPE:" or
-/// "; FEATURE:".
+/// All functions ignore the case of `name`, which has no blanks around it, and return nullopt for an unknown one.
+/// This one is for names behind ";TYPE:" or "; FEATURE:".
 std::optional<Feature> featureOfType(std::string_view name);
-/// A whole comment, as Slic3r writes behind each move, Simplify3D and IceSL on a line of its own.
+/// For a whole comment, as Slic3r writes behind each move, Simplify3D and IceSL on a line of its own.
 std::optional<Feature> featureOfBareName(std::string_view name);
-/// Behind CraftWare's ";segType:".
+/// For names behind CraftWare's ";segType:".
 std::optional<Feature> featureOfSegment(std::string_view name);
-/// In KISSlicer's "; 'Sparse Infill Path', ...", without " Path".
+/// For names in KISSlicer's "; 'Sparse Infill Path', ...", without " Path".
 std::optional<Feature> featureOfPath(std::string_view name);
 
 }  // namespace stratum::gcode

@@ -1,4 +1,4 @@
-// What a file itself says that it uses: the slicer's sums in its header or trailer, for comparison with what was read.
+// The filament that a file states: the slicer's sums in its header or trailer, for comparison with the toolpath.
 // Sources: PrusaSlicer and its kin ("filament used [mm] = 1.5, 2"), BambuStudio ("total filament length [mm] : 1.5,2"),
 // Slic3r ("filament used = 290.4mm", "filament_length_m = 0.2904"), KISSlicer ("Ext 1 = 53.49 mm"), Cura ("Filament
 // used: 0.27387m, 0m", or in mm3 where its E is), Griffin headers ("EXTRUDER_TRAIN.0.MATERIAL.VOLUME_USED:12034"),
@@ -11,7 +11,7 @@
 
 namespace stratum::gcode {
 
-/// By tool; a list of one is the whole print's, whatever its tools. At most one of the two is filled.
+/// By tool; a list of one is the sum of all tools. At most one of the two is filled.
 struct Footer {
     std::vector<double> length;  ///< mm of filament
     std::vector<double> volume;  ///< mm^3
@@ -19,7 +19,7 @@ struct Footer {
     bool empty() const { return length.empty() && volume.empty(); }
 };
 
-/// Takes in a comment (without its ';', trimmed) if it is such a statement; the last one counts. False if it is none.
+/// Parses a comment (without its ';', trimmed) if it is such a statement; the last one counts. False if it is none.
 bool readFooter(std::string_view comment, Footer& footer);
 
 }  // namespace stratum::gcode

@@ -23,7 +23,7 @@ std::string unescape(std::string_view text) {
         plain += known ? entity->second : text.front();
         text.remove_prefix(known ? entity->first.size() : 1);
     }
-    // A name is one line in messages and metadata.
+    // Names must be single lines in messages and metadata.
     std::replace_if(
         plain.begin(), plain.end(), [](char c) { return c == '\n' || c == '\r' || c == '\0'; }, ' ');
     return plain;

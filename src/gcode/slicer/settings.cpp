@@ -11,7 +11,7 @@
 namespace stratum::gcode {
 namespace {
 
-// Thumbnails and Cura's SETTING_3 lines can push what matters this far from the ends.
+// Because of thumbnails and Cura's SETTING_3 lines, settings can be this far from the ends.
 constexpr std::size_t kReach = std::size_t{1} << 18;
 constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
@@ -35,7 +35,7 @@ std::optional<bool> flag(std::string_view text) {
     return std::nullopt;
 }
 
-// Diameters by tool, separated by any of `separators`. A list that isn't all numbers is no list.
+// Diameters by tool, separated by any of `separators`. Empty if any entry is not a number.
 std::vector<double> diameters(std::string_view text, std::string_view separators) {
     std::vector<double> values;
     while (!text.empty()) {
@@ -48,7 +48,7 @@ std::vector<double> diameters(std::string_view text, std::string_view separators
     return values;
 }
 
-// "#FF8000;#DB5182", with or without quotes; of an empty place nothing is known.
+// "#FF8000;#DB5182", with or without quotes; empty entries are unknown.
 std::vector<std::optional<Rgb>> colors(std::string_view text) {
     std::vector<std::optional<Rgb>> values;
     while (!text.empty() && values.size() < 256) {
@@ -59,7 +59,7 @@ std::vector<std::optional<Rgb>> colors(std::string_view text) {
     return values;
 }
 
-// "0x0,18x0": the nozzles' places by tool.
+// "0x0,18x0": the nozzles' positions by tool.
 std::vector<Point> offsets(std::string_view text) {
     std::vector<Point> values;
     bool any = false;
@@ -120,7 +120,7 @@ public:
     }
 
     Settings finish() {
-        // The filament is what is seen; the extruder's colour is a mark in the slicer's own views.
+        // The filament's color is preferred; the extruder's is used in the slicer's own views only.
         std::vector<std::optional<Rgb>>& tools = settings.tool_colors;
         tools = std::move(filament_colors_);
         tools.resize(std::max(tools.size(), extruder_colors_.size()));
@@ -203,8 +203,8 @@ private:
     void curaFlavor(std::string_view flavor) {
         settings.firmware = flavor == "RepRap" ? Firmware::reprap : Firmware::marlin;
         settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
-        // Two of Cura's flavours count mm^3 and leave it to the printer to know that; M200 in the file says otherwise.
-        // Griffin (Ultimaker 3 and later) is not among them.
+        // With two of Cura's flavours E is in mm^3, which only the printer's settings state; M200 in the file overrides
+        // it. Griffin (Ultimaker 3 and later) is not one of them.
         if (flavor != "UltiGCode" && flavor != "Marlin(Volumetric)") return;
         settings.volumetric_e = true;
         settings.volumetric_reason = std::string("the file's FLAVOR is ").append(flavor);
@@ -227,7 +227,7 @@ Settings readSettings(std::string_view bytes) {
     readComments(bytes.substr(0, kReach), reader);
     if (bytes.size() > kReach) {
         std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));
-        // It may start in the midst of a line, which must not look like a comment by chance.
+        // The tail may start inside a line, which must not be taken for a comment.
         tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
         readComments(tail, reader);
     }

@@ -1,4 +1,4 @@
-// What a file says about itself in its first and last comments: slicer, filament, layer height, how E counts.
+// Settings in a file's first and last comments: slicer, filament, layer height, mode and unit of E.
 // Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r, OrcaSlicer, BambuStudio ("; key = value"), the
 // headers of Cura, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Skeinforge's "(<layerHeight> 0.3 )".
 #pragma once
@@ -18,29 +18,29 @@
 
 namespace stratum::gcode {
 
-/// Values are absent where the file is silent or says nonsense.
+/// Values are absent if the file doesn't state them, or if they are invalid.
 struct Settings {
     std::string slicer;                           ///< name and version
     std::vector<double> filament_diameters;       ///< mm, by tool
     std::optional<double> layer_height;           ///< mm
     std::optional<bool> relative_e;               ///< E words are increments
     std::optional<bool> volumetric_e;             ///< E words are mm^3
-    std::string volumetric_reason;                ///< where the file says so
+    std::string volumetric_reason;                ///< where the file states it
     std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's colour, else the extruder's
     std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
     std::optional<double> nozzle_diameter;  ///< mm, of the first tool
     std::optional<double> extrusion_width;  ///< mm
-    ExtrusionScan extrusion;                ///< what the program's own words show
+    ExtrusionScan extrusion;                ///< from the program's moves
     std::string cut_short;                  ///< why the program seems to end too early; empty if it doesn't
-    bool shared_nozzle = false;             ///< several filaments take turns in one nozzle
+    bool shared_nozzle = false;             ///< several filaments share one nozzle
     Firmware firmware = Firmware::automatic;
-    std::string firmware_reason;  ///< what the file says about it
-    Footer footer;                ///< what the file says it uses
-    StatedFacts stated;           ///< what else it says of the print
+    std::string firmware_reason;  ///< the file's statement about it
+    Footer footer;                ///< the filament that the file states
+    StatedFacts stated;           ///< other statements about the print
 };
 
-/// Reads the comments in the first and the last part of the bytes, looks how the program extrudes, and whether it ends
-/// as its slicer ends programs. Never throws for what it finds there.
+/// Reads the comments in the first and the last part of the bytes, scans the way of extruding, and checks for a
+/// truncated end. Never throws for invalid contents.
 Settings readSettings(std::string_view bytes);
 
 }  // namespace stratum::gcode

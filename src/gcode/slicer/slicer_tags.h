@@ -1,4 +1,4 @@
-// What slicers say in comments while printing: features, heights, layer and object boundaries.
+// Slicers' comments between moves: features, heights, layer and object boundaries.
 // Sources: PrusaSlicer GCodeProcessor.cpp (";TYPE:", ";HEIGHT:", ";LAYER_CHANGE"; KISSlicer's and CraftWare's tags),
 // BambuStudio and OrcaSlicer GCodeProcessor.cpp ("; FEATURE: ", "; LAYER_HEIGHT: ", "; CHANGE_LAYER"), CuraEngine
 // gcodeExport.cpp (";LAYER:", ";TYPE:", ";MESH:"), Slic3r GCode.pm (inline comments), Skeinforge's "(<layer> 0.3 )",
@@ -16,11 +16,11 @@ namespace stratum::gcode {
 struct Tag {
     enum class Kind : std::uint8_t { none, feature, height, layer_change, object_start, object_stop, color_change };
     Kind kind = Kind::none;
-    Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if `text` is no name that is known here
+    Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if the name in `text` is unknown
     double height = 0;                   ///< mm, of Kind::height; of a layer change that names its height, else 0
     std::optional<double> z{};           ///< mm, of a layer change that names its z
-    std::string_view text{};             ///< the feature's or object's name as written; a new colour as "#RRGGBB"
-    int tool = -1;                       ///< of a colour change; -1 is the one in use
+    std::string_view text{};             ///< the feature's or object's name as written; a new color as "#RRGGBB"
+    int tool = -1;                       ///< of a color change; -1 is the current tool
 };
 
 /// The tag in a comment (given without its ';'), or Kind::none. ";WIDTH:" is none of them: the width follows from E.

@@ -10,11 +10,11 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kTrailerReach = std::size_t{1} << 18;  // thumbnails and Cura's settings can stand behind it
+constexpr std::size_t kTrailerReach = std::size_t{1} << 18;  // thumbnails and Cura's settings can follow the trailer
 
 struct Trailer {
     std::string_view slicer;
-    std::array<std::string_view, 3> any_of;  // as it stands in the file; one of them is enough
+    std::array<std::string_view, 3> any_of;  // texts in the file; one of them is enough
 };
 
 constexpr std::array kTrailers{
@@ -38,8 +38,8 @@ bool isMove(std::string_view text) {
                               (line.commands[0].letter == 'G' && line.commands[0].code <= 5));
 }
 
-// Does the line break off amid a word: a command letter without its number, or a value's letter behind a command that
-// wants one? "M84 X Y E" and "G28 X" are whole.
+// Whether the line ends inside a word: a command letter without its number, or a parameter letter without the number
+// that it needs. "M84 X Y E" and "G28 X" are complete.
 bool endsAmidAWord(std::string_view text) {
     const auto last = text.find_last_not_of(" \t");
     if (last == std::string_view::npos || text.find_first_of(";(\"") != std::string_view::npos) return false;
@@ -51,7 +51,7 @@ bool endsAmidAWord(std::string_view text) {
            kCommands.find(text.front()) != std::string_view::npos;
 }
 
-// Does any line after the first begin with a motion? Some write into their header what others write at the end.
+// Whether any line after the first begins with a motion: some slicers write a trailer's text into their header.
 bool moves(std::string_view text) {
     for (auto at = text.find("\nG"); at != std::string_view::npos; at = text.find("\nG", at + 1)) {
         const std::string_view command = text.substr(at + 2, 2);

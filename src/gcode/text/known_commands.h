@@ -1,4 +1,4 @@
-// Commands that lay no bead and change nothing this program follows, so that ignoring them deserves no remark.
+// Commands that affect neither beads nor any simulated state: they are ignored without a warning.
 #pragma once
 
 #include <cstdint>

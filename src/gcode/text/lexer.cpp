@@ -75,7 +75,7 @@ std::int32_t takeInteger(const char*& p, const char* end) {
 
 std::string_view view(const char* from, const char* to) { return {from, static_cast<std::size_t>(to - from)}; }
 
-// One line at work: where a command ends is known only when the next begins.
+// The state of one line: the end of a command is known only when the next one begins.
 class LineLexer {
 public:
     LineLexer(std::string_view text, Line& line) : p_(text.data()), end_(text.data() + text.size()), line_(line) {}
@@ -130,7 +130,7 @@ private:
     void word() {
         const char* next = p_ + 1;
         const char letter = upper(*p_);
-        if (named_ && letter == 'A') {  // what follows is a name, whatever it looks like
+        if (named_ && letter == 'A') {  // the rest of the line is a name
             const char* name = skipBlanks(p_ + 1, end_);
             if (name != end_ && *name == '"') name = find(name + 1, end_, '"');
             p_ = find(name, end_, ';');
@@ -180,7 +180,7 @@ private:
 
     Command& open() {
         closeText(p_);
-        if (line_.count == Line::kMaxCommands) {  // only noise has so many; the last slot takes the rest
+        if (line_.count == Line::kMaxCommands) {  // only damaged lines; the last slot is reused
             line_.unreadable = true;
             --line_.count;
         }

@@ -1,7 +1,7 @@
-// bytes -> lines -> commands with their parameters. Knows the grammar, not what a command does.
+// Bytes -> lines -> commands with their parameters: the grammar only, not the meaning of commands.
 //
 // Handled here: N words and *checksums, ';' and '(...)' comments, lower case, missing spaces, tabs, LF, CR, CRLF and
-// any mixture of them, a byte order mark, bytes that are no text, several commands in a line (RepRapFirmware, CNC),
+// any mixture of them, a byte order mark, bytes that are not text, several commands in a line (RepRapFirmware, CNC),
 // commands whose argument is free text (M117 ...) or ends with a name (M486 A...), Klipper's extended commands
 // (SET_THING A=1), RepRapFirmware's expressions in braces, and lines that begin with '/'.
 #pragma once
@@ -15,29 +15,29 @@ namespace stratum::gcode {
 /// One command and its parameters. Letters are upper case.
 struct Command {
     enum class Kind : std::uint8_t {
-        words,     ///< parameters only: the motion command in force goes on
-        foreign,   ///< a line that begins with a letter of no motion ("Q603 ..."): no command that is known here
+        words,     ///< parameters only: they belong to the modal motion command
+        foreign,   ///< a line that begins with a letter of no known command ("Q603 ...")
         numbered,  ///< G1, M82, T0, G92.1
         extended,  ///< a macro or extended command, in `name`
     };
     Kind kind = Kind::words;
     char letter = 0;           ///< 'G', 'M' or 'T' of a numbered command
-    std::int32_t code = 0;     ///< its number; -1 where T names no number (T?, Tx)
+    std::int32_t code = 0;     ///< its number; -1 for a T without a number (T?, Tx)
     std::int32_t subcode = 0;  ///< 1 of G92.1
     std::string_view name;     ///< of an extended or foreign command, as written
-    std::string_view text;     ///< what follows the code or name, up to the comment: for free-text arguments
+    std::string_view text;     ///< the text behind the code or name, up to the comment: for free-text arguments
 
     /// Some parameter has no number.
     bool lacksNumbers() const { return (present_ & ~valued_) != 0; }
     bool has(char parameter) const { return ((present_ >> index(parameter)) & 1U) != 0; }
-    /// Without a number, but with an expression of RepRapFirmware ("F{60*var.speed}"), whose value is unknown here.
+    /// Without a number, but with an expression of RepRapFirmware ("F{60*var.speed}"), which is not evaluated.
     bool isExpression(char parameter) const { return ((expression_ >> index(parameter)) & 1U) != 0; }
     bool hasValue(char parameter) const { return ((valued_ >> index(parameter)) & 1U) != 0; }
     /// The parameter's number. Only meaningful if hasValue().
     double value(char parameter) const { return values_[index(parameter)]; }
 
     void clear();
-    /// Without a number; a letter that comes twice means what it says last.
+    /// Without a number; if a letter is repeated, the last one counts.
     void set(char parameter) {
         present_ |= 1U << index(parameter);
         valued_ &= ~(1U << index(parameter));
@@ -63,9 +63,10 @@ struct Line {
     std::uint32_t number = 0;  ///< 1-based
     std::size_t count = 0;     ///< commands used
     std::array<Command, kMaxCommands> commands;
-    std::string_view comment;  ///< without its ';' or parentheses, untrimmed; of several the ';' one or the first
-    bool unreadable = false;   ///< something in it is neither a word nor a comment
-    bool deleted = false;      ///< begins with one '/' (block delete, NIST RS274/NGC 3.3.1): nothing in it is a command
+    std::string_view
+        comment;  ///< without its ';' or parentheses, untrimmed; if there are several, that with ';' or the first
+    bool unreadable = false;  ///< parts of it are neither words nor comments
+    bool deleted = false;     ///< begins with one '/' (block delete, NIST RS274/NGC 3.3.1): its commands are skipped
 };
 
 /// Splits bytes into lines. Allocates nothing; the bytes must outlive it.
@@ -85,7 +86,7 @@ private:
     const char* begin_;
     const char* p_;
     const char* end_;
-    const char* newline_;  // the next '\n' at or after p_, so that files with bare CR aren't searched again and again
+    const char* newline_;  // the next '\n' at or after p_, cached so that files with bare CR aren't searched repeatedly
     std::uint32_t number_ = 0;
 };
 

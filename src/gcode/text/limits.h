@@ -1,4 +1,4 @@
-// What no printer does: numbers beyond these mean that a file is damaged, and are refused with their line.
+// Limits of plausible numbers: larger ones mean that a file is damaged, and are refused with their line.
 #pragma once
 
 namespace stratum::gcode {

@@ -10,8 +10,8 @@
 
 namespace stratum::gcode {
 
-/// Reads the longest number at `p` and moves `p` behind it. Returns false and leaves both arguments alone if there is
-/// none. The value is the nearest double; it is infinite where the digits say more than a double can hold.
+/// Reads the longest number at `p` and advances `p` past it. Returns false and changes neither argument if there is
+/// none. The value is the nearest double; it is infinite if the digits exceed a double's range.
 inline bool parseNumber(const char*& p, const char* end, double& value) {
     static constexpr std::array<double, 19> kPowersOfTen{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                                          1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
@@ -38,7 +38,7 @@ inline bool parseNumber(const char*& p, const char* end, double& value) {
     if (whole + fraction == 0) return false;
     double magnitude = 0;
     if (whole + fraction <= 18 && mantissa <= (std::uint64_t{1} << 53)) {
-        // Both operands are exact, so one rounding is all there is (Clinger's fast path).
+        // Both operands are exact, so the result is rounded only once (Clinger's fast path).
         magnitude = static_cast<double>(mantissa) / kPowersOfTen[static_cast<std::size_t>(fraction)];
     } else {
         fast_float::from_chars(first, s, magnitude, fast_float::chars_format::fixed);

@@ -7,7 +7,7 @@
 namespace stratum::gcode {
 namespace {
 
-// Below this, in mm, two points are one: three orders under what slicers can write.
+// Points closer than this, in mm, coincide: three orders below the precision of slicers.
 constexpr double kSamePoint = 1e-6;
 
 double tolerance(double radius) { return std::max(kArcAbsoluteTolerance, kArcRelativeTolerance * radius); }

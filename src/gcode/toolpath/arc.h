@@ -13,8 +13,8 @@ struct PlanPoint {
     double y = 0;  ///< mm
 };
 
-/// How far the end may lie off the circle: this much of the radius, or this many mm if that is more. Slicers write
-/// three decimals; an arc that is further off was not meant, or not written, as an arc.
+/// Largest distance of the end from the circle: this share of the radius, or this many mm if that is more. Slicers
+/// write three decimals; an arc with a larger error is damaged or not an arc.
 constexpr double kArcRelativeTolerance = 0.05;
 constexpr double kArcAbsoluteTolerance = 0.1;
 

@@ -1,6 +1,6 @@
-// Curves that no bead can hold, cut into straight pieces: cubic Béziers (G5) and arcs in upright planes (G18, G19).
+// Flattens curves that Bead can't represent: cubic Béziers (G5) and arcs in vertical planes (G18, G19).
 //
-// The pieces' ends lie on the curve and no point of the curve is further than kCurveTolerance from its piece.
+// The ends of the pieces are on the curve, and no point of the curve is further than kCurveTolerance from its piece.
 // Sources: marlinfw.org/docs/gcode G005 and G017-G019; NIST RS274/NGC 3.5.2 and 3.5.3; for the number of pieces,
 // Wang's bound on the second differences of a Bézier's control points and the sagitta of a chord.
 #pragma once

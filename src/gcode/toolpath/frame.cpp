@@ -2,79 +2,80 @@
 
 namespace stratum::gcode {
 
-void Frame::changed(std::size_t axis, double by) {
-    if (settled_)
+void Frame::addOffset(std::size_t axis, double by) {
+    if (frozen_)
         offset_[axis] -= by;
     else
         position_[axis] += by;
 }
 
 void Frame::home(std::size_t axis) {
-    names_[active_][axis] = 0;
+    workspace_offset_[active_][axis] = 0;
     offset_[axis] = tool_offset_[axis];
-    position_[axis] = shift_[axis] + offset_[axis];
+    position_[axis] = home_offset_[axis] + offset_[axis];
 }
 
-void Frame::rename(std::size_t axis, double value) {
-    names_[active_][axis] += value - program(axis);
-    // Set, not added up: what the program says is to come out digit for digit.
-    if (settled_)
+void Frame::setG92Position(std::size_t axis, double value) {
+    workspace_offset_[active_][axis] += value - program(axis);
+    // Set instead of added, so that the program's coordinate has exactly this value.
+    if (frozen_)
         offset_[axis] = position_[axis] - value;
     else
         position_[axis] = value + offset_[axis];
 }
 
-void Frame::dropNames() {
+void Frame::clearG92Offsets() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        changed(axis, -names_[active_][axis]);
-        names_[active_][axis] = 0;
+        addOffset(axis, -workspace_offset_[active_][axis]);
+        workspace_offset_[active_][axis] = 0;
     }
     suspended_ = {};
 }
 
-void Frame::suspendNames() {
-    const Point names = names_[active_];
-    dropNames();
-    suspended_ = names;
+void Frame::suspendG92Offsets() {
+    const Point offset = workspace_offset_[active_];
+    clearG92Offsets();
+    suspended_ = offset;
 }
 
-void Frame::resumeNames() {
+void Frame::resumeG92Offsets() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        changed(axis, suspended_[axis]);
-        names_[active_][axis] += suspended_[axis];
+        addOffset(axis, suspended_[axis]);
+        workspace_offset_[active_][axis] += suspended_[axis];
     }
     suspended_ = {};
 }
 
 void Frame::select(std::size_t workspace) {
     if (workspace == active_) return;
-    if (workspace == 0) names_[0] = {};
-    for (std::size_t axis = 0; axis < 3; ++axis) changed(axis, names_[workspace][axis] - names_[active_][axis]);
+    if (workspace == 0) workspace_offset_[0] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        addOffset(axis, workspace_offset_[workspace][axis] - workspace_offset_[active_][axis]);
     active_ = workspace;
 }
 
-void Frame::setOrigin(std::size_t workspace, std::size_t axis, double origin) {
-    if (workspace == active_) changed(axis, -origin - names_[workspace][axis]);
-    names_[workspace][axis] = -origin;
+void Frame::setWorkspaceOrigin(std::size_t workspace, std::size_t axis, double origin) {
+    if (workspace == active_) addOffset(axis, -origin - workspace_offset_[workspace][axis]);
+    workspace_offset_[workspace][axis] = -origin;
 }
 
-void Frame::setPlace(std::size_t workspace, std::size_t axis, double value) {
-    if (workspace == active_) return rename(axis, value);
-    names_[workspace][axis] = value - shift_[axis] - native(axis);
+void Frame::setWorkspacePosition(std::size_t workspace, std::size_t axis, double value) {
+    if (workspace == active_) return setG92Position(axis, value);
+    workspace_offset_[workspace][axis] = value - home_offset_[axis] - native(axis);
 }
 
-void Frame::setShift(std::size_t axis, double shift) {
-    changed(axis, shift - shift_[axis]);
-    shift_[axis] = shift;
+void Frame::setHomeOffset(std::size_t axis, double offset) {
+    addOffset(axis, offset - home_offset_[axis]);
+    home_offset_[axis] = offset;
 }
 
-void Frame::takeNames(const Frame& earlier) {
+void Frame::restoreOffsets(const Frame& earlier) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double names = earlier.names_[earlier.active_][axis];
-        changed(axis, names + earlier.shift_[axis] - names_[active_][axis] - shift_[axis]);
-        names_[active_][axis] = names;
+        const double offset = earlier.workspace_offset_[earlier.active_][axis];
+        addOffset(axis, offset + earlier.home_offset_[axis] - workspace_offset_[active_][axis] - home_offset_[axis]);
+        workspace_offset_[active_][axis] = offset;
     }
-    shift_ = earlier.shift_;
+    home_offset_ = earlier.home_offset_;
 }
 
 void Frame::setToolOffset(const Point& offset) {

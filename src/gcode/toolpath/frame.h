@@ -1,8 +1,8 @@
-// Where the nozzle is, and how the program's coordinates lie in print space, for x, y and z.
+// The nozzle's position in print space, and the offsets between print space and the program's coordinates, for x, y, z.
 //
-// Print space is the coordinate frame in force when the first bead is laid. Before that, whatever renames the place
-// (G92 when touching off, a workspace, a home offset) renames it for print space too; afterwards it moves the program's
-// frame inside print space, so that a program that prints the same lines again elsewhere does.
+// Print space is the coordinate frame in force when the first bead is laid. Before that, a command that changes the
+// coordinates of the current position (G92, a workspace, a home offset) changes them in print space as well; afterwards
+// it moves the program's frame inside print space, so that a program can print the same lines again elsewhere.
 // Sources: marlinfw.org/docs/gcode G053-G059, G092, M206 (a G92 belongs to the workspace in which it was given; G53
 // goes back to the native one); docs.duet3d.com G10 L2/L20 and G92; klipper3d.org/G-Codes.html SET_GCODE_OFFSET.
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace stratum::gcode {
 
-/// A place of the nozzle in print space, mm.
+/// A position of the nozzle in print space, mm.
 struct Point {
     double x = 0;
     double y = 0;
@@ -34,45 +34,48 @@ public:
     const Point& offset() const { return offset_; }
     double program(std::size_t axis) const { return position_[axis] - offset_[axis]; }
 
-    /// The first bead is being laid: print space is what it is.
-    void settle() { settled_ = true; }
+    /// Fixes print space; to be called before the first bead is laid.
+    void freezePrintSpace() { frozen_ = true; }
 
-    /// The axis is at its switch: the program's coordinates are the machine's again, and print space follows.
+    /// G28: the axis is at its endstop. Resets its workspace offset; the position becomes that of the endstop.
     void home(std::size_t axis);
-    /// G92: the place is called `value` from now on.
-    void rename(std::size_t axis, double value);
-    /// G92.1 drops what G92 did in this workspace, G92.2 does so for a while, G92.3 takes it up again.
-    void dropNames();
-    void suspendNames();
-    void resumeNames();
+    /// G92: the current position gets the coordinate `value`.
+    void setG92Position(std::size_t axis, double value);
+    /// G92.1 clears the offsets of this workspace, G92.2 suspends them, G92.3 resumes suspended ones.
+    void clearG92Offsets();
+    void suspendG92Offsets();
+    void resumeG92Offsets();
     /// G53..G59.3.
     void select(std::size_t workspace);
     std::size_t workspace() const { return active_; }
     /// G10 L2: the machine's coordinate of the workspace's origin.
-    void setOrigin(std::size_t workspace, std::size_t axis, double origin);
-    /// G10 L20: the nozzle's place is called `value` in that workspace.
-    void setPlace(std::size_t workspace, std::size_t axis, double value);
-    /// What the program adds to every coordinate of the machine, in all workspaces (M206; minus Klipper's offset).
-    void setShift(std::size_t axis, double shift);
-    double shift(std::size_t axis) const { return shift_[axis]; }
-    /// How far the nozzle of the tool in use is from where the program's numbers say (a slicer that subtracts it).
+    void setWorkspaceOrigin(std::size_t workspace, std::size_t axis, double origin);
+    /// G10 L20: the current position gets the coordinate `value` in that workspace.
+    void setWorkspacePosition(std::size_t workspace, std::size_t axis, double value);
+    /// Program minus machine coordinate, in all workspaces (M206; the negative of Klipper's SET_GCODE_OFFSET).
+    void setHomeOffset(std::size_t axis, double offset);
+    double homeOffset(std::size_t axis) const { return home_offset_[axis]; }
+    /// Offset of the current tool's nozzle from the program's coordinates (for slicers that subtract it from them).
     void setToolOffset(const Point& offset);
 
-    /// Gives places the names that they had in `earlier` (SAVE_GCODE_STATE, RESTORE_GCODE_STATE); the nozzle stays.
-    void takeNames(const Frame& earlier);
+    /// Restores the offsets of `earlier` (SAVE_GCODE_STATE, RESTORE_GCODE_STATE); the nozzle doesn't move.
+    void restoreOffsets(const Frame& earlier);
 
 private:
-    double native(std::size_t axis) const { return program(axis) - shift_[axis] - names_[active_][axis]; }
-    void changed(std::size_t axis, double by);
+    double native(std::size_t axis) const {
+        return program(axis) - home_offset_[axis] - workspace_offset_[active_][axis];
+    }
+    /// Adds `by` to the program's coordinate of the current position.
+    void addOffset(std::size_t axis, double by);
 
     Point position_;
     Point offset_;
     Point tool_offset_;
-    Point shift_;
-    std::array<Point, kWorkspaces> names_{};  // program minus machine coordinate, without shift_
+    Point home_offset_;
+    std::array<Point, kWorkspaces> workspace_offset_{};  // program minus machine coordinate, without home_offset_
     Point suspended_;
     std::size_t active_;
-    bool settled_ = false;
+    bool frozen_ = false;
 };
 
 }  // namespace stratum::gcode

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kFallbackHeight = 0.2;  // mm
 constexpr double kLeastHeight = 0.01;    // mm; levels closer than this are one level
-constexpr double kMostNominals = 4;      // a gap of more layers than this is air, not a layer
-constexpr double kMostRise = 3;          // mm, the same where the file doesn't say its layer height
-constexpr double kMostBridge = 1.5;      // mm of diameter of a thread in the air
-constexpr double kNearNominal = 0.05;    // of it: what cells of a millimetre blur
-constexpr double kSpiralShare = 0.25;    // of a run's length that must have something below, to tell its height
+constexpr double kMostNominals = 4;      // a larger gap, in layers, is empty space, not a layer
+constexpr double kMostRise = 3;          // mm, the same for files without a layer height
+constexpr double kMostBridge = 1.5;      // mm of diameter of a bridging thread
+constexpr double kNearNominal = 0.05;    // relative error due to cells of a millimetre
+constexpr double kSpiralShare = 0.25;    // share of a run's length that must have material below to find its height
 constexpr double kLevelShare = 0.3;
 constexpr double kBedShare = 0.1;
 
-// z levels of level beads in micrometres, ascending. Start-up lines (layer 0) are no levels of the part.
+// z levels of level beads in micrometres, ascending. Prime lines (layer 0) are no levels of the part.
 std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z) {
     std::vector<std::int64_t> levels;
     for (const Bead& bead : toolpath.beads) {
@@ -45,8 +45,7 @@ double nearNominal(double height, std::optional<double> nominal) {
     return nominal && std::abs(height - *nominal) < kNearNominal * *nominal ? *nominal : height;
 }
 
-// Is the print a plain stack of equal layers, but for the first? Only otherwise is it worth looking what lies below
-// where.
+// Whether the print is a plain stack of equal layers, except the first. Only otherwise local heights are needed.
 bool isPlainStack(const Toolpath& toolpath, std::span<const double> run_z, std::span<const double> heights) {
     double before = 0;
     double usual = 0;
@@ -65,8 +64,8 @@ bool isPlainStack(const Toolpath& toolpath, std::span<const double> run_z, std::
     return true;
 }
 
-// Heights of runs whose surroundings say otherwise than the levels of the whole print. What neighbouring runs of one
-// level share is decided by all of them.
+// Heights of runs whose local height differs from that of the print's levels. Consecutive runs of one level get a
+// common height.
 void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal,
                     double first_level, std::vector<double>& heights) {
     std::vector<bool> wanted(toolpath.runs.size());
@@ -89,10 +88,10 @@ void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std
         } else if (rise.share > kLevelShare) {
             if (rise.median > heights[k] + kLeastHeight && rise.median <= most) heights[k] = rise.median;
         } else if (rise.share < kBedShare && run_z[k] <= 2 * first_level) {
-            heights[k] = run_z[k];  // nothing below and near the bed: the next object's first layer
+            heights[k] = run_z[k];  // no material below, near the bed: the next object's first layer
         }
     }
-    // A spiral's first turn has nothing below; it is as high as the one above it.
+    // A spiral's first turn has no material below; it gets the height of the next turn.
     for (std::size_t k = heights.size(); k-- > 0;) {
         if (!wanted[k] || !std::isnan(run_z[k])) continue;
         if (is_turn(rises[k]))
@@ -102,7 +101,7 @@ void correctByPlace(const Toolpath& toolpath, std::span<const double> run_z, std
     }
 }
 
-// Threads in the air and ironing are round whatever the layer: their height follows from their own area.
+// Bridging threads and ironing are round in any layer: their height follows from their own area.
 void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
     std::vector<double> area(toolpath.runs.size());
     std::vector<double> length(toolpath.runs.size());
@@ -121,7 +120,7 @@ void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
     }
 }
 
-// Layers of a spiral were counted by a guess where the file doesn't tell its layer height.
+// In files without a layer height the layers of a spiral were counted with a guessed height.
 void recountSpiral(Toolpath& toolpath, std::span<const double> run_z, const std::vector<double>& heights) {
     std::vector<double> top(toolpath.runs.size());
     for (const Bead& bead : toolpath.beads) top[bead.run] = std::max(bead.z0, bead.z1);
@@ -185,7 +184,7 @@ std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_
         double& height = heights[k];
         if (run.height > 0) continue;
         if (run.layer == 0) {
-            // A start-up line rests on the bed, unless it is a blob in the air.
+            // A prime line rests on the bed, unless it is a blob above it.
             const double usual = nominal ? *nominal : height <= kMostRise / 2 ? height : fallback.at(lines[k]);
             if (!(height >= kLeastHeight && height <= 2 * usual)) height = usual;
         } else if (std::isnan(run_z[k])) {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCell = 1;          // mm, two beads wide
 constexpr double kSamePass = 8;      // mm of path; shorter than the turn of any spiral that can be printed
 constexpr double kLeastRise = 0.01;  // mm; less is the same level
-constexpr int kMostSamples = 4096;   // of one bead, however long a damaged file makes it
+constexpr int kMostSamples = 4096;   // of one bead: a bound for damaged files
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
 struct Cell {
@@ -23,7 +23,7 @@ struct Cell {
 
 class Grid {
 public:
-    // The rise of a nozzle at (x, y, z) after `path` mm over what lies below; 0 if nothing does. Marks the place.
+    // The rise of a nozzle at (x, y, z), after `path` mm, above the material below; 0 if there is none. Marks the cell.
     double visit(double x, double y, double z, double path) {
         const auto index = [](double value) {
             return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / kCell)) + (1LL << 31));
@@ -74,7 +74,7 @@ std::vector<LocalRise> localRises(const Toolpath& toolpath, const std::vector<bo
         const Bead& bead = toolpath.beads[i];
         const bool last_of_run = i + 1 == toolpath.beads.size() || toolpath.beads[i + 1].run != bead.run;
         if (toolpath.runOf(bead).layer == 0) continue;
-        // Arcs by their chord: what lies below an arc lies below its ends.
+        // Arcs by their chord, whose ends are sufficient for the material below.
         const double length = std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0);
         const int count = static_cast<int>(std::clamp(std::ceil(length / kCell), 1.0, double{kMostSamples}));
         for (int k = 0; k < count; ++k) {

@@ -1,7 +1,7 @@
-// The second pass over a toolpath: from areas to heights and widths.
+// The second pass over a toolpath: computes heights and widths from areas.
 //
-// The simulator knows each bead's cross-section area (from E) and, where the slicer tagged it, its height. What height
-// an untagged bead has shows only when all z levels are known. Source of the section: Slic3r's Flow (stadium).
+// The simulator has each bead's cross-section area (from E) and, if the slicer tagged it, its height. The height of an
+// untagged bead can be found only when all z levels are known. Source of the section: Slic3r's Flow (stadium).
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -13,8 +13,8 @@
 namespace stratum::gcode {
 
 /// `toolpath.beads[i].width` holds the section's area in mm^2 and becomes the width in mm. `toolpath.runs[k].height` is
-/// the tagged height, or 0 to be found by findHeights(), which says what `run_z` and `nominal_height` mean. Says in a
-/// warning which layer is the last where the program was cut short.
+/// the tagged height, or 0 if findHeights() must find it; `run_z` and `nominal_height` are its parameters. Warns of the
+/// last layer if the program is truncated.
 void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
                      WarningLog& warnings);
 

@@ -41,7 +41,7 @@ void split(std::string_view text, std::string_view separators, const Take& part)
     }
 }
 
-// Grams by tool, added; absent if one is no number, or all are 0, which slicers write where they know no density.
+// The sum of grams by tool; absent if one is no number, or all are 0, which slicers write if the density is unknown.
 std::optional<double> sum(std::string_view text) {
     double total = 0;
     bool good = true;

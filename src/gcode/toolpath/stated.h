@@ -1,5 +1,5 @@
-// What a file says of the print before anyone reads a move: time, weight, material, nozzle, printer, layer heights.
-// Nothing here is computed; what the file doesn't say is absent.
+// Statements of a file about its print: time, weight, material, nozzle, printer, layer heights. Nothing is computed;
+// values that the file doesn't state are absent.
 // Sources: PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio GCode.cpp ("estimated printing time (normal mode) =",
 // "total filament used [g] =", "model printing time: ...; total estimated time:", their settings); Cura's ";TIME:" and
 // Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas); ideaMaker
@@ -32,9 +32,9 @@ struct StatedFacts {
 /// Collects the facts from comments; of several that state the same, the last one counts.
 class StatedReader {
 public:
-    /// Takes in a comment, without its ';' and trimmed, if it states one of them.
+    /// Parses a comment, without its ';' and trimmed, if it states one of them.
     void comment(std::string_view text);
-    /// The facts, with a first layer's height in per cent made mm. Ends the reader's use.
+    /// The facts, with a first layer's height in per cent converted to mm. To be called once, at the end.
     StatedFacts finish();
 
 private:

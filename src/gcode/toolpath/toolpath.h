@@ -16,7 +16,7 @@
 
 namespace stratum::gcode {
 
-/// What a bead is for, in one vocabulary for all slicers. Names as in featureName().
+/// The extrusion role of a bead, common to all slicers. Names as in featureName().
 enum class Feature : std::uint8_t {
     unknown,
     perimeter,
@@ -53,8 +53,8 @@ struct Arc {
     std::uint32_t line = 0;  ///< 1-based line in the source
 };
 
-/// One extruding move. Coordinates are of the nozzle: z is the top of the bead. Millions of these are the memory of a
-/// large print, so nothing is padded.
+/// One extruding move. Coordinates are of the nozzle: z is the top of the bead. Large prints have millions of them, so
+/// there is no padding.
 struct Bead {
     PackedDouble x0{}, y0{}, z0{};  ///< mm, start
     PackedDouble x1{}, y1{}, z1{};  ///< mm, end
@@ -64,7 +64,7 @@ struct Bead {
 };
 static_assert(sizeof(Bead) == 60);
 
-/// What neighbouring beads have in common; a bead names its run by index.
+/// Properties that consecutive beads share; a bead refers to its run by index.
 struct Run {
     float height = 0;          ///< mm, of the layer: the bead's centre is at z - height / 2
     float speed = 0;           ///< mm/s, the feed rate in force
@@ -75,7 +75,7 @@ struct Run {
     bool operator==(const Run&) const = default;
 };
 
-/// A remark about the input that changed nothing fatal. Equal texts are counted, not repeated.
+/// A warning about the input. Equal texts are counted, not repeated.
 struct Warning {
     std::string text;
     std::uint32_t first_line = 0;
@@ -89,7 +89,7 @@ struct ColorChange {
     Rgb color{};
 };
 
-/// When a bead is laid and how fast, as the machine's planner has it (src/motion).
+/// Time and speeds of a bead, as the motion planner computes them (src/motion).
 struct BeadTiming {
     double start = 0;   ///< s since the program's begin
     float seconds = 0;  ///< that it takes
@@ -112,23 +112,22 @@ struct Toolpath {
     double filament_diameter = 1.75;  ///< mm, of tool 0
     double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
     std::uint32_t layer_count = 0;
-    /// By tool, from the file's settings; empty for a tool of which they state none; may be short. bead_colors.h asks
-    /// it.
+    /// By tool, from the file's settings; empty for a tool without one; may be short. Use bead_colors.h.
     std::vector<std::optional<Rgb>> tool_colors;
     std::vector<ColorChange> color_changes;  ///< in print order
     std::vector<BeadTiming> timing;          ///< by bead; empty unless its motion was planned
     std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
-    std::vector<double> footer_by_tool;      ///< mm that the file itself says each tool uses; empty if it doesn't say
-    double footer_mm = 0;                    ///< mm that the file says all tools use; 0 if it doesn't say
-    StatedFacts stated;                      ///< what the file says of time, weight, material, nozzle, printer, layers
-    std::string extrusion_rule;              ///< what E counts, and who says so: "mm of filament of 1.75 mm (assumed)"
-    std::string firmware_reason;             ///< why that rule set was chosen
-    std::string cut_short;                   ///< why the program seems to end too early; empty if it doesn't
-    double filament_mm = 0;                  ///< positive E of the beads as the file counts it, in mm of filament
-    double extruded_mm3 = 0;  ///< the same as volume, times the flow factor (M221): what beads must add up to
+    std::vector<double> footer_by_tool;      ///< mm of each tool as the file states it; empty if it doesn't
+    double footer_mm = 0;                    ///< mm of all tools as the file states it; 0 if it doesn't
+    StatedFacts stated;           ///< the file's statements of time, weight, material, nozzle, printer, layers
+    std::string extrusion_rule;   ///< unit of E and its source: "mm of filament of 1.75 mm (assumed)"
+    std::string firmware_reason;  ///< why that rule set was chosen
+    std::string cut_short;        ///< why the program seems truncated; empty if it doesn't
+    double filament_mm = 0;       ///< positive E of the beads as the file counts it, in mm of filament
+    double extruded_mm3 = 0;      ///< the same as volume, times the flow factor (M221): the expected sum of all beads
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }
-    /// 1-based line in the source; what lies beyond line 2147483647 is said to lie there.
+    /// 1-based line in the source; saturates at 2147483647.
     std::uint32_t lineOf(const Bead& bead) const {
         return bead.arc < 0 ? static_cast<std::uint32_t>(-bead.arc) : arcs[static_cast<std::size_t>(bead.arc)].line;
     }
@@ -138,8 +137,7 @@ struct Toolpath {
 /// Length of the path of a bead in mm, its climb included.
 double beadLength(const Toolpath& toolpath, const Bead& bead);
 
-/// Seconds that laying a bead takes at the speed it was asked for, accelerations left out; 0 where the file tells no
-/// speed.
+/// Seconds to lay a bead at the programmed speed, without accelerations; 0 if the file has no speed.
 double beadSeconds(const Toolpath& toolpath, const Bead& bead);
 
 /// Area of a bead's cross-section in mm^2: a stadium of `width` x `height`, or a disc of diameter `width` if narrower.

@@ -1,4 +1,4 @@
-// Toolpath as CSV, for looking, plotting and comparing with other readers.
+// Writes a toolpath as CSV, for inspection, plots and comparison with other readers.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"

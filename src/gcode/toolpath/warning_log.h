@@ -1,4 +1,4 @@
-// Remarks about the input, each text once with its first line and how often it came.
+// Warnings about the input, each text once, with its first line and its count.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -12,7 +12,8 @@
 
 namespace stratum::gcode {
 
-/// Collects warnings. Not thread-safe. Bounded: a file of noise can't fill the memory with different texts.
+/// Collects warnings. Not thread-safe. The number of distinct texts is bounded, so that a damaged file can't fill
+/// memory.
 class WarningLog {
 public:
     void add(std::string_view text, std::uint32_t line);

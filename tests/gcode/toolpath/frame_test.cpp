@@ -5,73 +5,73 @@
 namespace stratum::gcode {
 namespace {
 
-TEST(Frame, BeforeTheFirstBeadNamesMovePrintSpace) {
+TEST(Frame, BeforeTheFirstBeadG92MovesPrintSpace) {
     Frame frame(0);
     frame.moveTo({5, 0, 10});
-    frame.rename(2, 0.2);
+    frame.setG92Position(2, 0.2);
     EXPECT_EQ(frame.position().z, 0.2);
     EXPECT_EQ(frame.offset().z, 0);
-    frame.dropNames();
+    frame.clearG92Offsets();
     EXPECT_NEAR(frame.position().z, 10, 1e-12);
 }
 
-TEST(Frame, AfterwardsTheyMoveTheProgram) {
+TEST(Frame, AfterTheFirstBeadG92MovesTheProgram) {
     Frame frame(0);
-    frame.settle();
+    frame.freezePrintSpace();
     frame.moveTo({30, 0, 0});
-    frame.rename(0, 0);
+    frame.setG92Position(0, 0);
     EXPECT_EQ(frame.position().x, 30);
     EXPECT_EQ(frame.offset().x, 30);
     EXPECT_EQ(frame.program(0), 0);
-    frame.suspendNames();
+    frame.suspendG92Offsets();
     EXPECT_EQ(frame.program(0), 30);
-    frame.resumeNames();
+    frame.resumeG92Offsets();
     EXPECT_EQ(frame.program(0), 0);
 }
 
 TEST(Frame, HomingTakesPrintSpaceAlong) {
     Frame frame(0);
     frame.moveTo({7, 8, 0});
-    frame.settle();
-    frame.rename(0, 0);
+    frame.freezePrintSpace();
+    frame.setG92Position(0, 0);
     frame.home(0);
     EXPECT_EQ(frame.position().x, 0);
     EXPECT_EQ(frame.offset().x, 0);
     EXPECT_EQ(frame.position().y, 8);
 }
 
-TEST(Frame, WorkspacesRememberTheirNames) {
+TEST(Frame, WorkspacesKeepTheirOffsets) {
     Frame frame(1);
-    frame.settle();
+    frame.freezePrintSpace();
     frame.moveTo({10, 0, 0});
     frame.select(2);
-    frame.rename(0, 0);
+    frame.setG92Position(0, 0);
     frame.select(1);
     EXPECT_EQ(frame.program(0), 10);
     frame.select(2);
     EXPECT_EQ(frame.program(0), 0);
-    frame.setOrigin(3, 0, 4);
+    frame.setWorkspaceOrigin(3, 0, 4);
     frame.select(3);
     EXPECT_EQ(frame.program(0), 6);
-    frame.setPlace(1, 0, -1);
+    frame.setWorkspacePosition(1, 0, -1);
     frame.select(1);
     EXPECT_EQ(frame.program(0), -1);
-    EXPECT_EQ(frame.position().x, 10);  // through all of it the nozzle stays
+    EXPECT_EQ(frame.position().x, 10);  // the nozzle has not moved
 }
 
-TEST(Frame, TheMachinesOwnWorkspaceForgets) {
+TEST(Frame, TheMachinesOwnWorkspaceResets) {
     Frame frame(0);
-    frame.settle();
-    frame.rename(0, 5);
+    frame.freezePrintSpace();
+    frame.setG92Position(0, 5);
     frame.select(1);
     frame.select(0);
     EXPECT_EQ(frame.program(0), 0);
 }
 
-TEST(Frame, ShiftsHoldInAllWorkspacesAndThroughHoming) {
+TEST(Frame, HomeOffsetsHoldInAllWorkspacesAndAfterHoming) {
     Frame frame(0);
-    frame.settle();
-    frame.setShift(2, -0.1);
+    frame.freezePrintSpace();
+    frame.setHomeOffset(2, -0.1);
     EXPECT_DOUBLE_EQ(frame.program(2), -0.1);
     frame.select(4);
     EXPECT_DOUBLE_EQ(frame.program(2), -0.1);
@@ -85,7 +85,7 @@ TEST(Frame, ToolOffsetsMoveTheNozzleNotTheProgram) {
     frame.setToolOffset({18, 0, 0});
     EXPECT_EQ(frame.program(0), 10);
     EXPECT_EQ(frame.position().x, 28);
-    frame.rename(0, 1);
+    frame.setG92Position(0, 1);
     EXPECT_EQ(frame.program(0), 1);
     frame.home(0);
     EXPECT_EQ(frame.position().x, 18);
