@@ -172,13 +172,6 @@ ThreadLimit::ThreadLimit(int threads) : threads_(threads > 0 ? threads : tbb::in
 
 ThreadLimit::~ThreadLimit() = default;
 
-double Stopwatch::lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-}
-
 std::size_t peakRssBytes() {
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
@@ -208,19 +201,6 @@ void say(const CommonOptions& options, std::string_view line) {
     const std::string text = fmt::format("{}\n", line);
     std::FILE* stream = options.stats == "-" || options.output_on_stdout ? stderr : stdout;
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
-}
-
-std::string humanBytes(double bytes) {
-    if (bytes >= 1e9) return fmt::format("{:.2f} GB", bytes * 1e-9);
-    if (bytes >= 1e6) return fmt::format("{:.1f} MB", bytes * 1e-6);
-    if (bytes >= 1e3) return fmt::format("{:.1f} kB", bytes * 1e-3);
-    return fmt::format("{:.0f} B", bytes);
-}
-
-std::string humanCount(double count) {
-    if (count >= 1e6) return fmt::format("{:.1f} M", count * 1e-6);
-    if (count >= 1e4) return fmt::format("{:.1f} k", count * 1e-3);
-    return fmt::format("{:.0f}", count);
 }
 
 }  // namespace stratum::tools

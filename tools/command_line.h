@@ -1,10 +1,12 @@
 // What all tools share: the common options, exit statuses and the report file.
 #pragma once
 
+#include "base/human_text.h"
+#include "base/stopwatch.h"
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -74,15 +76,6 @@ private:
     std::unique_ptr<tbb::detail::d1::global_control> control_;
 };
 
-/// Wall time since construction or the last lap, in seconds.
-class Stopwatch {
-public:
-    double lap();
-
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// Largest resident set of this process so far, bytes.
 std::size_t peakRssBytes();
 
@@ -92,10 +85,5 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
 /// A line of the summary for people: to stdout, or to stderr if stdout carries the report or the output; nothing if
 /// quiet.
 void say(const CommonOptions& options, std::string_view line);
-
-/// "1.23 GB", "45.6 MB", "789 B".
-std::string humanBytes(double bytes);
-/// "12.3 M", "45.6 k".
-std::string humanCount(double count);
 
 }  // namespace stratum::tools

@@ -1,6 +1,7 @@
 #include "conversion.h"
 
 #include "grid_report.h"
+#include "print_options.h"
 #include "progress.h"
 #include "time_report.h"
 #include "toolpath_report.h"
@@ -42,7 +43,7 @@ using Json = nlohmann::ordered_json;
 
 voxelize::Placement placementFor(const ConvertCommand& o, const voxelize::Bounds& bounds) {
     voxelize::Placement placement;
-    placement.unit = 1 / millimetresIn(o.unit);
+    placement.unit = 1 / voxelize::millimetresIn(o.unit);
     if (o.origin == "bed") return placement;
     for (int axis = 0; axis < 2; ++axis)
         placement.offset[axis] = o.origin == "center" ? -bounds.centre(axis) : -bounds.min[axis];
@@ -116,7 +117,7 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
     if (o.summary) say(o.common, gcode::summarize(toolpath) + timeLines(times, toolpath.stated));
     if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
 
-    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, selectionOf(o.print, toolpath));
+    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, voxelize::selectionOf(o.print, toolpath));
     const std::size_t kept = selection.size();
     const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
     const bool as_mesh = exporter::isMeshPath(output);
@@ -128,7 +129,7 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
         attributes.push_back(voxelize::Attribute::color);
         say(o.common, fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors.size()));
     }
-    const voxelize::Lattice lattice = latticeFor(o.print, toolpath, selection, bounds, interior);
+    const voxelize::Lattice lattice = voxelize::latticeFor(o.print, toolpath, selection, bounds, interior);
     say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes", lattice.voxel_size,
                               lattice.reason, lattice.aligned_share * 100));
     if (!lattice.warning.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, lattice.warning);
@@ -139,7 +140,7 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
     provenance.slicer = toolpath.slicer;
     provenance.unit = o.unit;
     provenance.up = o.up;
-    provenance.selection = describeSelection(o.print);
+    provenance.selection = voxelize::describeSelection(o.print);
     if (colors.size() == 1 && colors.front()) {
         const auto [red, green, blue] = *colors.front();
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
@@ -204,7 +205,8 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
             grids.insert(grids.begin(), grid);
             exporter::writeVdb(grids, job.path, o.file);
             if (o.usda) {
-                exporter::writeUsda(grids, job.path, usdaOf(job.path), {0.001 * millimetresIn(o.unit), o.up == "y"});
+                exporter::writeUsda(grids, job.path, usdaOf(job.path),
+                                    {0.001 * voxelize::millimetresIn(o.unit), o.up == "y"});
             }
         }
         write_seconds += watch.lap();

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "command_line.h"
-#include "print_options.h"
 #include "run_files.h"
 
 #include "export/vdb_file.h"
+#include "voxelize/grid/print_options.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,7 +22,7 @@ struct ConvertCommand {
     std::string output;
     std::string dump_toolpath;
     bool summary = false;
-    PrintOptions print;
+    voxelize::PrintOptions print;
     std::string interior;  // empty: what the output wants
     double mesh_error = 0.25;
     bool forecast = false;

@@ -1,18 +1,12 @@
 #include "print_options.h"
 
 #include "choices.h"
-#include "command_line.h"
-
-#include "voxelize/grid/solid_check.h"
-#include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
 
 namespace stratum::tools {
 
-double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
-
-void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
+void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
     const char* lattice = kLattice;
     const auto take_size = [&options, pictures](const std::string& text) {
         options.voxel_auto = pictures && text == "auto";
@@ -106,67 +100,10 @@ void addPrintOptions(CLI::App& app, PrintOptions& options, bool pictures) {
         ->group(reading);
 }
 
-voxelize::Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath) {
-    voxelize::Selection selection;
-    if (!options.layers.empty()) voxelize::parseLayers(options.layers, selection);
-    if (!options.features.empty()) voxelize::parseFeatures(options.features, selection);
-    for (const std::string& object : options.objects) voxelize::chooseObject(object, toolpath, selection);
-    return selection;
-}
-
 void printWarnings(std::string_view tool, std::string_view name, const gcode::Toolpath& toolpath) {
     for (const gcode::Warning& warning : toolpath.warnings)
         fmt::print(stderr, "{}: {}:{}: {}{}\n", tool, name, warning.first_line, warning.text,
                    warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
-}
-
-std::string describeSelection(const PrintOptions& options) {
-    std::string text;
-    const auto note = [&text](const char* what, const std::string& value) {
-        if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", what, value);
-    };
-    note("layers", options.layers);
-    note("features", options.features);
-    for (const std::string& object : options.objects) note("object", object);
-    return text;
-}
-
-voxelize::Lattice latticeFor(const PrintOptions& options, const gcode::Toolpath& toolpath,
-                             const std::vector<std::uint32_t>& selection, const voxelize::Bounds& bounds,
-                             voxelize::Interior interior, double pixel) {
-    voxelize::LatticeRequest request = options.lattice;
-    std::string why;
-    if (options.voxel_auto || options.tolerance || !options.memory_budget.empty()) {
-        request.voxels_per_layer = voxelize::kFewestVoxelsPerLayer;
-        const voxelize::Lattice coarse = voxelize::chooseLattice(toolpath, selection, bounds, request);
-        if (options.voxel_auto) {
-            request.voxels_per_layer = voxelize::voxelsPerLayerForPixel(coarse.layer_height, pixel);
-            why = fmt::format("; a pixel spans {:.3g} mm or more", pixel);
-        } else if (options.tolerance) {
-            request.voxels_per_layer = voxelize::voxelsPerLayerForTolerance(coarse.layer_height, *options.tolerance);
-            why = fmt::format("; errors of {:g} voxel at most stay within {:g} mm", voxelize::kLargestMissVoxels,
-                              *options.tolerance);
-        } else {
-            const double budget = voxelize::parseSize(options.memory_budget);
-            request.voxels_per_layer = voxelize::voxelsPerLayerWithin(budget, toolpath, selection, coarse, interior);
-            why = fmt::format("; the finest within {}", humanBytes(budget));
-        }
-    }
-    voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, selection, bounds, request);
-    lattice.reason += why;
-    // As fine as two voxels a layer nothing is lost but what is thinner than a layer.
-    if (lattice.voxel_size * voxelize::kFewestVoxelsPerLayer > 1.01 * lattice.layer_height) {
-        const double lost = voxelize::lostShare(toolpath, selection, lattice);
-        const double per_layer = lattice.layer_height / lattice.voxel_size;
-        if (lost > 0 || per_layer < 1.01)
-            lattice.warning = fmt::format(
-                "{:.2g} voxel{} a layer of {:g} mm: {:.1f} % of a sample of beads have no solid in their middle; layer "
-                "lines "
-                "need {} a layer, {:g} mm",
-                per_layer, per_layer < 1.01 ? "" : "s", lattice.layer_height, 100 * lost,
-                voxelize::kFewestVoxelsPerLayer, lattice.layer_height / voxelize::kFewestVoxelsPerLayer);
-    }
-    return lattice;
 }
 
 }  // namespace stratum::tools

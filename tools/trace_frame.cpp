@@ -35,7 +35,7 @@ std::string numbered(const std::string& output, std::size_t number, std::size_t 
         .string();
 }
 
-Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& objects,
+Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
                  const shade::SceneDescription& scene, int threads) {
     Stopwatch watch;
     shade::PictureFile picture(frame.output);
@@ -85,7 +85,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
     if (shown && !o.exposure_given && o.tone.exposure != 0.0)
         say(o.common,
             fmt::format("  exposure {:+.2f} stops, found from the light; --exposure sets it", o.tone.exposure));
-    Json material = objects.material;
+    Json material = objects.material_report;
     material["notes"] = scene.material->notes();
     Json skipped = Json::array();
     const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
@@ -112,7 +112,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const TraceObjects& 
              {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
             {"march", objects.intersector->name()},
             {"march_bytes", objects.intersector->bytes()},
-            {"on_demand", objects.on_demand ? objects.on_demand() : Json::array()},
+            {"on_demand", assemble::onDemandReport(objects)},
             {"integrator", o.render.integrator.name},
             {"material", material},
             {"notes", o.notes},

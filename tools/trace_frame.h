@@ -1,8 +1,9 @@
 // One picture of vdbtrace, from a ready scene to its file and its report.
 #pragma once
 
-#include "trace_objects.h"
 #include "trace_options.h"
+
+#include "assemble/traced_objects.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,8 @@ struct Frame {
 };
 
 /// Renders and writes it. Returns its report. Throws OutputError and what render() throws.
-nlohmann::ordered_json renderFrame(const TraceCommand& command, const Frame& frame, const TraceObjects& objects,
-                                   const shade::SceneDescription& scene, int threads);
+nlohmann::ordered_json renderFrame(const TraceCommand& command, const Frame& frame,
+                                   const assemble::TracedObjects& objects, const shade::SceneDescription& scene,
+                                   int threads);
 
 }  // namespace stratum::tools

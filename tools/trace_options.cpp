@@ -1,9 +1,9 @@
 #include "trace_options.h"
 
 #include "choices.h"
-#include "file_facts.h"
 
 #include "assemble/scene_file.h"
+#include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "shade/brdf/filament_color.h"
@@ -274,7 +274,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
                                  {"int16", static_cast<int>(march::BrickValues::Int16)}}))
         ->type_name("float|int16")
         ->group(tracing);
-    addTracePrintOptions(app, o.prints);
+    addTracePrintOptions(app, o.prints, o.bricks);
     addCommonOptions(app, o.common,
                      {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
                       "--look-at", "--turntable", "--integrator", "--brdf",    "--color-by", "--env",     "--bed",
@@ -313,11 +313,6 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     o = std::move(over);
 }
 
-bool showsMaterial(const TraceCommand& o) {
-    return shade::needsLight(o.render.integrator) ||
-           std::find(o.render.aovs.begin(), o.render.aovs.end(), shade::Aov::albedo) != o.render.aovs.end();
-}
-
 std::string saidOf(const CLI::App& app) {
     // Where the picture goes, who waits for it and on how many threads changes nothing of it.
     constexpr std::array<std::string_view, 6> kOther = {"output", "checkpoint", "threads", "stats", "quiet", "IN"};
@@ -332,8 +327,8 @@ std::string saidOf(const CLI::App& app) {
 
 std::string sourceOf(const TraceCommand& o, const std::string& files) {
     std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
-    for (const std::string& name : {o.scene.brdf, o.scene.env}) text += identityOf(name) + "\n";
-    for (const assemble::ObjectOptions& object : o.objects) text += identityOf(object.material.brdf) + "\n";
+    for (const std::string& name : {o.scene.brdf, o.scene.env}) text += assemble::identityOf(name) + "\n";
+    for (const assemble::ObjectOptions& object : o.objects) text += assemble::identityOf(object.material.brdf) + "\n";
     if (!o.scene_text.empty()) text += o.scene_text;
     return sha256Hex(text).substr(0, 32);
 }

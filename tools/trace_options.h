@@ -2,7 +2,7 @@
 #pragma once
 
 #include "command_line.h"
-#include "trace_print.h"
+#include "trace_print_options.h"
 
 #include "assemble/object_file.h"
 #include "march/brick/brick_layout.h"
@@ -34,7 +34,8 @@ struct TraceCommand {
     bool spp_given = false, exposure_given = false;
     std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
-    TracePrintOptions prints;
+    assemble::PrintRequest prints;
+    BrickCommand bricks;
     std::vector<assemble::ObjectOptions> objects;  // of a scene file; empty: the inputs
     shade::SceneOptions scene;
     shade::RenderOptions render;
@@ -47,9 +48,6 @@ void addTraceOptions(CLI::App& app, TraceCommand& command);
 /// If the input is a scene, its values become the defaults and the command line is read once more over them. Throws
 /// UsageError or InputError.
 void readScene(TraceCommand& command, int argc, char** argv);
-
-/// Whether the picture or one of its layers shows what things are made of.
-bool showsMaterial(const TraceCommand& command);
 
 /// The options that were given and may change a picture, as text: the same for any order of them.
 std::string saidOf(const CLI::App& app);

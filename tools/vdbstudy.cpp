@@ -137,7 +137,7 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
 }
 
 void run(const Verb& verb, Options& o, int argc, char** argv) {
-    tools::Stopwatch watch;
+    Stopwatch watch;
     o.study.command.assign(argv, argv + argc);
     o.study.threads = o.common.threads;
     // A shell puts all names of a pattern after --scenes, of which the first is its own.

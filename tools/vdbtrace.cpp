@@ -7,6 +7,7 @@
 #include "trace_options.h"
 #include "trace_series.h"
 
+#include "assemble/shape/file_facts.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/brdf/preset_names.h"
@@ -34,7 +35,7 @@ std::size_t pictures(const tools::TraceCommand& o) {
 // What can't be read is told of when its turn comes.
 bool isLevelSet(const std::string& path) {
     try {
-        return tools::isVdbFile(path);
+        return assemble::isVdbFile(path);
     } catch (const InputError&) {
         return false;
     }
@@ -52,8 +53,8 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (o.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
         throw UsageError("--progress-series is of one print alone");
-    if (!o.prints.brick_picture.empty() && !o.prints.brick_picture.ends_with(".png"))
-        throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.prints.brick_picture));
+    if (!o.bricks.picture.empty() && !o.bricks.picture.ends_with(".png"))
+        throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.bricks.picture));
     if (o.legend && o.linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
     if (given_of_prints.empty()) return;
     if (o.objects.empty()) {
@@ -97,7 +98,7 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     for (std::size_t n = 0; n < pictures(o); ++n) files.writes(tools::numbered(o.output, n, pictures(o)), option);
     files.writes(o.render.checkpoint, "--checkpoint");
     files.writes(o.write_brdf, "--write-brdf");
-    files.writes(o.prints.brick_picture, "--brick-picture");
+    files.writes(o.bricks.picture, "--brick-picture");
 }
 
 // The scene, if the input is one, and everything that is kept as text.

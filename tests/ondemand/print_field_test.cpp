@@ -256,7 +256,7 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
     const auto grid = voxelize::voxelize(*toolpath, selection, lattice);
     const auto eager = march::makeBrickIntersector(*grid);
-    const std::unique_ptr<trace::Intersector> late = march::makeBrickIntersector(
+    const auto [late, bricks] = march::makeTracedBricks(
         std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"));
     ASSERT_EQ(late->bounds().min, eager->bounds().min);
     ASSERT_EQ(late->bounds().max, eager->bounds().max);
@@ -265,9 +265,9 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
     eager->makeTracer()->intersectStream(rays, expected);
     std::atomic<std::size_t> wrong{0};
     std::atomic<std::size_t> hits{0};
-    parallelFor(8, 1, [&](std::size_t, std::size_t) {
+    parallelFor(8, 1, [&, &shape = *late](std::size_t, std::size_t) {
         std::vector<trace::Hit> found(rays.size());
-        late->makeTracer()->intersectStream(rays, found);
+        shape.makeTracer()->intersectStream(rays, found);
         for (std::size_t n = 0; n < rays.size(); ++n) {
             if (found[n].t != expected[n].t) ++wrong;
             if (!std::isfinite(found[n].t)) continue;
@@ -277,7 +277,7 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
     });
     EXPECT_EQ(wrong.load(), 0U);
     EXPECT_GT(hits.load(), 1000U);
-    EXPECT_LE(march::bricksOf(*late)->brickCount(), march::bricksOf(*eager)->brickCount());
+    EXPECT_LE(bricks->brickCount(), march::BrickGrid(*grid, march::BrickValues::Int16).brickCount());
 }
 
 // Bricks come and go under the rays of many threads: the same hits, whatever room there is.
@@ -288,18 +288,18 @@ TEST(PrintField, IsTracedInLittleRoomAsTheGridIs) {
     const voxelize::Lattice lattice =
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
     const auto eager = march::makeBrickIntersector(*voxelize::voxelize(*toolpath, selection, lattice));
-    const std::size_t brick = march::bricksOf(*eager)->brickBytes();
+    constexpr std::size_t brick = march::BrickGrid::kBrickSamples * sizeof(std::int16_t);
     const std::vector<trace::Ray> rays = raysThrough(600);
     std::vector<trace::Hit> expected(rays.size());
     eager->makeTracer()->intersectStream(rays, expected);
     for (const std::size_t room : {march::BrickSlots::kLeastBound, std::size_t{100}, std::size_t{500}}) {
         SCOPED_TRACE(room);
-        const std::unique_ptr<trace::Intersector> late = march::makeBrickIntersector(
+        const auto [late, bricks] = march::makeTracedBricks(
             std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"),
             march::BrickValues::Int16, room * brick);
         std::atomic<std::size_t> wrong{0};
-        parallelFor(4, 1, [&](std::size_t first, std::size_t) {
-            const auto tracer = late->makeTracer();
+        parallelFor(4, 1, [&, &shape = *late](std::size_t first, std::size_t) {
+            const auto tracer = shape.makeTracer();
             std::vector<trace::Hit> found(rays.size());
             std::vector<std::uint8_t> blocked(rays.size());
             if (first % 2 == 0) {
@@ -316,7 +316,7 @@ TEST(PrintField, IsTracedInLittleRoomAsTheGridIs) {
             }
         });
         EXPECT_EQ(wrong.load(), 0U);
-        const march::BrickCacheCounts counts = march::bricksOf(*late)->cache().counts();
+        const march::BrickCacheCounts counts = bricks->cache().counts();
         EXPECT_EQ(counts.slots, room);
         EXPECT_EQ(counts.peak, room);
         EXPECT_GT(counts.evicted, 0U);

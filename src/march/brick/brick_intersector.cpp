@@ -98,7 +98,6 @@ public:
         return std::max(1e-3 * voxel_size_, 4 * std::numeric_limits<double>::epsilon() * farthest);
     }
     std::size_t bytes() const override { return bricks_.bytes(); }
-    const BrickGrid& bricks() const { return bricks_; }
     BrickGrid& bricks() { return bricks_; }
 
 private:
@@ -130,14 +129,10 @@ std::unique_ptr<trace::Intersector> makeBrickIntersector(std::shared_ptr<const L
     return std::make_unique<BrickIntersector>(leaves, std::move(field), values, cache_bytes);
 }
 
-const BrickGrid* bricksOf(const trace::Intersector& intersector) {
-    const auto* bricks = dynamic_cast<const BrickIntersector*>(&intersector);
-    return bricks != nullptr ? &bricks->bricks() : nullptr;
-}
-
-BrickGrid* bricksOf(trace::Intersector& intersector) {
-    auto* bricks = dynamic_cast<BrickIntersector*>(&intersector);
-    return bricks != nullptr ? &bricks->bricks() : nullptr;
+TracedBricks makeTracedBricks(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes) {
+    const LeafField& leaves = *field;
+    const auto made = std::make_shared<BrickIntersector>(leaves, std::move(field), values, cache_bytes);
+    return {made, std::shared_ptr<BrickGrid>(made, &made->bricks())};
 }
 
 }  // namespace stratum::march

@@ -31,8 +31,14 @@ std::unique_ptr<trace::Intersector> makeBrickIntersector(
     std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
 
 class BrickGrid;
-/// The bricks of an intersector made above; null for others.
-const BrickGrid* bricksOf(const trace::Intersector& intersector);
-BrickGrid* bricksOf(trace::Intersector& intersector);
+/// An intersector together with the bricks that it traces: to count those that rays came to, and to tell them that
+/// their field has changed. Both share one owner: either keeps the other alive.
+struct TracedBricks {
+    std::shared_ptr<const trace::Intersector> intersector;
+    std::shared_ptr<BrickGrid> bricks;
+};
+/// makeBrickIntersector() of a field, for callers that need its bricks, too.
+TracedBricks makeTracedBricks(std::shared_ptr<const LeafField> field, BrickValues values = BrickValues::Int16,
+                              std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
 
 }  // namespace stratum::march

@@ -1,11 +1,11 @@
-#include "trace_materials.h"
+#include "assemble/shape/object_materials.h"
 
 #include "shade/brdf/brdf.h"
 #include "shade/brdf/filament_color.h"
 
 #include <algorithm>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,13 +30,13 @@ Json reportOf(const shade::Legend& legend, const trace::AttributeSummary& summar
 
 }  // namespace
 
-std::shared_ptr<const shade::Brdf> TraceMaterials::brdfOf(const std::string& text) {
+std::shared_ptr<const shade::Brdf> ObjectMaterials::brdfOf(const std::string& text) {
     auto& brdf = made_[text];
     if (!brdf) brdf = shade::makeBrdf(text);
     return brdf;
 }
 
-void TraceMaterials::explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary) {
+void ObjectMaterials::explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary) {
     lookup_ = true;
     shade::Legend legend = shade::makeLegend(material, summary, materials_.back());
     Json report = reportOf(legend, summary);
@@ -45,8 +45,8 @@ void TraceMaterials::explain(const shade::MaterialOptions& material, const trace
     legends_.push_back(std::move(legend));
 }
 
-void TraceMaterials::add(const shade::MaterialOptions& material, std::size_t attribute,
-                         const trace::AttributeSummary* summary) {
+void ObjectMaterials::add(const shade::MaterialOptions& material, std::size_t attribute,
+                          const trace::AttributeSummary* summary) {
     own_ = own_ || !material.by.empty() || !material.brdf.empty();
     if (summary == nullptr) {
         materials_.emplace_back(brdfOf(material.brdf.empty() ? brdf_ : material.brdf));
@@ -56,7 +56,7 @@ void TraceMaterials::add(const shade::MaterialOptions& material, std::size_t att
     explain(material, *summary);
 }
 
-void TraceMaterials::add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary) {
+void ObjectMaterials::add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary) {
     for (const Json& color : colors.report)
         if (std::find(colors_.begin(), colors_.end(), color) == colors_.end()) colors_.push_back(color);
     if (summary != nullptr) {
@@ -71,20 +71,20 @@ void TraceMaterials::add(const PrintColors& colors, std::size_t attribute, const
     materials_.emplace_back(brdfOf(only_color_));
 }
 
-std::vector<shade::ObjectMaterial> TraceMaterials::materials() const {
+std::vector<shade::ObjectMaterial> ObjectMaterials::materials() const {
     return own_ ? materials_ : std::vector<shade::ObjectMaterial>();
 }
 
-std::string TraceMaterials::brdf() const {
+std::string ObjectMaterials::brdf() const {
     if (!brdf_.empty()) return brdf_;
     return materials_.size() == 1 && !only_color_.empty() ? only_color_ : shade::kDefaultBrdf;
 }
 
-Json TraceMaterials::report() const {
+Json ObjectMaterials::report() const {
     Json report{{"brdf", brdf()}};
     if (!colors_.empty()) report["colors"] = colors_;
     if (!legend_reports_.empty()) report["legend"] = legend_reports_;
     return report;
 }
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

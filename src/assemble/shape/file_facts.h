@@ -7,8 +7,16 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
-namespace stratum::tools {
+namespace stratum::assemble {
+
+/// How a .vdb begins.
+inline constexpr std::string_view kVdbMagic = " BDV";
+
+/// Whether a file holds an OpenVDB grid, by its first bytes; standard input ("-") doesn't. Throws InputError for one
+/// that can't be read or is empty.
+bool isVdbFile(const std::string& path);
 
 /// "mm", "cm" or "m", if the file says what its world unit is; other programs' files don't.
 std::string unitOf(const openvdb::FloatGrid& grid);
@@ -19,11 +27,11 @@ std::string upOf(const openvdb::FloatGrid& grid);
 /// The part's box without what is printed beside it, in the file's world space; nothing if the file doesn't say.
 std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid);
 
-/// Says so on stderr if the narrow band is thinner than OpenVDB's tools expect.
-void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid);
+/// A warning if the narrow band is thinner than OpenVDB's tools expect; else empty.
+std::string thinBandWarning(const std::string& path, const openvdb::FloatGrid& grid);
 
 /// Tells a file from others without reading all of it: its size, the time of its last change, and a hash of how it
 /// begins and ends (a .vdb begins with an identifier of its own). Empty if there is no such file.
 std::string identityOf(const std::string& path);
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

@@ -1,4 +1,4 @@
-#include "brick_picture.h"
+#include "assemble/print/brick_picture.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 namespace {
 
 using Rgb = std::array<double, 3>;  // sRGB, 0 to 255
@@ -35,7 +35,7 @@ Rgb colorOf(std::uint32_t listed, std::uint32_t made) {
 
 }  // namespace
 
-void writeBrickPicture(const std::string& path, const march::BrickGrid& bricks) {
+void writeBrickPicture(const std::string& path, const march::BrickGrid& bricks, const shade::Metadata& metadata) {
     if (!path.ends_with(".png")) throw UsageError(fmt::format("--brick-picture {}: expected a .png", path));
     const march::BrickProjection views[2] = {march::projectBricks(bricks, 1), march::projectBricks(bricks, 2)};
     constexpr std::size_t kGap = 4;  // bricks
@@ -60,9 +60,8 @@ void writeBrickPicture(const std::string& path, const march::BrickGrid& bricks) 
         }
     }
     AtomicFile(path).write([&](const std::filesystem::path& to) {
-        shade::writePng(to, static_cast<int>(columns * scale), static_cast<int>(rows * scale), rgb,
-                        {{"Software", "vdbtrace " STRATUM_VERSION}});
+        shade::writePng(to, static_cast<int>(columns * scale), static_cast<int>(rows * scale), rgb, metadata);
     });
 }
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 
 /// What a file says of the colours of what it shows.
 struct PrintColors {
@@ -30,4 +30,4 @@ PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint3
 /// Throws InputError for a file that can't be read.
 PrintColors colorsOf(const std::string& path, const openvdb::FloatGrid& head);
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

@@ -1,16 +1,29 @@
-#include "file_facts.h"
+#include "assemble/shape/file_facts.h"
 
+#include "base/error.h"
 #include "base/mapped_file.h"
 #include "march/file/grid_axes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 namespace fs = std::filesystem;
+
+bool isVdbFile(const std::string& path) {
+    if (path == "-") return false;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", path));
+    std::array<char, kVdbMagic.size()> magic{};
+    file.read(magic.data(), magic.size());
+    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", path));
+    return std::string_view(magic.data(), magic.size()) == kVdbMagic;
+}
 
 std::string unitOf(const openvdb::FloatGrid& grid) {
     const auto unit = grid.getMetadata<openvdb::StringMetadata>("unit");
@@ -32,14 +45,15 @@ std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid) {
     return trace::Box{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
 }
 
-void warnOfThinBand(const std::string& path, const openvdb::FloatGrid& grid) {
+std::string thinBandWarning(const std::string& path, const openvdb::FloatGrid& grid) {
     const double half_width = static_cast<double>(grid.background()) / march::GridAxes(grid.transform()).shortest();
     // Rounding of the background to a float is no reason to warn.
-    if (half_width >= 2.999) return;
-    fmt::print(stderr,
-               "vdbtrace: {}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend "
-               "sharply may have holes; make it again with gcode2vdb --half-width 3\n",
-               path, half_width);
+    if (half_width >= 2.999) return {};
+    return fmt::format(
+        "{}: the narrow band is {:.2f} voxels to each side; with less than 3, surfaces that bend sharply may have "
+        "holes; "
+        "make it again with gcode2vdb --half-width 3",
+        path, half_width);
 }
 
 std::string identityOf(const std::string& path) {
@@ -53,4 +67,4 @@ std::string identityOf(const std::string& path) {
                        sha256Hex(bytes.substr(bytes.size() - std::min(bytes.size(), kEnd))));
 }
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

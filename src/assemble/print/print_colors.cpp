@@ -1,4 +1,4 @@
-#include "print_colors.h"
+#include "assemble/print/print_colors.h"
 
 #include "shade/brdf/filament_color.h"
 
@@ -9,7 +9,7 @@
 #include <array>
 #include <optional>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
@@ -93,4 +93,4 @@ PrintColors colorsOf(const std::string& path, const openvdb::FloatGrid& head) {
     return colors;
 }
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

@@ -1,8 +1,7 @@
 // What the objects of a picture are made of: as a scene says, or else as the files of the prints do.
 #pragma once
 
-#include "print_colors.h"
-
+#include "assemble/print/print_colors.h"
 #include "shade/film/legend.h"
 #include "shade/scene/material.h"
 #include "trace/attribute.h"
@@ -15,13 +14,13 @@
 #include <string>
 #include <vector>
 
-namespace stratum::tools {
+namespace stratum::assemble {
 
 /// Takes one object after the other.
-class TraceMaterials {
+class ObjectMaterials {
 public:
-    /// @param brdf  --brdf, of objects that have none of their own; empty: nobody said
-    explicit TraceMaterials(const std::string& brdf) : brdf_(brdf) {}
+    /// @param brdf  of objects that have none of their own, see shade::makeBrdf(); empty: nobody said
+    explicit ObjectMaterials(const std::string& brdf) : brdf_(brdf) {}
 
     /// One of a material that somebody asked for.
     /// @param attribute  number of `material.by`
@@ -34,9 +33,10 @@ public:
 
     /// By object; empty if all of them are of the scene's material.
     std::vector<shade::ObjectMaterial> materials() const;
-    /// Text of the scene's material: --brdf, or the one colour that the only object's file states, or the default.
+    /// Text of the scene's material: the one given, or the one colour that the only object's file states, or the
+    /// default.
     std::string brdf() const;
-    /// For --stats: colors, legends, and how many values were no numbers.
+    /// Material, colours, legends, and how many values were no numbers.
     nlohmann::ordered_json report() const;
     /// Of each attribute that colours something, as often as they differ.
     const std::vector<shade::Legend>& legends() const { return legends_; }
@@ -58,4 +58,4 @@ private:
     bool lookup_ = false;
 };
 
-}  // namespace stratum::tools
+}  // namespace stratum::assemble

@@ -1,0 +1,101 @@
+#include "assemble/print/late_print.h"
+
+#include "assemble/print/brick_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace stratum::assemble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, std::size_t limit) {
+    Json report{{"limit_bytes", limit}, {"holds_all", !cache.bounded()}};
+    if (!cache.bounded()) return report;
+    const march::BrickCacheCounts counts = cache.counts();
+    report["bricks"] = counts.slots;
+    report["hits"] = counts.hits;
+    report["made"] = counts.made;
+    report["evicted"] = counts.evicted;
+    report["peak_bytes"] = counts.peak * bricks.brickBytes();
+    return report;
+}
+
+Json reportOf(const LateLevel& level, std::size_t cache_bytes) {
+    const march::BrickGrid& bricks = *level.bricks;
+    Json report{{"voxel_size_mm", level.field->layout().lattice.voxel_size},
+                {"bricks_listed", bricks.listedCount()},
+                {"bricks_made", bricks.brickCount()},
+                {"leaves_made", level.field->leavesMade()},
+                {"print_bytes", level.field->bytes()},
+                {"brick_bytes", bricks.bytes()}};
+    if (cache_bytes != march::BrickGrid::kNoBound)
+        report["brick_cache"] = reportOf(bricks.cache(), bricks, cache_bytes);
+    return report;
+}
+
+// The picture's name with the level's number, the finest first.
+std::string ofLevel(const std::string& path, std::size_t level) {
+    const std::filesystem::path name(path);
+    return (name.parent_path() / fmt::format("{}_{}{}", name.stem().string(), level, name.extension().string()))
+        .string();
+}
+
+}  // namespace
+
+LatePrint::LatePrint(std::vector<LateLevel> levels, std::vector<std::uint32_t> moments, Times times,
+                     std::size_t cache_bytes)
+    : levels_(std::move(levels)), moments_(std::move(moments)), times_(times), cache_bytes_(cache_bytes) {}
+
+void LatePrint::show(std::size_t moment) {
+    for (const LateLevel& level : levels_) level.bricks->update(level.field->printUntil(moments_[moment]));
+}
+
+Json LatePrint::report() const {
+    ondemand::PrintFieldTimes times;
+    double bricks_seconds = 0;
+    Json reports = Json::array();
+    for (const LateLevel& level : levels_) {
+        times.bins += level.field->times().bins;
+        times.box += level.field->times().box;
+        times.map += level.field->times().map;
+        bricks_seconds += level.bricks->layoutSeconds();
+        reports.push_back(reportOf(level, cache_bytes_));
+    }
+    const auto sum = [&reports](const char* what) {
+        std::size_t result = 0;
+        for (const Json& report : reports) result += report[what].get<std::size_t>();
+        return result;
+    };
+    const ondemand::PrintField& field = *levels_.front().field;
+    Json all{{"print", field.name()},
+             {"seconds",
+              {{"parse", times_.parse},
+               {"bins", times.bins},
+               {"box", times.box},
+               {"map", times.map},
+               {"list", times_.all - times_.parse - times.bins - times.box - times.map},
+               {"bricks_all_threads", bricks_seconds}}},
+             {"bricks_listed", sum("bricks_listed")},
+             {"bricks_made", sum("bricks_made")},
+             {"leaves_made", sum("leaves_made")},
+             {"printed_beads", std::min<std::size_t>(field.printed(), field.layout().toolpath->beads.size())},
+             {"print_bytes", sum("print_bytes")},
+             {"brick_bytes", sum("brick_bytes")}};
+    if (levels_.size() > 1)
+        all["levels"] = reports;
+    else if (reports.front().contains("brick_cache"))
+        all["brick_cache"] = reports.front()["brick_cache"];
+    return all;
+}
+
+void LatePrint::writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const {
+    for (std::size_t n = 0; n < levels_.size(); ++n)
+        assemble::writeBrickPicture(levels_.size() == 1 ? path : ofLevel(path, n), *levels_[n].bricks, metadata);
+}
+
+}  // namespace stratum::assemble

@@ -1,0 +1,255 @@
+#include "assemble/print/print_levels.h"
+
+#include "assemble/shape/file_facts.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "base/stopwatch.h"
+#include "gcode/container/input_bytes.h"
+#include "gcode/reader.h"
+#include "motion/print_times.h"
+#include "ondemand/detail_levels.h"
+#include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxel_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace stratum::assemble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Those of the selection that are printed by then.
+void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
+    const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath, "--printed");
+    if (cuts.size() != 1)
+        throw UsageError(
+            fmt::format("--printed {}: expected one moment, e.g. 50%, layer:40, time:90 or time:50%", printed));
+    const auto last = std::lower_bound(selection.begin(), selection.end(), cuts.front().bead_count);
+    selection.erase(last, selection.end());
+    if (selection.empty())
+        throw UsageError(fmt::format("--printed {}: nothing of what is selected is printed by then", printed));
+}
+
+// Equal steps of the extruded volume, or of time; the last one is all. Prints of few beads have fewer.
+std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Toolpath& toolpath) {
+    std::vector<std::uint32_t> moments;
+    std::string steps;
+    for (int n = 1; n < series; ++n)
+        steps += fmt::format("{}{}{:.9g}%", n > 1 ? "," : "", by_time ? "time:" : "", 100.0 * n / series);
+    if (!steps.empty())
+        for (const voxelize::Snapshot& step : voxelize::parseSnapshots(steps, toolpath))
+            moments.push_back(static_cast<std::uint32_t>(step.bead_count));
+    moments.push_back(static_cast<std::uint32_t>(toolpath.beads.size()));
+    return moments;
+}
+
+/// What all fields of one print are made from.
+struct Source {
+    const PrintRequest& request;
+    const std::shared_ptr<const gcode::Toolpath>& toolpath;
+    const std::vector<std::uint32_t>& selection;
+    const voxelize::Bounds& bounds;
+    const std::string& path;
+};
+
+// Far from an eye that is close to the print it is seen small: what voxels it takes there. The first level has the
+// lattice that is given.
+std::vector<voxelize::Lattice> latticesOf(const Source& source, const voxelize::Lattice& finest,
+                                          const std::vector<ondemand::VoxelLevel>& levels) {
+    std::vector<voxelize::Lattice> lattices{finest};
+    voxelize::LatticeRequest request = source.request.print.lattice;
+    for (std::size_t n = 1; n < levels.size(); ++n) {
+        request.voxels_per_layer = levels[n].voxels_per_layer;
+        lattices.push_back(voxelize::chooseLattice(*source.toolpath, source.selection, source.bounds, request));
+    }
+    return lattices;
+}
+
+// Each of the beads that its lattice can show: those that reach its shell, with the band around it and what samples'
+// neighbours need. Levels that no bead comes to are left out.
+std::vector<PrintLevel> fieldsOf(const Source& source, const std::vector<voxelize::Lattice>& lattices,
+                                 const std::vector<ondemand::VoxelLevel>& levels, const glm::dvec3& eye) {
+    std::vector<PrintLevel> fields;
+    double from = 0;
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        constexpr double kMarginVoxels = 2;
+        const voxelize::Lattice& lattice = lattices[n];
+        const bool last = n + 1 == levels.size();
+        std::vector<std::uint32_t> near;
+        if (!last) {
+            const double to = levels[n + 1].from + lattice.background() + kMarginVoxels * lattice.voxel_size;
+            near = ondemand::beadsWithin(*source.toolpath, source.selection, eye, to);
+            if (near.empty()) continue;
+        }
+        fields.push_back({std::make_shared<ondemand::PrintField>(source.toolpath, last ? source.selection : near,
+                                                                 lattice, voxelize::Placement(), source.path),
+                          from});
+        if (!last) from = levels[n + 1].from;
+    }
+    return fields;
+}
+
+Json reportOf(const std::vector<PrintLevel>& levels, double per_distance) {
+    Json report = Json::array();
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        const voxelize::Lattice& lattice = levels[n].field->layout().lattice;
+        const double error = voxelize::kLargestErrorVoxels * lattice.voxel_size;
+        const double pixel = levels[n].from * per_distance;
+        report.push_back({{"voxel_size_mm", lattice.voxel_size},
+                          {"from_mm", levels[n].from},
+                          {"to_mm", n + 1 < levels.size() ? Json(levels[n + 1].from) : Json(nullptr)},
+                          {"beads", levels[n].field->layout().stack.beads.size()},
+                          {"largest_error_mm", error},
+                          {"largest_error_pixels", pixel > 0 ? Json(error / pixel) : Json(nullptr)}});
+    }
+    return report;
+}
+
+// What people give as a level set and is none is G-code at best.
+gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
+    if (file.bytes().starts_with(kVdbMagic))
+        throw InputError(
+            fmt::format("{}: holds OpenVDB grids, which can't be read from a stream; give a file", file.name()));
+    try {
+        motion::PrintTimes times;
+        return timed ? motion::readTimedToolpath(file.bytes(), file.name(), options, times)
+                     : gcode::readToolpath(file.bytes(), file.name(), options);
+    } catch (const InputError& error) {
+        if (!file.name().ends_with(".vdb")) throw;
+        throw InputError(
+            fmt::format("{}: is no OpenVDB file, its first bytes are not those of one; download or convert "
+                        "it again. Nor is it G-code ({})",
+                        file.name(), error.what()));
+    }
+}
+
+/// One print, step by step: each method needs what those before it found.
+class PrintReader {
+public:
+    PrintReader(const std::string& path, const PrintRequest& request, const ReadEvents& events, Warnings& warnings)
+        : path_(path), request_(request), events_(events), warnings_(warnings) {}
+
+    PrintLevels read(bool hash) {
+        Stopwatch watch;
+        readProgram(hash);
+        result_.parse_seconds = watch.lap();
+        select();
+        chooseLattice();
+        chooseLevels();
+        describe();
+        result_.selection = std::move(selection_);
+        result_.moments = momentsOf(request_.series, request_.series_by_time, *toolpath_);
+        result_.toolpath = std::move(toolpath_);
+        return std::move(result_);
+    }
+
+private:
+    void readProgram(bool hash) {
+        {
+            const gcode::InputBytes file(path_);
+            bytes_ = file.bytes().size();
+            name_ = file.name();
+            if (hash) result_.content = sha256Hex(file.bytes());
+            gcode::ReadOptions read = request_.print.read;
+            const Step step(events_, "reading", true);
+            if (events_.fraction) read.progress = events_.fraction;
+            const bool timed = request_.timed || request_.series_by_time || voxelize::needsTiming(request_.printed);
+            toolpath_ = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed));
+        }
+        for (const gcode::Warning& warning : toolpath_->warnings)
+            warnings_.add(Warning::Kind::program,
+                          fmt::format("{}:{}: {}{}", name_, warning.first_line, warning.text,
+                                      warning.count > 1 ? fmt::format(" ({} times)", warning.count) : ""));
+    }
+
+    void select() {
+        selection_ = voxelize::selectBeads(*toolpath_, voxelize::selectionOf(request_.print, *toolpath_));
+        if (!request_.printed.empty()) cut(selection_, request_.printed, *toolpath_);
+        bounds_ = voxelize::boundsOf(*toolpath_, selection_);
+        result_.part = voxelize::partBounds(*toolpath_, selection_);
+    }
+
+    void chooseLattice() {
+        if (request_.print.voxel_auto) {
+            if (!request_.pixel_spread)
+                throw UsageError("--voxel-size auto: nothing says what a pixel spans; give a number");
+            pixels_ = request_.pixel_spread(bounds_, result_.part);
+        }
+        lattice_ = voxelize::latticeFor(request_.print, *toolpath_, selection_, bounds_, voxelize::Interior::keep,
+                                        pixels_.smallest);
+        if (!lattice_.warning.empty())
+            warnings_.add(Warning::Kind::voxel_size, fmt::format("{}: {}", path_, lattice_.warning));
+        constexpr double kLeastHalfWidth = 2;
+        if (lattice_.half_width < kLeastHalfWidth)
+            throw UsageError(
+                fmt::format("--half-width {:g}: rays need {:g} voxels to each side of the surface, at least",
+                            lattice_.half_width, kLeastHalfWidth));
+    }
+
+    void chooseLevels() {
+        const Source source{request_, toolpath_, selection_, bounds_, path_};
+        const std::vector<ondemand::VoxelLevel> levels = ondemand::chooseLevels(
+            lattice_.layer_height, static_cast<int>(std::lround(lattice_.layer_height / lattice_.voxel_size)),
+            pixels_.smallest, {pixels_.per_distance, pixels_.farthest});
+        result_.eye = pixels_.eye;
+        result_.levels = fieldsOf(source, latticesOf(source, lattice_, levels), levels, result_.eye);
+    }
+
+    void describe() {
+        Json& report = result_.report;
+        report = {{"path", path_},
+                  {"bytes", bytes_},
+                  {"format", toolpath_->format},
+                  {"slicer", toolpath_->slicer},
+                  {"beads", toolpath_->beads.size()},
+                  {"selected_beads", selection_.size()},
+                  {"layers", toolpath_->layer_count},
+                  {"voxel_size_mm", lattice_.voxel_size},
+                  {"half_width", lattice_.half_width},
+                  {"choice", lattice_.reason}};
+        const std::string chosen = voxelize::describeSelection(request_.print);
+        if (!chosen.empty()) report["selection"] = chosen;
+        const double error = voxelize::kLargestErrorVoxels * lattice_.voxel_size;
+        if (request_.print.voxel_auto)
+            report["voxel_auto"] = {
+                {"smallest_pixel_mm", pixels_.smallest},
+                {"largest_error_mm", error},
+                {"largest_error_pixels", pixels_.smallest > 0 ? Json(error / pixels_.smallest) : Json(nullptr)}};
+        if (result_.levels.size() > 1) report["voxel_auto"]["levels"] = reportOf(result_.levels, pixels_.per_distance);
+        if (!request_.printed.empty()) report["printed"] = request_.printed;
+        result_.line = fmt::format("{}: {} of {} beads; voxel {:g} mm ({})", name_, selection_.size(),
+                                   toolpath_->beads.size(), lattice_.voxel_size, lattice_.reason);
+        for (std::size_t n = 1; n < result_.levels.size(); ++n)
+            result_.line += fmt::format("; {:g} mm from {:.3g} mm away",
+                                        result_.levels[n].field->layout().lattice.voxel_size, result_.levels[n].from);
+    }
+
+    const std::string& path_;
+    const PrintRequest& request_;
+    const ReadEvents& events_;
+    Warnings& warnings_;
+    std::shared_ptr<const gcode::Toolpath> toolpath_;
+    std::size_t bytes_ = 0;
+    std::string name_;  // of the file, in messages
+    std::vector<std::uint32_t> selection_;
+    voxelize::Bounds bounds_;
+    shade::PixelSpread pixels_;  // zeros unless the voxel size follows from the picture
+    voxelize::Lattice lattice_;
+    PrintLevels result_;
+};
+
+}  // namespace
+
+PrintLevels readPrintLevels(const std::string& path, const PrintRequest& request, bool hash, const ReadEvents& events,
+                            Warnings& warnings) {
+    return PrintReader(path, request, events, warnings).read(hash);
+}
+
+}  // namespace stratum::assemble

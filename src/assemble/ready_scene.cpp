@@ -1,0 +1,74 @@
+#include "assemble/ready_scene.h"
+
+#include "base/error.h"
+#include "shade/post/exposure.h"
+
+#include <utility>
+
+namespace stratum::assemble {
+namespace {
+
+trace::Box boxOf(const voxelize::Bounds& b) { return {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}; }
+
+}  // namespace
+
+Stage makeStage(const TracedObjects& objects, const StageOptions& options, const ReadEvents& events) {
+    const bool needs_light = shade::needsLight(options.render.integrator);
+    shade::SceneOptions seen = options.scene;
+    seen.mm_per_unit = objects.mm_per_unit;
+    seen.brdf = objects.brdf;
+    if (!options.frame_all) seen.frame = objects.part;
+    // What is not seen costs nothing.
+    if (!needs_light && seen.env == "studio") seen.env = "constant:0,0,0";
+    Stage stage = [&] {
+        const Step step(events, "preparing");
+        return Stage{shade::makeScene(seen, *objects.intersector, options.render.width, options.render.height),
+                     glm::dvec3(0.0), std::nullopt};
+    }();
+    stage.scene.objects = objects.materials;
+    stage.scene.labels = objects.labels;
+    const trace::Box box = seen.frame.value_or(objects.intersector->bounds());
+    stage.middle = 0.5 * (box.min + box.max);
+    const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is
+    if (options.find_exposure && !studio && needs_light)
+        stage.exposure = shade::automaticExposure(stage.scene, stage.middle);
+    return stage;
+}
+
+shade::PixelSpread pixelSpreadOf(const StageOptions& options, const voxelize::Bounds& print,
+                                 const voxelize::Bounds& part, const shade::Camera* camera, int turns) {
+    const trace::Box box = boxOf(print);
+    if (camera != nullptr) return shade::pixelSpread(*camera, box, turns);
+    return shade::pixelSpread(shade::Camera::make(options.scene.camera, options.frame_all ? box : boxOf(part),
+                                                  options.render.width, options.render.height),
+                              box, turns);
+}
+
+ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOptions& options) {
+    options.render.validate();
+    options.scene.camera.validate();
+    TracingOptions tracing = tracingFor(options.scene, options.render);
+    tracing.march = options.tracing.march;
+    tracing.values = options.tracing.values;
+    tracing.brick_cache = options.tracing.brick_cache;
+    tracing.prints = options.tracing.prints;
+    tracing.hash = options.tracing.hash;
+    tracing.events = options.tracing.events;
+    if (!tracing.prints.pixel_spread)
+        tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
+            if (objects.size() != 1 || !objects.front().placement.isIdentity())
+                throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
+            return pixelSpreadOf(options, print, part);
+        };
+    TracedObjects read = readTracedObjects(objects, tracing);
+    Stage stage = makeStage(read, options, tracing.events);
+    return {std::move(read), std::move(stage.scene), shade::ToneOptions{stage.exposure.value_or(0.0)}, stage.middle};
+}
+
+ReadyScene readyScene(const std::string& path, const PictureOptions& options) {
+    ObjectOptions object;
+    object.vdb = path;
+    return readyScene(std::vector<ObjectOptions>{object}, options);
+}
+
+}  // namespace stratum::assemble

@@ -1,0 +1,52 @@
+// What is made of one grid of one file, of one print, or of one shape by formula.
+#pragma once
+
+#include "assemble/object_file.h"
+#include "assemble/print/late_print.h"
+#include "assemble/print/print_colors.h"
+#include "assemble/shape/attribute_needs.h"
+#include "assemble/tracing_options.h"
+#include "trace/attribute.h"
+#include "trace/intersector.h"
+
+#include <openvdb/openvdb.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace stratum::assemble {
+
+/// Ready for rays, in the space of its file.
+struct Shape {
+    bool y_up = false;         ///< by the file's own word
+    double mm_per_unit = 1.0;  ///< by the file's own word
+    std::shared_ptr<const trace::Intersector> intersector;
+    std::map<std::string, trace::AttributeSummary> summaries;  ///< of the attributes that are wanted of it
+    std::optional<trace::Box> part;                            ///< without what is printed beside it, if that is known
+    PrintColors colors;                                        ///< that the file states, if somebody wants to know
+    std::string source;                                        ///< what tells the file from others, if asked for
+    nlohmann::ordered_json report;
+    std::string line;                  ///< for people
+    std::shared_ptr<LatePrint> print;  ///< of G-code; else null
+    double load_seconds = 0.0, build_seconds = 0.0;
+};
+
+/// Throw InputError, UsageError.
+Shape shapeOfSdf(const ObjectOptions& object, const TracingOptions& options);
+Shape shapeOfLevelSet(const ObjectOptions& object, const TracingOptions& options, const AttributeNeeds& needs,
+                      Warnings& warnings);
+/// Adds the attribute "color" to what is wanted of the object if its file's colours depend on the place.
+Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs,
+                   Warnings& warnings);
+
+/// Whether the method lays level sets out in bricks.
+bool marchesBricks(MarchMethod method);
+
+/// A grid with the intersector that was asked for. Throws InputError for grids that can't be traced.
+std::shared_ptr<const trace::Intersector> intersectorOf(const openvdb::FloatGrid::ConstPtr& grid,
+                                                        const TracingOptions& options);
+
+}  // namespace stratum::assemble

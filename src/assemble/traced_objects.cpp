@@ -1,0 +1,180 @@
+#include "assemble/traced_objects.h"
+
+#include "assemble/shape/file_facts.h"
+#include "assemble/shape/object_materials.h"
+#include "assemble/shape/shape.h"
+#include "base/error.h"
+
+#include <openvdb/openvdb.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace stratum::assemble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Space of the file -> that space with z up -> world.
+trace::Placement upright(const trace::Placement& placement) {
+    trace::Placement result = placement;
+    result.linear *= trace::Placement::of(glm::dvec3(1.0), {90.0, 0.0, 0.0}, glm::dvec3(0.0)).linear;
+    return result;
+}
+
+// Makes the box of all parts larger by that of a shape where it stands: of all of it, if its file doesn't say more.
+void include(std::optional<trace::Box>& parts, const Shape& shape, const trace::Placement& placement) {
+    const trace::Box own = shape.part.value_or(shape.intersector->bounds());
+    if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
+                               (corner & 4) != 0 ? own.max.z : own.min.z);
+        const glm::dvec3 world = placement.linear * place + placement.offset;
+        if (!parts) parts = trace::Box{world, world};
+        parts->min = glm::min(parts->min, world);
+        parts->max = glm::max(parts->max, world);
+    }
+}
+
+/// What one object is made of.
+struct MaterialPlan {
+    shade::MaterialOptions material;
+    bool stated_colors = false;  // those of its file, for nobody says more
+    std::string by;              // the attribute that colours it; empty: none
+};
+
+// Numbers the labels, which every file must have.
+void planLabels(const std::vector<ObjectOptions>& objects, const TracingOptions& options, AttributeNeeds& needs,
+                TracedObjects& result) {
+    for (const shade::Label label : options.labels) {
+        const std::string name(shade::labelName(label));
+        result.labels[static_cast<std::size_t>(label)] = needs.number(name);
+        for (const ObjectOptions& object : objects)
+            if (!object.sdf) needs.want(object, name);
+    }
+}
+
+MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs) {
+    MaterialPlan plan{object.material, false, ""};
+    if (plan.material.by.empty() && plan.material.brdf.empty() && !object.sdf) {
+        plan.material.by = options.color_by;
+        plan.stated_colors = options.file_colors && plan.material.by.empty();
+    }
+    plan.by = plan.stated_colors ? "color" : plan.material.by;
+    if (plan.by.empty()) return plan;
+    (void)needs.number(plan.by);
+    if (plan.stated_colors)
+        needs.wantStatedColors(object);
+    else
+        needs.want(object, plan.by);
+    return plan;
+}
+
+/// Makes each shape once.
+class ShapeReader {
+public:
+    ShapeReader(const TracingOptions& options, AttributeNeeds& needs)
+        : options_(options), needs_(needs), warnings_(options.events) {}
+
+    const Shape& shapeOf(const ObjectOptions& object, TracedObjects& result) {
+        if (object.sdf) return keep(shapeOfSdf(object, options_), result);
+        auto& known = files_[{object.vdb, object.grid}];
+        if (known == nullptr)
+            known = &keep(isVdbFile(object.vdb) ? shapeOfLevelSet(object, options_, needs_, warnings_)
+                                                : shapeOfPrint(object, options_, needs_, warnings_),
+                          result);
+        return *known;
+    }
+    const std::vector<Warning>& warnings() const { return warnings_.all(); }
+
+private:
+    const Shape& keep(Shape shape, TracedObjects& result) {
+        result.load_seconds += shape.load_seconds;
+        result.build_seconds += shape.build_seconds;
+        if (shape.print) result.prints.push_back(shape.print);
+        shapes_.push_back(std::make_unique<Shape>(std::move(shape)));
+        return *shapes_.back();
+    }
+
+    const TracingOptions& options_;
+    AttributeNeeds& needs_;
+    Warnings warnings_;
+    std::vector<std::unique_ptr<Shape>> shapes_;
+    std::map<std::pair<std::string, std::string>, const Shape*> files_;  // by path and grid
+};
+
+void addMaterial(const MaterialPlan& plan, const Shape& shape, AttributeNeeds& needs, ObjectMaterials& materials) {
+    const auto summary = shape.summaries.find(plan.by);
+    const trace::AttributeSummary* const known = summary == shape.summaries.end() ? nullptr : &summary->second;
+    const std::size_t number = plan.by.empty() ? 0 : needs.number(plan.by);
+    if (plan.stated_colors)
+        materials.add(shape.colors, number, shape.colors.by_place ? known : nullptr);
+    else
+        materials.add(plan.material, number, plan.by.empty() ? nullptr : known);
+}
+
+// What is told of a shape, once however often it stands there.
+void addFacts(const Shape& shape, TracedObjects& result) {
+    result.reports.push_back(shape.report);
+    if (!shape.source.empty()) result.source += " " + shape.source;
+    if (std::find(result.lines.begin(), result.lines.end(), shape.line) == result.lines.end())
+        result.lines.push_back(shape.line);
+}
+
+}  // namespace
+
+TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const TracingOptions& options) {
+    openvdb::initialize();
+    TracedObjects result;
+    result.reports = Json::array();
+    AttributeNeeds needs;
+    planLabels(objects, options, needs, result);
+    std::vector<MaterialPlan> plans;
+    for (const ObjectOptions& object : objects) plans.push_back(planMaterial(object, options, needs));
+
+    ShapeReader reader(options, needs);
+    ObjectMaterials materials(options.brdf);
+    std::vector<trace::SceneObject> scene;
+    std::optional<trace::Box> parts;
+    bool any_part = false;
+    for (std::size_t n = 0; n < objects.size(); ++n) {
+        const ObjectOptions& object = objects[n];
+        const Shape& shape = reader.shapeOf(object, result);
+        const bool y_up = object.up.empty() ? shape.y_up : object.up == "y";
+        scene.push_back({shape.intersector, y_up ? upright(object.placement) : object.placement});
+        include(parts, shape, scene.back().placement);
+        any_part = any_part || shape.part.has_value();
+        if (n == 0) result.mm_per_unit = shape.mm_per_unit;
+        addFacts(shape, result);
+        addMaterial(plans[n], shape, needs, materials);
+    }
+    if (any_part) result.part = parts;
+    result.materials = materials.materials();
+    result.brdf = materials.brdf();
+    result.material_report = materials.report();
+    result.legends = materials.legends();
+    result.no_color_lookup = materials.noLookup();
+    result.warnings = reader.warnings();
+    result.intersector = trace::makeSceneIntersector(std::move(scene));
+    return result;
+}
+
+Json onDemandReport(const TracedObjects& objects) {
+    Json all = Json::array();
+    for (const auto& print : objects.prints) all.push_back(print->report());
+    return all;
+}
+
+std::shared_ptr<LatePrint> growingPrint(const TracedObjects& objects) {
+    const auto found = std::find_if(objects.prints.rbegin(), objects.prints.rend(),
+                                    [](const auto& print) { return print->moments() > 1; });
+    return found == objects.prints.rend() ? nullptr : *found;
+}
+
+}  // namespace stratum::assemble

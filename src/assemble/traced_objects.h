@@ -1,0 +1,55 @@
+// Level sets, prints and shapes -> one intersector with materials, and what is to be told of them.
+#pragma once
+
+#include "assemble/object_file.h"
+#include "assemble/print/late_print.h"
+#include "assemble/tracing_options.h"
+#include "shade/film/legend.h"
+#include "shade/scene/material.h"
+#include "shade/scene/scene.h"
+#include "trace/scene_intersector.h"
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace stratum::assemble {
+
+/// Lengths are in world units; TracedObjects::mm_per_unit says how long they are. The intersector may be shared by any
+/// number of threads.
+struct TracedObjects {
+    std::shared_ptr<const trace::Intersector> intersector;
+    std::vector<shade::ObjectMaterial> materials;  ///< by trace::Hit::object; empty if all are of the scene's
+    decltype(shade::SceneDescription::labels) labels;
+    std::string brdf;  ///< the scene's material, see ObjectMaterials::brdf()
+    std::vector<shade::Legend> legends;
+    /// World-space box of the parts without what is printed beside them, if a file knows it.
+    std::optional<trace::Box> part;
+    double mm_per_unit = 1.0;  ///< of world space, as the first object's file says
+    /// Of each G-code file, in the order of their first objects: to bring it to another moment, and to ask what its
+    /// bricks took.
+    std::vector<std::shared_ptr<LatePrint>> prints;
+
+    std::vector<std::string> lines;          ///< of each file and shape, for people
+    std::vector<Warning> warnings;           ///< in the order in which they came up
+    nlohmann::ordered_json reports;          ///< an array: facts of each object
+    nlohmann::ordered_json material_report;  ///< materials, colours and legends
+    std::string no_color_lookup;             ///< why hits don't look for a colour; empty if that is no matter
+    std::string source;                      ///< what tells the files from others, for checkpoints
+    double load_seconds = 0.0, build_seconds = 0.0;
+};
+
+/// Reads every file once, whatever the number of objects that stand for it. Runs on the threads that TBB may use.
+/// Throws InputError for files that can't be traced, UsageError for options that do not fit them.
+TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const TracingOptions& options);
+
+/// LatePrint::report() of all prints: an array.
+nlohmann::ordered_json onDemandReport(const TracedObjects& objects);
+
+/// The last print that has more than one moment; null if there is none.
+std::shared_ptr<LatePrint> growingPrint(const TracedObjects& objects);
+
+}  // namespace stratum::assemble

@@ -1,0 +1,52 @@
+// How level sets, prints and shapes are read and made ready for rays.
+#pragma once
+
+#include "assemble/print/print_levels.h"
+#include "assemble/read_events.h"
+#include "march/brick/brick_grid.h"
+#include "march/brick/brick_layout.h"
+#include "shade/integrator/render.h"
+#include "shade/scene/scene.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::assemble {
+
+/// Which intersector level sets get.
+enum class MarchMethod {
+    automatic,  ///< brick
+    brick,      ///< exact; the only one that takes G-code
+    sphere,     ///< sphere tracing
+    vdb,        ///< OpenVDB's own
+};
+/// "auto", "brick", "sphere", "vdb". Throws UsageError for other texts.
+MarchMethod parseMarchMethod(std::string_view text);
+std::string_view marchMethodName(MarchMethod method);
+
+struct TracingOptions {
+    MarchMethod march = MarchMethod::automatic;
+    march::BrickValues values = march::BrickValues::Int16;  ///< of bricks
+    /// Of objects that have no material of their own, see shade::makeBrdf(). Empty: their files' colours if
+    /// `file_colors`, else the default.
+    std::string brdf;
+    bool file_colors = false;     ///< objects of which nobody says the material have the colours that their files state
+    std::string color_by;         ///< attribute that colours level sets and prints without a material of their own
+    bool smooth_normals = false;  ///< answer Tracer::shadingNormal() without the facets of voxels
+    /// Bytes of samples at once, of each print and of each large level set.
+    std::size_t brick_cache = march::BrickGrid::kNoBound;
+    std::vector<shade::Label> labels;  ///< that hits are to know; every level set must have them
+    PrintRequest prints;               ///< of G-code
+    bool hash = false;                 ///< fill in TracedObjects::source
+    ReadEvents events;
+};
+
+/// Whether the picture or one of its layers shows what things are made of.
+bool showsMaterial(const shade::RenderOptions& render);
+
+/// The options that follow from a picture: material, colours, normals and labels. All others have their defaults.
+TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render);
+
+}  // namespace stratum::assemble

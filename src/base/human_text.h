@@ -1,0 +1,13 @@
+// Sizes and counts as short text for people.
+#pragma once
+
+#include <string>
+
+namespace stratum {
+
+/// "1.23 GB", "45.6 MB", "789 B"; powers of ten.
+std::string humanBytes(double bytes);
+/// "12.3 M", "45.6 k", "789".
+std::string humanCount(double count);
+
+}  // namespace stratum

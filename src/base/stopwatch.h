@@ -1,0 +1,22 @@
+// Wall time of the steps of a run.
+#pragma once
+
+#include <chrono>
+
+namespace stratum {
+
+/// Wall time since construction or the last lap, in seconds.
+class Stopwatch {
+public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace stratum

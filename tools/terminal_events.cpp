@@ -1,0 +1,42 @@
+#include "terminal_events.h"
+
+#include "progress.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace stratum::tools {
+
+assemble::ReadEvents terminalEvents(bool quiet) {
+    assemble::ReadEvents events;
+    events.warning = [quiet](const assemble::Warning& warning) {
+        if (!quiet || warning.kind == assemble::Warning::Kind::narrow_band)
+            fmt::print(stderr, "vdbtrace: {}\n", warning.text);
+    };
+    if (!showsProgress(quiet)) return events;
+    struct Line {
+        std::optional<ProgressBar> bar;
+        std::optional<ProgressNote> note;
+    };
+    const auto line = std::make_shared<Line>();
+    events.begin = [line](std::string_view step, bool measured) {
+        if (measured)
+            line->bar.emplace(std::string(step), false);
+        else
+            line->note.emplace(std::string(step), false);
+    };
+    events.fraction = [line](double done) {
+        if (line->bar) line->bar->show(done);
+    };
+    events.end = [line] {
+        line->bar.reset();
+        line->note.reset();
+    };
+    return events;
+}
+
+}  // namespace stratum::tools

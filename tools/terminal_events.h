@@ -1,0 +1,12 @@
+// What vdbtrace shows of the files that it reads: steps on the terminal, warnings on stderr.
+#pragma once
+
+#include "assemble/read_events.h"
+
+namespace stratum::tools {
+
+/// Steps are lines of progress.h, if such lines are shown. Quiet: no steps, and of warnings only those of thin narrow
+/// bands.
+assemble::ReadEvents terminalEvents(bool quiet);
+
+}  // namespace stratum::tools

@@ -1,0 +1,69 @@
+#include "trace_print_options.h"
+
+#include "print_options.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace stratum::tools {
+
+void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, BrickCommand& bricks) {
+    app.add_option(
+           "--brick-cache", bricks.cache,
+           "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and "
+           "the picture stays the same. Of each print, and of each large level set (default: no bound)")
+        ->type_name("SIZE")
+        ->group("Tracing");
+    app.add_option("--brick-picture", bricks.picture,
+                   "brick: also write which of a print's bricks rays came to, from the front and from above")
+        ->type_name("FILE.png")
+        ->group("Tracing");
+    addPrintOptions(app, request.print, true);
+    app.add_option("--printed", request.printed,
+                   "G-code: what is printed by then: 25%, layer:40, time:90 (minutes; 5400s, 1.5h), or time:50%")
+        ->type_name("WHEN")
+        ->group("What to convert");
+    app.add_option("--progress-series", request.series,
+                   "G-code: N numbered pictures of a print that grows by equal volumes, one camera for all")
+        ->check(CLI::Range(1, 100000))
+        ->excludes("--printed")
+        ->type_name("N")
+        ->group("What to convert");
+    app.add_flag("--by-time", request.series_by_time, "--progress-series: equal times instead of equal volumes")
+        ->needs("--progress-series")
+        ->group("What to convert");
+}
+
+std::vector<std::string> givenPrintOptions(const CLI::App& app) {
+    constexpr std::array<std::string_view, 3> kGroups = {kLattice, kWhat, kReading};
+    std::vector<std::string> given;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool of_prints = std::find(kGroups.begin(), kGroups.end(), option->get_group()) != kGroups.end() ||
+                               name == "--brick-picture";
+        if (of_prints && option->count() > 0) given.push_back(name);
+    }
+    return given;
+}
+
+void refusePrintOptions(const std::vector<std::string>& given, const std::string& vdb) {
+    if (given.empty()) return;
+    const std::string& first = given.front();
+    const bool in_time = first == "--printed" || first == "--progress-series";
+    const bool of_rays = first == "--brick-picture";
+    throw UsageError(fmt::format(
+        "{}: needs G-code, and {} is a level set, whose voxels are made; {}give vdbtrace the "
+        "print itself",
+        fmt::join(given, ", "), vdb,
+        of_rays
+            ? ""
+            : fmt::format("make it anew with gcode2vdb {}, or ", in_time ? "--snapshots" : fmt::format("{}", first))));
+}
+
+}  // namespace stratum::tools
