@@ -1,4 +1,4 @@
-// How a grid's transform lays its voxels out in world space.
+// The edges of a grid's voxels in world space.
 #pragma once
 
 #include <openvdb/openvdb.h>

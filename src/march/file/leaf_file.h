@@ -1,16 +1,14 @@
 // A level set that stays in its .vdb file: each leaf is read when it is asked for, from any thread.
 //
 // OpenVDB's own delayed loading builds the whole tree first and then opens a stream a leaf, behind a lock. This reads
-// the upper levels of the tree alone (a thousandth of the file) and finds the leaves by arithmetic. The format: Tree,
-// RootNode, InternalNode and LeafNode::readTopology() and readBuffers(), and io::readCompressedValues(), of OpenVDB 10;
-// file formats 222 to 224.
+// the upper levels of the tree alone (a thousandth of the file) and finds the leaves by arithmetic.
 #pragma once
 
 #include "base/mapped_file.h"
 #include "march/file/leaf_source.h"
+#include "march/file/vdb_walker.h"
 #include "trace/intersector.h"
 
-#include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
@@ -26,8 +24,8 @@ namespace stratum::march {
 class LeafFile final : public LeafSource {
 public:
     /// Opens the grid of that name, which must be the only one of the name; its samples are floats, its metadata was
-    /// read before. Returns null for a file that only OpenVDB itself reads: half floats, zip compression, an older
-    /// format, an instance of another grid. Throws InputError for a missing or damaged file.
+    /// read before. Returns null for a file that only OpenVDB itself reads: half floats, zip compression, an
+    /// instance of another grid. Throws InputError for a missing or damaged file.
     static std::shared_ptr<const LeafFile> open(const std::filesystem::path& path, const std::string& name,
                                                 const openvdb::MetaMap& metadata);
 
@@ -50,21 +48,19 @@ private:
         openvdb::Coord origin;
         std::uint64_t place;  // of its values in the file, bytes
     };
-    class Cursor;
-    struct Node;
+    class TreeReader;
 
-    explicit LeafFile(const std::filesystem::path& path) : file_(path) {}
-    template <int kLog2Edge, typename Child>
-    void readNode(Cursor& cursor, const openvdb::Coord& origin, Node& node, const Child& child);
-    void readTree(Cursor& cursor);
-    void placeLeaves(std::uint64_t first, std::uint64_t end, const openvdb::io::DelayedLoadMetadata* sizes);
-    void readValues(Cursor& cursor, const std::uint64_t* active, std::size_t count, float* out) const;
-    std::uint64_t lengthOfLeaf(Cursor& cursor) const;
+    explicit LeafFile(const std::filesystem::path& path) : file_(path), where_(path.string()) {}
+    VdbCursor cursorAt(std::uint64_t place) const;
+    void placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid);
+    void expand(const VdbValues& values, std::string_view active, float* out) const;
+    std::string_view activeOf(const Leaf& leaf) const;
 
     MappedFile file_;
     openvdb::FloatGrid::Ptr head_;
-    bool blosc_ = false, active_only_ = false;  // how values are stored
-    std::vector<Leaf> leaves_;                  // in the file's order
+    std::string where_, name_;  // for messages
+    VdbValueFormat format_{sizeof(float)};
+    std::vector<Leaf> leaves_;  // in the file's order
     openvdb::CoordBBox active_tiles_;
     std::map<openvdb::Coord, float> root_tiles_;
     std::map<openvdb::Coord, std::vector<float>> upper_, lower_;  // values of nodes with 32^3 and 16^3 children

@@ -1,4 +1,4 @@
-// The seam between a level set and its bricks: where the samples come from, leaf by leaf, as they are asked for.
+// The interface between a level set and its bricks: samples by leaf.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -9,8 +9,7 @@
 
 namespace stratum::march {
 
-/// The leaves of a level set: cubes of 8^3 samples at multiples of 8 in index space. Immutable, and safe to read from
-/// several threads.
+/// The leaves of a level set: cubes of 8^3 samples at multiples of 8 in index space. Immutable; shared by all threads.
 class LeafSource {
 public:
     static constexpr int kLeafEdge = 8;
@@ -21,18 +20,18 @@ public:
     virtual std::size_t leafCount() const = 0;
     /// Index-space coordinate of a leaf's first sample.
     virtual openvdb::Coord origin(std::size_t leaf) const = 0;
-    /// Its samples in world units, x slowest, z fastest: in memory of the source's own, or written to `scratch`, which
-    /// has room for kLeafSamples. Throws InputError for one that can't be read.
+    /// Its samples in world units, x slowest, z fastest: in memory of the source, or written to `scratch`, which has
+    /// room for kLeafSamples. Throws InputError for one that can't be read.
     virtual const float* samples(std::size_t leaf, float* scratch) const = 0;
-    /// The sample at a place that no leaf covers.
+    /// The sample at a position outside all leaves.
     virtual float tile(const openvdb::Coord& at) const = 0;
-    /// What is beyond the narrow band outside, world units.
+    /// The value outside the narrow band, world units.
     virtual float background() const = 0;
-    /// To begin messages with.
+    /// The name in messages.
     virtual std::string name() const = 0;
 };
 
-/// Those of a grid in memory, which must outlive this.
+/// The leaves of a grid in memory, which must outlive this.
 class GridLeaves final : public LeafSource {
 public:
     explicit GridLeaves(const openvdb::FloatGrid& grid) : grid_(grid) {

@@ -20,10 +20,10 @@ namespace stratum::march {
 namespace {
 
 constexpr double kLeastHalfWidth = 2;
-constexpr double kMostReturn = 0.01;  // voxels that a point may be off after there and back; a far origin rounds
-constexpr double kMostShear = 1e-5;   // what a transform from 32-bit floats may have by rounding
+constexpr double kMostReturn = 0.01;  // largest error, in voxels, of the map and its inverse; far origins round
+constexpr double kMostShear = 1e-5;   // rounding error of a transform from 32-bit floats
 
-// Which grid of a file is meant.
+// The selected grid of a file.
 struct Choice {
     std::string name;
     openvdb::GridBase::ConstPtr head;  // no voxels
@@ -37,7 +37,7 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     int candidates = 0;
     std::set<std::string> names;
     for (auto it = file.beginName(); it != file.endName(); ++it) {
-        // Names that a file has twice come with a number: name[0], name[1].
+        // OpenVDB adds a number to duplicate names: name[0], name[1].
         const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
         const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
         if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
@@ -71,7 +71,7 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     return {wanted, head};
 }
 
-// Calls `read` with the opened file and the grid that is meant, which was checked to that depth.
+// Calls `read` with the opened file and the selected grid, which has been checked to that depth.
 template <typename Read>
 auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDepth depth, const Read& read) {
     const std::string where = path.string();
@@ -82,7 +82,7 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDep
     checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
     try {
         openvdb::io::File file(where);
-        // Without OpenVDB's delayed loading: it would copy the file, and build the whole tree all the same.
+        // Without OpenVDB's delayed loading, which copies the file and builds the whole tree nevertheless.
         file.open(/*delayLoad=*/false);
         const Choice choice = chooseGrid(file, name);
         checkVdb(mapped.bytes(), depth, choice.name, where);
@@ -90,7 +90,7 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDep
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
-        // OpenVDB throws its own kinds, and std::bad_alloc for the absurd counts of a damaged file.
+        // OpenVDB throws its own exceptions, and std::bad_alloc for impossible counts in a damaged file.
         throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
     }
 }
@@ -144,7 +144,7 @@ void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const 
             fmt::format("{}: the voxels of {} lie in perspective (a frustum transform); resample it with a linear one",
                         where, grid.getName()));
     const GridAxes axes(grid.transform());
-    // Written so that no number is refused, too.
+    // Written so that NaN is refused, too.
     if (!(axes.shortest() > 0 && std::isfinite(axes.longest())))
         throw InputError(fmt::format("{}: the voxels of {} have no size; mend its transform", where, grid.getName()));
     // A file has its transform and the inverse of it.

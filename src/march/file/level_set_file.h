@@ -1,4 +1,4 @@
-// .vdb -> level set: opens a file, picks the grid to trace, refuses what can't be traced.
+// Opens a .vdb, selects the level set to trace, and refuses those that can't be traced.
 #pragma once
 
 #include "march/file/leaf_file.h"
@@ -13,13 +13,12 @@
 
 namespace stratum::march {
 
-/// Reads the level set of that name; an empty name takes "surface", or else the only level set in the file.
+/// Reads the level set of that name; an empty name selects "surface", or else the only level set in the file.
 /// Throws InputError for a missing or damaged file, no level set, or several to choose from.
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
-/// The same without reading its leaves, for bricks that are laid out as rays come to them. Null for files that only
-/// OpenVDB can read: see LeafFile::open(). Throws as readLevelSet(), but for damage inside leaves, which their reading
-/// finds.
+/// The same without reading its leaves, for lazy bricks. Null for files that only OpenVDB can read: see
+/// LeafFile::open(). Throws as readLevelSet(), except for damage inside leaves, which is found when they are read.
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name = "");
 
 /// Whether a .vdb holds a grid of that name, of whatever type. Throws InputError for a missing or damaged file.
@@ -29,10 +28,10 @@ bool hasGrid(const std::filesystem::path& path, const std::string& name);
 /// not empty, a linear transform without shear (voxels may be turned boxes of any edges), half-width of at least 2 of
 /// the shortest edges.
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where);
-/// The same for a grid whose `leaves` are elsewhere.
+/// The same for a grid whose leaves are in `leaves`.
 void requireTraceable(const openvdb::FloatGrid& grid, std::size_t leaves, const std::string& where);
 
-/// World-space box of the active voxels' sample points, whichever way the transform turns them.
+/// World-space box of the active voxels' sample points, for any orientation of the transform.
 trace::Box worldBounds(const openvdb::math::Transform& transform, const openvdb::CoordBBox& active);
 trace::Box narrowBandBounds(const openvdb::FloatGrid& grid);
 

@@ -25,7 +25,7 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 // Bytes of a leaf and its share of the nodes above.
 constexpr double kBytesPerLeaf = 2048 + 160;
-// The upper nodes of however small a grid: around the origin there are eight, of 32^3 pointers each.
+// The upper nodes of even a small grid: around the origin there are eight, of 32^3 pointers each.
 constexpr double kBytesOfTree = 2.2e6;
 
 struct LeafBox {
@@ -33,8 +33,8 @@ struct LeafBox {
     std::size_t leaves[3];  // along each axis
 };
 
-// About how many leaves the surface passes: blocks of leaves are halved where it may be near, until there are many;
-// then each of them stands for as many leaves as a sheet in it has.
+// Estimates the number of leaves that the surface crosses: blocks of leaves near the surface are subdivided until there
+// are many; then each counts as many leaves as a plane through it crosses.
 double estimateLeaves(const trace::Sdf& shape, double voxel_size, const LeafBox& box) {
     constexpr std::size_t kMany = 20000;
     struct Block {
@@ -109,7 +109,7 @@ openvdb::FloatGrid::Ptr makeSdfGrid(const trace::Sdf& shape, double voxel_size, 
     const auto ny = static_cast<std::size_t>(count[1]);
     const auto nz = static_cast<std::size_t>(count[2]);
     refuseIfTooLarge(shape, voxel_size, {low, {nx, ny, nz}}, box.max[0] - box.min[0], memory_limit);
-    // Columns of leaves along z, each by one thread; put together in their order.
+    // Columns of leaves along z, each by one thread; joined in order.
     std::vector<std::vector<std::unique_ptr<Leaf>>> columns(nx * ny);
     parallelFor(columns.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t column = begin; column != end; ++column) {

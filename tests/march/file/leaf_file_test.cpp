@@ -90,20 +90,20 @@ TEST_F(LeafFileTest, HasWhatOpenVdbReads) {
 }
 
 // Large enough to be laid out as rays come: the hits are those of a grid that was read whole.
-TEST_F(LeafFileTest, LateBricksHaveTheSameHits) {
+TEST_F(LeafFileTest, LazyBricksHaveTheSameHits) {
     const auto grid = test::rubble(0.02F, false);
     const auto file = openLevelSet(write({grid}, kMask | kBlosc));
     ASSERT_NE(file, nullptr);
     EXPECT_GT(file->leafCount(), 10000U);
     for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
         const auto whole = makeBrickIntersector(*grid, values);
-        const auto late = makeBrickIntersector(file, values);
-        EXPECT_LT(late->bytes(), whole->bytes() / 2);
+        const auto lazy = makeBrickIntersector(file, values);
+        EXPECT_LT(lazy->bytes(), whole->bytes() / 2);
         const std::vector<trace::Ray> rays = test::randomRays(50000, 4, 0.02, 31);
         std::vector<trace::Hit> expected(rays.size());
         std::vector<trace::Hit> hits(rays.size());
         whole->makeTracer()->intersectStream(rays, expected);
-        late->makeTracer()->intersectStream(rays, hits);
+        lazy->makeTracer()->intersectStream(rays, hits);
         std::vector<std::uint8_t> blocked(rays.size());
         makeBrickIntersector(file, values)->makeTracer()->occludedStream(rays, blocked);
         std::size_t met = 0;

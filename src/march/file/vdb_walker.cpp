@@ -1,0 +1,246 @@
+#include "march/file/vdb_walker.h"
+
+#include "base/error.h"
+
+#include <blosc.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace stratum::march {
+namespace {
+
+constexpr std::int64_t kMagic = 0x56444220;
+constexpr std::uint32_t kOldest = 222, kNewest = 224;  // formats; 222 is of 2013
+constexpr std::int32_t kFarthest = 1 << 30;            // voxels: farther ones have neighbours that no int can count
+
+// --- metadata and transforms ----------------------------------------------------------------------------------------
+
+void requireBlosc(const VdbCursor& cursor, std::string_view packed, std::uint64_t length) {
+    std::size_t unpacked = 0;
+    if (blosc_cbuffer_validate(packed.data(), packed.size(), &unpacked) != 0 || unpacked != length)
+        cursor.fail("packed data of another size");
+}
+
+/// The list of the leaves' sizes, io::DelayedLoadMetadata::readValue(). Returns how many they are.
+std::uint64_t checkLeafSizes(VdbCursor value, std::uint32_t compression) {
+    const std::uint64_t count = value.read<std::uint32_t>();
+    // OpenVDB's compression::bloscCompress() fills up short arrays with zeros and leaves the shortest as they are.
+    constexpr std::uint64_t kShortest = 48;
+    constexpr std::uint64_t kFilledUp = 128;
+    const auto checkArray = [&](std::uint32_t packed, std::uint64_t length) {
+        if (packed > 0)
+            requireBlosc(value, value.take(packed), length > kShortest && length < kFilledUp ? kFilledUp : length);
+        else
+            (void)value.take(length);
+    };
+    checkArray(value.read<std::uint32_t>(), count);
+    const auto packed = value.read<std::uint32_t>();
+    if (packed != std::numeric_limits<std::uint32_t>::max())
+        checkArray(packed, count * sizeof(std::int64_t));
+    else if ((compression & (kVdbZip | kVdbBlosc)) != 0)
+        value.fail("a list of leaves without their sizes");
+    return count;
+}
+
+void checkMetadata(VdbCursor& cursor, VdbGrid* grid) {
+    constexpr std::string_view kSizes = "file_delayed_load";
+    constexpr std::string_view kHalf = "is_saved_as_half_float";
+    bool half = false;
+    for (auto rest = cursor.read<std::uint32_t>(); rest > 0; --rest) {
+        const std::string name = cursor.text();
+        const std::string type = cursor.text();
+        const std::string_view value = cursor.take(cursor.read<std::uint32_t>());
+        const bool sizes = type == "__delayedload";
+        if (sizes != (name == kSizes) || (sizes && (grid == nullptr || grid->listed)))
+            cursor.fail("a list of leaves where there is none");
+        if (sizes) {
+            constexpr std::size_t kLength = sizeof(std::uint32_t);
+            grid->sizes = {value.data() - kLength, kLength + value.size()};
+            grid->listed = value.empty() ? 0 : checkLeafSizes(VdbCursor(value, cursor.where()), grid->compression);
+        }
+        // All but texts have a size of their own and are read by it.
+        if (!sizes && type != "string" && openvdb::Metadata::isRegisteredType(type) &&
+            openvdb::Metadata::createMetadata(type)->size() != value.size())
+            cursor.fail(fmt::format("{} of another size than its type {}", name, type));
+        if (name != kHalf) continue;
+        if (type != "bool") cursor.fail(fmt::format("{} that is neither true nor false", kHalf));
+        half = value[0] != 0;
+    }
+    if (grid != nullptr && half != grid->half) cursor.fail("two minds about half floats");
+}
+
+/// Its bytes.
+std::string_view checkTransform(VdbCursor& cursor) {
+    const std::uint64_t first = cursor.place();
+    const auto all = [&] { return cursor.since(first); };
+    const std::string type = cursor.text();
+    std::size_t doubles = 0;
+    if (type == "AffineMap" || type == "UnitaryMap")
+        doubles = 16;
+    else if (type == "ScaleMap" || type == "UniformScaleMap")
+        doubles = 15;
+    else if (type == "ScaleTranslateMap" || type == "UniformScaleTranslateMap")
+        doubles = 18;
+    else if (type == "TranslationMap")
+        doubles = 3;
+    else if (type == "NonlinearFrustumMap")
+        doubles = 8;  // and a map behind it, which OpenVDB takes for an affine one whatever it says
+    else
+        cursor.fail("an unknown transform");
+    for (std::size_t n = 0; n < doubles; ++n)
+        if (!std::isfinite(cursor.read<double>())) cursor.fail("a transform that is no number");
+    if (type != "NonlinearFrustumMap") return all();
+    if (cursor.text() != "AffineMap") cursor.fail("a frustum of an unknown kind");
+    for (int n = 0; n < 16; ++n)
+        if (!std::isfinite(cursor.read<double>())) cursor.fail("a transform that is no number");
+    return all();
+}
+
+// --- the file -------------------------------------------------------------------------------------------------------
+
+std::uint32_t checkHeader(VdbCursor& cursor) {
+    if (cursor.read<std::int64_t>() != kMagic) cursor.fail("not a VDB file");
+    const auto version = cursor.read<std::uint32_t>();
+    if (version < kOldest || version > kNewest)
+        throw InputError(
+            fmt::format("{}: is a .vdb of format {}; {} to {} can be read. Save it again with another OpenVDB",
+                        cursor.where(), version, kOldest, kNewest));
+    (void)cursor.take(2 * sizeof(std::uint32_t));  // version of the library
+    if (cursor.read<char>() == 0)
+        throw InputError(
+            fmt::format("{}: was written as a stream, without places of its grids; save it as a file", cursor.where()));
+    constexpr std::size_t kUuid = 36;
+    (void)cursor.take(kUuid);
+    return version;
+}
+
+VdbGrid readDescriptor(VdbCursor& cursor) {
+    constexpr std::string_view kHalf = "_HalfFloat";
+    VdbGrid grid;
+    grid.name = cursor.text();
+    grid.type = cursor.text();
+    if (grid.type.ends_with(kHalf)) {
+        grid.half = true;
+        grid.type.resize(grid.type.size() - kHalf.size());
+    }
+    grid.parent = cursor.text();
+    grid.place = cursor.read<std::int64_t>();
+    grid.leaves = cursor.read<std::int64_t>();
+    grid.end = cursor.read<std::int64_t>();
+    // The next one is there: never before this one, or a list would have no end.
+    if (grid.end < 0 || static_cast<std::uint64_t>(grid.end) < cursor.place()) cursor.fail("grids that overlap");
+    cursor.moveTo(grid.end);
+    return grid;
+}
+
+// --- trees ----------------------------------------------------------------------------------------------------------
+
+/// Of a node of 4096^3 voxels.
+openvdb::Coord readOrigin(VdbCursor& cursor) {
+    const auto at = cursor.read<std::array<std::int32_t, 3>>();
+    for (const std::int32_t c : at)
+        if (c % 4096 != 0 || c < -kFarthest || c > kFarthest) cursor.fail("a node where none can be");
+    return {at[0], at[1], at[2]};
+}
+
+VdbNode readNode(VdbCursor& cursor, const VdbValueFormat& format, const openvdb::Coord& origin, int log2_edge,
+                 int child_log2) {
+    VdbNode node;
+    node.origin = origin;
+    node.log2_edge = log2_edge;
+    node.child_log2 = child_log2;
+    const std::uint64_t mask = (std::uint64_t{1} << (3 * log2_edge)) / 8;
+    node.children = cursor.take(mask);
+    node.active = cursor.take(mask);
+    for (std::size_t n = 0; n < mask; ++n)
+        if ((node.children[n] & node.active[n]) != 0) cursor.fail("a child that is a tile, too");
+    node.values = walkVdbValues(cursor, format, node.active);
+    return node;
+}
+
+}  // namespace
+
+void VdbCursor::fail(std::string_view why) const {
+    throw InputError(fmt::format("{}: is not a readable .vdb file ({} about byte {}); is it cut short?", where_,
+                                 grid_ != nullptr ? fmt::format("the grid {} is damaged", *grid_) : why, place_));
+}
+
+void VdbCursor::moveTo(std::int64_t place) {
+    if (place < 0 || static_cast<std::uint64_t>(place) > bytes_.size()) fail("a place beyond its end");
+    place_ = static_cast<std::size_t>(place);
+}
+
+VdbHeads walkVdbHeads(VdbCursor& cursor) {
+    VdbHeads heads;
+    heads.format = checkHeader(cursor);
+    checkMetadata(cursor, nullptr);
+    const auto count = cursor.read<std::int32_t>();
+    if (count < 0) cursor.fail("less than no grids");
+    // No room is made for them beforehand: the count is not believed until they are there.
+    while (heads.grids.size() < static_cast<std::size_t>(count)) heads.grids.push_back(readDescriptor(cursor));
+    for (VdbGrid& grid : heads.grids) {
+        cursor.moveTo(grid.place);
+        grid.compression = cursor.read<std::uint32_t>();
+        checkMetadata(cursor, &grid);
+        grid.transform = checkTransform(cursor);
+        grid.tree = cursor.place();
+    }
+    return heads;
+}
+
+VdbValues walkVdbValues(VdbCursor& cursor, const VdbValueFormat& format, std::string_view active) {
+    VdbValues values;
+    values.kind = cursor.read<std::uint8_t>();
+    if (values.kind > VdbValues::kAllStored) cursor.fail("values of an unknown kind");
+    const std::size_t inactive = VdbValues::inactiveOf(values.kind) * format.whole;
+    const std::string_view before = cursor.take(inactive + (VdbValues::hasMask(values.kind) ? active.size() : 0));
+    values.inactive = before.substr(0, inactive);
+    values.chosen = before.substr(inactive);
+    const bool some = (format.compression & kVdbActiveOnly) != 0 && values.kind != VdbValues::kAllStored;
+    values.stored = some ? countOn(active) : active.size() * 8;
+    // OpenVDB writes nothing for no halves, but a length for no floats.
+    if (format.half != 0 && values.stored == 0) return values;
+    values.length = values.stored * (format.half != 0 ? format.half : format.whole);
+    if ((format.compression & (kVdbZip | kVdbBlosc)) == 0) {
+        values.data = cursor.take(values.length);
+        return values;
+    }
+    const auto packed = cursor.read<std::int64_t>();
+    values.packed = packed > 0;
+    // Unsigned: the least of a damaged file has no opposite.
+    if (!values.packed && 0 - static_cast<std::uint64_t>(packed) != values.length)
+        cursor.fail("values of another number");
+    values.data = cursor.take(values.packed ? static_cast<std::uint64_t>(packed) : values.length);
+    if (values.packed && (format.compression & kVdbBlosc) != 0) requireBlosc(cursor, values.data, values.length);
+    return values;
+}
+
+void walkVdbTree(VdbCursor& cursor, const VdbValueFormat& format, VdbTreeVisitor& visitor) {
+    constexpr std::size_t kBuffers = sizeof(std::int32_t);  // how many; always one
+    visitor.background(cursor.take(kBuffers + format.whole).substr(kBuffers));
+    const auto tiles = cursor.read<std::uint32_t>();
+    const auto children = cursor.read<std::uint32_t>();
+    for (std::uint32_t n = 0; n < tiles; ++n) {
+        const openvdb::Coord at = readOrigin(cursor);
+        const std::string_view tile = cursor.take(format.whole + 1);
+        visitor.tile(at, tile.substr(0, format.whole), tile.back() != 0);
+    }
+    std::optional<openvdb::Coord> before;
+    for (std::uint32_t n = 0; n < children; ++n) {
+        const openvdb::Coord at = readOrigin(cursor);
+        // OpenVDB writes them in order, reads the leaves in order, and loses one of two at the same place.
+        if (before && !(*before < at)) cursor.fail("nodes out of order");
+        before = at;
+        const VdbNode upper = readNode(cursor, format, at, kUpperLog2, kLowerLog2 + kLeafLog2);
+        visitor.upper(upper);
+        forEachOn(upper.children, [&](std::size_t child) {
+            const VdbNode lower = readNode(cursor, format, upper.originOf(child), kLowerLog2, kLeafLog2);
+            visitor.lower(lower, cursor.take(countOn(lower.children) * kLeafMaskBytes));
+        });
+    }
+}
+
+}  // namespace stratum::march

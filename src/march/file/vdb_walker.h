@@ -1,0 +1,172 @@
+// The grammar of .vdb files, formats 222 to 224, as one walk that believes nothing: for the check of a file before
+// OpenVDB reads it, and for leaves that are read one at a time.
+//
+// What it follows: io::Archive, io::GridDescriptor, MetaMap, Transform; Tree, RootNode, InternalNode and
+// LeafNode::readTopology() and readBuffers(), and io::readCompressedValues(), of OpenVDB 10.
+#pragma once
+
+#include "base/byte_cursor.h"
+
+#include <openvdb/openvdb.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::march {
+
+class VdbCursor : public ByteCursor<VdbCursor> {
+public:
+    /// @param where  how messages begin
+    /// @param grid  if it is given, messages tell that this grid is damaged, whatever is wrong
+    VdbCursor(std::string_view bytes, const std::string& where, const std::string* grid = nullptr)
+        : ByteCursor(bytes), where_(where), grid_(grid) {}
+
+    /// Throws InputError.
+    [[noreturn]] void fail(std::string_view why) const;
+    [[noreturn]] void endsEarly() const { fail("it ends early"); }
+    void moveTo(std::int64_t place);
+    std::string text() { return std::string(take(read<std::uint32_t>())); }
+    /// The bytes from `first` to here.
+    std::string_view since(std::uint64_t first) const {
+        return bytes_.substr(static_cast<std::size_t>(first), place_ - static_cast<std::size_t>(first));
+    }
+    const std::string& where() const { return where_; }
+
+private:
+    const std::string& where_;
+    const std::string* grid_;
+};
+
+/// Bits of VdbGrid::compression.
+inline constexpr std::uint32_t kVdbZip = 1, kVdbActiveOnly = 2, kVdbBlosc = 4;
+
+/// What a file says of a grid before its tree. Places are from the beginning of the file, bytes.
+struct VdbGrid {
+    std::string name;    ///< with the number that tells it from others of the same name
+    std::string type;    ///< without what is said of halves
+    std::string parent;  ///< the grid that it is an instance of; empty: none
+    bool half = false;
+    std::int64_t place = 0, leaves = 0, end = 0;
+    std::uint32_t compression = 0;
+    /// io::DelayedLoadMetadata: the sizes of the leaves, so that nobody has to look at every one. The bytes begin
+    /// with their own number.
+    std::optional<std::uint64_t> listed;
+    std::string_view sizes;
+    std::string_view transform;
+    std::uint64_t tree = 0;
+};
+
+struct VdbHeads {
+    std::uint32_t format = 0;
+    std::vector<VdbGrid> grids;
+};
+
+/// Walks through the file's own head, and metadata and transforms of all its grids. Throws InputError unless all of it
+/// is in the file and fits together.
+VdbHeads walkVdbHeads(VdbCursor& cursor);
+
+// --- values ----------------------------------------------------------------------------------------------------------
+
+/// How the values of a grid are stored.
+struct VdbValueFormat {
+    std::size_t whole = 0;  ///< bytes of a value
+    std::size_t half = 0;   ///< bytes of one as halves; 0: they are not stored as halves
+    std::uint32_t compression = 0;
+};
+
+/// The values of a node, as they are stored.
+struct VdbValues {
+    /// What is said of the inactive values, in place of them.
+    enum Kind : std::uint8_t {
+        kBackground,
+        kMinusBackground,
+        kOneValue,
+        kMaskOfBackgrounds,
+        kMaskAndOneValue,
+        kMaskAndTwoValues,
+        kAllStored
+    };
+    static bool hasMask(int kind) { return kind >= kMaskOfBackgrounds && kind <= kMaskAndTwoValues; }
+    /// How many inactive values are stored.
+    static std::size_t inactiveOf(int kind) {
+        if (kind == kMaskAndTwoValues) return 2;
+        return kind == kOneValue || kind == kMaskAndOneValue ? 1 : 0;
+    }
+
+    int kind = kBackground;
+    std::string_view inactive;  ///< inactiveOf(kind) values
+    std::string_view chosen;    ///< if hasMask(kind): a bit a value, which of two inactive ones it is
+    std::uint64_t stored = 0;   ///< values in `data`
+    std::uint64_t length = 0;   ///< their bytes, unpacked
+    std::string_view data;
+    bool packed = false;
+};
+
+/// What is packed is not unpacked, but a Blosc buffer is known to unpack to `length` bytes.
+/// @param active  a bit a value
+VdbValues walkVdbValues(VdbCursor& cursor, const VdbValueFormat& format, std::string_view active);
+
+// --- trees -----------------------------------------------------------------------------------------------------------
+
+inline constexpr int kUpperLog2 = 5;  ///< of children a side, in the nodes below the root
+inline constexpr int kLowerLog2 = 4;  ///< and in those below them, whose children are leaves
+inline constexpr int kLeafLog2 = 3;
+inline constexpr std::size_t kLeafMaskBytes = 64;
+
+/// 64 bits of a mask, which need not be aligned.
+inline std::uint64_t wordOf(std::string_view mask, std::size_t word) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, mask.data() + word * sizeof bits, sizeof bits);
+    return bits;
+}
+
+inline std::uint64_t countOn(std::string_view mask) {
+    std::uint64_t on = 0;
+    for (std::size_t n = 0; n < mask.size() / 8; ++n) on += static_cast<std::uint64_t>(std::popcount(wordOf(mask, n)));
+    return on;
+}
+
+/// Calls `visit` with the number of each bit that is on.
+template <typename Visit>
+void forEachOn(std::string_view mask, const Visit& visit) {
+    for (std::size_t word = 0; word < mask.size() / 8; ++word)
+        for (std::uint64_t rest = wordOf(mask, word); rest != 0; rest &= rest - 1)
+            visit(64 * word + static_cast<std::size_t>(std::countr_zero(rest)));
+}
+
+/// A node with 2^log2_edge children a side, each of 2^child_log2 voxels a side.
+struct VdbNode {
+    openvdb::Coord origin;
+    int log2_edge = 0, child_log2 = 0;
+    std::string_view children, active;
+    VdbValues values;  ///< of its tiles
+
+    openvdb::Coord originOf(std::size_t child) const {
+        const std::size_t last = (std::size_t{1} << log2_edge) - 1;
+        const auto along = [&](std::size_t index) { return static_cast<int>(index & last) << child_log2; };
+        return origin.offsetBy(along(child >> (2 * log2_edge)), along(child >> log2_edge), along(child));
+    }
+};
+
+/// Is told what a tree is made of, in the file's order.
+class VdbTreeVisitor {
+public:
+    virtual ~VdbTreeVisitor() = default;
+    virtual void background(std::string_view /*value*/) {}
+    /// Of 4096^3 voxels.
+    virtual void tile(const openvdb::Coord& /*origin*/, std::string_view /*value*/, bool /*active*/) {}
+    virtual void upper(const VdbNode& /*node*/) {}
+    /// @param leaf_masks  of the active voxels of its children; they are stored once more beside the leaves' values
+    virtual void lower(const VdbNode& /*node*/, std::string_view /*leaf_masks*/) {}
+};
+
+/// From the cursor to the first leaf: the upper levels, a thousandth of a file.
+void walkVdbTree(VdbCursor& cursor, const VdbValueFormat& format, VdbTreeVisitor& visitor);
+
+}  // namespace stratum::march
