@@ -1,4 +1,4 @@
-// An Intersector that also knows what its grids say at a hit.
+// An Intersector with attribute grids and smooth normals.
 #pragma once
 
 #include "march/attribute/attribute_grid.h"
@@ -14,14 +14,14 @@ namespace stratum::march {
 
 struct Annotation {
     openvdb::FloatGrid::ConstPtr smooth;  ///< the level set, for smooth normals; null: geometric ones
-    std::vector<std::shared_ptr<const AttributeSource>> attributes;  ///< by number; null where there is no such one
+    std::vector<std::shared_ptr<const AttributeSource>> attributes;  ///< by number; null for missing ones
     std::shared_ptr<const LeafField> smooth_field = nullptr;         ///< instead of `smooth`
 
     bool empty() const;
 };
 
-/// Rays are answered by `shape` as before; Tracer::shadingNormal() and attribute() by the grids, which are kept. With
-/// nothing to add, `shape` itself.
+/// `shape` traces the rays; the grids, which are kept, give Tracer::shadingNormal() and attribute(). Returns `shape`
+/// itself if there is nothing to add.
 std::shared_ptr<const trace::Intersector> annotate(std::shared_ptr<const trace::Intersector> shape,
                                                    Annotation annotation);
 

@@ -23,7 +23,7 @@ glm::vec3 toGlm(float v) { return {v, 0.0F, 0.0F}; }
 // Exact up to 2^24: layers, tools and features are fewer.
 glm::vec3 toGlm(std::int32_t v) { return {static_cast<float>(v), 0.0F, 0.0F}; }
 
-/// Calls f with the grid as what it is; false if it is none of the three.
+/// Calls f with the grid of its actual type; false if it is none of the three.
 template <typename F>
 bool visit(const openvdb::GridBase& grid, const F& f) {
     if (grid.isType<openvdb::Int32Grid>())

@@ -1,4 +1,4 @@
-// Attribute grids beside a level set: reading them, and the value at a point of its surface.
+// Reads the attribute grids of a level set, and looks up values at points of its surface.
 #pragma once
 
 #include "trace/attribute.h"
@@ -15,26 +15,26 @@
 namespace stratum::march {
 
 /// Reads the grid `name` (of Int32, float or Vec3f) of a .vdb and checks that it lies on the lattice of `surface`.
-/// Throws InputError: no such grid, with those that there are; of another type; on another lattice.
+/// Throws InputError: no such grid, with a list of those in the file; of another type; on another lattice.
 openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path, const std::string& name,
                                               const openvdb::FloatGrid& surface);
 
-/// Looks at all active voxels once. Throws InputError if there are more than AttributeSummary::kMostColors colours.
+/// One pass over all active voxels. Throws InputError if there are more than AttributeSummary::kMostColors colors.
 trace::AttributeSummary summarize(const openvdb::GridBase& grid);
 
-/// One a thread. Keeps a reference to the grid.
+/// Belongs to one thread. Keeps a reference to the grid.
 class AttributeLookup {
 public:
     virtual ~AttributeLookup() = default;
-    /// The value of that active voxel, of the eight around the point, which is nearest to it: a voxel has the value of
-    /// the bead whose surface is nearest, and values of different beads don't mix. Nothing if none of them is active.
+    /// The value of the nearest active voxel among the eight around the point. Values are not interpolated, because
+    /// voxels may have values of different beads. Nothing if none of the eight is active.
     /// @param position  world space
     virtual std::optional<glm::vec3> at(const glm::dvec3& position) = 0;
 };
 
 std::unique_ptr<AttributeLookup> makeAttributeLookup(const openvdb::GridBase& grid);
 
-/// An attribute of a level set, wherever its values are kept. Immutable; shared by all threads.
+/// An attribute of a level set, in a grid or computed. Immutable; shared by all threads.
 class AttributeSource {
 public:
     virtual ~AttributeSource() = default;
@@ -43,7 +43,7 @@ public:
     virtual std::size_t bytes() const = 0;
 };
 
-/// That of a grid; null for null.
+/// The attribute of a grid; null for null.
 std::shared_ptr<const AttributeSource> makeAttributeSource(openvdb::GridBase::ConstPtr grid);
 
 }  // namespace stratum::march

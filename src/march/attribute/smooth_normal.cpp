@@ -26,7 +26,7 @@ private:
     openvdb::FloatGrid::ConstAccessor accessor_;
 };
 
-// Keeps the leaves lately asked for: a megabyte, once a hit asks.
+// Caches the leaves used last: a megabyte, allocated on first use.
 class FieldReader final : public SampleReader {
 public:
     explicit FieldReader(const LeafField& field) : field_(field) {}
@@ -36,7 +36,7 @@ public:
         const auto part = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) / kEdge % kSide; };
         Leaf& leaf = leaves_[(part(0) * kSide + part(1)) * kSide + part(2)];
         if (leaf.origin != origin) {
-            leaf.origin = openvdb::Coord::max();  // in case that making throws
+            leaf.origin = openvdb::Coord::max();  // invalid if sampling throws
             leaf.uniform = !field_.samples(origin, leaf.samples);
             leaf.origin = origin;
         }
@@ -96,7 +96,8 @@ glm::dvec3 SmoothNormal::at(const glm::dvec3& position, const glm::dvec3& geomet
     const glm::dvec3 world = central * to_index_;
     const double length = glm::length(world);
     if (!(slope > 0.0) || !(length > 0.0)) return geometric;
-    // Across a crease the two sides' slopes cancel in part: measured against what is left, it bends all the more.
+    // Across a crease the slopes of the two sides partly cancel; relative to the remaining slope the curvature is
+    // larger.
     const double t = std::clamp((bend / slope - kSmooth) / (kCrease - kSmooth), 0.0, 1.0);
     const double sharp = t * t * (3.0 - 2.0 * t);
     const glm::dvec3 mixed = (1.0 - sharp) * (world / length) + sharp * geometric;

@@ -1,4 +1,4 @@
-// Normals that don't show the cells of the grid.
+// Smooth normals: gradients without the discontinuities at the faces of cells.
 #pragma once
 
 #include "march/file/leaf_field.h"
@@ -11,18 +11,18 @@
 
 namespace stratum::march {
 
-/// Single samples of a level set, world units. One a thread.
+/// Single samples of a level set, world units. Belongs to one thread.
 class SampleReader {
 public:
     virtual ~SampleReader() = default;
     virtual float at(const openvdb::Coord& place) = 0;
 };
 
-/// The gradient of the trilinear field has a step at every face between cells, which gloss shows as facets. Central
-/// differences over a voxel to each side have none, but blur what is sharp: a crease between two beads. So both are
-/// mixed by how much the field bends within that voxel: below kSmooth (voxels per voxel of slope: a radius of 3 voxels)
-/// central differences, above kCrease the gradient in the cell.
-/// One a thread. Keeps a reference to the grid or field. World space.
+/// The gradient of the trilinear field is discontinuous at every face between cells, which is visible as facets on
+/// glossy surfaces. Central differences over a voxel to each side are continuous, but blur sharp creases between two
+/// beads. So both are blended by the curvature of the field within that voxel: below kSmooth (change of slope per
+/// voxel: a radius of 3 voxels) central differences, above kCrease the gradient in the cell. Belongs to one thread.
+/// Keeps a reference to the grid or field. World space.
 class SmoothNormal {
 public:
     static constexpr double kSmooth = 0.33;
@@ -32,7 +32,7 @@ public:
     explicit SmoothNormal(const LeafField& field);
     /// @param position   a point of the surface
     /// @param geometric  the unit normal there, in the cell
-    /// Unit length, and on the side of `geometric`, which is the answer where the field has no slope.
+    /// Unit length, on the side of `geometric`; `geometric` itself where the gradient is zero.
     glm::dvec3 at(const glm::dvec3& position, const glm::dvec3& geometric);
 
 private:

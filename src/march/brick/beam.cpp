@@ -6,7 +6,7 @@ namespace stratum::march {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kFewRays = 64;  // fewer don't pay for their beams
+constexpr std::size_t kFewRays = 64;  // for fewer rays beams cost more than they save
 constexpr double kSteepest = 8;       // slope against the main axis; rays that differ more have no axis in common
 
 }  // namespace
@@ -37,7 +37,7 @@ std::span<const double> Beams::starts(std::span<const trace::Ray> rays) {
         const double inverse = 1 / glm::dot(row_main, ray.direction);
         const double u = glm::dot(row_u, ray.direction) * inverse;
         const double v = glm::dot(row_v, ray.direction) * inverse;
-        // Written so that rays that are no numbers have nothing in common.
+        // Written so that rays with NaN fail the test.
         common &= ray.origin == first.origin && (inverse > 0) == forth_ && std::abs(u) < kSteepest &&
                   std::abs(v) < kSteepest && std::abs(inverse) < kInfinity;
         slope_[0][n] = u;
@@ -106,7 +106,7 @@ double Beams::firstPlane(const Bounds& slopes) const {
     constexpr int kSlab = BrickGrid::kMacroEdge;
     constexpr int kThin = BrickGrid::kBrickEdge;
     const int slabs = sizeOf(main_) / kSlab;
-    // Slabs behind the eye are left out; the one that it is in counts whole.
+    // Slabs behind the eye are skipped; the eye's own slab counts as a whole.
     const double at = eye_[main_] / kSlab;
     const int begin = forth_ ? static_cast<int>(std::clamp(at, 0.0, slabs - 1.0))
                              : static_cast<int>(std::clamp(std::ceil(at), 1.0, static_cast<double>(slabs))) - 1;

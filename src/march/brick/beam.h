@@ -1,7 +1,7 @@
-// Rays from one eye share their way through empty space: where they have to begin to look.
+// Beams of rays from one eye: finds how much empty space before the first brick they can skip together.
 //
 // After the beam optimization of Laine and Karras, "Efficient Sparse Voxel Octrees" (I3D 2010): the rays of a stream
-// are sorted by direction into small beams, and each beam goes from slab to slab until bricks stand in its way.
+// are sorted by direction into small beams, and each beam advances from slab to slab until it contains a brick.
 #pragma once
 
 #include "march/brick/brick_walk.h"
@@ -16,19 +16,19 @@ namespace stratum::march {
 
 class Beams {
 public:
-    /// The most rays that are looked at together.
+    /// The most rays of one call.
     static constexpr std::size_t kMostRays = 1024;
 
     Beams(const BrickGrid& grid, const CellMap& map) : grid_(grid), map_(map) {}
-    /// For up to kMostRays rays. If they come from one eye and look the same way, returns for each a t before which it
-    /// meets no brick, a cell's width and more before the first one; infinite if it meets none at all. Empty otherwise:
-    /// then nothing is known. Valid until the next call.
+    /// For up to kMostRays rays. If they have one origin and similar directions, returns for each a t before which it
+    /// reaches no brick, at least a cell's width before the first one; infinite if it reaches none. Empty otherwise.
+    /// Valid until the next call.
     std::span<const double> starts(std::span<const trace::Ray> rays);
 
 private:
     static constexpr int kSide = 4;  // beams along each axis of directions
 
-    // Slopes of rays against the axis along which they mostly go.
+    // Slopes of rays against their main axis.
     struct Bounds {
         double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
     };

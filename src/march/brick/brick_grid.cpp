@@ -15,15 +15,15 @@
 namespace stratum::march {
 namespace {
 
-constexpr std::size_t kGrain = 16;  // macro cells a task: many enough to find their neighbours in the cache
+constexpr std::size_t kGrain = 16;  // macro cells a task: enough to find their neighbours in the cache
 
-// Samples of a level set reach no further than its band; what does is put at its edge.
+// Samples of a level set are within its narrow band; larger ones are clamped.
 double quantumOf(float background, BrickValues values) {
     return values == BrickValues::Int16 ? static_cast<double>(background) / kMostQuanta : 1;
 }
 
-// Converted leaves that a thread has used lately: those that neighbouring bricks share are converted once. The eight of
-// one brick have places of their own.
+// A thread's cache of recently converted leaves, because neighbouring bricks share leaves. The eight leaves of one
+// brick have distinct entries.
 template <typename T>
 class LeafCache {
 public:
@@ -65,7 +65,7 @@ public:
           field_(std::move(field)),
           scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))) {}
 
-    // To be held by who lays out a brick, if others may want the same. Other bricks rarely share it.
+    // The mutex to lock while laying out a brick. Two bricks rarely share one.
     std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
 
     // Coordinates in bricks. False if there is no room.
@@ -83,7 +83,7 @@ public:
                                                      : layOutAll(x, y, z, grid_.quanta_.data(), quanta_caches_.local());
     }
 
-    // What it remembers of leaves is no longer so.
+    // Clears the caches of leaves, after they have changed.
     void forgetLeaves() const {
         float_caches_.clear();
         quanta_caches_.clear();
@@ -98,7 +98,7 @@ private:
         std::uint32_t slot = BrickSlots::kNoSamples;
         if (hasAny(surface)) {
             slot = grid_.slots_.take(brick);
-            if (slot == 0) return false;  // another thread was faster
+            if (slot == 0) return false;  // another thread took the last slot
             march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
         }
         for (std::size_t part = 0; part < surface.size(); ++part)
@@ -116,7 +116,7 @@ private:
         std::size_t count = 0;
         for (std::uint64_t rest = listed; rest != 0; rest &= rest - 1) {
             const int bit = std::countr_zero(rest);
-            // The leaves of one macro cell and its neighbours have places of their own in the cache.
+            // The leaves of one macro cell and its neighbours have distinct entries in the cache.
             parts[count] = partsOf(4 * x + (bit >> 4), 4 * y + (bit >> 2 & 3), 4 * z + (bit & 3), cache);
             surface[count] = surfaceOf(parts[count]);
             if (!hasAny(surface[count])) continue;
@@ -171,7 +171,7 @@ private:
         return grid_.origin_.offsetBy(x * kBrickEdge, y * kBrickEdge, z * kBrickEdge);
     }
 
-    // Of the source, null where it has no leaf.
+    // A leaf of the source, null where it has none.
     template <typename T>
     const LeafSamples<T>* leafAt(int x, int y, int z, LeafCache<T>& cache) const {
         if (x >= 4 * grid_.macros_[0] || y >= 4 * grid_.macros_[1] || z >= 4 * grid_.macros_[2]) return nullptr;
@@ -180,7 +180,7 @@ private:
         auto& entry = cache.at(x, y, z);
         const std::uint64_t key = cache.keyOf(x, y, z);
         if (entry.key == key) return &entry.samples;
-        entry.key = 0;  // in case that reading throws
+        entry.key = 0;  // invalid if reading throws
         alignas(64) float scratch[LeafSource::kLeafSamples];
         const std::uint32_t leaf = leaves_[brickIndex(macro, x & 3, y & 3, z & 3)];
         keep(source_->samples(leaf, scratch), source_->name(), source_->origin(leaf), entry.samples);
@@ -188,13 +188,13 @@ private:
         return &entry.samples;
     }
 
-    // Of the field, null where all is background.
+    // A leaf of the field, null where all is background.
     template <typename T>
     const typename LeafCache<T>::Entry* madeAt(int x, int y, int z, LeafCache<T>& cache) const {
         auto& entry = cache.at(x, y, z);
         const std::uint64_t key = cache.keyOf(x, y, z);
         if (entry.key != key) {
-            entry.key = 0;  // in case that making throws
+            entry.key = 0;  // invalid if sampling throws
             FieldSamples made;
             const openvdb::Coord at = coordOf(x, y, z);
             entry.uniform = !field_->samples(at, made);
@@ -217,7 +217,7 @@ private:
     }
 
     const BrickGrid& grid_;
-    // One of both is there.
+    // One of the two is set.
     const LeafSource* const source_;
     const std::shared_ptr<const LeafSource> owned_;
     const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
@@ -230,7 +230,7 @@ private:
 
 BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(values) {
     const Layouter layouter(*this, source, nullptr, listBricks(source, false, kNoBound));
-    HugeArray<MacroCell> made(macro_cells_.size());  // neighbours still need what is listed
+    HugeArray<MacroCell> made(macro_cells_.size());  // a copy, because neighbours still need the listed bricks
     parallelFor(made.size(), kGrain, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
             if (macro_cells_[n].bricks == 0) continue;
@@ -262,7 +262,7 @@ BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values,
 
 BrickGrid::~BrickGrid() = default;
 
-bool BrickGrid::require(std::size_t brick, int x, int y, int z) const {
+bool BrickGrid::ensureBrick(std::size_t brick, int x, int y, int z) const {
     if (slots_.of(brick) != 0) return true;
     const std::scoped_lock lock(layouter_->doorOf(brick));
     if (slots_.of(brick) != 0) return true;
@@ -273,8 +273,8 @@ bool BrickGrid::require(std::size_t brick, int x, int y, int z) const {
     return there;
 }
 
-std::uint64_t BrickGrid::surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
-    while (!require(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge)) slots_.makeRoom(true);
+std::uint64_t BrickGrid::ensureSurface(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {
+    while (!ensureBrick(brick, cell.x / kBrickEdge, cell.y / kBrickEdge, cell.z / kBrickEdge)) slots_.makeRoom(true);
     if (slots_.bounded()) {
         if (const std::uint32_t slot = slots_.of(brick); slot != BrickSlots::kNoSamples) slots_.mark(slot);
         slots_.count(1);
@@ -296,7 +296,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
                 continue;
             const std::size_t n = macroIndex(at[0] / kMacroEdge, at[1] / kMacroEdge, at[2] / kMacroEdge);
             MacroCell macro = macro_cells_[n];
-            macro.bricks = map.masks[n];  // also if it isn't shown
+            macro.bricks = map.masks[n];  // even if it isn't shown
             const int b[3] = {at[0] / kBrickEdge & 3, at[1] / kBrickEdge & 3, at[2] / kBrickEdge & 3};
             if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
             const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
@@ -307,8 +307,8 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
     measureEmptySpace();
 }
 
-// Finds the box, sets the bits of all leaves, and makes room. Returns the leaf of each brick.
-std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool late, std::size_t cache_bytes) {
+// Finds the box, sets the bits of all leaves, and allocates the memory. Returns the leaf of each brick.
+std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool lazy, std::size_t cache_bytes) {
     unit_ = quantumOf(source.background(), values_);
     const std::size_t count = source.leafCount();
     openvdb::CoordBBox box;
@@ -327,7 +327,7 @@ std::vector<std::uint32_t> BrickGrid::listBricks(const LeafSource& source, bool 
         const openvdb::Coord at = source.origin(n) - origin_;
         macroOf(at).bricks |= std::uint64_t{1} << Mask64::bit(within(at[0]), within(at[1]), within(at[2]));
     }
-    countBricks(late, cache_bytes);
+    countBricks(lazy, cache_bytes);
     std::vector<std::uint32_t> leaves(count);
     for (std::size_t n = 0; n < count; ++n) {
         const openvdb::Coord at = source.origin(n) - origin_;
@@ -351,10 +351,10 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     macros_ = macros;
     double cells = 1;
     for (const int macro : macros) cells *= macro;
-    // Two leaves at the ends of space must not cost what lies between: prints have one or two macro cells a leaf, or
+    // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
     // much less.
     const double most = std::min(2147483648.0, 16777216.0 + 4096.0 * static_cast<double>(leaves));
-    constexpr int kLongest = (1 << 19) - 1;  // macro cells: places of leaves are kept in 21 bits an axis
+    constexpr int kLongest = (1 << 19) - 1;  // macro cells: leaf coordinates are kept in 21 bits an axis
     if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves >= BrickSlots::kNoSamples)
         throw InputError(fmt::format(
             "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
@@ -365,20 +365,20 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
 }
 
-// Numbers the bricks whose bits are set, and makes room for them.
-void BrickGrid::countBricks(bool late, std::size_t cache_bytes) {
+// Numbers the bricks whose bits are set, and allocates their memory.
+void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
     std::uint32_t first = 0;
     for (MacroCell& macro : macro_cells_) {
         macro.first_brick = first;
         first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
     listed_ = first;
-    // A picture writes few of them if they are laid out late.
+    // A picture writes few of them in a lazy grid.
     using Pages = HugeArray<CellBits>::Pages;
-    clear_ = HugeArray<CellBits>(listed_, late ? Pages::small : Pages::huge);
-    // Room for all, of which only what is used is ever touched, or for as many as there may be.
+    clear_ = HugeArray<CellBits>(listed_, lazy ? Pages::small : Pages::huge);
+    // Address space for all bricks, of which only the used part is ever touched, or for as many as the bound allows.
     std::size_t bricks = listed_;
-    if (late) {
+    if (lazy) {
         slots_.open(listed_, cache_bytes / brickBytes());
         bricks = slots_.size();
         if (slots_.bounded() && bricks < BrickSlots::kLeastBound)
@@ -421,7 +421,7 @@ void BrickGrid::measureEmptySpace() {
     for (int x = nx - 1; x >= 0; --x)
         for (int y = ny - 1; y >= 0; --y)
             for (int z = nz - 1; z >= 0; --z) relax(x, y, z, -1);
-    // A box that reaches beyond all edges is as good as one that reaches far beyond; small numbers keep products small.
+    // Clamped to the size of the box: larger radii have no effect, and small numbers keep products small.
     const auto widest = static_cast<std::uint32_t>(std::max({nx, ny, nz}));
     for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
 }

@@ -6,9 +6,10 @@
 //   brick        8^3 cells: a bit for every surface cell (corners not of one sign), and the 9^3 samples at its corners
 // All coordinates are cells, counted from the grid's lowest corner.
 //
-// Bricks are laid out at once, or each when the first ray comes to it: then a brick is there for every leaf, all its
-// cells count as surface until it is laid out, and a picture costs what it shows. With a bound on what may be laid out
-// at once (see brick_slots.h), bricks come and go; what is known of their surface cells stays.
+// Bricks are laid out at once (eager), or each when the first ray reaches it (lazy). A lazy grid lists a brick for
+// every leaf, and all its cells count as surface until it is laid out; so only the visible bricks are laid out. With a
+// bound on their number (see brick_slots.h), bricks are evicted and laid out again; their bits of surface cells are
+// kept.
 #pragma once
 
 #include "base/huge_array.h"
@@ -33,7 +34,7 @@
 
 namespace stratum::march {
 
-/// 4^3 bits, x slowest: whether something is at (x, y, z), and how large a part around a place is empty.
+/// 4^3 bits, x slowest: occupancy of (x, y, z), and the size of the empty block around a position.
 struct Mask64 {
     static constexpr int bit(int x, int y, int z) { return x << 4 | y << 2 | z; }
     /// Bits of the aligned 2^3 group at even (x, y, z).
@@ -69,15 +70,15 @@ public:
     static constexpr std::ptrdiff_t kBrickSamples = kStrideX * kSamples;
     static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
-    /// Lays out every brick, in parallel. The source is not needed afterwards.
+    /// Eager: lays out every brick, in parallel. The source is not needed afterwards.
     /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, or 2^24 and 4096
-    /// for each leaf, or 2^19 along an axis; and, with the place, for samples that are no finite numbers.
+    /// for each leaf, or 2^19 along an axis; and, with the position, for samples that are no finite numbers.
     BrickGrid(const LeafSource& source, BrickValues values);
     BrickGrid(const openvdb::FloatGrid& grid, BrickValues values) : BrickGrid(GridLeaves(grid), values) {}
-    /// Lays bricks out when require() asks for them, which then throws as above. No more than `cache_bytes` of samples
-    /// at once: throws UsageError if that is no room for BrickSlots::kLeastBound bricks.
+    /// Lazy: ensureBrick() lays bricks out, and then throws as above. Samples take at most `cache_bytes` at a time:
+    /// throws UsageError if that is less than BrickSlots::kLeastBound bricks.
     BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes = kNoBound);
-    /// The same for samples that aren't there yet either.
+    /// Lazy, for samples that are computed when they are needed.
     BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes = kNoBound);
     ~BrickGrid();
     BrickGrid(const BrickGrid&) = delete;
@@ -95,44 +96,44 @@ public:
         return macro.first_brick + static_cast<std::size_t>(std::popcount(macro.bricks & before));
     }
 
-    /// For a field that has changed: forgets the bricks that have samples of these leaves (index-space coordinates of
-    /// their first samples), and asks which macro cells it shows now. All others stay as they are. Not while rays are
+    /// For a field that has changed: discards the bricks that have samples of these leaves (index-space coordinates of
+    /// their first samples), and updates which macro cells are shown. All other bricks are kept. Not while rays are
     /// traced.
     void update(std::span<const openvdb::Coord> leaves);
 
-    /// Whether bricks are laid out as they are asked for.
-    bool late() const { return layouter_ != nullptr; }
-    /// Lays out the brick at this place, unless it is. From any thread. False if there is no room for it.
-    bool require(std::size_t brick, int x, int y, int z) const;
-    /// What samples are read by. With a bound, from require() on until they have been read a Reading must be held, and
-    /// makeRoom() called when there is no room.
+    /// Whether bricks are laid out when rays reach them.
+    bool lazy() const { return layouter_ != nullptr; }
+    /// Lays out the brick at (x, y, z), in bricks, unless it is laid out already. From any thread. False if there is no
+    /// free slot.
+    bool ensureBrick(std::size_t brick, int x, int y, int z) const;
+    /// The slots of the samples. With a bound, hold a Reading from ensureBrick() until the samples have been read, and
+    /// call makeRoom() if there is no free slot.
     BrickSlots& cache() const { return slots_; }
 
     /// The surface cells among 4^3 of a brick's, `part` = x << 2 | y << 1 | z; all, before it is laid out.
     std::uint64_t surface(std::size_t brick, std::size_t part) const {
         return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
     }
-    /// The same after require() of the brick that `cell` is in; waits for room.
-    std::uint64_t surfaceOnceThere(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
+    /// The same after ensureBrick() of the brick that contains `cell`; waits for a free slot.
+    std::uint64_t ensureSurface(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
     /// Where the samples of a brick with surface begin, in units of samples.
     std::size_t firstSample(std::size_t brick) const {
-        if (late()) [[unlikely]]
+        if (lazy()) [[unlikely]]
             brick = slots_.of(brick) - 1;
         return brick * static_cast<std::size_t>(kBrickSamples);
     }
     BrickValues values() const { return values_; }
-    /// All samples; x slowest in a brick. One of both is there.
+    /// All samples; x slowest in a brick. Only the one of values() exists.
     const float* floats() const { return floats_.data(); }
     const std::int16_t* quanta() const { return quanta_.data(); }
     /// World units of 1 in the samples.
     double unit() const { return unit_; }
 
-    /// The same as arrays, for vector code.
+    /// The same data as arrays, for vector code.
     const MacroCell* macroCells() const { return macro_cells_.data(); }
     /// Complements of the surface cells.
     const CellBits* clearCells() const { return clear_.data(); }
-    /// Where each brick's samples are if bricks are laid out late: BrickSlots::table(). The samples of bricks that are
-    /// laid out at once lie in the bricks' own order.
+    /// Of a lazy grid: each brick's slot, BrickSlots::table(). In an eager grid samples are in the order of the bricks.
     const std::uint32_t* slots() const { return slots_.table(); }
 
     /// Bricks that have an index.
@@ -144,9 +145,9 @@ public:
         return static_cast<std::size_t>(kBrickSamples) *
                (values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t));
     }
-    /// What laying out bricks late took, all threads' seconds together.
+    /// Time spent to lay out bricks lazily: seconds, the sum of all threads.
     double layoutSeconds() const { return 1e-9 * static_cast<double>(layout_ns_.load(std::memory_order_relaxed)); }
-    /// Memory taken for all.
+    /// Memory of all, bytes.
     std::size_t bytes() const;
 
 private:
@@ -160,10 +161,10 @@ private:
     MacroCell& macroOf(const openvdb::Coord& cell) {
         return macro_cells_[macroIndex(cell[0] / kMacroEdge, cell[1] / kMacroEdge, cell[2] / kMacroEdge)];
     }
-    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool late, std::size_t cache_bytes);
+    std::vector<std::uint32_t> listBricks(const LeafSource& source, bool lazy, std::size_t cache_bytes);
     void listBricks(const LeafField& field, std::size_t cache_bytes);
     void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
-    void countBricks(bool late, std::size_t cache_bytes);
+    void countBricks(bool lazy, std::size_t cache_bytes);
     void measureEmptySpace();
 
     openvdb::Coord origin_;
@@ -173,7 +174,7 @@ private:
     double unit_ = 1;
     HugeArray<MacroCell> macro_cells_;
     std::size_t listed_ = 0;  // bricks that have an index
-    // Written when a brick is laid out, also in a grid that is const to those who trace it.
+    // Mutable: a lazy grid lays out bricks while const tracers read it.
     mutable HugeArray<CellBits> clear_;
     mutable BrickSlots slots_;
     mutable HugeArray<float> floats_;

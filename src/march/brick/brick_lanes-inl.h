@@ -1,10 +1,10 @@
 // The walk of brick_walk.h in the lanes of a vector, for one Highway target at a time. Included by brick_stream.cpp
 // alone, once a target: hence the guard that toggles.
 //
-// A turn of a packet of rays either moves all lanes that are in empty space out of the largest empty blocks around
-// them, or, once enough lanes stand in surface cells, solves those cells. Then it looks up where its lanes are and
-// calls for the memory that its next turn reads; meanwhile other packets take their turns. All state lies in arrays in
-// the first-level cache: there is more of it than registers.
+// A step of a packet of rays either moves all lanes in empty space out of the largest empty blocks around them, or,
+// once enough lanes are in surface cells, solves those cells. Then it looks up the lanes' new cells and prefetches the
+// memory that its next step reads; meanwhile other packets do their steps. All state is in arrays in the first-level
+// cache: there is more of it than registers.
 #if defined(STRATUM_BRICK_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_BRICK_LANES_INL_H
 #undef STRATUM_BRICK_LANES_INL_H
@@ -36,8 +36,8 @@ namespace HWY_NAMESPACE {
 
 // Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
 constexpr std::size_t kPackets = 8;
-constexpr int kHold = kLanes * 3 / 8;      // lanes in surface cells that make a test worth its turn
-constexpr std::int64_t kGroup = 0x330033;  // Mask64::group() at 0
+constexpr int kMinWaiting = kLanes * 3 / 8;  // lanes in surface cells that make a test worthwhile
+constexpr std::int64_t kGroup = 0x330033;    // Mask64::group() at 0
 template <bool kAny>
 class Marcher {
 public:
@@ -45,7 +45,7 @@ public:
             std::uint8_t* blocked)
         : grid_(grid),
           blocked_(blocked),
-          late_(grid.late()),
+          lazy_(grid.lazy()),
           bounded_(grid.cache().bounded()),
           cache_(grid.cache()),
           reading_(cache_),
@@ -56,23 +56,23 @@ public:
         macro_y_ = grid.size()[1] / BrickGrid::kMacroEdge;
         macro_z_ = grid.size()[2] / BrickGrid::kMacroEdge;
         for (Packet& packet : packets_)
-            // Lanes without a ray stand in cell 0 or where their last ray ended: what they read is there, and ignored.
+            // Lanes without a ray are in cell 0 or where their last ray ended: their reads are valid, and ignored.
             for (auto& field : packet.field)
                 for (double& value : field) value = 0;
     }
 
     void run() {
-        // Each packet looks half a round after it has moved: the two halves of a turn depend on one another, so that
-        // what the processor works on at a time had better be of different packets. What decides is half a round old,
-        // too, so that a wrong guess costs little.
+        // Each packet looks up its cells half a round after it has moved: the two halves of a step depend on each
+        // other, so interleaving packets keeps the processor busy. The branch conditions are half a round old, too, so
+        // that a mispredicted branch costs little.
         for (bool busy = true; busy;) {
             busy = false;
-            if (bounded_ && (full_ || cache_.roomWanted())) rest();
+            if (bounded_ && (full_ || cache_.roomWanted())) releaseBricks();
             for (std::size_t n = 0; n < kPackets; ++n) {
                 Packet& moving = packets_[n];
                 if (moving.alive != 0) {
                     busy = true;
-                    if (std::popcount(moving.waiting) >= kHold || moving.waiting == moving.alive)
+                    if (std::popcount(moving.waiting) >= kMinWaiting || moving.waiting == moving.alive)
                         solve(moving);
                     else
                         leap(moving);
@@ -85,7 +85,7 @@ public:
             }
         }
         if constexpr (!kAny) {
-            batch_.settle();
+            batch_.finishFull();
             batch_.flush();
         }
         if (bounded_) cache_.count(cells_);
@@ -96,7 +96,7 @@ private:
         return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
     }
 
-    // Where a ray leaves a block, by the three planes ahead of it. Walk::aim().
+    // The exit of a ray from a block, by the three planes ahead of it. Walk::aim().
     struct Exit {
         V t;
         M axis[3];
@@ -122,9 +122,9 @@ private:
         const DU du;
         M ended = hn::Ge(exit.t, load(p, kEnd));
         for (int axis = 0; axis < 3; ++axis) {
-            const VI place = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
-            const VI last = whole(last_[axis]);  // what is below 0 is beyond, too
-            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, place), hn::BitCast(du, last))));
+            const VI cell = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
+            const VI last = whole(last_[axis]);  // unsigned, so cells below 0 are beyond it, too
+            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, cell), hn::BitCast(du, last))));
         }
         p.alive &= ~bitsOf(hn::And(ended, moving));
         moving = hn::AndNot(ended, moving);
@@ -137,7 +137,7 @@ private:
         store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
     }
 
-    // Where lanes are: findBlock() as far as the bricks; and calls for their surface cells.
+    // findBlock() down to the bricks; prefetches the bits of their surface cells.
     void look(Packet& p) const {
         const DI di;
         const VI one = whole(1);
@@ -178,7 +178,8 @@ private:
         for (const std::int64_t word : words) hwy::Prefetch(clear + word);
     }
 
-    // One step of every lane that isn't waiting: out of the largest empty block, or to wait in a surface cell.
+    // One step of every lane that isn't waiting: out of the largest empty block, or into the waiting state in a surface
+    // cell.
     void leap(Packet& p) {
         const D d;
         const DI di;
@@ -204,7 +205,7 @@ private:
         const VI low_bits = hn::IfThenElse(hn::RebindMask(di, in_brick), small, empty);
         const VI beyond = loadWhole(p, kBeyond);
 
-        hold(p, bitsOf(hn::And(surface, walking)), part, at, c);
+        startWaiting(p, bitsOf(hn::And(surface, walking)), part, at, c);
         VI last[3];
         VI plane[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -225,18 +226,18 @@ private:
         return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
     }
 
-    // Remembers where the corners of surface cells lie, and calls for them. Lanes for whose brick there is no room look
-    // again in their next turn.
-    HWY_INLINE void hold(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
-        VI place = hn::ShiftRight<3>(part);  // of the brick's samples; bricks that are laid out at once are in order
-        if (late_) {
-            VI slot = slotsOf(place);
-            if (found != 0) found = thereOf(found, slot, place, part, at, c);
-            if (bounded_ && found != 0) note(found, slot);
-            place = slot - whole(1);
+    // Records and prefetches the corners of surface cells. Lanes for whose brick there is no free slot try again in
+    // their next step.
+    HWY_INLINE void startWaiting(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
+        VI slot_index = hn::ShiftRight<3>(part);  // of the brick's samples; in an eager grid the brick's own index
+        if (lazy_) {
+            VI slot = slotsOf(slot_index);
+            if (found != 0) found = ensureSurface(found, slot, slot_index, part, at, c);
+            if (bounded_ && found != 0) markUsed(found, slot);
+            slot_index = slot - whole(1);
         }
         const VI seven = whole(7);
-        const VI sample = product(place, whole(BrickGrid::kBrickSamples)) +
+        const VI sample = product(slot_index, whole(BrickGrid::kBrickSamples)) +
                           product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
                           product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
         const auto newly = hn::RebindMask(DI(), maskOf(found));
@@ -252,38 +253,38 @@ private:
             whole(0xffffffff));
     }
 
-    // Which of the lanes stand in surface cells of bricks that are laid out, after asking for the others' bricks.
-    HWY_NOINLINE unsigned thereOf(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
+    // The lanes whose bricks are laid out, after ensureBricks() for the others, and whose cells are surface cells.
+    HWY_NOINLINE unsigned ensureSurface(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
         const auto missing = [&]() HWY_ATTR { return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found; };
         unsigned not_there = missing();
         if (not_there != 0) {
-            require(not_there, brick, c);
+            ensureBricks(not_there, brick, c);
             std::atomic_signal_fence(std::memory_order_acquire);
-            // Those that have it now read it before anybody may take it away: every brick takes a ray on.
+            // Lanes that have a slot now read it before it can be evicted, so every brick laid out advances a ray.
             slot = slotsOf(brick);
             not_there = missing();
         }
-        // The bits may be older than the slot: laid out by another thread in between.
+        // The bits may be older than the slot, if another thread laid the brick out in between: read them again.
         std::atomic_signal_fence(std::memory_order_acquire);
         const VI clear = gather(grid_.clearCells(), part);
         return found & ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
     }
 
-    HWY_NOINLINE void require(unsigned lanes, VI brick, const VI c[3]) {
+    HWY_NOINLINE void ensureBricks(unsigned lanes, VI brick, const VI c[3]) {
         HWY_ALIGN std::int64_t bricks[kLanes];
-        HWY_ALIGN std::int64_t place[3][kLanes];
+        HWY_ALIGN std::int64_t position[3][kLanes];
         hn::Store(brick, DI(), bricks);
-        for (int axis = 0; axis < 3; ++axis) hn::Store(hn::ShiftRight<3>(c[axis]), DI(), place[axis]);
+        for (int axis = 0; axis < 3; ++axis) hn::Store(hn::ShiftRight<3>(c[axis]), DI(), position[axis]);
         for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
             const int lane = std::countr_zero(rest);
-            if (!grid_.require(static_cast<std::size_t>(bricks[lane]), static_cast<int>(place[0][lane]),
-                               static_cast<int>(place[1][lane]), static_cast<int>(place[2][lane])))
+            if (!grid_.ensureBrick(static_cast<std::size_t>(bricks[lane]), static_cast<int>(position[0][lane]),
+                                   static_cast<int>(position[1][lane]), static_cast<int>(position[2][lane])))
                 full_ = true;
         }
     }
 
-    // These lanes read their slots.
-    HWY_NOINLINE void note(unsigned lanes, VI slot) {
+    // Marks the slots that these lanes read.
+    HWY_NOINLINE void markUsed(unsigned lanes, VI slot) {
         HWY_ALIGN std::int64_t slots[kLanes];
         hn::Store(slot, DI(), slots);
         for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
@@ -291,15 +292,15 @@ private:
         cells_ += static_cast<unsigned>(std::popcount(lanes));
     }
 
-    // Finishes what has begun to read samples, so that bricks may be taken away.
-    HWY_NOINLINE void rest() {
+    // Finishes all reads of samples that have begun, so that bricks can be evicted.
+    HWY_NOINLINE void releaseBricks() {
         for (Packet& packet : packets_) {
             if (packet.waiting == 0) continue;
             solve(packet);
             look(packet);
         }
         if constexpr (!kAny) {
-            batch_.settle();
+            batch_.finishFull();
             batch_.flush();
         }
         cache_.makeRoom(full_);
@@ -308,7 +309,7 @@ private:
 
     // SegmentCubic and firstCrossing() for the waiting lanes. Those that don't hit walk on.
     void solve(Packet& p) {
-        if constexpr (!kAny) batch_.settle();
+        if constexpr (!kAny) batch_.finishFull();
         const D d;
         const V zero = hn::Zero(d);
         const V one = constant(1);
@@ -336,7 +337,7 @@ private:
             in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
             in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
         }
-        // Lanes that don't wait read where they last stood, or the first sample, and are ignored.
+        // Lanes that don't wait read their last cell, or the first sample; the results are ignored.
         const VI sample = hn::Load(DI(), p.sample);
         corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
@@ -357,13 +358,13 @@ private:
         p.waiting = 0;
         p.alive &= ~hit;
         if constexpr (kAny) {
-            // Others write where nobody reads.
+            // Other lanes write to a dummy.
             const auto address = [](const std::uint8_t* flag) { return std::bit_cast<std::int64_t>(flag); };
             const VI flags = floorToWhole(load(p, kIndex)) + whole(address(blocked_));
-            HWY_ALIGN std::uint8_t* places[kLanes];
-            hn::Store(hn::IfThenElse(hn::RebindMask(DI(), maskOf(hit)), flags, whole(address(&nobody_))), DI(),
-                      reinterpret_cast<std::int64_t*>(places));
-            for (std::uint8_t* place : places) *place = 1;
+            HWY_ALIGN std::uint8_t* targets[kLanes];
+            hn::Store(hn::IfThenElse(hn::RebindMask(DI(), maskOf(hit)), flags, whole(address(&ignored_))), DI(),
+                      reinterpret_cast<std::int64_t*>(targets));
+            for (std::uint8_t* target : targets) *target = 1;
         } else {
             batch_.push(hit, {load(p, kIndex), load(p, kStart), t, t_out, s}, in, sample);
         }
@@ -375,14 +376,14 @@ private:
 
     const BrickGrid& grid_;
     std::uint8_t* const blocked_;
-    std::uint8_t nobody_ = 0;
+    std::uint8_t ignored_ = 0;
     std::int64_t last_[3];  // cells
     std::int64_t macro_y_, macro_z_;
-    const bool late_, bounded_;
+    const bool lazy_, bounded_;
     BrickSlots& cache_;
     const BrickSlots::Reading reading_;
-    bool full_ = false;        // a brick was asked for, and there was no room
-    std::uint64_t cells_ = 0;  // looked into
+    bool full_ = false;        // ensureBrick() found no free slot
+    std::uint64_t cells_ = 0;  // surface cells read
     const CornerReader corners_;
     HitBatch batch_;
     RayQueue<!kAny> queue_;

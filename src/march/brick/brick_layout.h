@@ -1,4 +1,4 @@
-// Leaves -> one brick: which of its cells have surface, and the samples at all their corners.
+// Leaves -> one brick: its surface cells, and the samples at all corners.
 #pragma once
 
 #include "march/file/leaf_source.h"
@@ -17,11 +17,11 @@ enum class BrickValues {
 
 /// Of Int16, half of the band: a sample at its edge.
 inline constexpr int kMostQuanta = 32767;
-/// Of Int16, a sample below zero that is nearer to it than to one quantum below: inside, and as good as on the surface.
-/// Flats on voxel planes have such samples everywhere, by the rounding of floats; a whole quantum would lift them.
+/// Of Int16, a sample between zero and half a quantum below it: inside, almost on the surface. By rounding of floats,
+/// flats on voxel planes have such samples everywhere; a whole quantum would displace them.
 inline constexpr double kLeastInside = -1.0 / 1024;
 
-/// What is kept as a sample's value in quanta: those below zero are kept one lower, so that -1 is kLeastInside.
+/// The value, in quanta, of a stored sample. Values below zero are stored one lower, so that -1 means kLeastInside.
 constexpr double sampleOf(std::int16_t kept) { return kept < 0 ? (kept == -1 ? kLeastInside : kept + 1) : kept; }
 constexpr double sampleOf(float kept) { return static_cast<double>(kept); }
 
@@ -41,8 +41,8 @@ struct CapSamples {
 };
 
 /// Converts 512 samples in world units. `scale` is in quanta a world unit; floats are kept and it is ignored. Nearest
-/// quantum, and samples below zero stay below zero; what is beyond the band is put at its edge. Returns false if one is
-/// no finite number.
+/// quantum, and samples below zero stay below zero; samples beyond the band are clamped. Returns false if one is not
+/// finite.
 bool convert(const float* samples, float scale, LeafSamples<float>& out);
 bool convert(const float* samples, float scale, LeafSamples<std::int16_t>& out);
 /// The same of 64.
@@ -65,8 +65,8 @@ struct Cap {
     explicit Cap(const CapSamples<T>& cap) : value(cap.value.data()), inside(cap.inside.data()) {}
 };
 
-/// What a brick's 9^3 samples are taken from: the leaf itself and its neighbours at +x and +y, index x << 1 | y, and
-/// what is above each. Where there is none, all samples are the tile.
+/// The sources of a brick's 9^3 samples: the leaf itself and its neighbours at +x and +y, index x << 1 | y, and the
+/// plane above each. Where there is none, all samples have the tile's value.
 template <typename T>
 struct BrickParts {
     std::array<const LeafSamples<T>*, 4> leaf{};

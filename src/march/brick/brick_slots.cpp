@@ -9,7 +9,7 @@ void BrickSlots::open(std::size_t bricks, std::size_t most) {
     if (!bounded_) return;
     owners_.assign(size_, kNobody);
     marks_.assign(size_, 0);
-    free_.reserve(size_);  // so that nothing throws while all wait
+    free_.reserve(size_);  // so that evict() doesn't throw while all threads wait
 }
 
 std::uint32_t BrickSlots::take(std::size_t brick) {
@@ -18,7 +18,7 @@ std::uint32_t BrickSlots::take(std::size_t brick) {
         const std::size_t next = free_taken_.fetch_add(1, std::memory_order_relaxed);
         if (next < free_.size()) slot = free_[next];
     }
-    // Threads that come too late count a little too far: no more than there are threads, for others look first.
+    // Concurrent threads may increment past the end, by at most the number of threads, because each checks first.
     if (slot == 0 && used_.load(std::memory_order_relaxed) < size_) {
         const std::uint32_t next = used_.fetch_add(1, std::memory_order_relaxed);
         if (next < size_) slot = next + 1;
@@ -30,7 +30,7 @@ std::uint32_t BrickSlots::take(std::size_t brick) {
     return slot;
 }
 
-// Slots before those of the free list that are still free.
+// Removes the used entries at the front of the free list.
 void BrickSlots::dropTakenFree() {
     free_.erase(free_.begin(), free_.begin() + static_cast<std::ptrdiff_t>(freeTaken()));
     free_taken_ = 0;
@@ -57,12 +57,12 @@ void BrickSlots::makeRoom(bool needs) {
     gate_.lock_shared();
 }
 
-// An eighth at a time: all threads wait for it, and what is evicted is more likely the next to be asked for the more
-// it is.
+// Evicts an eighth at a time: a compromise, because all threads wait meanwhile, and because the more slots are evicted,
+// the more likely they are needed again.
 void BrickSlots::evict() {
     dropTakenFree();
     const std::size_t wanted = std::max<std::size_t>(size_ / 8, 1);
-    // By the second time around no mark is left.
+    // On the second round no marks are left.
     for (std::size_t n = 0; n < 2 * size_ && free_.size() < wanted; ++n) {
         const std::size_t at = hand_;
         hand_ = hand_ + 1 < size_ ? hand_ + 1 : 0;

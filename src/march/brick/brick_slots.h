@@ -1,12 +1,13 @@
-// Where the samples of late bricks lie: slots of equal size, given out as bricks are laid out.
+// The memory of lazy bricks' samples: slots of equal size, allocated when bricks are laid out.
 //
-// There is a slot for every brick, or, with a bound, for some of them: once all are taken, bricks that no ray came to
-// lately lose theirs, and are laid out again if one does. Which ones are left, a clock's hand says (Corbató, "A paging
-// experiment with the Multics system", 1968): it goes around, takes the mark off slots that were read since its last
-// visit, and empties those that have none. Samples depend on the brick alone, so pictures don't depend on the bound.
+// There is a slot for every brick, or, with a bound, for some of them: once all are taken, bricks that were not read
+// recently are evicted, and laid out again when needed. Victims are chosen by the clock algorithm (Corbató, "A paging
+// experiment with the Multics system", 1968): its hand goes around, clears the mark of slots that were read since its
+// last visit, and evicts those without a mark. Samples depend on the brick alone, so pictures don't depend on the
+// bound.
 //
-// Threads that read samples hold a Reading; slots are emptied only while nobody does. A thread that finds no slot left
-// finishes what it has begun to read, and then calls makeRoom(). Without a bound none of this costs anything.
+// Threads that read samples hold a Reading; slots are evicted only while no thread holds one. A thread that finds no
+// free slot finishes the reads that it has begun, and then calls makeRoom(). Without a bound all this is skipped.
 #pragma once
 
 #include "base/huge_array.h"
@@ -22,44 +23,44 @@
 
 namespace stratum::march {
 
-/// What a bound took, for reports.
+/// Statistics of a bounded cache, for reports.
 struct BrickCacheCounts {
     std::size_t slots = 0;      ///< bricks that may be laid out at once
-    std::size_t peak = 0;       ///< that ever were
-    std::uint64_t hits = 0;     ///< cells whose brick was laid out when a ray came
+    std::size_t peak = 0;       ///< largest number that was laid out at once
+    std::uint64_t hits = 0;     ///< cells whose brick was laid out when a ray reached them
     std::uint64_t made = 0;     ///< bricks laid out, again or for the first time
     std::uint64_t evicted = 0;  ///< bricks that lost their slot
 };
 
 class BrickSlots {
 public:
-    /// In place of a slot: the brick is laid out, and has no surface.
+    /// Instead of a slot: the brick is laid out, and has no surface.
     static constexpr std::uint32_t kNoSamples = std::numeric_limits<std::uint32_t>::max();
-    /// A bound is at least that: a brick for every ray that a thread has on its way.
+    /// The least bound: a brick for every ray that a thread traces at a time.
     static constexpr std::size_t kLeastBound = 64;
 
-    /// For this many bricks, of which `most` may have slots at once.
+    /// Sizes the tables for this many bricks, of which `most` may have slots at once.
     void open(std::size_t bricks, std::size_t most);
     bool bounded() const { return bounded_; }
-    /// Slots that there are; any number before open().
+    /// Number of slots; undefined before open().
     std::size_t size() const { return size_; }
 
-    /// Of each brick: 0 if it isn't laid out, kNoSamples, or its slot, counted from 1.
+    /// By brick: 0 if it isn't laid out, kNoSamples, or its slot, counted from 1.
     const std::uint32_t* table() const { return table_.data(); }
     std::uint32_t of(std::size_t brick) { return std::atomic_ref(table_[brick]).load(std::memory_order_acquire); }
-    /// Whoever sees the slot sees what was written before.
+    /// A release store: a thread that reads the slot by of() sees everything written before.
     void publish(std::size_t brick, std::uint32_t slot) {
         std::atomic_ref(table_[brick]).store(slot, std::memory_order_release);
     }
-    /// A slot for this brick, or 0 if none is left. From any thread.
+    /// A free slot for this brick, or 0 if there is none. From any thread.
     std::uint32_t take(std::size_t brick);
     bool anyLeft() const { return used_.load(std::memory_order_relaxed) < size_ || freeTaken() < free_.size(); }
-    /// This many in a row; returns what is before the first. Without a bound.
+    /// Takes this many consecutive slots; returns the one before the first. Without a bound.
     std::uint32_t takeRow(std::uint32_t count) { return used_.fetch_add(count, std::memory_order_relaxed); }
-    /// Not while rays are traced.
+    /// Frees the brick's slot. Not while rays are traced.
     void forget(std::size_t brick);
 
-    /// Held, with a bound, by who reads samples: no slot is emptied meanwhile. One at a time a thread.
+    /// With a bound, to be held while samples are read: no slot is evicted meanwhile. At most one in each thread.
     class Reading {
     public:
         explicit Reading(BrickSlots& slots) : gate_(slots.bounded_ ? &slots.gate_ : nullptr) {
@@ -74,17 +75,17 @@ public:
     private:
         tbb::rw_mutex* const gate_;
     };
-    /// Whether a thread waits for room: those that hold a Reading call makeRoom(false) soon.
+    /// Whether a thread waits for a free slot: threads that hold a Reading should then call makeRoom(false) soon.
     bool roomWanted() const { return waiting_.load(std::memory_order_relaxed) > 0; }
-    /// With a Reading held, by a thread that needs nothing of what it has read: lets others empty slots, or, if it
-    /// `needs` one itself, does it.
+    /// To be called with a Reading held, by a thread that no longer needs the samples it has read. Lets other threads
+    /// evict slots; if this thread `needs` a slot itself, evicts some.
     void makeRoom(bool needs);
-    /// A ray reads this slot.
+    /// Marks the slot as recently read.
     void mark(std::uint32_t slot) {
         const std::atomic_ref mark(marks_[slot - 1]);
         if (mark.load(std::memory_order_relaxed) == 0) mark.store(1, std::memory_order_relaxed);
     }
-    /// So many cells were looked into whose brick had to be there.
+    /// Counts surface cells whose brick had to be laid out, for counts().
     void count(std::uint64_t cells) { cells_.fetch_add(cells, std::memory_order_relaxed); }
 
     /// Bricks that have a slot now.

@@ -14,7 +14,7 @@ namespace stratum::march {
 class BrickGrid;
 struct CellMap;
 
-/// As Tracer::intersectStream(). Returns false, with nothing done, on machines without wide enough vectors: there the
+/// As Tracer::intersectStream(). Returns false, without tracing, on machines without wide enough vectors: there the
 /// scalar walk is faster.
 bool streamIntersect(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays,
                      std::span<trace::Hit> hits);

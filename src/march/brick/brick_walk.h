@@ -1,8 +1,8 @@
 // One ray through bricks, a block of cells at a time. The scalar path: the oracle of the streams.
 //
-// Integer cells advance strictly along the ray, so a walk ends after no more steps than there are cells on its way,
-// whatever the rounding; nothing is pushed by an epsilon. brick_stream.cpp does the same operations in the same order
-// on many rays, and its hits have the same bits.
+// Integer cells advance strictly along the ray, so the number of steps is bounded by the number of cells on it, however
+// results are rounded; no epsilon is involved. brick_stream.cpp does the same operations in the same order on many
+// rays, and its hits have the same bits.
 #pragma once
 
 #include "march/brick/brick_grid.h"
@@ -23,7 +23,7 @@ namespace stratum::march {
 /// World space <-> cells. t is the same in both: directions are not normalized again.
 struct CellMap {
     glm::dmat3 to_cells{1.0};
-    glm::dvec3 origin{0.0};  ///< of world space, in cells
+    glm::dvec3 origin{0.0};  ///< the origin of world space, in cells
 
     CellMap(const openvdb::math::MapBase& map, const openvdb::Coord& first_cell) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -37,15 +37,15 @@ struct CellMap {
     }
 };
 
-/// A ray in cells, and where it is.
+/// A ray in cells, and its current cell.
 class Walk {
 public:
     /// Both in cells.
     Walk(const glm::dvec3& origin, const glm::dvec3& direction) : origin_(origin), direction_(direction) {
         for (int axis = 0; axis < 3; ++axis) {
             inverse_[axis] = 1 / direction_[axis];
-            // Never 0 * inf. An axis along which the ray doesn't move, or so slowly that it takes 10^308 to cross a
-            // cell, is left out by its sign.
+            // Avoids 0 * inf. An axis along which the ray doesn't move, or takes t > 10^308 to cross a cell, has
+            // direction and inverse 0 and is skipped.
             if (!std::isfinite(inverse_[axis])) direction_[axis] = inverse_[axis] = 0;
         }
     }
@@ -59,7 +59,7 @@ public:
             const double extent = size[static_cast<std::size_t>(axis)];
             if (direction_[axis] == 0) {
                 if (!(origin_[axis] >= 0 && origin_[axis] <= extent)) return false;
-                // So that the plane ahead of every cell is ahead, also where the ray can't reach it.
+                // Keeps the origin below the upper face, so that the upper plane of every cell is ahead.
                 origin_[axis] = std::min(origin_[axis], std::nextafter(extent, 0.0));
                 continue;
             }
@@ -100,7 +100,7 @@ public:
         t_exit_ = std::max(t_exit_, t_);
     }
 
-    /// Goes there; false at the end of the ray or of the box.
+    /// Advances to the exit found by aim(); false at the end of the ray or of the box.
     bool advance(const glm::ivec3& low, const glm::ivec3& high, const std::array<int, 3>& size) {
         if (t_exit_ >= t_end_) return false;
         for (int axis = 0; axis < 3; ++axis) {
@@ -110,7 +110,7 @@ public:
             } else if (d != 0) {
                 const int least = d > 0 ? cell_[axis] : low[axis];
                 const int most = d > 0 ? high[axis] - 1 : cell_[axis];
-                cell_[axis] = cellAt(axis, place(axis, t_exit_), least, most);
+                cell_[axis] = cellAt(axis, positionAt(axis, t_exit_), least, most);
             }
         }
         t_ = t_exit_;
@@ -127,17 +127,17 @@ public:
     }
 
 private:
-    // The cell of a place, among `least` to `most`, not below 0: on a plane between two, the one that the ray goes to.
-    int cellAt(int axis, double place, int least, int most) const {
-        const double x = std::clamp<double>(place, least, most + 1);
+    // The cell of a position, in [least, most], least >= 0. On a plane between two cells: the one ahead of the ray.
+    int cellAt(int axis, double position, int least, int most) const {
+        const double x = std::clamp<double>(position, least, most + 1);
         const int floor = static_cast<int>(x);
         return std::clamp(direction_[axis] < 0 && floor == x ? floor - 1 : floor, least, most);
     }
-    double place(int axis, double t) const { return origin_[axis] + t * direction_[axis]; }
+    double positionAt(int axis, double t) const { return origin_[axis] + t * direction_[axis]; }
 
     glm::dvec3 local(double t, int face_axis, bool entry) const {
         glm::dvec3 p;
-        for (int axis = 0; axis < 3; ++axis) p[axis] = std::clamp(place(axis, t) - cell_[axis], 0.0, 1.0);
+        for (int axis = 0; axis < 3; ++axis) p[axis] = std::clamp(positionAt(axis, t) - cell_[axis], 0.0, 1.0);
         if (face_axis >= 0) p[face_axis] = (direction_[face_axis] > 0) == entry ? 0.0 : 1.0;
         return p;
     }
@@ -146,12 +146,12 @@ private:
     glm::dvec3 direction_;
     glm::dvec3 inverse_{0.0};
     glm::ivec3 cell_{0};
-    double t_start_ = 0;  // of the ray's own t, where origin_ is
+    double t_start_ = 0;  // the ray's own t at origin_
     double t_ = 0, t_end_ = 0, t_exit_ = 0;
     int entry_axis_ = -1, exit_axis_ = 0;  // -1: the ray begins inside a cell
 };
 
-/// The largest block around a cell that is known to hold no surface cell, or the cell itself if it is one.
+/// The largest known block around a cell without surface cells, or the cell itself if it is a surface cell.
 struct Block {
     glm::ivec3 low, high;
     std::size_t brick;
@@ -179,13 +179,13 @@ struct Block {
     const auto part = static_cast<std::size_t>(half.x << 2 | half.y << 1 | half.z);
     const glm::ivec3 c = cell & 3;
     std::uint64_t word = grid.surface(brick, part);
-    if (grid.late()) [[unlikely]]
-        if ((word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) word = grid.surfaceOnceThere(brick, part, cell);
+    if (grid.lazy()) [[unlikely]]
+        if ((word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) word = grid.ensureSurface(brick, part, cell);
     if (const int edge = Mask64::emptyEdge(word, c.x, c.y, c.z)) return aligned(edge);
     return {cell, cell + 1, brick, true};
 }
 
-/// In the units of the grid's samples: where they cross zero, and which way, is the same in all units.
+/// In the units of the grid's samples: zero crossings and their directions don't depend on the unit.
 [[gnu::always_inline]] inline Corners cornersOf(const BrickGrid& grid, std::size_t brick, const glm::ivec3& cell) {
     constexpr auto kX = BrickGrid::kStrideX;
     constexpr auto kY = BrickGrid::kStrideY;

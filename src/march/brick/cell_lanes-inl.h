@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 namespace stratum::march {
 namespace HWY_NAMESPACE {
 
-/// A cell in every lane, and the way of a ray through it: values at the corners, index x << 2 | y << 1 | z, and where
-/// the ray enters and leaves, in [0, 1]^3.
+/// A cell in every lane, and the segment of a ray in it: values at the corners, index x << 2 | y << 1 | z, and the
+/// entry and exit points in [0, 1]^3.
 struct LaneCell {
     V v[8];
     Vec3 from, to;
@@ -101,7 +101,7 @@ HWY_INLINE V refined(const LaneCubic& f, M active) {
     return result;
 }
 
-/// gradient() at s along the way.
+/// gradient() at s along the segment.
 HWY_INLINE Vec3 gradientOf(const LaneCell& cell, V s) {
     const V one = constant(1);
     const V* v = cell.v;
@@ -117,7 +117,7 @@ HWY_INLINE Vec3 gradientOf(const LaneCell& cell, V s) {
          r[0] * (r[1] * (v[1] - v[0]) + q[1] * (v[3] - v[2])) + q[0] * (r[1] * (v[5] - v[4]) + q[1] * (v[7] - v[6]))}};
 }
 
-/// Cells whose sign may change more than once along the ray are rare: the scalar code answers.
+/// Cells whose sign may change more than once along the ray are rare: the scalar code solves them.
 template <bool kAny>
 HWY_NOINLINE unsigned solveOneByOne(unsigned rare, const LaneCell& cell, V& s) {
     const D d;

@@ -1,4 +1,4 @@
-// Where a ray crosses zero inside one cell: the trilinear field along a segment is a cubic.
+// Finds where a ray crosses zero inside one cell: the trilinear field along a segment is a cubic.
 //
 // After Marmitt et al., "Fast and Accurate Ray-Voxel Intersection Techniques for Iso-Surface Ray Tracing" (VMV 2004),
 // and Hansson-Soderlund, Evans, Akenine-Moller, "Ray Tracing of Signed Distance Function Grids" (JCGT 11(3), 2022).
@@ -17,8 +17,8 @@ namespace stratum::march {
 /// Values at the corners of a cell; index x << 2 | y << 1 | z.
 using Corners = std::array<double, 8>;
 
-/// The trilinear interpolant at `p` in [0, 1]^3. At a coordinate of exactly 0 or 1 the far corners drop out exactly, so
-/// that two cells that share a face see the same bits on it.
+/// The trilinear interpolant at `p` in [0, 1]^3. At a coordinate of exactly 0 or 1 the far corners have weight 0, so
+/// that two cells get the same bits on the face that they share.
 inline double interpolate(const Corners& v, const glm::dvec3& p) {
     const double x1 = p.x;
     const double x0 = 1 - p.x;
@@ -44,7 +44,8 @@ inline glm::dvec3 gradient(const Corners& v, const glm::dvec3& p) {
 /// The field along the segment from `from` to `to` (both in [0, 1]^3), s from 0 to 1: c0 + c1 s + c2 s^2 + c3 s^3.
 struct SegmentCubic {
     double c0, c1, c2, c3;
-    double end;  ///< the value at s = 1, interpolated there and not summed up, so that neighbours agree on it
+    double
+        end;  ///< the value at s = 1, interpolated there instead of summed up, so that neighbouring cells agree on it
 
     SegmentCubic(const Corners& v, const glm::dvec3& from, const glm::dvec3& to)
         : c0(interpolate(v, from)), end(interpolate(v, to)) {
@@ -100,20 +101,20 @@ inline std::optional<std::pair<double, double>> firstCrossing(const SegmentCubic
     return std::nullopt;
 }
 
-/// The last step of refineRoot(), in lengths of the segment. Newton's steps square the error, so what is left after one
-/// this short is rounding; where halving had to take over, no more than this is left.
+/// The last step of refineRoot(), in lengths of the segment. Newton's steps square the error, so after one this short
+/// only rounding errors remain; after bisection the error is at most this.
 inline constexpr double kRootStep = 1e-8;
 inline constexpr int kRootSteps = 60;
 
-/// The zero in a bracket from firstCrossing(): Newton's steps where they stay inside, halving where they don't. In a
-/// bounded number of steps.
+/// The zero in a bracket from firstCrossing(): Newton's steps where they stay inside, else bisection. The number of
+/// steps is bounded.
 inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracket) {
     auto [low, high] = bracket;
     const bool in_low = low == 0 ? isInside(f.c0) : isInside(f(low));
     const double at_low = low == 0 ? f.c0 : f(low);
     const double at_high = high == 1 ? f.end : f(high);
-    // The chord is a better start than the middle, but not where it ends in the bracket's own end: that one is 0, which
-    // counts as outside, and the crossing may lie before it.
+    // The chord's zero is a better start than the middle, unless it is the bracket's end: the value there is 0, which
+    // counts as outside, and the crossing may be before it.
     const double chord = low + (high - low) * at_low / (at_low - at_high);
     double s = chord > low && chord < high ? chord : 0.5 * (low + high);
     for (int step = 0; step < kRootSteps; ++step) {

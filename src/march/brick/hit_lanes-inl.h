@@ -1,6 +1,6 @@
-// Where cells' corners are read, and hits that wait for company: a root is refined by a dozen dependent operations and
-// divisions, so it pays to do that for a full vector of rays. For one Highway target at a time, hence the guard that
-// toggles.
+// Reads the corners of cells, and collects hits until a vector is full: refining a root takes a dozen dependent
+// operations and divisions, which is efficient only for a full vector of rays. For one Highway target at a time, hence
+// the guard that toggles.
 #if defined(STRATUM_HIT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_HIT_LANES_INL_H
 #undef STRATUM_HIT_LANES_INL_H
@@ -37,7 +37,7 @@ public:
         pair(index + whole(BrickGrid::kStrideX), v[4], v[5]);
         pair(index + whole(BrickGrid::kStrideX + BrickGrid::kStrideY), v[6], v[7]);
     }
-    /// Calls for the corners of cells whose first ones are at `index`.
+    /// Prefetches the corners of cells whose first ones are at `index`.
     HWY_INLINE void prefetch(VI index) const {
         HWY_ALIGN std::int64_t corners[kLanes];
         hn::Store(index, DI(), corners);
@@ -84,7 +84,7 @@ private:
     const std::int16_t* quanta_;
 };
 
-/// Rays that have met the surface: their roots, positions and normals are found a vector at a time.
+/// Rays that have hit the surface: their roots, positions and normals are computed a vector at a time.
 class HitBatch {
 public:
     HitBatch(const CornerReader& corners, const CellMap& map, std::span<const trace::Ray> rays, trace::Hit* hits)
@@ -101,7 +101,7 @@ public:
     };
     HWY_INLINE void push(unsigned lanes, const Crossing& c, const LaneCell& cell, VI sample) {
         const D d;
-        const auto table = tableIndices(kTable.place[lanes]);
+        const auto table = tableIndices(kTable.source[lanes]);
         const V fields[kFields] = {c.ray,        c.start,        c.in,           c.out,
                                    c.s,          cell.from.v[0], cell.from.v[1], cell.from.v[2],
                                    cell.to.v[0], cell.to.v[1],   cell.to.v[2]};
@@ -109,8 +109,8 @@ public:
         hn::StoreU(hn::BitCast(DI(), hn::TableLookupLanes(hn::BitCast(d, sample), table)), DI(), sample_ + count_);
         count_ += std::popcount(lanes);
     }
-    /// Finishes a vector of rays if there is one. Before the next push().
-    HWY_INLINE void settle() {
+    /// Finishes a vector of rays if there is a full one. To be called before the next push().
+    HWY_INLINE void finishFull() {
         const D d;
         if (count_ < kLanes) return;
         finish(kLanes);

@@ -15,7 +15,7 @@
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
 #define STRATUM_WIDE_LANES 1
 #else
-#define STRATUM_WIDE_LANES 0  // two lanes don't pay for their gathers
+#define STRATUM_WIDE_LANES 0  // with two lanes gathers cost more than they save
 #endif
 
 #if STRATUM_WIDE_LANES
@@ -81,15 +81,15 @@ HWY_INLINE VI product(VI a, VI b) {
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
 
-/// For every mask of lanes, which lane of a row goes where.
+/// Permutations for every mask of lanes.
 struct LaneTable {
-    std::uint8_t rank[kAllLanes + 1][8] = {};   // to spread a row over the lanes set: lane -> how many are set below it
-    std::uint8_t place[kAllLanes + 1][8] = {};  // to gather the lanes set in a row: n -> the n-th lane set
+    std::uint8_t rank[kAllLanes + 1][8] = {};  // to spread a row over the lanes set: lane -> how many are set below it
+    std::uint8_t source[kAllLanes + 1][8] = {};  // to gather the lanes set in a row: n -> the n-th lane set
     constexpr LaneTable() {
         for (unsigned mask = 0; mask <= kAllLanes; ++mask)
             for (unsigned lane = 0, count = 0; lane < static_cast<unsigned>(kLanes); ++lane) {
                 rank[mask][lane] = static_cast<std::uint8_t>(count);
-                if ((mask >> lane & 1) != 0) place[mask][count++] = static_cast<std::uint8_t>(lane);
+                if ((mask >> lane & 1) != 0) source[mask][count++] = static_cast<std::uint8_t>(lane);
             }
     }
 };

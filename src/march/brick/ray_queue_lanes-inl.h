@@ -1,10 +1,10 @@
-// Rays on their way into the lanes of packets, for one Highway target at a time, hence the guard that toggles.
+// The queue that feeds rays into the lanes of packets, for one Highway target at a time, hence the guard that toggles.
 //
 // Rays wait in a queue, already clipped to the box. A packet holds as many rays as a vector has lanes; a lane whose ray
 // ends takes the next from the queue.
 //
-// In lanes all rays go forth: along an axis along which a ray goes back, its origin and direction are negated, which is
-// exact, and cell c becomes ~c, so that one rule moves all lanes and aligned blocks stay aligned.
+// In lanes all directions are positive: for an axis with a negative direction, origin and direction are negated, which
+// is exact, and cell c becomes ~c, so that all lanes advance alike and aligned blocks stay aligned.
 #if defined(STRATUM_RAY_QUEUE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_RAY_QUEUE_LANES_INL_H
 #undef STRATUM_RAY_QUEUE_LANES_INL_H
@@ -32,20 +32,20 @@ HWY_BEFORE_NAMESPACE();
 namespace stratum::march {
 namespace HWY_NAMESPACE {
 
-constexpr int kRefill = kLanes / 4;  // lanes without a ray that make a visit to the queue worth it
+constexpr int kRefill = kLanes / 4;  // lanes without a ray that make a refill worthwhile
 constexpr int kQueue = 8 * kLanes;   // rays
 
-/// What a lane keeps; one array each. Cells and what says how they are counted are whole numbers.
+/// The state of a lane; one array each. Cells and flips are whole numbers.
 enum Field {
-    kO,  // from here on along the ray's own way, see above
+    kO,  // from here on with positive directions, see above
     kD = kO + 3,
     kInverse = kD + 3,  // infinite along axes along which the ray doesn't move
     kCell = kInverse + 3,
-    kFlip = kCell + 3,  // -1 where the ray goes back, or 0: cell ^ flip is where it really is
+    kFlip = kCell + 3,  // -1 where the direction is negative, or 0: cell ^ flip is the real cell
     kEnd = kFlip + 3,
     kStart,
     kIndex,
-    kT,               // since the box was met
+    kT,               // from the entry into the box on
     kQueued,          // fields that a ray in the queue has
     kFace = kQueued,  // axis of the face that the cell was entered by, or -1
     // By Marcher::look(): in a brick, the word of clearCells(), and -1; elsewhere, 0, and how far the empty block
@@ -67,7 +67,7 @@ HWY_INLINE void store(Packet& p, int field, V v) { hn::Store(v, D(), p.field[fie
 HWY_INLINE VI loadWhole(const Packet& p, int field) { return hn::BitCast(DI(), load(p, field)); }
 HWY_INLINE void storeWhole(Packet& p, int field, VI v) { store(p, field, hn::BitCast(D(), v)); }
 
-/// Of rays that all begin at one eye, or may, if kBeams is set: then beams tell where to begin.
+/// With kBeams, for rays that may all begin at one eye: then Beam finds where they start.
 template <bool kBeams>
 class RayQueue {
 public:
@@ -76,7 +76,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) {
             whole_size_[axis] = grid.size()[static_cast<std::size_t>(axis)];
             size_[axis] = static_cast<double>(whole_size_[axis]);
-            last_place_[axis] = std::nextafter(size_[axis], 0.0);
+            last_position_[axis] = std::nextafter(size_[axis], 0.0);
         }
     }
 
@@ -176,7 +176,7 @@ private:
         out[kEnd] = end - start;
         out[kT] = zero;
         if (starts != nullptr) {
-            // What lies before is empty; a start in empty space changes no cell that matters, nor how it is entered.
+            // The skipped part is empty; starting in empty space changes neither the surface cells nor their entries.
             HWY_ALIGN double from[kLanes] = {};
             std::copy_n(starts, count, from);
             out[kT] = hn::Max(hn::Load(d, from) - start, zero);
@@ -185,7 +185,7 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             const M still = hn::Eq(dir[axis], zero);
             const V at = o[axis] + start * dir[axis];
-            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_place_[axis])), at);
+            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
             const V sign = hn::And(dir[axis], constant(-0.0));
             const VI flip = hn::BroadcastSignBit(hn::BitCast(DI(), hn::IfThenZeroElse(still, sign)));
             const V back = hn::And(hn::BitCast(d, flip), constant(-0.0));
@@ -202,7 +202,7 @@ private:
         out[kIndex] = toReal(lane + whole(static_cast<std::int64_t>(next_)));
         const unsigned kept = bitsOf(good);
         if (kept != kAllLanes) {
-            const auto table = tableIndices(kTable.place[kept]);
+            const auto table = tableIndices(kTable.source[kept]);
             for (V& v : out) v = hn::TableLookupLanes(v, table);
         }
         for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], d, queue_[n] + tail_);
@@ -213,7 +213,7 @@ private:
     const CellMap& map_;
     const std::span<const trace::Ray> rays_;
     double size_[3];
-    double last_place_[3];  // short of the box's far faces
+    double last_position_[3];  // just below the box's far faces
     std::int64_t whole_size_[3];
     Beams beams_;
     std::span<const double> starts_;  // of the rays from looked_from_ to looked_at_, or none

@@ -85,8 +85,8 @@ private:
             const int low = cell[axis] & ~(edge - 1);
             const double way = ((d > 0 ? low + edge : low) - p[axis]) / d;
             if (!(way > 0)) {
-                // On the face that it leaves by, so slowly perhaps that no step along the ray gets it across: the ray
-                // is moved over instead.
+                // On the exit face, possibly so slow that no step along the ray crosses it: the position is moved
+                // across instead.
                 origin_[axis] += std::copysign(kNudge, d);
                 return s;
             }
@@ -124,13 +124,13 @@ private:
             s = std::max(s, std::min(a, b));
             end = std::min(end, std::max(a, b));
         }
-        // From the box on, so that s is a small number however far the eye: nudges must not vanish in its rounding.
+        // Measured from the box, so that s is small even for a distant eye and small steps are not lost in rounding.
         const double start = s;
         if (!(start <= end) || !std::isfinite(end)) return false;
         origin_ += start * direction_;
         end -= start;
         s = 0;
-        // So far away that rounding moves it by voxels: where it would meet the box, nobody knows.
+        // So far away that the rounding error is voxels: its entry into the box is undefined.
         if (!isNearBox(origin_) || !isNearBox(origin_ + end * direction_)) return false;
         if (!march(end, s)) return false;
         hit = start + s;
@@ -140,12 +140,12 @@ private:
 
     bool march(double end, double& hit) {
         double s = 0;
-        double last_radius = 0;  // at the last place in the band, and the step from there
+        double last_radius = 0;  // at the last position in the band, and the step from there
         double last_step = 0;
         double omega = relaxation_;
         bool begun = false;
         bool inside = false;
-        double before = s;  // a place of the first sign
+        double before = s;  // a position with the first sign
         for (int step = 0; step < kMostSteps && s <= end;) {
             const glm::dvec3 p = origin_ + s * direction_;
             const openvdb::Coord cell = openvdb::Coord::floor(openvdb::Vec3d(p.x, p.y, p.z));
@@ -159,7 +159,7 @@ private:
             const double phi = field(s);
             const double radius = tame_ * std::abs(phi);
             if (begun && isInside(phi) != inside) {
-                // Between two places: the field is not as tame as distance. Halve.
+                // The sign changes between two positions, because the field may change faster than distance: bisect.
                 double low = before;
                 double high = s;
                 for (int halving = 0; halving < 60 && high - low > kArrived * 1e-3; ++halving) {
@@ -170,13 +170,15 @@ private:
                 return true;
             }
             if (omega > 1 && last_step > 0 && last_radius + radius < last_step) {
-                // The two spheres don't touch: something may lie between. Back, and plain steps from here.
+                // The two spheres don't overlap: a surface may be in between. Back, with steps without relaxation from
+                // here.
                 s -= last_step - last_radius;
                 omega = 1;
                 last_step = 0;
                 continue;
             }
-            // A ray may start nearer than that to the surface that it leaves: only one that comes nearer arrives.
+            // A ray may start nearer than that to the surface that it leaves: it hits only while the distance
+            // decreases.
             if (radius < kArrived && begun && radius <= last_radius) {
                 hit = s;
                 return true;
@@ -219,7 +221,7 @@ public:
     trace::Box bounds() const override { return bounds_; }
     double voxelSize() const override { return axes_.shortest(); }
     std::size_t bytes() const override { return 0; }
-    // Far enough to be past the place where rays arrive.
+    // Farther than the distance at which rays hit.
     double surfaceOffset() const override { return 0.02 * voxelSize(); }
 
 private:

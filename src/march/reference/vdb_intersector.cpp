@@ -40,8 +40,8 @@ openvdb::Vec3d cellGradient(openvdb::FloatGrid::ConstAccessor& accessor, const o
     return gradient;
 }
 
-// Everything below works in index space with a map taken once: the grid's own conversions copy a shared pointer a ray,
-// and its atomic count would be fought over by all threads.
+// Everything below is in index space with a map copied once: the grid's own conversions copy a shared pointer for each
+// ray, and its atomic count would be contended by all threads.
 class VdbTracer final : public trace::Tracer {
 public:
     VdbTracer(const openvdb::FloatGrid& grid, const openvdb::math::MapBase& map, const Reference& reference,
@@ -71,12 +71,12 @@ public:
     }
 
 private:
-    // The overload that returns only a time gives the time of the *previous* ray in OpenVDB 10.0.1 (it is read before
-    // the ray is traced; mended in 13.0.1). The position is right, and t follows from it.
+    // The overload that returns only a time returns that of the *previous* ray in OpenVDB 10.0.1 (it is read before
+    // the ray is traced; fixed in 13.0.1). The position is correct, and t is computed from it.
     bool nearest(const trace::Ray& ray, openvdb::Vec3d& index) {
-        // OpenVDB scales times to index space: an infinite one stays out of its arithmetic.
+        // OpenVDB scales times to index space: infinite ones are avoided.
         const double t_max = std::min(ray.t_max, glm::length(ray.origin - centre_) + diagonal_);
-        // OpenVDB wants a start above zero.
+        // OpenVDB requires a start above zero.
         const double t_min = std::max(ray.t_min, openvdb::math::Delta<double>::value());
         if (!(t_max > t_min)) return false;
         const Reference::RayType world(toVdb(ray.origin), toVdb(ray.direction), t_min, t_max);
@@ -84,15 +84,15 @@ private:
     }
 
     const openvdb::math::MapBase& map_;
-    Reference reference_;  // a copy a tracer: it holds an accessor and the ray under way
+    Reference reference_;  // a copy for each tracer: it has an accessor and the current ray
     openvdb::FloatGrid::ConstAccessor accessor_;
     const glm::dvec3 centre_;  // of the bounds, world units
     const double diagonal_;
 };
 
-// OpenVDB's intersector wants cubes, and takes small voxels that are turned for something else (its test compares a
-// determinant with 1e-8). It marches in index space, so it gets the same tree on upright cubes; rays are mapped by the
-// grid's own map. From the edge it only takes the width of the band in which it looks closely.
+// OpenVDB's intersector requires cubes, and rejects small rotated voxels (its test compares a determinant with 1e-8).
+// It marches in index space, so it gets the same tree on axis-aligned cubes; rays are mapped by the grid's own map. It
+// uses the edge only for the width of the band in which it searches.
 openvdb::FloatGrid::ConstPtr onCubes(const openvdb::FloatGrid& grid) {
     auto cubes = openvdb::FloatGrid::create(std::const_pointer_cast<openvdb::FloatTree>(grid.constTreePtr()));
     cubes->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -116,8 +116,8 @@ public:
     trace::Box bounds() const override { return bounds_; }
     std::size_t bytes() const override { return 0; }
     double voxelSize() const override { return GridAxes(grid_->transform()).shortest(); }
-    // The reference interpolates its root linearly between a voxel's faces, so a hit may lie some hundredths of a voxel
-    // inside the solid; a secondary ray that started there would meet the surface on its way out.
+    // The reference interpolates its root linearly between a voxel's faces, so a hit may be some hundredths of a voxel
+    // inside the solid; a secondary ray from there would hit the surface from inside.
     double surfaceOffset() const override { return 0.1 * voxelSize(); }
 
 private:

@@ -1,4 +1,4 @@
-// The reference intersector: OpenVDB's own LevelSetRayIntersector behind the interface of this room.
+// The reference intersector: OpenVDB's own LevelSetRayIntersector behind trace::Intersector.
 #pragma once
 
 #include "trace/intersector.h"

@@ -61,10 +61,10 @@ TEST(BrickGrid, HoldsEverySurfaceCellAndItsCorners) {
     const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(-1.7F, 2.9F, 0.4F), 0.1F);
     for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
         expectAllCells(*grid, BrickGrid(*grid, values));
-        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values);
-        EXPECT_EQ(late.brickCount(), 0U);
-        expectAllCells(*grid, late);
-        EXPECT_EQ(late.brickCount(), BrickGrid(*grid, values).brickCount());
+        const BrickGrid lazy(std::make_shared<GridLeaves>(*grid), values);
+        EXPECT_EQ(lazy.brickCount(), 0U);
+        expectAllCells(*grid, lazy);
+        EXPECT_EQ(lazy.brickCount(), BrickGrid(*grid, values).brickCount());
     }
 }
 
@@ -75,19 +75,19 @@ TEST(BrickGrid, KeepsSixteenBitsInSixteenHundredBytesABrick) {
     EXPECT_LE(bricks.bytes(), 1600 * bricks.brickCount());
 }
 
-TEST(BrickGrid, LaysLateBricksOutOnceForAllThreads) {
+TEST(BrickGrid, LaysLazyBricksOutOnceForAllThreads) {
     const auto grid = test::sphereGrid(3.3F, openvdb::Vec3f(0), 0.1F);
     const BrickGrid all(*grid, BrickValues::Int16);
-    const BrickGrid late(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
-    const auto size = late.size();
+    const BrickGrid lazy(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
+    const auto size = lazy.size();
     // All threads at the same bricks.
     parallelFor(8, 1, [&](std::size_t, std::size_t) {
         for (int x = 0; x < size[0]; x += 2)
             for (int y = 0; y < size[1]; y += 2)
-                for (int z = 0; z < size[2]; z += 2) (void)findBlock(late, {x, y, z});
+                for (int z = 0; z < size[2]; z += 2) (void)findBlock(lazy, {x, y, z});
     });
-    EXPECT_EQ(late.brickCount(), all.brickCount());
-    expectAllCells(*grid, late);
+    EXPECT_EQ(lazy.brickCount(), all.brickCount());
+    expectAllCells(*grid, lazy);
 }
 
 TEST(BrickGrid, HoldsEveryCellInWhateverRoomThereIs) {
@@ -95,15 +95,15 @@ TEST(BrickGrid, HoldsEveryCellInWhateverRoomThereIs) {
     const std::size_t all = BrickGrid(*grid, BrickValues::Int16).brickCount();
     for (const BrickValues values : {BrickValues::Float32, BrickValues::Int16}) {
         const std::size_t brick = BrickGrid(*grid, values).brickBytes();
-        const BrickGrid late(std::make_shared<GridLeaves>(*grid), values, BrickSlots::kLeastBound * brick + 1);
-        const BrickSlots::Reading reading(late.cache());
+        const BrickGrid lazy(std::make_shared<GridLeaves>(*grid), values, BrickSlots::kLeastBound * brick + 1);
+        const BrickSlots::Reading reading(lazy.cache());
         // Twice: once what is asked for again has been evicted.
         for (int round = 0; round < 2; ++round) {
-            expectAllCells(*grid, late);
-            EXPECT_LE(late.brickCount(), BrickSlots::kLeastBound);
-            EXPECT_EQ(late.cache().counts().peak, BrickSlots::kLeastBound);
+            expectAllCells(*grid, lazy);
+            EXPECT_LE(lazy.brickCount(), BrickSlots::kLeastBound);
+            EXPECT_EQ(lazy.cache().counts().peak, BrickSlots::kLeastBound);
         }
-        EXPECT_GT(late.cache().counts().made, all);
+        EXPECT_GT(lazy.cache().counts().made, all);
     }
 }
 

@@ -17,23 +17,23 @@ std::size_t sum(const std::vector<std::uint32_t>& counts) {
 
 TEST(BrickProjection, CountsWhatIsListedAndWhatWasTouched) {
     const auto grid = test::sphereGrid(3, openvdb::Vec3f(4, 0, 0), 0.1F);
-    const BrickGrid late(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
+    const BrickGrid lazy(std::make_shared<GridLeaves>(*grid), BrickValues::Int16);
     for (const int axis : {1, 2}) {
-        const BrickProjection nothing = projectBricks(late, axis);
-        EXPECT_EQ(nothing.width, static_cast<std::size_t>(late.size()[0] / 8));
-        EXPECT_EQ(nothing.height, static_cast<std::size_t>(late.size()[axis == 2 ? 1 : 2] / 8));
-        EXPECT_EQ(sum(nothing.listed), late.listedCount());
+        const BrickProjection nothing = projectBricks(lazy, axis);
+        EXPECT_EQ(nothing.width, static_cast<std::size_t>(lazy.size()[0] / 8));
+        EXPECT_EQ(nothing.height, static_cast<std::size_t>(lazy.size()[axis == 2 ? 1 : 2] / 8));
+        EXPECT_EQ(sum(nothing.listed), lazy.listedCount());
         EXPECT_EQ(sum(nothing.made), 0U);
     }
     // A brick on the sphere's upper left, as the front has it: x small, z large.
     const glm::dvec3 place(4 - 3 * 0.8, 0, 3 * 0.6);
     const openvdb::Coord cell =
-        openvdb::Coord::floor(grid->worldToIndex(openvdb::Vec3d(place.x, place.y, place.z))) - late.origin();
+        openvdb::Coord::floor(grid->worldToIndex(openvdb::Vec3d(place.x, place.y, place.z))) - lazy.origin();
     bool there = false;
-    for (int x = -2; x <= 2; ++x) there = there || findBlock(late, {cell[0] + x, cell[1], cell[2]}).surface;
+    for (int x = -2; x <= 2; ++x) there = there || findBlock(lazy, {cell[0] + x, cell[1], cell[2]}).surface;
     ASSERT_TRUE(there);
-    const BrickProjection front = projectBricks(late, 1);
-    const BrickProjection above = projectBricks(late, 2);
+    const BrickProjection front = projectBricks(lazy, 1);
+    const BrickProjection above = projectBricks(lazy, 2);
     EXPECT_GE(sum(front.made), 1U);
     EXPECT_LE(sum(front.made), 2U);
     EXPECT_EQ(sum(front.made), sum(above.made));
