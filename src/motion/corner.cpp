@@ -17,19 +17,19 @@ constexpr double kStraight = 0.999999;         // cosine beyond which two direct
 constexpr double kExtruderCornerVelocity = 1;  // mm/s of E: Klipper's instantaneous_corner_velocity
 constexpr double kPlainSpeed = 1e9;            // mm/s: no bound
 
-// The jump of speed by axis. An axis that reverses stops and starts: the larger of both counts, not their sum.
+// The change of speed by axis. An axis that reverses stops and starts: the larger of both counts, not their sum.
 double axisJump(double before, double after) {
     if (before > after) return after > 0 || before < 0 ? before - after : std::max(before, -after);
     return after < 0 || before > 0 ? after - before : std::max(-before, after);
 }
 
 double jerkCorner(const Segment& from, const Segment& to, const MachineLimits& limits) {
-    // The slicers' estimators take what was asked of the piece before, not what its axes allow.
+    // The slicers' estimators use the programmed speed of the previous segment, not the limited one.
     const double speed_from = limits.rule == CornerRule::jerk ? from.speed : from.asked;
     const double slower = std::min(speed_from, to.speed);
     const double safe_from = restSpeed(from, limits);
     const double safe_to = restSpeed(to, limits);
-    // Of two speeds the higher one isn't reached at the corner, but a faster successor may start with its own.
+    // The corner is passed at the lower of the two speeds, but a faster successor may start with its own.
     const double before = speed_from > to.speed ? from.speed * to.speed / speed_from : from.speed;
     double factor = 1;
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
@@ -37,7 +37,7 @@ double jerkCorner(const Segment& from, const Segment& to, const MachineLimits& l
         if (jump > limits.jerk[axis]) factor *= limits.jerk[axis] / jump;
     }
     const double speed = slower * factor;
-    // Stopping and starting anew may be faster than the bend.
+    // A stop and a new start may be faster than the corner.
     return safe_from > 0.99 * speed && safe_to > 0.99 * speed ? safe_to : speed;
 }
 
@@ -53,7 +53,7 @@ double planJerkCorner(const Segment& from, const Segment& to, const MachineLimit
     return std::min(from.speed, to.speed * factor);
 }
 
-// The acceleration along a direction (no unit vector needed) that every axis can bear.
+// The largest acceleration along a direction (of any length) within the limits of all axes.
 double accelerationAlong(const std::array<double, kMotionAxes>& direction, double norm, double acceleration,
                          const MachineLimits& limits) {
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
@@ -86,7 +86,7 @@ double deviationCorner(const Segment& from, const Segment& to, const MachineLimi
     const double acceleration = accelerationAlong(across, std::sqrt(norm), to.acceleration, limits);
     const double sine = std::sqrt(0.5 * (1 - cosine));  // of half the angle
     double squared = acceleration * limits.junction_deviation * sine / (1 - sine);
-    // Short pieces of a curve: what their circle allows.
+    // Short segments of a curve: the limit of their circle.
     if (to.length < 1 && cosine < -std::numbers::sqrt2 / 2)
         squared = std::min(squared, to.length * acceleration / std::acos(-cosine));
     return std::min(std::sqrt(squared), slower);
@@ -103,7 +103,7 @@ double velocityCorner(const Segment& from, const Segment& to, const MachineLimit
     const double sine = std::sqrt(std::max(0.5 * (1 + dot), 0.0));  // of half the angle inside the corner
     const double cosine = std::sqrt(std::max(0.5 * (1 - dot), 0.0));
     if (!(sine < 1 && cosine > 0)) return std::sqrt(squared);
-    // d a, with the a of the slower of the two: z may hold it below the machine's.
+    // d a, with the a of the slower of the two: because of z it may be below the machine's.
     const double weaker = std::min({from.acceleration, to.acceleration, limits.printing}) / limits.printing;
     const double deviation = weaker * limits.corner_velocity * limits.corner_velocity * (std::numbers::sqrt2 - 1);
     squared = std::min(squared, deviation * sine / (1 - sine));
@@ -123,7 +123,7 @@ double restSpeed(const Segment& segment, const MachineLimits& limits) {
         case CornerRule::junction_deviation:
             return std::min(kLeastPlannedSpeed, segment.speed);
         case CornerRule::plan_jerk:
-            // Half the jump, and of the slow axes only where they would jump farther.
+            // Half the change of speed, and for the slow axes only if theirs is larger.
             speed = limits.jerk[0] / 2;
             for (const std::size_t axis : {std::size_t{2}, std::size_t{3}})
                 if (std::abs(segment.direction[axis]) * segment.speed > limits.jerk[axis] / 2)

@@ -1,4 +1,4 @@
-// How fast a machine may pass from one piece of motion into the next, by the rules of the firmwares.
+// The speed limit at the corner between two segments of motion, by the rules of the firmwares.
 //
 // Sources: Marlin 1.1's classic jerk and 1.0's jerk of the plan vector (planner.cpp; PrusaSlicer's GCodeProcessor and
 // CuraEngine's TimeEstimateCalculator are the same rules, with the same treatment of standstill); S. K. Jeon,
@@ -12,11 +12,11 @@
 
 namespace stratum::motion {
 
-/// mm/s with which a piece may begin or end where the machine stands.
+/// mm/s with which a segment may begin or end at standstill.
 double restSpeed(const Segment& segment, const gcode::MachineLimits& limits);
 
-/// mm/s with which `to` may begin after `from`; at most the speed of `to`. It may be more than `from` can go: by the
-/// jerk rules a machine jumps that far even from standstill.
+/// mm/s with which `to` may begin after `from`; at most the speed of `to`. It may be more than the speed of `from`: by
+/// the jerk rules a machine may change its speed by that much, even from standstill.
 double cornerSpeed(const Segment& from, const Segment& to, const gcode::MachineLimits& limits);
 
 }  // namespace stratum::motion

@@ -22,7 +22,7 @@ void Planner::add(const Segment& segment) {
     next.segment = segment;
     next.gain = 2 * segment.acceleration * segment.length;
     const bool smooth = limits_.rule == gcode::CornerRule::corner_velocity;
-    // Klipper has no such bound on what E does alone.
+    // Klipper has no such limit for moves of E alone.
     next.smooth_gain = smooth && segment.travels ? next.gain * (1 - limits_.cruise_ratio) : next.gain;
     next.peak_most = squared(segment.speed);
     if (at_rest_) {
@@ -40,7 +40,7 @@ void Planner::add(const Segment& segment) {
     std::size_t settled = lookBack(0);
     if (settled == 0 && pending_.size() - first_ >= kMostPending) settled = kMostPending / 2;
     if (settled > 0) settle(settled, pending_[first_ + settled].entry);
-    // Looked at again when it has doubled: each piece is seen a few times at most.
+    // The next pass is when the number has doubled, so each segment is visited a few times at most.
     next_look_ = std::clamp(2 * (pending_.size() - first_), kLookEvery, kMostPending);
 }
 
@@ -56,9 +56,9 @@ std::size_t Planner::lookBack(double exit_squared) {
         piece.entry = entry = std::min(piece.entry_most, entry + piece.gain);
         piece.smooth_entry = smooth = std::min(piece.smooth_most, smooth_reach);
         if (settled > 0) continue;
-        // The piece itself stays, for its peak may still rise. Where speeds are smoothed what comes before may share
-        // that peak: so it must be known, which it is if the successor is settled and the piece neither brakes nor
-        // accelerates all the way.
+        // The segment itself stays pending, because its peak may still rise. With smoothed look-ahead the segments
+        // before may share that peak, so it must be final: it is if the successor is final and the segment neither
+        // decelerates nor accelerates over its whole length.
         const bool is_settled = entry == piece.entry_most && smooth == piece.smooth_most;
         const bool parts =
             !smooth_ || (next_is_settled && smooth < smooth_reach && smooth + piece.smooth_gain > next_smooth);
@@ -68,13 +68,13 @@ std::size_t Planner::lookBack(double exit_squared) {
     return settled;
 }
 
-// Klipper bounds the peak between two slow places by what a lower acceleration would reach there, so that short moves
-// to and fro cruise a part of their way: pieces that brake share the peak of the piece in which braking begins, and
-// those before it that only accelerate share it too.
+// Klipper limits the peak between two slow corners to the speed that a lower acceleration reaches there, so that short
+// zigzag moves cruise for a part of their length: decelerating segments share the peak of the segment in which
+// deceleration begins, and so do the segments before it that only accelerate.
 void Planner::smoothPeaks(std::size_t count) {
     braking_.clear();
     double peak = std::numeric_limits<double>::infinity();
-    // One piece more, if there is one: it knows the peak that those before it share.
+    // One more segment, if there is one: it has the peak that those before it share.
     const std::size_t last = std::min(first_ + count + 1, pending_.size());
     for (std::size_t i = last; i-- > first_;) {
         Pending& piece = pending_[i];
@@ -99,7 +99,7 @@ void Planner::settle(std::size_t count, double exit_squared) {
     for (std::size_t i = first_; i < first_ + count; ++i) {
         const Pending& piece = pending_[i];
         double exit = i + 1 < first_ + count ? pending_[i + 1].entry : exit_squared;
-        // By the jerk rules the next piece may begin with a jump.
+        // By the jerk rules the next segment may begin with a discontinuous speed.
         exit = std::min(exit, squared(piece.segment.speed));
         PlannedPiece planned;
         planned.start = time_;
@@ -116,7 +116,7 @@ void Planner::settle(std::size_t count, double exit_squared) {
 
 void Planner::wait(double seconds) {
     if (first_ < pending_.size()) {
-        // A machine that may stop with a jump doesn't go faster for that.
+        // The allowed change of speed at a stop doesn't raise the limits before it.
         const Pending& last = pending_.back();
         const double exit = std::min(squared(restSpeed(last.segment, limits_)), last.entry_most + last.gain);
         lookBack(exit);

@@ -1,9 +1,9 @@
-// The planner of a firmware: from the moves of a program to the speed at every moment.
+// A firmware's motion planner: computes the speed at every moment from the moves of a program.
 //
-// Look-ahead is exact as long as it can be: a corner speed is settled when no later move can change it, which is where
-// even a stop right behind the last known move leaves it at what the corner allows. Only programs that brake over more
-// than kMostPending pieces at a stretch are planned as if they had to be able to stop after so many, as every real
-// firmware with its 16 to 1000 pieces plans.
+// Look-ahead is exact: a corner speed is final when no later move can change it, that is, when it is the corner's limit
+// even if the machine had to stop right after the last known move. Only programs that decelerate over more than
+// kMostPending consecutive segments are planned with a stop after so many, as in real firmware with its 16 to 1000
+// segments.
 // Sources: as of corner.h; for the passes, any of those firmwares; klipper3d.org/Kinematics.html ("look-ahead",
 // "smoothed look-ahead") for minimum_cruise_ratio.
 #pragma once
@@ -19,14 +19,14 @@
 
 namespace stratum::motion {
 
-/// A piece of motion with its speeds and its time: what flow and time are computed from.
+/// A segment of motion with its speeds and its time, from which flow and times are computed.
 struct PlannedPiece {
     double start = 0;  ///< s since the program's begin
     Trapezoid speed;
     Segment segment;
 };
 
-/// Takes the plan, in order, a piece at a time.
+/// Receives the plan, in order, one segment at a time.
 class PlanSink {
 public:
     PlanSink() = default;
@@ -35,7 +35,7 @@ public:
     virtual ~PlanSink() = default;
 
     virtual void piece(const PlannedPiece& piece) = 0;
-    /// The machine stands from `start` on for `seconds`.
+    /// The machine waits from `start` on for `seconds`.
     virtual void wait(double start, double seconds) = 0;
 };
 
@@ -49,18 +49,18 @@ public:
     void limits(const gcode::MachineLimits& limits) override { limits_ = limits; }
     void move(const gcode::Move& move) override;
     void wait(double seconds) override;
-    /// The program is over: plans what is left. Called once.
+    /// End of the program: plans the remaining segments. Called once.
     void finish() { wait(0); }
 
     double seconds() const { return time_; }
-    /// The rule in force at the end.
+    /// The rule at the end of the program.
     gcode::CornerRule rule() const { return limits_.rule; }
 
 private:
     // Speeds squared, mm^2/s^2.
     struct Pending {
         Segment segment;
-        double entry_most = 0;   // what corner and acceleration since the last stop allow
+        double entry_most = 0;   // limit of the corner and of acceleration since the last stop
         double smooth_most = 0;  // the same for Klipper's smoothed look-ahead
         double gain = 0;         // 2 a d
         double smooth_gain = 0;
@@ -70,7 +70,7 @@ private:
     };
 
     void add(const Segment& segment);
-    // Entry speeds for an end at these speeds; returns how many pieces at the front no later piece can change.
+    // Computes entry speeds for an end at these speeds; returns how many segments at the front are final.
     std::size_t lookBack(double exit_squared);
     void smoothPeaks(std::size_t count);
     void settle(std::size_t count, double exit_squared);
@@ -78,7 +78,7 @@ private:
     PlanSink& sink_;
     gcode::MachineLimits limits_;
     std::vector<Pending> pending_;
-    std::size_t first_ = 0;  // of the pending ones; those before are settled
+    std::size_t first_ = 0;  // the first pending one; those before are final
     std::size_t next_look_ = 0;
     std::vector<std::size_t> braking_;
     bool at_rest_ = true;

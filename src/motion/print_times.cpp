@@ -14,7 +14,7 @@ using gcode::CornerRule;
 constexpr std::array<std::string_view, 6> kRules{
     "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"};
 
-// Keeps what the sums need, while the toolpath is still being read.
+// Collects the data for the sums while the toolpath is being read.
 class Recorder : public PlanSink {
 public:
     void piece(const PlannedPiece& piece) override {
@@ -25,7 +25,7 @@ public:
             return;
         }
         if (timing.size() <= segment.bead) {
-            // Beads that nothing moved for stand where the next one begins.
+            // Beads without motion get the start time of the next one.
             timing.resize(segment.bead + std::size_t{1}, {.start = piece.start});
             timing.back().entry = static_cast<float>(piece.speed.entry);
         }

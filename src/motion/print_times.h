@@ -1,4 +1,4 @@
-// True times of a print: of each bead, each layer, each feature, and all.
+// Real times of a print: of each bead, each layer, each feature, and in total.
 #pragma once
 
 #include "gcode/reader.h"
@@ -12,16 +12,16 @@
 
 namespace stratum::motion {
 
-/// Seconds, by the machine's limits and the rule of its planner. Heating, homing and probing take a time that no file
-/// tells, and count nothing.
+/// Seconds, by the machine's limits and the rule of its planner. Heating, homing and probing take an unknown time and
+/// are not counted.
 struct PrintTimes {
     double total = 0;
     double travel = 0;                                    ///< of moves without extrusion
     double retraction = 0;                                ///< of moves of E alone: retracting, priming
     double waiting = 0;                                   ///< G4, changes of tool
     std::array<double, gcode::kFeatureCount> features{};  ///< of beads
-    std::vector<double> layers;  ///< by layer number; what leads to a bead belongs to its layer, the rest to the last
-    std::string rule;            ///< as ruleName() has it
+    std::vector<double> layers;  ///< by layer number; travel before a bead belongs to its layer, the rest to the last
+    std::string rule;            ///< a ruleName()
 };
 
 /// The name of a rule on command lines and in reports.
@@ -29,8 +29,8 @@ std::string_view ruleName(gcode::CornerRule rule);
 /// The rule of that name ("auto" is automatic). Throws UsageError with the names.
 gcode::CornerRule ruleNamed(std::string_view name);
 
-/// Reads a program and plans its motion: fills Toolpath::timing and tells the sums. Throws what readToolpath() throws.
-/// Takes about twice as long as reading alone, and 24 bytes a bead.
+/// Reads a program and plans its motion: fills Toolpath::timing and returns the sums. Throws what readToolpath()
+/// throws. Takes about twice as long as reading alone, and 24 bytes a bead.
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
                                   PrintTimes& times);
 

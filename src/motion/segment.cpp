@@ -9,7 +9,7 @@ namespace {
 constexpr double kNoMotion = 1e-12;  // mm
 constexpr double kMostPieces = 1e5;
 
-// What the axes leave of the speed and the acceleration that were asked for.
+// Limits the programmed speed and acceleration to those of the axes.
 void limitAxes(const gcode::MachineLimits& limits, Segment& segment) {
     for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis) {
         const double share = std::abs(segment.direction[axis]);

@@ -6,7 +6,7 @@
 namespace stratum::motion {
 
 Trapezoid fastest(double length, double acceleration, double entry_squared, double most_squared, double exit_squared) {
-    // Up and down without rest between them: half the sum, and what the length gives.
+    // A profile without a cruising phase: half the sum of the squared speeds, plus acceleration times length.
     const double meeting = 0.5 * (entry_squared + exit_squared) + acceleration * length;
     const bool cruises = most_squared < meeting;
     const double peak_squared = std::max({entry_squared, exit_squared, cruises ? most_squared : meeting});

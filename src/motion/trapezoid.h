@@ -1,4 +1,4 @@
-// The speed along one piece of motion: up with constant acceleration, on at one speed, down again.
+// The trapezoidal speed profile of one segment: constant acceleration, constant speed, constant deceleration.
 #pragma once
 
 namespace stratum::motion {
@@ -16,8 +16,8 @@ struct Trapezoid {
     double seconds() const { return rising + cruising + falling; }
 };
 
-/// The fastest way over `length` mm between squared speeds that the acceleration can join, never above the squared
-/// speed `most`. Speeds mm/s, squared.
+/// The fastest profile over `length` mm between two speeds that the acceleration can connect, never above `most`.
+/// Speeds are squared, (mm/s)^2.
 Trapezoid fastest(double length, double acceleration, double entry_squared, double most_squared, double exit_squared);
 
 }  // namespace stratum::motion

@@ -26,13 +26,13 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
     const double h = lattice.voxel_size;
     double around = lattice.background();
     if (rank < layout.stack.first_direct) {
-        // The widest section that is sampled need not be the widest there is.
+        // The widest sampled section need not be the widest section.
         const double centre = 0.5 * (solid.min[2] + solid.max[2]);
         const double off = std::abs(std::remainder(centre - lattice.origin_z, h));
         const double far = field.radius() + lattice.background();
         around = std::sqrt(far * far - off * off) - field.radius();
     }
-    constexpr double kSlack = 1e-4;  // voxels; leaves decide
+    constexpr double kSlack = 1e-4;  // voxels; the leaves give the exact box
     Reach reach;
     for (int axis = 0; axis < 3; ++axis) {
         const double origin = axis == 2 ? lattice.origin_z : 0;

@@ -7,8 +7,8 @@
 
 namespace stratum::ondemand {
 
-/// Index-space box of the samples within the narrow band, as openvdb::Grid::evalActiveVoxelBoundingBox() of the whole
-/// grid says. Evaluates a leaf or a few for each side: where the beads that reach farthest say that it must end.
+/// Index-space box of the samples within the narrow band: openvdb::Grid::evalActiveVoxelBoundingBox() of the whole
+/// grid. Evaluates one or a few leaves for each side, at the outermost beads.
 openvdb::CoordBBox findActiveBox(const PrintLayout& layout);
 
 }  // namespace stratum::ondemand

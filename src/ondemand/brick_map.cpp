@@ -44,8 +44,7 @@ public:
         first_j_ = map_.origin[1] / kBrick;
     }
 
-    // Beads by the macro slabs across z that they reach: layers' beads are a run of ranks each, direct beads are
-    // listed.
+    // Beads by the macro slabs across z that they reach: beads of layers as intervals of ranks, direct beads as lists.
     void listSlabs() {
         const voxelize::LayerStack& stack = layout_.stack;
         slabs_.resize(static_cast<std::size_t>(map_.macros[2]));
@@ -62,7 +61,7 @@ public:
     void mapSlab(std::size_t slab) {
         const auto columns_i = static_cast<std::size_t>(map_.macros[0]);
         const auto columns_j = static_cast<std::size_t>(map_.macros[1]);
-        // Apart from the map, where slabs of other threads lie beside these words.
+        // Separate from the map, where words of other threads' slabs are adjacent.
         std::vector<std::uint64_t> words(columns_i * columns_j);
         std::vector<std::uint32_t> firsts(words.size(), std::numeric_limits<std::uint32_t>::max());
         for (const Part& part : slabs_[slab]) {

@@ -8,7 +8,7 @@
 namespace stratum::ondemand {
 namespace {
 
-// Less isn't worth another set of bins.
+// A smaller gain is not worth another set of bins.
 constexpr double kCoarserBy = 1.5;
 constexpr double kLeastVariation = 2;
 

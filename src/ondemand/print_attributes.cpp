@@ -82,7 +82,7 @@ private:
     }
 
     void fill(Owned& leaf, const openvdb::Coord& origin) {
-        leaf.origin = openvdb::Coord::max();  // in case that making throws
+        leaf.origin = openvdb::Coord::max();  // invalid if evaluation throws
         leaf.active = {};
         if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
             std::array<float, voxelize::Leaf::SIZE> values;
@@ -144,7 +144,7 @@ std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr
 
 trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
                                   std::span<const std::uint32_t> selection) {
-    // The empty grid of that attribute knows its kind and the names.
+    // The empty grid of that attribute has its type and the names.
     const gcode::Toolpath& toolpath = *field.layout().toolpath;
     const auto nothing = openvdb::FloatGrid::create();
     const std::array<Attribute, 1> wanted{attribute};

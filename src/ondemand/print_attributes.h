@@ -1,4 +1,4 @@
-// What the beads of a print are, asked where rays hit: attributes without their grids.
+// Attributes of beads, looked up at hits, without attribute grids.
 #pragma once
 
 #include "march/attribute/attribute_grid.h"
@@ -14,17 +14,16 @@
 
 namespace stratum::ondemand {
 
-/// The attribute of that name, as --grids calls it. Throws UsageError, with the names that there are.
+/// The attribute of that name, as in --grids. Throws UsageError with the list of names.
 voxelize::Attribute attributeNamed(std::string_view name);
 
-/// The values of the grid that voxelize::Voxelizer::attributes() would make, found when they are asked for: the voxel
-/// of the eight around a point that is nearest to it, and the bead nearest to that. The leaves lately asked for are
-/// kept, a few a thread.
+/// The values of the grid that voxelize::Voxelizer::attributes() would make, computed on demand: from the nearest
+/// active voxel of the eight around a point, and the bead nearest to that voxel. Each thread caches a few recent
+/// leaves.
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
                                                                  voxelize::Attribute attribute);
 
-/// What march::summarize() would say of that grid, from the selected beads: also from those that no voxel is nearest
-/// to.
+/// The march::summarize() of that grid, but from the selected beads, including those that are nearest to no voxel.
 trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
                                   std::span<const std::uint32_t> selection);
 

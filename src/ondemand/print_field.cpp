@@ -85,7 +85,7 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
             z_min = extent.z_min - lattice.background();
             z_max = extent.z_max + lattice.background();
         } else {
-            // A bead can weld what lies below it: as far as LeafColumn::touched() says.
+            // A bead can be welded to the layer below it: within LeafColumn::touched().
             const voxelize::Layer& layer = stack.layers[stack.layer[rank]];
             const double reach = layer.radius * (1 + 2 * voxelize::kWeldGap) + lattice.background();
             z_min = layer.centre_z - reach;

@@ -1,4 +1,4 @@
-// Toolpath -> a level set that is sampled where rays come: pictures without a grid.
+// Toolpath -> a level set that is sampled on demand, for pictures without a grid.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -18,11 +18,11 @@
 
 namespace stratum::ondemand {
 
-/// What making it took, for reports.
+/// Durations of its construction, for reports.
 struct PrintFieldTimes {
-    double bins = 0;  ///< seconds: layers, and which beads reach which column
-    double box = 0;   ///< the box of the active voxels
-    double map = 0;   ///< which bricks may have surface
+    double bins = 0;  ///< seconds: layers and plan bins
+    double box = 0;   ///< seconds: the box of the active voxels
+    double map = 0;   ///< seconds: the map of the bricks
 };
 
 class PrintField final : public march::LeafField {
@@ -35,9 +35,9 @@ public:
     PrintField(const PrintField&) = delete;
     PrintField& operator=(const PrintField&) = delete;
 
-    /// Brings the print to what the selected beads before index `end` of the toolpath have made of it, and returns the
-    /// leaves whose samples may have changed by that: ascending, each once. Its box and its bricks stay those of the
-    /// whole selection. Not while rays are traced; see march::BrickGrid::update().
+    /// Sets the print to the selected beads before index `end` of the toolpath, and returns the leaves whose samples
+    /// may have changed: ascending, each once. Its box and its map of bricks stay those of the whole selection. Not
+    /// while rays are traced; see march::BrickGrid::update().
     std::vector<openvdb::Coord> printUntil(std::uint32_t end);
     std::uint32_t printed() const { return end_; }
 

@@ -19,13 +19,13 @@ double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& latti
     return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
 }
 
-// std::lower_bound of a column's ranks, beginning where it would be if they were spread evenly over all: the list is
-// rarely in a cache, and halving it would touch it all over.
+// std::lower_bound of a column's ranks as an interpolation search: the list is rarely in the cache, and bisection would
+// touch more of it.
 std::size_t firstNotBelow(std::span<const std::uint32_t> ranks, std::uint32_t rank, std::size_t of_all) {
     const std::size_t size = ranks.size();
     const auto guess =
         std::min(size - 1, static_cast<std::size_t>(static_cast<double>(size) * rank / static_cast<double>(of_all)));
-    // What is before `low` is below, what is from `high` on is not.
+    // Ranks before `low` are below, ranks from `high` on are not.
     std::size_t low = guess + 1;
     std::size_t high = guess;
     std::size_t step = 8;
@@ -79,8 +79,8 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     const auto height = [this](int k) { return layout_.lattice.origin_z + k * layout_.lattice.voxel_size; };
     const double z_min = height(origin[2]);
     const double z_max = height(origin[2] + static_cast<int>(planes) - 1);
-    // Ranks ascend with the layers' planes: what matters to this leaf is one run of them. A column is opened for that
-    // alone, not for its hundreds of layers.
+    // Ranks ascend with the layers' planes: the layers that reach this leaf are one interval. The column is opened for
+    // these alone, not for its hundreds of layers.
     const auto below = [](const voxelize::Layer& layer, double z) { return layer.centre_z < z; };
     const auto first = std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below);
     auto last = first;

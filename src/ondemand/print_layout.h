@@ -1,4 +1,4 @@
-// Toolpath -> what it takes to sample the print anywhere: layers, bins, and a thread's way to one leaf.
+// Toolpath -> the data to sample the print anywhere (layers, bins), and the evaluation of single leaves.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -16,7 +16,7 @@
 
 namespace stratum::ondemand {
 
-/// What all threads share. Immutable.
+/// Immutable; shared by all threads.
 struct PrintLayout {
     /// `selection`: indices into toolpath->beads, ascending, not empty. `unit` is world units a mm. Parallel. Throws
     /// UsageError if the bins don't fit.
@@ -32,18 +32,18 @@ struct PrintLayout {
     const double unit;
     const voxelize::LayerStack stack;
     const voxelize::PlanBins bins;
-    const double reach;  ///< mm from a layer's centre plane within which it matters to a leaf, of the thickest layer
+    const double reach;  ///< mm: a layer's centre plane affects leaves within this distance; of the thickest layer
 };
 
-/// Evaluates leaves one at a time, wherever they are. One a thread.
+/// Evaluates single leaves at any position. Belongs to one thread.
 class LeafMaker {
 public:
-    /// `layout` must outlive it. With `owners` its column knows them.
+    /// `layout` must outlive it. With `owners` its column records them.
     explicit LeafMaker(const PrintLayout& layout, bool owners = false)
         : layout_(layout), column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit, owners) {}
 
-    /// The leaf from this index-space coordinate, and perhaps the plane above it, of the beads below index `end`. The
-    /// values are column().planes().
+    /// Evaluates the leaf from this index-space coordinate, and optionally the plane above it, of the beads below index
+    /// `end`. The values are column().planes().
     voxelize::LeafContent make(const openvdb::Coord& origin, std::uint32_t end,
                                std::size_t planes = voxelize::kLeafPlanes);
     const voxelize::LeafColumn& column() const { return column_; }

@@ -1,4 +1,4 @@
-// What is known of a grid of attributes without looking at its voxels again.
+// Summary of an attribute's values: range, labels, colors.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,18 +9,18 @@
 
 namespace stratum::trace {
 
-/// What gcode2vdb's colours are where the file states none. No sRGB of 8 bits is the same.
+/// gcode2vdb's color for beads whose file states none. Different from every 8-bit sRGB color.
 inline constexpr glm::vec3 kNoColor{0.8f, 0.8f, 0.8f};
 
-/// What one attribute says of an object: whole numbers (tool, layer, feature), numbers (width, speed, time) or colours.
+/// The values of one attribute of an object: integers (tool, layer, feature), numbers (width, speed, time) or colors.
 struct AttributeSummary {
     enum class Kind { integer, number, color };
     Kind kind = Kind::number;
     double least = 0.0, most = 0.0;   ///< of integers and numbers
-    std::vector<glm::vec3> colors;    ///< the different ones, linear RGB, sorted by component; at most kMostColors
+    std::vector<glm::vec3> colors;    ///< distinct, linear RGB, sorted by component; at most kMostColors
     std::vector<std::string> labels;  ///< names of the integers from 0, as far as the file has them
-    std::vector<int> values;          ///< the different integers, ascending, if there are at most kMostValues
-    std::uint64_t not_finite = 0;     ///< voxels or beads whose value is no finite number; they count for nothing above
+    std::vector<int> values;          ///< the distinct integers, ascending, if there are at most kMostValues
+    std::uint64_t not_finite = 0;     ///< voxels or beads whose value is not finite; the fields above ignore them
 
     static constexpr std::size_t kMostColors = 4096;
     static constexpr std::size_t kMostValues = 64;

@@ -7,7 +7,7 @@
 namespace stratum::trace {
 namespace {
 
-// Halves first: the sum of two large numbers may be none.
+// Halves before adding, because the sum may overflow.
 glm::dvec3 centreOf(const Box& box) { return 0.5 * box.min + 0.5 * box.max; }
 
 }  // namespace
@@ -47,7 +47,7 @@ void BoxTree::build(std::span<const Box> boxes, std::span<std::uint32_t> indices
         int axis = 0;
         for (const int other : {1, 2})
             if (spread[other] > spread[axis]) axis = other;
-        // By number where centres agree, so that the tree is the same everywhere.
+        // Equal centers are ordered by index, so that the tree is deterministic.
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             return std::pair(centreOf(boxes[a])[axis], a) < std::pair(centreOf(boxes[b])[axis], b);
         };

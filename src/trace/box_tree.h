@@ -1,4 +1,4 @@
-// Which of many boxes a ray meets, without asking each: a bounding volume hierarchy over whole objects.
+// A bounding volume hierarchy over whole objects: finds the boxes that a ray meets.
 #pragma once
 
 #include "trace/intersector.h"
@@ -15,7 +15,7 @@
 
 namespace stratum::trace {
 
-/// Whether the box ends on every side.
+/// Whether the box is finite on every side.
 bool hasEnd(const Box& box);
 
 /// One ray against boxes: slabs, with the divisions done once (Kay and Kajiya, SIGGRAPH 1986).
@@ -23,14 +23,13 @@ class BoxTest {
 public:
     explicit BoxTest(const Ray& ray) : origin_(ray.origin), inverse_(1.0 / ray.direction), t_min_(ray.t_min) {}
 
-    /// Whether the ray meets the box no later than at `t_max`. Errs on the side of yes: only what is surely past is
-    /// left out. Every operation is monotonic in the box, rounded as well, so what meets a box meets every box around
-    /// it.
+    /// Whether the ray meets the box no later than at `t_max`. Conservative: true in doubt. Every operation is
+    /// monotonic in the box, even when rounded, so a ray that meets a box meets every enclosing box.
     bool meets(const Box& box, double t_max) const {
         double near = t_min_;
         double far = t_max;
         for (int axis = 0; axis < 3; ++axis) {
-            // Never 0 * inf: along such an axis the ray doesn't move, or takes 10^308 to.
+            // Avoids 0 * inf: along such an axis the ray doesn't move, or takes t > 10^308 to.
             if (!std::isfinite(inverse_[axis])) {
                 if (origin_[axis] < box.min[axis] || origin_[axis] > box.max[axis]) return false;
                 continue;
@@ -40,7 +39,7 @@ public:
             near = std::max(near, std::min(a, b));
             far = std::min(far, std::max(a, b));
         }
-        // Three roundings each; their exact values may be the other way round.
+        // Three rounding errors each; the exact values may be in the other order.
         constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
         return near - std::abs(near) * kRounding <= far + std::abs(far) * kRounding;
     }
@@ -51,16 +50,16 @@ private:
     double t_min_;
 };
 
-/// Immutable; shared by all threads. Halved at the median of the centres along the axis that they spread most on, so it
-/// is never deeper than log2 of the number of boxes; a leaf is one box. Nodes lie depth first and know where to go on
-/// if they are missed, so that a walk needs no stack.
+/// Immutable; shared by all threads. Split at the median of the centers along the axis of their largest spread, so its
+/// depth is at most log2 of the number of boxes, rounded up; a leaf is one box. Nodes are stored depth first with the
+/// index of the node to continue at after a miss, so that traversal needs no stack.
 class BoxTree {
 public:
-    /// @param boxes  min <= max on each axis; any number. Those that have no end stand beside the tree.
+    /// @param boxes  min <= max on each axis; any number. Infinite ones are kept outside the tree.
     explicit BoxTree(std::span<const Box> boxes);
 
-    /// Calls stop(index) for each box that the ray meets no later than at `t_max`, in no particular order, until it
-    /// returns true. Returns whether it did.
+    /// Calls stop(index) for each box that the ray meets no later than at `t_max`, in arbitrary order, until it returns
+    /// true. Returns whether it did.
     template <typename Stop>
     bool visit(const BoxTest& ray, double t_max, const Stop& stop) const {
         for (const Node& node : endless_)
@@ -83,7 +82,7 @@ private:
     static constexpr std::uint32_t kInner = ~std::uint32_t{0};
     struct Node {
         Box box;
-        std::uint32_t past;  ///< the node after all that lie in this one
+        std::uint32_t past;  ///< the node after all descendants of this one
         std::uint32_t leaf;  ///< index of the box, or kInner
     };
 

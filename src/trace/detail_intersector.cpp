@@ -27,7 +27,7 @@ public:
         const double nearest = glm::dot(to_eye, ray.direction);
         const double miss = glm::length(to_eye - nearest * ray.direction);
         double begin = ray.t_min;
-        // A place behind the end, or before the beginning, cuts nothing.
+        // Intersections outside the ray's interval are skipped.
         const auto add = [&](std::size_t part, double end) {
             if (!(end > begin) || !(begin < ray.t_max)) return;
             begin = end = std::min(end, ray.t_max);
@@ -35,7 +35,7 @@ public:
             pieces.parts[pieces.count] = static_cast<std::uint8_t>(part);
             ++pieces.count;
         };
-        // Half of the chord. Every step is monotone in the radius, rounded or not: the places ascend as they should.
+        // Half of the chord. Every operation is monotonic in the radius, even when rounded, so the positions ascend.
         const auto half = [miss](double radius) { return std::sqrt((radius - miss) * (radius + miss)); };
         std::size_t part = radii_.size();
         for (; part > 0 && miss < radii_[part - 1]; --part) add(part, nearest - half(radii_[part - 1]));
@@ -49,7 +49,7 @@ public:
 
 private:
     const glm::dvec3 eye_;
-    const std::vector<double> radii_;  // where part n ends and n + 1 begins
+    const std::vector<double> radii_;  // boundaries between part n and part n + 1
 };
 
 class DetailIntersector final : public Intersector {

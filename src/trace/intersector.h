@@ -1,4 +1,4 @@
-// The seam between geometry and light: rays in, hits out. Knows nothing of light.
+// The interface between geometry and shading: rays in, hits out.
 //
 // World space is the grid's world space (mm unless the .vdb says otherwise). Positions are double: a printer's bed is
 // 10^5 voxels wide and a hit must be good to 10^-3 voxel.
@@ -25,13 +25,13 @@ struct Ray {
     double t_max = std::numeric_limits<double>::infinity();
 };
 
-/// Where a ray meets the surface from outside or inside.
+/// An intersection of a ray with the surface, from outside or inside.
 struct Hit {
     double t = 0.0;            ///< world units along the ray
     glm::dvec3 position{0.0};  ///< world space
     glm::dvec3 normal{0.0};    ///< unit, geometric: gradient of the trilinear field at the hit, towards outside
-    std::uint32_t object = 0;  ///< which of a scene's objects; see scene_intersector.h
-    std::uint32_t part = 0;    ///< of an intersector that is made of others, which of them; see piecewise_tracer.h
+    std::uint32_t object = 0;  ///< index of the object in a scene; see scene_intersector.h
+    std::uint32_t part = 0;    ///< index of the part in a composite intersector; see piecewise_tracer.h
 };
 
 /// Axis-aligned box in world space.
@@ -40,33 +40,33 @@ struct Box {
     glm::dvec3 max{0.0};
 };
 
-/// What one thread traces rays with. Not thread-safe: every thread makes its own from the shared Intersector, which
-/// must outlive it.
+/// Traces rays in one thread. Not thread-safe: every thread makes its own from the shared Intersector, which must
+/// outlive it.
 class Tracer {
 public:
     virtual ~Tracer() = default;
-    /// The nearest hit with t in [ray.t_min, ray.t_max]. Returns false, and leaves `hit` alone, if there is none.
+    /// The nearest hit with t in [ray.t_min, ray.t_max]. Returns false, with `hit` unchanged, if there is none.
     virtual bool intersect(const Ray& ray, Hit& hit) = 0;
-    /// Whether anything lies in [ray.t_min, ray.t_max].
+    /// Whether the ray hits anything in [ray.t_min, ray.t_max].
     virtual bool occluded(const Ray& ray) = 0;
 
-    /// The same for many rays: hits[i] is the nearest hit of rays[i], or its t is infinite. Each answer depends on its
-    /// own ray alone. Faster than one by one where the intersector has vector code; best with hundreds of rays, and
-    /// with neighbours in the picture next to each other. `hits` is as long as `rays`.
+    /// The same for many rays: hits[i] is the nearest hit of rays[i], or its t is infinite. Each result depends on its
+    /// own ray alone. Faster than single rays if the intersector has vector code; best with hundreds of coherent rays.
+    /// `hits` is as long as `rays`.
     virtual void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) {
         for (std::size_t n = 0; n < rays.size(); ++n)
             if (!intersect(rays[n], hits[n])) hits[n].t = std::numeric_limits<double>::infinity();
     }
-    /// blocked[i] is 1 if anything lies on rays[i], else 0. `blocked` is as long as `rays`.
+    /// blocked[i] is 1 if rays[i] hits anything, else 0. `blocked` is as long as `rays`.
     virtual void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
         for (std::size_t n = 0; n < rays.size(); ++n) blocked[n] = occluded(rays[n]) ? 1 : 0;
     }
 
-    /// The normal to shade with at a hit that this tracer found: unit, towards outside. The geometric one, unless the
-    /// intersector was annotated with smooth normals (annotation.h).
+    /// The shading normal at a hit of this tracer: unit, towards outside. The geometric one, unless the intersector was
+    /// annotated with smooth normals (annotation.h).
     virtual glm::dvec3 shadingNormal(const Hit& hit) { return hit.normal; }
-    /// What the surface was annotated with at a hit that this tracer found: the attribute of that number. A number is
-    /// in x, a colour is linear RGB. Nothing where there is no such value.
+    /// The value of the attribute with that number at a hit of this tracer. A number is in x, a color is linear RGB.
+    /// Nothing where there is no value.
     virtual std::optional<glm::vec3> attribute(const Hit&, std::size_t) { return std::nullopt; }
 };
 
@@ -77,14 +77,14 @@ public:
     virtual std::unique_ptr<Tracer> makeTracer() const = 0;
     /// The method's name as in --march.
     virtual std::string_view name() const = 0;
-    /// World-space box of the surface's narrow band. Endless shapes have infinite sides.
+    /// World-space box of the surface's narrow band. Unbounded shapes have infinite sides.
     virtual Box bounds() const = 0;
     /// World-space edge of a voxel, the shortest one.
     virtual double voxelSize() const = 0;
-    /// Memory taken besides the grid it was made from, bytes.
+    /// Memory in addition to the grid it was made from, bytes.
     virtual std::size_t bytes() const = 0;
-    /// Distance in world units by which a secondary ray must leave a hit along the geometric normal so that it doesn't
-    /// meet the same surface again.
+    /// Distance in world units by which a secondary ray's origin must be offset from a hit along the geometric normal,
+    /// so that it doesn't hit the same surface again.
     virtual double surfaceOffset() const = 0;
 };
 

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Whether the ray comes out of the solid there.
+// Whether the ray leaves the solid at this hit.
 bool leaves(const Ray& ray, const Hit& hit) { return glm::dot(hit.normal, ray.direction) > 0; }
 
-// From the beginning of a piece back to the ray's own.
+// The reversed ray, from the beginning of a piece to the ray's own beginning.
 Ray backFrom(double begin, const Ray& ray) {
     Ray back;
     back.origin = ray.origin + begin * ray.direction;
@@ -24,8 +24,8 @@ Ray backFrom(double begin, const Ray& ray) {
     return back;
 }
 
-// From where a piece begins to where the part before it would next be met: out of the solid, if that part has the ray
-// inside there. Only the sign counts, so what that part knows of the places beyond does not matter.
+// From the beginning of a piece to the next hit of the previous part: out of the solid, if the ray is inside of that
+// part there. Only the direction of the crossing is used, so that part need not be valid beyond its own piece.
 Ray aheadFrom(double begin, const Ray& ray) {
     Ray ahead = ray;
     ahead.t_min = begin;
@@ -33,10 +33,10 @@ Ray aheadFrom(double begin, const Ray& ray) {
     return ahead;
 }
 
-// Where the ray met a wall at the beginning of a piece: this part has it inside there, and the part before outside, so
-// for this part it has come in, and `back` is where. The answer is that place, not the one on the wall: it lies on this
-// part's surface and outside of the part before, so that rays that leave it are free, while a point on the wall lies
-// below the surface that goes on behind it.
+// The hit of a ray that met a wall at the beginning of a piece. The ray is inside of this part there, and outside of
+// the previous part, so it entered this part before, at `back`. The hit is at that position, not on the wall: it is on
+// this part's surface and outside of the previous part, so secondary rays from it are not blocked, while a point on the
+// wall would be below the surface that continues behind it.
 Hit wallHit(const Ray& ray, double begin, const Hit& back) {
     Hit hit = back;
     hit.t = begin - back.t;
@@ -58,16 +58,15 @@ Ray PiecewiseTracer::Way::piece(const Ray& ray) const {
     return piece;
 }
 
-// Where a piece, other than the first, begins with the ray outside, it first meets an entry or nothing. Whether it is
-// inside has to be asked for if it comes out first, or comes to the end of its piece without having met anything. It
-// can't be inside for ever.
+// If the ray is outside at the beginning of a piece (not the first), its first crossing is an entry, or there is none.
+// So whether it is inside must be tested only if the first crossing is an exit, or if the piece has no crossing.
 bool PiecewiseTracer::wantsLookBack(const Ray& ray, const Way& way, const Hit* found) const {
     if (way.at == 0) return false;
     return found != nullptr ? leaves(ray, *found) : std::isfinite(way.pieces.ends[way.at]);
 }
 
 Hit PiecewiseTracer::marked(Hit hit, std::size_t part) const {
-    // The part of a part, if that is made of others as well, stays readable.
+    // If the part is composite itself, its own Hit::part is kept.
     hit.part = static_cast<std::uint32_t>(hit.part * tracers_.size() + part);
     return hit;
 }
@@ -131,7 +130,7 @@ void PiecewiseTracer::gather(std::size_t part, std::span<const Ray> rays) {
     }
 }
 
-// Those of a part's turn that might be behind a wall.
+// Rays of the current part that may be behind a wall.
 void PiecewiseTracer::lookBack(std::size_t part, std::span<const Ray> rays) {
     back_.clear();
     back_places_.clear();
@@ -144,7 +143,7 @@ void PiecewiseTracer::lookBack(std::size_t part, std::span<const Ray> rays) {
     if (back_.empty()) return;
     back_hits_.assign(back_.size(), Hit{});
     tracers_[part]->intersectStream(back_, back_hits_);
-    // Those that came in may have begun inside for the part before.
+    // Rays with an entry may have begun inside of the previous part.
     const auto rayOf = [&](std::size_t b) { return places_[back_places_[b]]; };
     for (std::size_t before = 0; before < tracers_.size(); ++before) {
         ahead_.clear();
@@ -168,7 +167,7 @@ void PiecewiseTracer::lookBack(std::size_t part, std::span<const Ray> rays) {
     }
 }
 
-// To the next piece of each ray without an answer that has one.
+// Advances each ray without a result to its next piece, if it has one.
 void PiecewiseTracer::goOn() {
     std::erase_if(waiting_, [this](std::uint32_t n) { return ways_[n].last(); });
     for (const std::uint32_t n : waiting_) ++ways_[n].at;

@@ -1,9 +1,9 @@
-// Rays that several intersectors of one shape answer, each a piece of the way: what all ways of sharing have in common.
+// Rays that are traced by several intersectors of one shape, each along one piece of the ray.
 //
-// The surfaces of two parts differ by up to half a voxel of each, so where one part hands a ray on to the next, the ray
-// may be outside for the one and inside for the other. The shape is then closed by a wall between both, and a ray that
-// meets the wall from outside has met the shape: nothing leaks. A ray that begins in the solid may come out through a
-// wall unnoticed.
+// The surfaces of two parts differ by up to half a voxel of each, so at the boundary between two pieces a ray may be
+// outside of one part and inside of the other. The shape is then closed by a wall on the boundary, and a ray that meets
+// the wall from outside has hit the shape: nothing leaks. A ray that begins in the solid may leave through a wall
+// undetected.
 #pragma once
 
 #include "trace/intersector.h"
@@ -17,34 +17,33 @@
 
 namespace stratum::trace {
 
-/// Which part answers where along one ray: piece n goes from where piece n - 1 ends to ends[n].
+/// The pieces of one ray and their parts: piece n goes from the end of piece n - 1 to ends[n].
 struct Pieces {
-    /// Eight parts around each other, entered and left again.
+    /// Enough for eight nested parts, each entered and left.
     static constexpr std::size_t kMost = 15;
     std::array<double, kMost> ends;  ///< ascending, the last one is the ray's t_max
     std::array<std::uint8_t, kMost> parts;
     std::uint32_t count = 0;
 };
 
-/// Says who answers where. Immutable; shared by all threads.
+/// Cuts rays into pieces. Immutable; shared by all threads.
 class RayCutter {
 public:
     virtual ~RayCutter() = default;
-    /// At least one piece, also of a ray without a length.
+    /// At least one piece, even for a ray without a length.
     virtual void cut(const Ray& ray, Pieces& pieces) const = 0;
 };
 
-/// The nearest hit is that of the first piece that has one. Hits remember their part (Hit::part), which says what
-/// attributes and normals they have. Streams are sent on to the parts as streams: all rays whose turn is the same
-/// part's, together.
+/// The nearest hit is that of the first piece that has one. Hit::part is the part, which has the attributes and normals
+/// of the hit. Streams are passed on to the parts as streams: all rays whose current piece has the same part, together.
 class PiecewiseTracer final : public Tracer {
 public:
     /// The intersectors and the cutter must outlive it. No more than 256 parts.
     PiecewiseTracer(std::span<const std::shared_ptr<const Intersector>> parts, const RayCutter& cutter);
 
     bool intersect(const Ray& ray, Hit& hit) override;
-    /// Any crossing in any piece. A ray that is stopped by nothing but walls goes through: its way in and its way out
-    /// both lie within the parts' error of each other.
+    /// Any crossing in any piece. Walls don't occlude: the entry and the exit of a ray that meets nothing but walls are
+    /// within the parts' error of each other.
     bool occluded(const Ray& ray) override;
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override;
     void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override;
@@ -54,7 +53,7 @@ public:
 private:
     struct Way {
         Pieces pieces;
-        std::uint32_t at = 0;  // the piece whose turn it is
+        std::uint32_t at = 0;  // the current piece
 
         std::uint8_t part() const { return pieces.parts[at]; }
         /// Not of the first piece.
@@ -73,10 +72,10 @@ private:
 
     std::vector<std::unique_ptr<Tracer>> tracers_;
     const RayCutter& cutter_;
-    // Of the stream under way; kept, for fresh memory for every stream would cost as much as tracing it.
+    // The current stream; members, because allocating them for every stream would cost as much as tracing it.
     std::vector<Way> ways_;
-    std::vector<std::uint32_t> waiting_;  // rays without an answer, ascending
-    // Of a part's turn: its rays and their numbers.
+    std::vector<std::uint32_t> waiting_;  // rays without a result, ascending
+    // The rays of the current part, and their indices.
     std::vector<std::uint32_t> places_, back_places_, ahead_places_;
     std::vector<Ray> own_, back_, ahead_;
     std::vector<Hit> own_hits_, back_hits_, ahead_hits_;

@@ -67,14 +67,14 @@ struct Member {
         if (turned) hit.normal = glm::normalize(normals_out * own.normal);
         return hit;
     }
-    /// The hit as the shape found it, but for t.
+    /// Maps the hit back to the shape's own space, except t.
     Hit backIn(const Hit& hit) const {
         Hit own = hit;
         own.object = 0;
         own.position = hit.position - offset;
         if (!turned) return own;
         own.position = to_own * own.position;
-        // normals_out is the transpose of to_own: the transpose of the linear map takes it back.
+        // normals_out is the inverse transpose of `linear`; its inverse is the transpose of `linear`.
         own.normal = glm::normalize(hit.normal * linear);
         return own;
     }
@@ -85,8 +85,8 @@ struct Members {
     std::optional<BoxTree> tree;  // if there are many
 };
 
-// Objects are always traced in the order of their numbers, each no farther than the nearest hit so far; the tree only
-// leaves out objects whose box the ray misses anyway. So it changes no bit, wherever objects touch.
+// Objects are always traced in the order of their indices, each up to the nearest hit so far; the tree only skips
+// objects whose box the ray misses. So results don't depend on the tree, even where objects touch.
 class SceneTracer final : public Tracer {
 public:
     explicit SceneTracer(const Members& members) : members_(members.all), tree_(members.tree) {
@@ -104,7 +104,7 @@ public:
             Hit here;
             if (!tracers_[m]->intersect(own, here)) return;
             const Hit there = members_[m].inWorld(here, ray, stretch, m);
-            // Where two objects touch, the one that is named first is seen, in streams as well.
+            // Where two objects touch, the first one in the list is hit, in streams as well.
             if (found && !(there.t < hit.t)) return;
             hit = there;
             rest.t_max = hit.t;
@@ -136,7 +136,7 @@ public:
         return false;
     }
 
-    // Object by object, so that each has a stream of its own.
+    // Object by object, so that each gets one stream.
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
         for (Hit& hit : hits) hit.t = kInfinity;
         listMet(rays);
@@ -174,7 +174,7 @@ public:
     }
 
 private:
-    // With a tree: which rays meet the box of each member, in the order of both, by counting.
+    // With a tree: the rays that meet the box of each member, sorted by member and ray with a counting sort.
     void listMet(std::span<const Ray> rays) {
         if (!tree_) return;
         met_.clear();
@@ -192,7 +192,7 @@ private:
         for (std::size_t k = 0; k < met_.size(); ++k) met_rays_[met_end_[met_[k]]++] = ray_of_[k];
     }
 
-    // The rays that meet member m nearer than `limit` of each says; false if there are none.
+    // The rays that meet the box of member m before their `limit`; false if there are none.
     template <typename Limit>
     bool gather(std::uint32_t m, std::span<const Ray> rays, const Limit& limit) {
         own_.clear();
@@ -217,9 +217,9 @@ private:
     const std::vector<Member>& members_;
     const std::optional<BoxTree>& tree_;
     std::vector<std::unique_ptr<Tracer>> tracers_;
-    // Of the stream under way: pairs of a member and a ray; rays by member, and where those of each end.
+    // The current stream: pairs of a member and a ray; rays sorted by member, and the end of each member's rays.
     std::vector<std::uint32_t> met_, ray_of_, met_rays_, met_end_;
-    // Of its member's turn.
+    // Of the current member.
     std::vector<Ray> own_;
     std::vector<Hit> own_hits_;
     std::vector<std::uint8_t> own_blocked_;
@@ -285,7 +285,7 @@ public:
     Box bounds() const override { return bounds_; }
     double voxelSize() const override { return voxel_size_; }
     std::size_t bytes() const override { return bytes_; }
-    // One for all: the largest that any object needs.
+    // The largest offset of all objects.
     double surfaceOffset() const override { return offset_; }
 
 private:
@@ -298,7 +298,7 @@ private:
 };
 
 glm::dmat3 turn(int axis, double degrees) {
-    // Right angles exactly: what stands upright stays on its lattice.
+    // Right angles are exact, so that upright objects stay axis-aligned.
     double s = std::sin(degrees * std::numbers::pi / 180.0);
     double c = std::cos(degrees * std::numbers::pi / 180.0);
     if (const double quarters = degrees / 90.0; quarters == std::round(quarters)) {

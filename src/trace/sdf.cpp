@@ -18,7 +18,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Box kEndless{glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
 
-// Far from where squares overflow or vanish, and farther from anything that somebody wants to see.
+// Limits of sizes: squares within them neither overflow nor underflow.
 constexpr double kMost = 1e60;
 
 void requireSize(double value, const char* what) {
@@ -37,7 +37,7 @@ void requireParts(const std::vector<SdfPtr>& parts, const char* what) {
     if (parts.empty()) throw UsageError(fmt::format("{} needs at least one shape", what));
 }
 
-/// (radial distance from an axis through the origin, place along it).
+/// (radial distance from an axis through the origin, position along it).
 std::pair<double, double> cylindrical(const glm::dvec3& p, int axis) {
     return {std::hypot(p[(axis + 1) % 3], p[(axis + 2) % 3]), p[axis]};
 }
@@ -113,7 +113,7 @@ public:
     Plane(const glm::dvec3& normal, double offset) : normal_(normal), offset_(offset) {}
     double distance(const glm::dvec3& p) const override { return glm::dot(normal_, p) - offset_; }
     Box bounds() const override {
-        // Along a main axis it ends on one side.
+        // Along a main axis it is bounded on one side.
         Box box = kEndless;
         for (int axis = 0; axis < 3; ++axis) {
             if (normal_[axis] == 1) box.max[axis] = offset_;
@@ -149,7 +149,7 @@ private:
     std::vector<SdfPtr> parts_;
 };
 
-/// Of the first and, each as it is or turned inside out, all others.
+/// Intersection of the first with all others, each unchanged or complemented.
 class Intersection final : public Sdf {
 public:
     Intersection(std::vector<SdfPtr> parts, bool subtract) : parts_(std::move(parts)), sign_(subtract ? -1.0 : 1.0) {}
@@ -166,7 +166,7 @@ public:
             box.min = glm::max(box.min, own.min);
             box.max = glm::min(box.max, own.max);
         }
-        // Parts that don't meet leave nothing: a point.
+        // Disjoint parts have an empty intersection: a point.
         box.max = glm::max(box.min, box.max);
         return box;
     }
@@ -206,8 +206,8 @@ public:
     Repetition(SdfPtr part, const glm::dvec3& period, int count)
         : part_(std::move(part)), period_(period), count_(count < 0 ? kInfinity : count) {}
     double distance(const glm::dvec3& p) const override {
-        // The copy of the cell that p is in, and on each axis the one on the side to which p leans: the nearest copy is
-        // among them, for copies stay in their cells.
+        // The copy in p's cell, and on each axis the neighbour on the nearer side: the nearest copy is among them,
+        // because copies stay in their cells.
         double cells[3][2];
         int choices[3];
         for (int axis = 0; axis < 3; ++axis) {

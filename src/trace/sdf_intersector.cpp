@@ -27,7 +27,7 @@ public:
         double high = 0;
         if (!march(ray, low, high)) return false;
         const bool inside = isInside(ray, low);
-        // Until the two are neighbours: at most some 60 times.
+        // Until the two are adjacent doubles: at most some 60 times.
         for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
             (isInside(ray, middle) == inside ? low : high) = middle;
         hit.t = high;
@@ -45,7 +45,7 @@ private:
     double at(const Ray& ray, double t) const { return shape_.distance(ray.origin + t * ray.direction); }
     bool isInside(const Ray& ray, double t) const { return at(ray, t) < 0; }
 
-    /// Two places on the ray with the first change of sign between them; false if there is none.
+    /// Two positions on the ray with the first change of sign between them; false if there is none.
     bool march(const Ray& ray, double& low, double& high) const {
         double t = ray.t_min;
         double end = ray.t_max;
@@ -61,10 +61,10 @@ private:
             t = std::max(t, std::min(a, b));
             end = std::min(end, std::max(a, b));
         }
-        // One step out of the bounds, so that a surface on them is crossed.
+        // One step beyond the bounds, so that a surface on them is crossed.
         end = std::min({end + tolerance_, ray.t_max, t + kFar});
         if (!(t <= end)) return false;
-        // Likewise one before them.
+        // Likewise one step before them.
         t = std::max(ray.t_min, t - tolerance_);
         const bool inside = isInside(ray, t);
         for (int step = 0; step < kMostSteps && t < end; ++step) {
@@ -81,7 +81,7 @@ private:
     }
 
     glm::dvec3 normalAt(const glm::dvec3& p, const glm::dvec3& direction) const {
-        // Short against the shapes, long against the rounding of the place.
+        // Short compared with the shapes, long compared with rounding errors of the position.
         const double h = std::max(0.1 * tolerance_, 1e-7 * std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}));
         glm::dvec3 gradient;
         for (int axis = 0; axis < 3; ++axis) {
@@ -110,7 +110,8 @@ public:
     Box bounds() const override { return bounds_; }
     double voxelSize() const override { return tolerance_; }
     std::size_t bytes() const override { return 0; }
-    // Hits are on the surface but for rounding: a tenth of the tolerance clears it, and its normal's step.
+    // Hits are on the surface except for rounding: a tenth of the tolerance is enough, also for the normal's
+    // differences.
     double surfaceOffset() const override {
         double farthest = 0;
         for (int axis = 0; axis < 3; ++axis)
