@@ -1,12 +1,12 @@
 #include "manual.h"
 
+#include "base/text.h"
 #include "choices.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -124,11 +124,6 @@ std::string roff(std::string_view text) {
     return out;
 }
 
-std::string upper(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
-    return text;
-}
-
 void manOption(std::string& page, const CLI::Option& option) {
     std::string name;
     for (const std::string& one : CLI::detail::split(option.get_name(option.get_positional(), true), ','))
@@ -202,7 +197,7 @@ std::string manPage(const CLI::App& app) {
     const std::string& name = app.get_name();
     std::string page =
         fmt::format(".TH {} 1 \"\" \"Stratum {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n.B {}\n",
-                    upper(name), STRATUM_VERSION, name, roff(app.get_description()), name);
+                    upperCase(std::string(name)), STRATUM_VERSION, name, roff(app.get_description()), name);
     const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
     if (!verbs.empty()) page += ".I COMMAND\n";
     page += "[\\fIOPTIONS\\fR]";

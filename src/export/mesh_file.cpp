@@ -2,13 +2,12 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -21,12 +20,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "STL and PLY are written as the machine holds numbers");
 
-std::string extensionOf(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
+std::string extensionOf(const std::filesystem::path& path) { return lowerCase(path.extension().string()); }
 
 // Collects bytes: a mesh of millions of faces, one write a megabyte.
 class Writer {

@@ -1,5 +1,6 @@
 #include "gcode/container/metadata.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 
 #include <algorithm>
@@ -8,12 +9,6 @@ namespace stratum::gcode {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r";
-
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(kBlank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
 
 // Removes line ends: the rest of a value behind one would be read as a command.
 std::string oneLine(std::string_view text) {
@@ -27,7 +22,7 @@ std::optional<double> sumOf(std::string_view list) {
     double sum = 0;
     while (true) {
         const auto cut = std::min(list.find_first_of(",;"), list.size());
-        const std::string_view part = trim(list.substr(0, cut));
+        const std::string_view part = trim(list.substr(0, cut), kBlank);
         const char* p = part.data();
         double value = 0;
         if (!parseNumber(p, part.data() + part.size(), value) || value < 0) return std::nullopt;
@@ -45,7 +40,8 @@ void readIniMetadata(std::string_view text, std::vector<std::pair<std::string, s
         const std::string_view line = text.substr(0, end);
         const auto equals = line.find('=');
         if (equals != std::string_view::npos)
-            metadata.emplace_back(oneLine(trim(line.substr(0, equals))), oneLine(trim(line.substr(equals + 1))));
+            metadata.emplace_back(oneLine(trim(line.substr(0, equals), kBlank)),
+                                  oneLine(trim(line.substr(equals + 1), kBlank)));
         text.remove_prefix(std::min(end + 1, text.size()));
     }
 }

@@ -1,6 +1,7 @@
 #include "gcode/machine/machine.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "gcode/slicer/slicer_tags.h"
 #include "gcode/text/known_commands.h"
 #include "gcode/text/limits.h"
@@ -22,12 +23,6 @@ Firmware chooseFirmware(const Settings& settings, const ReadOptions& options) {
 }
 
 bool hasAxis(const Command& command) { return command.has('X') || command.has('Y') || command.has('Z'); }
-
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 // The number of G54..G59 and G59.1..G59.3 in Frame.
 std::size_t workspaceOf(const Command& command) {

@@ -1,5 +1,6 @@
 #include "gcode/machine/machine_limits.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 
 #include <algorithm>
@@ -13,18 +14,12 @@ constexpr std::size_t kReach = std::size_t{1} << 18;  // as of the other setting
 constexpr std::size_t kMostTools = 256;
 constexpr std::array<std::string_view, kMotionAxes> kAxes{"x", "y", "z", "e"};
 
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
 // Numbers separated by commas; empty if one is none or out of range.
 std::vector<double> numbers(std::string_view text, double least, double most) {
     std::vector<double> values;
     while (!text.empty() && values.size() < kMostTools) {
         const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trim(text.substr(0, cut));
+        const std::string_view one = trimQuoted(text.substr(0, cut));
         const char* p = one.data();
         double value = 0;
         if (!parseNumber(p, p + one.size(), value) || !(value >= least && value <= most)) return {};
@@ -48,10 +43,10 @@ void take(double& target, std::string_view text, double least, double most) {
 class LimitsReader {
 public:
     void comment(std::string_view text) {
-        text = trim(text);
+        text = trimQuoted(text);
         const auto equals = text.find(" = ");
         if (equals != std::string_view::npos && text.find(' ') == equals)
-            pair(text.substr(0, equals), trim(text.substr(equals + 3)));
+            pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
         else if (text.starts_with("Generated with Cura"))
             cura_ = true;
     }

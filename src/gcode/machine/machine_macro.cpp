@@ -1,4 +1,5 @@
 // Klipper's named commands: frame offsets, saved states, object labels, and others.
+#include "base/text.h"
 #include "gcode/machine/machine.h"
 #include "gcode/text/known_commands.h"
 #include "gcode/text/limits.h"
@@ -12,11 +13,9 @@
 namespace stratum::gcode {
 namespace {
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; }
-
 bool same(std::string_view text, std::string_view upper_case) {
     return std::equal(text.begin(), text.end(), upper_case.begin(), upper_case.end(),
-                      [](char a, char b) { return upper(a) == b; });
+                      [](char a, char b) { return upperCase(a) == b; });
 }
 
 // The value of "KEY=" in the arguments, without quotes; nullopt if there is none. `key` is upper case.

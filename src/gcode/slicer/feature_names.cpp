@@ -1,5 +1,7 @@
 #include "gcode/slicer/feature_names.h"
 
+#include "base/text.h"
+
 #include <algorithm>
 #include <array>
 
@@ -143,13 +145,11 @@ constexpr std::array kPathNames{
     Name{"travel/ironing", Feature::ironing},
 };
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; }
-
 template <std::size_t n>
 std::optional<Feature> lookUp(const std::array<Name, n>& names, std::string_view text) {
     const auto same = [&](const Name& name) {
         return std::equal(name.text.begin(), name.text.end(), text.begin(), text.end(),
-                          [](char a, char b) { return a == lower(b); });
+                          [](char a, char b) { return a == lowerCase(b); });
     };
     const auto found = std::find_if(names.begin(), names.end(), same);
     return found == names.end() ? std::nullopt : std::optional(found->feature);

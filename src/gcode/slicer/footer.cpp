@@ -1,5 +1,6 @@
 #include "gcode/slicer/footer.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 
 #include <algorithm>
@@ -10,15 +11,9 @@ namespace {
 
 constexpr std::size_t kMostTools = 256;
 
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
 bool take(std::string_view& text, std::string_view prefix) {
     if (!text.starts_with(prefix)) return false;
-    text = trim(text.substr(prefix.size()));
+    text = trimQuoted(text.substr(prefix.size()));
     return true;
 }
 
@@ -27,7 +22,7 @@ std::vector<double> amounts(std::string_view text, double scale) {
     std::vector<double> values;
     while (!text.empty() && values.size() < kMostTools) {
         const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trim(text.substr(0, cut));
+        const std::string_view one = trimQuoted(text.substr(0, cut));
         const char* p = one.data();
         double value = 0;
         if (!parseNumber(p, p + one.size(), value) || !(value >= 0 && value < 1e9)) return {};

@@ -1,5 +1,6 @@
 #include "gcode/slicer/settings.h"
 
+#include "base/text.h"
 #include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
 #include "gcode/toolpath/color.h"
@@ -15,14 +16,8 @@ namespace {
 constexpr std::size_t kReach = std::size_t{1} << 18;
 constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
 std::optional<double> positive(std::string_view text, double most) {
-    text = trim(text);
+    text = trimQuoted(text);
     const char* p = text.data();
     double value = 0;
     if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
@@ -53,7 +48,7 @@ std::vector<std::optional<Rgb>> colors(std::string_view text) {
     std::vector<std::optional<Rgb>> values;
     while (!text.empty() && values.size() < 256) {
         const auto cut = std::min(text.find_first_of(";,"), text.size());
-        values.push_back(parseColor(trim(text.substr(0, cut))));
+        values.push_back(parseColor(trimQuoted(text.substr(0, cut))));
         text.remove_prefix(std::min(cut + 1, text.size()));
     }
     return values;
@@ -65,7 +60,7 @@ std::vector<Point> offsets(std::string_view text) {
     bool any = false;
     while (!text.empty() && values.size() < 256) {
         const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trim(text.substr(0, cut));
+        const std::string_view one = trimQuoted(text.substr(0, cut));
         Point point;
         const char* p = one.data();
         const char* const end = p + one.size();
@@ -88,22 +83,24 @@ Firmware firmwareOfFlavor(std::string_view flavor) {
 
 bool take(std::string_view& text, std::string_view prefix) {
     if (!text.starts_with(prefix)) return false;
-    text = trim(text.substr(prefix.size()));
+    text = trimQuoted(text.substr(prefix.size()));
     return true;
 }
 
 // "PrusaSlicer 2.5.0+win64 on 2022-09-06" -> "PrusaSlicer 2.5.0+win64"
-std::string_view upTo(std::string_view text, std::string_view stop) { return trim(text.substr(0, text.find(stop))); }
+std::string_view upTo(std::string_view text, std::string_view stop) {
+    return trimQuoted(text.substr(0, text.find(stop)));
+}
 
 class SettingsReader {
 public:
     void comment(std::string_view text) {
-        text = trim(text);
+        text = trimQuoted(text);
         stated_.comment(text);
         if (readFooter(text, settings.footer)) return;
         const auto equals = text.find(" = ");
         if (equals != std::string_view::npos && text.find(' ') == equals)
-            pair(text.substr(0, equals), trim(text.substr(equals + 3)));
+            pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
         else
             sentence(text);
     }

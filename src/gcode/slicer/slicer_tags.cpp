@@ -1,17 +1,12 @@
 #include "gcode/slicer/slicer_tags.h"
 
+#include "base/text.h"
 #include "gcode/slicer/feature_names.h"
 #include "gcode/text/limits.h"
 #include "gcode/text/number.h"
 
 namespace stratum::gcode {
 namespace {
-
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 bool take(std::string_view& text, std::string_view prefix) {
     if (!text.starts_with(prefix)) return false;

@@ -1,5 +1,7 @@
 #include "gcode/text/known_commands.h"
 
+#include "base/text.h"
+
 #include <algorithm>
 #include <array>
 
@@ -52,14 +54,12 @@ constexpr std::array<std::string_view, 25> kHarmlessMacros{
     "Z_TILT_ADJUST",
 };
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; }
-
 }  // namespace
 
 bool isHarmlessMacro(std::string_view name) {
     return std::any_of(kHarmlessMacros.begin(), kHarmlessMacros.end(), [name](std::string_view start) {
         return name.size() >= start.size() &&
-               std::equal(start.begin(), start.end(), name.begin(), [](char a, char b) { return a == upper(b); });
+               std::equal(start.begin(), start.end(), name.begin(), [](char a, char b) { return a == upperCase(b); });
     });
 }
 

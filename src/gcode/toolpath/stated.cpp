@@ -1,5 +1,6 @@
 #include "gcode/toolpath/stated.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 
 #include <fmt/format.h>
@@ -14,12 +15,6 @@ namespace {
 
 constexpr std::size_t kMostTools = 256;
 constexpr double kLongest = 1e9;  // s, thirty years
-
-std::string_view trim(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -36,7 +31,7 @@ template <typename Take>
 void split(std::string_view text, std::string_view separators, const Take& part) {
     for (std::size_t i = 0; !text.empty() && i < kMostTools; ++i) {
         const auto cut = std::min(text.find_first_of(separators), text.size());
-        part(i, trim(text.substr(0, cut)));
+        part(i, trimQuoted(text.substr(0, cut)));
         text.remove_prefix(std::min(cut + 1, text.size()));
     }
 }
@@ -68,7 +63,7 @@ std::optional<std::size_t> takeTool(std::string_view& text, std::string_view pre
 std::optional<double> parseDuration(std::string_view text) {
     constexpr std::array kUnits{std::pair{'d', 86400.0}, std::pair{'h', 3600.0}, std::pair{'m', 60.0},
                                 std::pair{'s', 1.0}};
-    text = trim(text);
+    text = trimQuoted(text);
     double total = 0;
     bool any = false;
     bool units = false;  // so that what follows may be prose; a date begins with a number too
@@ -106,18 +101,19 @@ bool StatedFacts::empty() const {
 
 void StatedReader::comment(std::string_view text) {
     if (const auto equals = text.find(" = "); equals != std::string_view::npos)
-        return pair(text.substr(0, equals), trim(text.substr(equals + 3)));
+        return pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
     // BambuStudio states two times in one comment.
     if (text.starts_with("model printing time:"))
         if (const auto cut = text.find(';'); cut != std::string_view::npos) {
-            comment(trim(text.substr(cut + 1)));
+            comment(trimQuoted(text.substr(cut + 1)));
             text = text.substr(0, cut);
         }
-    if (text.starts_with("--- ") && text.ends_with(" ---")) text = trim(text.substr(4, text.size() - 8));  // Kiri:Moto
+    if (text.starts_with("--- ") && text.ends_with(" ---"))
+        text = trimQuoted(text.substr(4, text.size() - 8));  // Kiri:Moto
     if (const auto colon = text.find(':'); colon != std::string_view::npos)
-        return sentence(trim(text.substr(0, colon)), trim(text.substr(colon + 1)));
+        return sentence(trimQuoted(text.substr(0, colon)), trimQuoted(text.substr(colon + 1)));
     if (const auto comma = text.find(','); comma != std::string_view::npos)
-        setting(text.substr(0, comma), trim(text.substr(comma + 1)));
+        setting(text.substr(0, comma), trimQuoted(text.substr(comma + 1)));
 }
 
 void StatedReader::pair(std::string_view key, std::string_view value) {

@@ -1,5 +1,6 @@
 #include "shade/brdf/filament_color.h"
 
+#include "base/text.h"
 #include "shade/film/tonemap.h"
 
 #include <fmt/format.h>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -199,8 +199,7 @@ std::optional<Color> parseNamedColor(std::string_view text) {
         const auto hex = parseHex(text.substr(1));
         return hex ? std::optional(fromSrgb(*hex)) : std::nullopt;
     }
-    std::string name(text);
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string name = lowerCase(std::string(text));
     const auto found = std::lower_bound(kNames.begin(), kNames.end(), name,
                                         [](const Named& entry, const std::string& key) { return entry.name < key; });
     return found != kNames.end() && found->name == name ? std::optional(fromSrgb(found->color)) : std::nullopt;

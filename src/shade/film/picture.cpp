@@ -1,13 +1,12 @@
 #include "shade/film/picture.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "shade/film/exr_writer.h"
 #include "shade/film/png_writer.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 
 namespace stratum::shade {
 namespace {
@@ -15,9 +14,7 @@ namespace {
 /// Whether the name says EXR; throws if it says neither kind.
 bool isExr(const std::filesystem::path& path) {
     if (path == "-") return false;
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lowerCase(path.extension().string());
     if (ending == ".exr") return true;
     if (ending == ".png") return false;
     throw UsageError(fmt::format("{}: the name must end in .png (to look at) or .exr (linear)", path.string()));

@@ -1,6 +1,7 @@
 #include "shade/measured/scan_text.h"
 
 #include "base/error.h"
+#include "base/text.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -8,24 +9,14 @@
 #include <cmath>
 
 namespace stratum::shade {
-namespace {
-
-std::string_view trimmed(std::string_view s) {
-    const std::size_t first = s.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return {};
-    return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
-}
-
-}  // namespace
-
 bool ScanText::next(std::string_view& line) {
     while (!rest_.empty()) {
         const std::size_t end = rest_.find('\n');
-        line = trimmed(rest_.substr(0, end));
+        line = trim(rest_.substr(0, end), " \t\r");
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         ++line_;
         if (line.starts_with('#')) {
-            if (comments_.size() < 16) comments_.emplace_back(trimmed(line.substr(1)).substr(0, 200));
+            if (comments_.size() < 16) comments_.emplace_back(trim(line.substr(1), " \t\r").substr(0, 200));
         } else if (!line.empty()) {
             return true;
         }

@@ -3,6 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/text.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -37,9 +38,7 @@ std::string valueIn(const char* file, std::string_view key) {
         if (line.rfind(key, 0) != 0) continue;
         const std::size_t at = line.find_first_of(":=");
         if (at == std::string::npos) continue;
-        const std::size_t first = line.find_first_not_of(" \t\"", at + 1);
-        if (first == std::string::npos) return {};
-        return line.substr(first, line.find_last_not_of(" \t\"") + 1 - first);
+        return std::string(trim(std::string_view(line).substr(at + 1), " \t\""));
     }
     return {};
 }

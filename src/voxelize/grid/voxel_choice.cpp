@@ -1,6 +1,7 @@
 #include "voxelize/grid/voxel_choice.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -99,7 +99,7 @@ double parseSize(std::string_view text) {
     const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
     std::string suffix;
     for (const char* p = end; p != text.data() + text.size(); ++p)
-        if (*p != ' ') suffix += static_cast<char>(std::tolower(static_cast<unsigned char>(*p)));
+        if (*p != ' ') suffix += lowerCase(*p);
     if (suffix.ends_with('b')) suffix.pop_back();
     // SI, and with an i the binary ones of IEC 80000-13.
     const bool binary = suffix.size() == 2 && suffix.ends_with('i');

@@ -1,0 +1,32 @@
+// Letters and blanks of what programs write: ASCII, whatever the locale.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace stratum {
+
+/// Without the characters of `blanks` at both ends.
+constexpr std::string_view trim(std::string_view text, std::string_view blanks = " \t") {
+    const auto first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Without blanks, line ends of Windows and quotes at both ends: values as slicers write them.
+constexpr std::string_view trimQuoted(std::string_view text) { return trim(text, " \t\r\""); }
+
+constexpr char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; }
+constexpr char upperCase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; }
+
+inline std::string lowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return lowerCase(c); });
+    return text;
+}
+inline std::string upperCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return upperCase(c); });
+    return text;
+}
+
+}  // namespace stratum
