@@ -1,7 +1,6 @@
 #include "gcode/machine/machine_limits.h"
 
-#include "base/text.h"
-#include "gcode/text/number.h"
+#include "gcode/text/setting_text.h"
 
 #include <algorithm>
 #include <array>
@@ -11,28 +10,12 @@ namespace stratum::gcode {
 namespace {
 
 constexpr std::size_t kReach = std::size_t{1} << 18;  // as of the other settings
-constexpr std::size_t kMostTools = 256;
 constexpr std::array<std::string_view, kMotionAxes> kAxes{"x", "y", "z", "e"};
-
-// Numbers separated by commas; empty if one is none or out of range.
-std::vector<double> numbers(std::string_view text, double least, double most) {
-    std::vector<double> values;
-    while (!text.empty() && values.size() < kMostTools) {
-        const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trimQuoted(text.substr(0, cut));
-        const char* p = one.data();
-        double value = 0;
-        if (!parseNumber(p, p + one.size(), value) || !(value >= least && value <= most)) return {};
-        values.push_back(value);
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
-    return values;
-}
 
 // The first of a list is the normal mode's.
 std::optional<double> number(std::string_view text, double least, double most) {
     const auto cut = std::min(text.find(','), text.size());
-    const std::vector<double> values = numbers(text.substr(0, cut), least, most);
+    const std::vector<double> values = numbersOf(text.substr(0, cut), least, most);
     return values.empty() ? std::nullopt : std::optional<double>(values.front());
 }
 
@@ -44,9 +27,9 @@ class LimitsReader {
 public:
     void comment(std::string_view text) {
         text = trimQuoted(text);
-        const auto equals = text.find(" = ");
-        if (equals != std::string_view::npos && text.find(' ') == equals)
-            pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
+        const auto setting = keyAndValue(text);
+        if (setting && setting->first.find(' ') == std::string_view::npos)
+            pair(setting->first, setting->second);
         else if (text.starts_with("Generated with Cura"))
             cura_ = true;
     }
@@ -88,9 +71,9 @@ private:
         } else if (key == "machine_min_travel_rate") {
             take(settings_.limits.least_travel_speed, value, 0, kFastestAxis);
         } else if (key == "filament_load_time") {
-            settings_.load = numbers(value, 0, kLongestWait);
+            settings_.load = numbersOf(value, 0, kLongestWait);
         } else if (key == "filament_unload_time") {
-            settings_.unload = numbers(value, 0, kLongestWait);
+            settings_.unload = numbersOf(value, 0, kLongestWait);
         } else if (key == "machine_load_filament_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.load = {*time};
         } else if (key == "machine_unload_filament_time") {

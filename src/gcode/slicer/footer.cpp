@@ -1,34 +1,21 @@
 #include "gcode/slicer/footer.h"
 
-#include "base/text.h"
-#include "gcode/text/number.h"
+#include "gcode/text/setting_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace stratum::gcode {
 namespace {
 
 constexpr std::size_t kMostTools = 256;
-
-bool take(std::string_view& text, std::string_view prefix) {
-    if (!text.starts_with(prefix)) return false;
-    text = trimQuoted(text.substr(prefix.size()));
-    return true;
-}
+const double kMostAmount = std::nextafter(1e9, 0.0);
 
 // Numbers separated by commas, with or without a unit behind each, times `scale`. Empty if one is no amount.
 std::vector<double> amounts(std::string_view text, double scale) {
-    std::vector<double> values;
-    while (!text.empty() && values.size() < kMostTools) {
-        const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trimQuoted(text.substr(0, cut));
-        const char* p = one.data();
-        double value = 0;
-        if (!parseNumber(p, p + one.size(), value) || !(value >= 0 && value < 1e9)) return {};
-        values.push_back(value * scale);
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
+    std::vector<double> values = numbersOf(text, 0, kMostAmount);
+    for (double& value : values) value *= scale;
     return values;
 }
 
@@ -56,41 +43,42 @@ void setAt(std::vector<double>& list, std::size_t tool, std::string_view text) {
 }  // namespace
 
 bool readFooter(std::string_view text, Footer& footer) {
-    if (take(text, "filament used [mm] =") || take(text, "filament used =") || take(text, "Filament length:") ||
-        take(text, "--- filament used:")) {
+    if (takePrefix(text, "filament used [mm] =") || takePrefix(text, "filament used =") ||
+        takePrefix(text, "Filament length:") || takePrefix(text, "--- filament used:")) {
         setLengths(text, 1, footer);
         return true;
     }
-    if (take(text, "Filament used:")) {  // Cura: metres, or mm3 where its E is
+    if (takePrefix(text, "Filament used:")) {  // Cura: metres, or mm3 where its E is
         if (text.find("mm3") == std::string_view::npos)
             setLengths(text, 1000, footer);
         else
             footer = {.length = {}, .volume = amounts(text, 1)};
         return true;
     }
-    if (take(text, "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
+    if (takePrefix(text,
+                   "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
         const std::vector<double> list = amounts(text, 1);
         if (!list.empty()) footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}};
         return true;
     }
-    if (take(text, "filament_length_m =")) {  // Slic3r 1.3.1
+    if (takePrefix(text, "filament_length_m =")) {  // Slic3r 1.3.1
         setLengths(text, 1000, footer);
         return true;
     }
-    if (take(text, "Ext ")) {  // KISSlicer: "Ext 1 =    53.49 mm  (0.378 cm^3)"
+    if (takePrefix(text, "Ext ")) {  // KISSlicer: "Ext 1 =    53.49 mm  (0.378 cm^3)"
         const std::size_t number = takeIndex(text);
-        if (number == 0 || number >= kMostTools || !take(text, " =")) return false;
+        if (number == 0 || number >= kMostTools || !takePrefix(text, " =")) return false;
         setAt(footer.length, number - 1, text);
         return true;
     }
-    if (take(text, "EXTRUDER_TRAIN.")) {
+    if (takePrefix(text, "EXTRUDER_TRAIN.")) {
         const std::size_t tool = takeIndex(text);
-        if (tool < kMostTools && take(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text);
+        if (tool < kMostTools && takePrefix(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text);
         return true;
     }
-    if (take(text, "Material#")) {
+    if (takePrefix(text, "Material#")) {
         const std::size_t number = takeIndex(text);
-        if (number == 0 || number >= kMostTools || !take(text, " Used:")) return false;
+        if (number == 0 || number >= kMostTools || !takePrefix(text, " Used:")) return false;
         setAt(footer.length, number - 1, text);
         return true;
     }

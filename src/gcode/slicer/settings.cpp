@@ -1,8 +1,8 @@
 #include "gcode/slicer/settings.h"
 
-#include "base/text.h"
 #include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
+#include "gcode/text/setting_text.h"
 #include "gcode/toolpath/color.h"
 
 #include <algorithm>
@@ -16,14 +16,6 @@ namespace {
 constexpr std::size_t kReach = std::size_t{1} << 18;
 constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
-std::optional<double> positive(std::string_view text, double most) {
-    text = trimQuoted(text);
-    const char* p = text.data();
-    double value = 0;
-    if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
-    return value;
-}
-
 std::optional<bool> flag(std::string_view text) {
     if (text == "1" || text == "true" || text == "True") return true;
     if (text == "0" || text == "false" || text == "False") return false;
@@ -35,7 +27,7 @@ std::vector<double> diameters(std::string_view text, std::string_view separators
     std::vector<double> values;
     while (!text.empty()) {
         const auto cut = std::min(text.find_first_of(separators), text.size());
-        const auto value = positive(text.substr(0, cut), 100);
+        const auto value = positiveNumber(text.substr(0, cut), 100);
         if (!value) return {};
         values.push_back(*value);
         text.remove_prefix(std::min(cut + 1, text.size()));
@@ -46,11 +38,7 @@ std::vector<double> diameters(std::string_view text, std::string_view separators
 // "#FF8000;#DB5182", with or without quotes; empty entries are unknown.
 std::vector<std::optional<Rgb>> colors(std::string_view text) {
     std::vector<std::optional<Rgb>> values;
-    while (!text.empty() && values.size() < 256) {
-        const auto cut = std::min(text.find_first_of(";,"), text.size());
-        values.push_back(parseColor(trimQuoted(text.substr(0, cut))));
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
+    for (const std::string_view part : partsOf(text, ";,")) values.push_back(parseColor(part));
     return values;
 }
 
@@ -58,9 +46,7 @@ std::vector<std::optional<Rgb>> colors(std::string_view text) {
 std::vector<Point> offsets(std::string_view text) {
     std::vector<Point> values;
     bool any = false;
-    while (!text.empty() && values.size() < 256) {
-        const auto cut = std::min(text.find(','), text.size());
-        const std::string_view one = trimQuoted(text.substr(0, cut));
+    for (const std::string_view one : partsOf(text, ",")) {
         Point point;
         const char* p = one.data();
         const char* const end = p + one.size();
@@ -68,7 +54,6 @@ std::vector<Point> offsets(std::string_view text) {
         if (!(std::abs(point.x) <= kFarthestNozzle && std::abs(point.y) <= kFarthestNozzle)) return {};
         any = any || point.x != 0 || point.y != 0;
         values.push_back(point);
-        text.remove_prefix(std::min(cut + 1, text.size()));
     }
     return any ? values : std::vector<Point>{};
 }
@@ -79,12 +64,6 @@ Firmware firmwareOfFlavor(std::string_view flavor) {
     if (flavor == "klipper") return Firmware::klipper;
     if (flavor == "reprapfirmware") return Firmware::reprap;
     return Firmware::marlin;
-}
-
-bool take(std::string_view& text, std::string_view prefix) {
-    if (!text.starts_with(prefix)) return false;
-    text = trimQuoted(text.substr(prefix.size()));
-    return true;
 }
 
 // "PrusaSlicer 2.5.0+win64 on 2022-09-06" -> "PrusaSlicer 2.5.0+win64"
@@ -98,19 +77,19 @@ public:
         text = trimQuoted(text);
         stated_.comment(text);
         if (readFooter(text, settings.footer)) return;
-        const auto equals = text.find(" = ");
-        if (equals != std::string_view::npos && text.find(' ') == equals)
-            pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
+        const auto setting = keyAndValue(text);
+        if (setting && setting->first.find(' ') == std::string_view::npos)
+            pair(setting->first, setting->second);
         else
             sentence(text);
     }
 
     // Skeinforge: "(<layerHeight> 0.3 </layerHeight>)".
     void markup(std::string_view text) {
-        if (take(text, "<layerHeight>") || take(text, "<layerThickness>")) {
-            settings.layer_height = positive(text, 100);
-        } else if (take(text, "<edgeWidth>") || take(text, "<perimeterWidth>")) {
-            settings.extrusion_width = positive(text, 100);
+        if (takePrefix(text, "<layerHeight>") || takePrefix(text, "<layerThickness>")) {
+            settings.layer_height = positiveNumber(text, 100);
+        } else if (takePrefix(text, "<edgeWidth>") || takePrefix(text, "<perimeterWidth>")) {
+            settings.extrusion_width = positiveNumber(text, 100);
         } else if (text.starts_with("<creator>") || text.starts_with("<version>")) {
             name("Skeinforge");
         }
@@ -140,7 +119,7 @@ private:
             if (auto list = diameters(value, ","); !list.empty()) settings.filament_diameters = std::move(list);
         } else if (key == "layer_height" || key == "sliceHeight" ||  // Kiri:Moto's
                    key == "layer_thickness_mm") {                    // KISSlicer's
-            if (const auto height = positive(value, 100)) settings.layer_height = height;
+            if (const auto height = positiveNumber(value, 100)) settings.layer_height = height;
         } else if (key == "use_relative_e_distances") {
             settings.relative_e = flag(value);
         } else if (key == "use_volumetric_e") {
@@ -155,9 +134,9 @@ private:
         } else if (key == "extruder_offset") {
             settings.tool_offsets = offsets(value);
         } else if (key == "nozzle_diameter") {
-            settings.nozzle_diameter = positive(value, 100);
+            settings.nozzle_diameter = positiveNumber(value, 100);
         } else if (key == "extrusion_width" || key == "line_width") {
-            if (value.find('%') == std::string_view::npos) settings.extrusion_width = positive(value, 100);
+            if (value.find('%') == std::string_view::npos) settings.extrusion_width = positiveNumber(value, 100);
         } else if (key == "gcode_flavor") {
             settings.firmware = firmwareOfFlavor(value);
             settings.firmware_reason = std::string("the file's gcode_flavor is ").append(value);
@@ -165,30 +144,32 @@ private:
     }
 
     void sentence(std::string_view text) {
-        if (take(text, "generated by ") || take(text, "Generated by ") || take(text, "G-Code generated by ")) {
+        if (takePrefix(text, "generated by ") || takePrefix(text, "Generated by ") ||
+            takePrefix(text, "G-Code generated by ")) {
             name(upTo(upTo(text, " on "), " (Build"));
-        } else if (take(text, "Generated with ") || take(text, "GCode created with ") ||
+        } else if (takePrefix(text, "Generated with ") || takePrefix(text, "GCode created with ") ||
                    text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
             name(upTo(text, " - "));
-        } else if (take(text, "Sliced by ")) {
+        } else if (takePrefix(text, "Sliced by ")) {
             name(upTo(text, ","));
-        } else if (take(text, "GENERATOR.NAME:")) {
+        } else if (takePrefix(text, "GENERATOR.NAME:")) {
             name(text);
-        } else if (take(text, "GENERATOR.VERSION:")) {
+        } else if (takePrefix(text, "GENERATOR.VERSION:")) {
             if (!settings.slicer.empty() && settings.slicer.find(' ') == std::string::npos)
                 settings.slicer.append(" ").append(text);
-        } else if (take(text, "FLAVOR:")) {
+        } else if (takePrefix(text, "FLAVOR:")) {
             curaFlavor(text);
-        } else if (take(text, "Layer height:") || take(text, "layerHeight,") || take(text, "layer_height:")) {
-            if (const auto height = positive(text, 100)) settings.layer_height = height;
-        } else if (take(text, "Filament Diameter #")) {
+        } else if (takePrefix(text, "Layer height:") || takePrefix(text, "layerHeight,") ||
+                   takePrefix(text, "layer_height:")) {
+            if (const auto height = positiveNumber(text, 100)) settings.layer_height = height;
+        } else if (takePrefix(text, "Filament Diameter #")) {
             const auto colon = text.find(':');
             const auto diameter =
-                colon == std::string_view::npos ? std::nullopt : positive(text.substr(colon + 1), 100);
+                colon == std::string_view::npos ? std::nullopt : positiveNumber(text.substr(colon + 1), 100);
             if (diameter) settings.filament_diameters.push_back(*diameter);
-        } else if (take(text, "relativeEdistances,")) {
+        } else if (takePrefix(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
-        } else if (take(text, "filamentDiameters,")) {
+        } else if (takePrefix(text, "filamentDiameters,")) {
             if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
         }
     }

@@ -1,7 +1,7 @@
 #include "gcode/toolpath/stated.h"
 
-#include "base/text.h"
 #include "gcode/text/number.h"
+#include "gcode/text/setting_text.h"
 
 #include <fmt/format.h>
 
@@ -13,39 +13,27 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kMostTools = 256;
 constexpr double kLongest = 1e9;  // s, thirty years
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// The positive number at the start of the text, up to `most`.
-std::optional<double> positive(std::string_view text, double most) {
-    const char* p = text.data();
-    double value = 0;
-    if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
-    return value;
-}
-
-// Each part of a list, trimmed.
+// Each part of a list, with its number.
 template <typename Take>
 void split(std::string_view text, std::string_view separators, const Take& part) {
-    for (std::size_t i = 0; !text.empty() && i < kMostTools; ++i) {
-        const auto cut = std::min(text.find_first_of(separators), text.size());
-        part(i, trimQuoted(text.substr(0, cut)));
-        text.remove_prefix(std::min(cut + 1, text.size()));
-    }
+    std::size_t tool = 0;
+    for (const std::string_view one : partsOf(text, separators)) part(tool++, one);
 }
 
 // The sum of grams by tool; absent if one is no number, or all are 0, which slicers write if the density is unknown.
 std::optional<double> sum(std::string_view text) {
     double total = 0;
     bool good = true;
-    split(text, ",;", [&](std::size_t, std::string_view part) {
+    for (const std::string_view part : partsOf(text, ",;")) {
         const char* p = part.data();
         double value = 0;
         good = good && parseNumber(p, p + part.size(), value) && value >= 0 && value < 1e9;
         total += value;
-    });
+    }
     return good && total > 0 ? std::optional(total) : std::nullopt;
 }
 
@@ -100,8 +88,7 @@ bool StatedFacts::empty() const {
 }
 
 void StatedReader::comment(std::string_view text) {
-    if (const auto equals = text.find(" = "); equals != std::string_view::npos)
-        return pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
+    if (const auto setting = keyAndValue(text)) return pair(setting->first, setting->second);
     // BambuStudio states two times in one comment.
     if (text.starts_with("model printing time:"))
         if (const auto cut = text.find(';'); cut != std::string_view::npos) {
@@ -135,11 +122,11 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
     } else if (key == "printer_settings_id") {
         profile_ = value;
     } else if (key == "layer_height" || key == "sliceHeight" || key == "layer_thickness_mm") {
-        if (const auto height = positive(value, 100)) facts_.layer_height = height;
+        if (const auto height = positiveNumber(value, 100)) facts_.layer_height = height;
     } else if (key == "first_layer_height" || key == "initial_layer_print_height" || key == "firstSliceHeight" ||
                key == "first_layer_thickness_mm") {
         const bool share = value.ends_with('%');
-        const auto height = positive(value, share ? 1000 : 100);
+        const auto height = positiveNumber(value, share ? 1000 : 100);
         if (share && height) first_share_ = *height / 100;
         if (!share && height) facts_.first_layer_height = height;
     }
@@ -159,7 +146,7 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
     } else if (key == "right_extruder_material" || key == "left_extruder_material") {
         setMaterial(key.starts_with("left") ? 1 : 0, value);
     } else if (key == "layer_height" || key == "Layer height") {
-        if (const auto height = positive(value, 100)) facts_.layer_height = height;
+        if (const auto height = positiveNumber(value, 100)) facts_.layer_height = height;
     } else if (const auto train = takeTool(key, "EXTRUDER_TRAIN.")) {
         if (key == ".NOZZLE.DIAMETER") setNozzle(*train, value);
     } else if (const auto extruder = takeTool(key, "Extruder ")) {
@@ -176,9 +163,9 @@ void StatedReader::setting(std::string_view key, std::string_view value) {
     } else if (key == "profileName") {
         profile_ = value;
     } else if (key == "layerHeight") {
-        facts_.layer_height = positive(value, 100);
+        facts_.layer_height = positiveNumber(value, 100);
     } else if (key == "firstLayerHeightPercentage") {
-        if (const auto share = positive(value, 1000)) first_share_ = *share / 100;
+        if (const auto share = positiveNumber(value, 1000)) first_share_ = *share / 100;
     }
 }
 
@@ -189,7 +176,7 @@ void StatedReader::setMaterial(std::size_t tool, std::string_view name) {
 }
 
 void StatedReader::setNozzle(std::size_t tool, std::string_view diameter) {
-    const auto size = positive(diameter, 100);
+    const auto size = positiveNumber(diameter, 100);
     if (!size) return;
     if (facts_.nozzle_diameters.size() <= tool) facts_.nozzle_diameters.resize(tool + 1);
     facts_.nozzle_diameters[tool] = *size;

@@ -1,0 +1,65 @@
+// Settings as slicers write them in comments: "key = value", lists, quotes.
+#pragma once
+
+#include "base/text.h"
+#include "gcode/text/number.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace stratum::gcode {
+
+/// Of lists by tool: more parts are not read.
+inline constexpr std::size_t kMostParts = 256;
+
+/// Removes `prefix` and what trimQuoted() removes; false, and no change, if the text begins otherwise.
+inline bool takePrefix(std::string_view& text, std::string_view prefix) {
+    if (!text.starts_with(prefix)) return false;
+    text = trimQuoted(text.substr(prefix.size()));
+    return true;
+}
+
+/// The two sides of the first " = ", the value without blanks and quotes.
+inline std::optional<std::pair<std::string_view, std::string_view>> keyAndValue(std::string_view text) {
+    const auto equals = text.find(" = ");
+    if (equals == std::string_view::npos) return std::nullopt;
+    return std::pair(text.substr(0, equals), trimQuoted(text.substr(equals + 3)));
+}
+
+/// The parts of a list, without blanks and quotes. A separator at the end makes no part.
+inline std::vector<std::string_view> partsOf(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    while (!text.empty() && parts.size() < kMostParts) {
+        const auto cut = std::min(text.find_first_of(separators), text.size());
+        parts.push_back(trimQuoted(text.substr(0, cut)));
+        text.remove_prefix(std::min(cut + 1, text.size()));
+    }
+    return parts;
+}
+
+/// The number that each part of a list begins with; empty if one has none in [least, most].
+inline std::vector<double> numbersOf(std::string_view text, double least, double most) {
+    std::vector<double> values;
+    for (const std::string_view part : partsOf(text, ",")) {
+        const char* p = part.data();
+        double value = 0;
+        if (!parseNumber(p, p + part.size(), value) || !(value >= least && value <= most)) return {};
+        values.push_back(value);
+    }
+    return values;
+}
+
+/// The positive number that the text begins with, if it is at most `most`.
+inline std::optional<double> positiveNumber(std::string_view text, double most) {
+    text = trimQuoted(text);
+    const char* p = text.data();
+    double value = 0;
+    if (!parseNumber(p, p + text.size(), value) || !(value > 0 && value <= most)) return std::nullopt;
+    return value;
+}
+
+}  // namespace stratum::gcode
