@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import tempfile
 import time
@@ -114,6 +115,12 @@ for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
     if name == "find_package":
         check(int(words[0]) == report["toolpath"]["beads"], "  reads the print")
         check(int(words[1]) > 100000 and words[2:] == ["1", "1"], f"  voxelizes and traces: {words[1:]}")
+        picture = os.path.join(FOLDER, "stranger.png")
+        run(os.path.join(build, "picture"), gcode("tile.gcode"), picture)
+        with open(picture, "rb") as file:
+            head = file.read(24)
+        check(struct.unpack(">II", head[16:]) == (160, 120) and os.path.getsize(picture) > 5000,
+              f"  makes a picture of {os.path.getsize(picture)} bytes")
     else:
         check(words == ["1", "3.000", report["input"]["sha256"]], f"  traces and hashes: {words}")
 

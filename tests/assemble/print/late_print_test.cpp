@@ -1,0 +1,47 @@
+#include "assemble/print/late_print.h"
+
+#include "base/error.h"
+#include "prints.h"
+#include "scratch_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace stratum::assemble {
+namespace {
+
+TEST(LatePrint, ShowsEarlierMoments) {
+    TracingOptions options = test::coarseTracing();
+    options.prints.series = 3;
+    const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, options);
+    const std::shared_ptr<LatePrint> print = growingPrint(objects);
+    ASSERT_TRUE(print);
+    ASSERT_EQ(print->moments(), 3U);
+    const auto beads = [&] { return print->report()["printed_beads"].get<std::size_t>(); };
+    const std::size_t all = beads();
+    print->show(0);
+    EXPECT_LT(beads(), all);
+    EXPECT_GT(beads(), 0U);
+    print->show(2);
+    EXPECT_EQ(beads(), all);
+}
+
+TEST(LatePrint, PicturesItsBricks) {
+    const test::ScratchFolder scratch;
+    const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, test::coarseTracing());
+    ASSERT_EQ(objects.prints.size(), 1U);
+    objects.prints[0]->writeBrickPicture((scratch / "bricks.png").string(), {{"Software", "test"}});
+    EXPECT_GT(std::filesystem::file_size(scratch / "bricks.png"), 100U);
+    EXPECT_THROW(objects.prints[0]->writeBrickPicture((scratch / "bricks.exr").string(), {}), UsageError);
+}
+
+TEST(LatePrint, TellsOfABoundOnItsBricks) {
+    TracingOptions options = test::coarseTracing();
+    options.brick_cache = 100'000'000;
+    const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, options);
+    EXPECT_EQ(objects.prints[0]->report()["brick_cache"]["limit_bytes"], 100'000'000);
+}
+
+}  // namespace
+}  // namespace stratum::assemble

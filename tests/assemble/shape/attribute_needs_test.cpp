@@ -1,0 +1,38 @@
+#include "assemble/shape/attribute_needs.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace stratum::assemble {
+namespace {
+
+ObjectOptions objectOf(const std::string& vdb, const std::string& grid = "") {
+    ObjectOptions object;
+    object.vdb = vdb;
+    object.grid = grid;
+    return object;
+}
+
+TEST(AttributeNeeds, NumbersNamesInTheirOrder) {
+    AttributeNeeds needs;
+    EXPECT_EQ(needs.number("layer"), 0U);
+    EXPECT_EQ(needs.number("tool"), 1U);
+    EXPECT_EQ(needs.number("layer"), 0U);
+    EXPECT_EQ(needs.names(), (std::vector<std::string>{"layer", "tool"}));
+}
+
+TEST(AttributeNeeds, ObjectsOfOneFileAndGridShareThem) {
+    AttributeNeeds needs;
+    needs.want(objectOf("a.vdb"), "tool");
+    needs.wantStatedColors(objectOf("b.gcode"));
+    EXPECT_TRUE(needs.wanted(objectOf("a.vdb"), "tool"));
+    EXPECT_FALSE(needs.wanted(objectOf("a.vdb"), "layer"));
+    EXPECT_FALSE(needs.wanted(objectOf("a.vdb", "other"), "tool"));
+    EXPECT_FALSE(needs.statedColorsWanted(objectOf("a.vdb")));
+    EXPECT_TRUE(needs.statedColorsWanted(objectOf("b.gcode")));
+}
+
+}  // namespace
+}  // namespace stratum::assemble
