@@ -1,9 +1,5 @@
 #include "motion/print_times.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace stratum::motion {
@@ -62,13 +58,6 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
 }  // namespace
 
 std::string_view ruleName(CornerRule rule) { return kRules[static_cast<std::size_t>(rule)]; }
-
-CornerRule ruleNamed(std::string_view name) {
-    const auto found = std::find(kRules.begin(), kRules.end(), name);
-    if (found == kRules.end())
-        throw UsageError(fmt::format("planner {}: expected one of {}", name, fmt::join(kRules, ", ")));
-    return static_cast<CornerRule>(found - kRules.begin());
-}
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
                                   PrintTimes& times) {

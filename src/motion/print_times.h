@@ -24,10 +24,8 @@ struct PrintTimes {
     std::string rule;            ///< a ruleName()
 };
 
-/// The name of a rule on command lines and in reports.
+/// The name of a rule on command lines and in reports; "auto" is automatic.
 std::string_view ruleName(gcode::CornerRule rule);
-/// The rule of that name ("auto" is automatic). Throws UsageError with the names.
-gcode::CornerRule ruleNamed(std::string_view name);
 
 /// Reads a program and plans its motion: fills Toolpath::timing and returns the sums. Throws what readToolpath()
 /// throws. Takes about twice as long as reading alone, and 24 bytes a bead.

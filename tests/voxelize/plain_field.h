@@ -23,7 +23,8 @@ public:
         double phi = std::numeric_limits<double>::max();
         for (std::size_t l = 0; l < stack_.layers.size(); ++l) {
             const voxelize::Layer& layer = stack_.layers[l];
-            for (const std::uint32_t bead : stack_.beadsOf(layer)) {
+            for (std::uint32_t rank = layer.first; rank < layer.last; ++rank) {
+                const std::uint32_t bead = stack_.beads[rank];
                 const double rho = voxelize::PlanPath(toolpath_, toolpath_.beads[bead]).distance(x, y);
                 d[l] = std::min(d[l], rho - (toolpath_.beads[bead].width / 2 - layer.radius));
             }

@@ -84,6 +84,17 @@ double raysThroughAWall(double thickness) {
     return static_cast<double>(missed) / kRays;
 }
 
+// At the voxels of `a` that are active and positive, mm.
+double largestDifferenceOutside(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
+    const auto accessor = b.getConstAccessor();
+    double largest = 0;
+    for (auto voxel = a.cbeginValueOn(); voxel; ++voxel)
+        if (*voxel > 0)
+            largest = std::max(largest, std::abs(static_cast<double>(*voxel) -
+                                                 static_cast<double>(accessor.getValue(voxel.getCoord()))));
+    return largest;
+}
+
 // Culled against kept: what of the outside differs, mm.
 double cullingChanges() {
     openvdb::initialize();
@@ -100,13 +111,7 @@ double cullingChanges() {
     const auto kept = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kHeight), options);
     options.interior = voxelize::Interior::cull;
     const auto culled = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kHeight), options);
-    const auto accessor = kept->getConstAccessor();
-    double largest = 0;
-    for (auto voxel = culled->cbeginValueOn(); voxel; ++voxel)
-        if (*voxel > 0)
-            largest = std::max(largest, std::abs(static_cast<double>(*voxel) -
-                                                 static_cast<double>(accessor.getValue(voxel.getCoord()))));
-    return largest;
+    return largestDifferenceOutside(*culled, *kept);
 }
 
 // A series of partial prints ends with the bytes of the whole.
@@ -127,13 +132,7 @@ double sweepChangesOutside() {
     const auto before = voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.05, kHeight));
     const auto after = before->deepCopy();
     voxelize::sweepInterior(*after);
-    const auto accessor = after->getConstAccessor();
-    double largest = 0;
-    for (auto voxel = before->cbeginValueOn(); voxel; ++voxel)
-        if (*voxel > 0)
-            largest = std::max(largest, std::abs(static_cast<double>(*voxel) -
-                                                 static_cast<double>(accessor.getValue(voxel.getCoord()))));
-    return largest;
+    return largestDifferenceOutside(*before, *after);
 }
 
 void addLattices(std::vector<StabilityCase>& cases) {

@@ -43,9 +43,6 @@ struct LayerStack {
     std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
     std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
 
-    std::span<const std::uint32_t> beadsOf(const Layer& l) const {
-        return std::span(beads).subspan(l.first, l.last - l.first);
-    }
     std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
     /// Of a direct bead.
     const Extent& extentOf(std::uint32_t rank) const { return extents[rank - first_direct]; }

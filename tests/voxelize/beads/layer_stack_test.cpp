@@ -11,8 +11,8 @@ using test::addBead;
 using test::allBeads;
 
 std::vector<std::uint32_t> beadsOf(const LayerStack& stack, std::size_t layer) {
-    const auto beads = stack.beadsOf(stack.layers[layer]);
-    return {beads.begin(), beads.end()};
+    const Layer& l = stack.layers[layer];
+    return {stack.beads.data() + l.first, stack.beads.data() + l.last};
 }
 
 TEST(LayerStack, GroupsByPlaneAndHeight) {
