@@ -66,7 +66,7 @@ bool isNumber(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// Removes what killed runs with this destination have left: nobody holds its lock.
+// Removes files that killed processes with this destination have left: files without a lock.
 void sweep(const std::filesystem::path& destination) {
     const std::string begin = fmt::format(".{}.", destination.filename().string());
     constexpr std::string_view kEnd = ".part";
@@ -85,7 +85,7 @@ void sweep(const std::filesystem::path& destination) {
     }
 }
 
-// A device or a pipe; what is not there will be a file.
+// A device or a pipe; false if nothing exists at the path.
 bool isStream(const std::filesystem::path& destination) {
     std::error_code ignored;
     const std::filesystem::file_status status = std::filesystem::status(destination, ignored);
@@ -190,7 +190,7 @@ void AtomicFile::openNamed() {
         }
         (void)::flock(fd_, LOCK_EX | LOCK_NB);
         struct stat status {};
-        // Before the lock was there, another run may have taken the file for one that was left.
+        // Another process may have removed the file before it was locked.
         if (::fstat(fd_, &status) != 0 || status.st_nlink > 0) return;
         close();
     }

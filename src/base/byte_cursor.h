@@ -1,4 +1,4 @@
-// Reads what is in memory, in order and never past its end: the walk that readers of untrusted formats share.
+// A bounds-checked cursor over bytes in memory, for readers of untrusted formats.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 namespace stratum {
 
 /// The base of a format's cursor. `Format` derives from it and has `[[noreturn]] void endsEarly() const`, which throws
-/// in the format's own words. Numbers are read as the machine holds them.
+/// with the format's own message. Numbers are in native byte order.
 template <typename Format>
 class ByteCursor {
 public:

@@ -1,7 +1,7 @@
-// Errors that are the user's to mend, and the exit status each one maps to.
+// Errors that the user can correct, and the exit status of each.
 //
-// Libraries throw these and never print or exit; the tools catch them once, in main. Anything else that escapes
-// (std::bad_alloc, a logic_error) is a defect or the machine's limit and ends with status 1.
+// Libraries throw these and never print or exit; the tools catch them once, in main. Other exceptions (std::bad_alloc,
+// a logic_error) are defects or a lack of memory; they end the tool with status 1.
 #pragma once
 
 #include <stdexcept>
@@ -10,7 +10,7 @@
 namespace stratum {
 
 /// Input that can't be used: missing, empty, of another kind, out of range. Exit status 3.
-/// The text says the place (file, line or block), what was expected and what to do.
+/// The text has the location (file, line or block), the expected input and the remedy.
 class InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

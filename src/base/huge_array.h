@@ -1,6 +1,6 @@
-// Memory for large tables that are read at random: on huge pages where the system has them, so that a ray's reads don't
-// also miss the page tables. It is zero, and not there before it is touched: what is never written costs nothing, and
-// all threads share the work of the first touch.
+// Memory for large tables with random access: on huge pages if the system has them, to avoid TLB misses. It is zero,
+// and physical pages are allocated on first touch: parts that are never written need no memory, and all threads share
+// the work of the first touch.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,26 +13,25 @@
 
 namespace stratum {
 
-/// A fixed number of T, all bits zero, aligned to a cache line or better. After the end there is room for one T and for
-/// kReadAhead bytes, all zero too: vector code may read that many bytes from any element on, and index 0 is always
-/// there.
+/// A fixed number of T, all bits zero, aligned to a cache line or better. It is padded by one T and kReadAhead bytes of
+/// zeros: vector code may read that many bytes from any element on, and index 0 is always valid.
 template <typename T>
 class HugeArray {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
 public:
-    /// Whether whole huge pages come and go, or small ones: for tables of which little is ever written, here and there.
+    /// The size of pages: small ones for tables of which only scattered parts are written.
     enum class Pages { huge, small };
-    /// Bytes that one lane of a gather reads, however small a T is.
+    /// Bytes that one lane of a gather reads, for any T.
     static constexpr std::size_t kReadAhead = 8;
 
     HugeArray() = default;
-    /// Throws std::bad_alloc if there is no room in the address space.
+    /// Throws std::bad_alloc if the address space is exhausted.
     explicit HugeArray(std::size_t size, Pages pages = Pages::huge) : size_(size) {
         constexpr std::size_t kHugePage = std::size_t{1} << 21;
         const std::size_t wanted = (size + 1) * sizeof(T) + kReadAhead;
         const bool large = wanted >= kHugePage;
-        // Maps are aligned to small pages; the spare part of a longer one is never touched.
+        // Maps are aligned to small pages; the unused part of a longer one is never touched.
         const std::size_t mapped = large ? wanted + kHugePage : wanted;
         void* memory =
             mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -42,7 +41,7 @@ public:
             const auto address = reinterpret_cast<std::uintptr_t>(memory);
             const std::size_t skipped = (kHugePage - address % kHugePage) % kHugePage;
             data_ = reinterpret_cast<T*>(map_.get() + skipped);
-            // Only advice: what it returns changes nothing.
+            // Only advice: failure has no effect.
             (void)madvise(data_, wanted, pages == Pages::huge ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);
         } else {
             data_ = reinterpret_cast<T*>(map_.get());

@@ -1,4 +1,4 @@
-// A whole input file as bytes, mapped, not read: pages that nobody looks at are never loaded.
+// A memory-mapped input file: pages that are not accessed are never loaded.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace stratum {
 
-/// How a file will be read: the system reads far ahead, and drops what is behind, of one that is read from end to end.
+/// The access pattern of a file: for sequential access the system reads ahead, and drops pages that have been read.
 enum class Access : std::uint8_t { anywhere, sequential };
 
 /// Read-only map of a regular file. Movable, not copyable; safe to read from several threads.

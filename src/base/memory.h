@@ -1,4 +1,4 @@
-// How much memory this process may still take.
+// The memory available to this process.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace stratum {
 
-/// 90 % of what is left, bytes: the least of the machine's free memory, what the control groups of this process (cgroup
-/// v1 and v2, and those above) leave it, and what its limits on address space and data (ulimit -v, -d) do. Linux; reads
-/// files, so ask once and keep the answer.
+/// 90 % of the available memory, bytes: the least of the machine's free memory, the remaining memory of this process's
+/// control groups (cgroup v1 and v2, and their parents), and of its limits on address space and data (ulimit -v, -d).
+/// Linux; reads files, so call it once and keep the result.
 std::size_t availableMemory();
 
-/// What the memory groups leave, bytes; nothing if none sets a limit. `mounted` is where they lie, /sys/fs/cgroup;
-/// `membership` the text of /proc/self/cgroup. File pages that can be dropped count as free. A container may not see
-/// its groups by their full names: then those at the top of `mounted` count.
+/// The remaining memory of the memory groups, bytes; nothing if none sets a limit. `mounted` is their folder,
+/// /sys/fs/cgroup; `membership` the text of /proc/self/cgroup. File pages that can be dropped count as free. In a
+/// container the groups may not be visible by their full names: then those at the top of `mounted` are used.
 std::optional<std::size_t> freeInGroups(const std::filesystem::path& mounted, const std::string& membership);
 
 }  // namespace stratum

@@ -30,7 +30,7 @@ std::string_view nearestName(std::string_view word, std::span<const std::string_
     std::string_view nearest;
     for (const std::string_view name : names) {
         const std::size_t distance = editDistance(word, name);
-        // A name that has no letter in common with the word is no guess.
+        // Names without a common letter are not suggested.
         if (distance >= least || distance >= std::max(word.size(), name.size())) continue;
         least = distance;
         nearest = name;

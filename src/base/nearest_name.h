@@ -1,4 +1,4 @@
-// A mistyped word and the names that it may stand for.
+// Suggests names for a mistyped word.
 #pragma once
 
 #include <initializer_list>
@@ -11,8 +11,8 @@ namespace stratum {
 /// Levenshtein's distance: single letters inserted, removed or replaced.
 std::size_t editDistance(std::string_view a, std::string_view b);
 
-/// The name that is nearest to `word`, if no more than a third of its letters (but at least one) are wrong; empty if
-/// none is. Of several the first. Only the first 64 letters of `word` count.
+/// The name nearest to `word`, if the distance is at most a third of its letters (at least one); else empty. Of several
+/// the first. Only the first 64 letters of `word` are used.
 std::string_view nearestName(std::string_view word, std::span<const std::string_view> names);
 
 /// For the end of a message: "; did you mean 'studio'?", or nothing.

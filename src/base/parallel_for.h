@@ -1,4 +1,4 @@
-// The one parallel loop of the project: TBB's, with a join that ThreadSanitizer can follow.
+// The parallel loop of the project: TBB's, with a join that ThreadSanitizer recognizes.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@
 namespace stratum {
 
 /// Calls body(first, last) for parts of [0, count) that cover it once, on the threads that tbb::global_control allows.
-/// Parts hold about `grain` items. What a body writes is visible after the return. The first exception ends the loop
-/// and is passed on. Results must not depend on the parts: items are independent.
+/// Parts have about `grain` items. Writes of the bodies are visible after the return. The first exception ends the loop
+/// and is rethrown. Results must not depend on the parts: items are independent.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
 #if defined(STRATUM_THREAD_SANITIZER)
-    // Debian's TBB is not built for ThreadSanitizer, which then sees races between everything before, in and after a
-    // loop. Plain threads show it the true order, so that what it reports is ours.
+    // Debian's TBB is not built for ThreadSanitizer, which then reports races between code before, in and after a loop.
+    // With plain threads it sees the real order, so its reports are about this project.
     std::atomic<std::size_t> next{0};
     std::exception_ptr failure;
     std::mutex failure_mutex;

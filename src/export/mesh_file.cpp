@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "STL and PLY are writt
 
 std::string extensionOf(const std::filesystem::path& path) { return lowerCase(path.extension().string()); }
 
-// Collects bytes: a mesh of millions of faces, one write a megabyte.
+// Buffers bytes and writes a megabyte at a time.
 class Writer {
 public:
     explicit Writer(std::ofstream& out) : out_(out) { buffer_.reserve(kChunk + 4096); }
@@ -57,7 +57,7 @@ void writeStl(const SurfaceMesh& mesh, Writer& out) {
         const openvdb::Vec3s& b = mesh.points[ib];
         const openvdb::Vec3s& c = mesh.points[ic];
         openvdb::Vec3s normal = (b - a).cross(c - a);
-        // A triangle without area has no normal; zeros let the reader compute what it likes.
+        // A triangle without area has no normal; with zeros the reader computes its own.
         if (!normal.normalize()) normal = openvdb::Vec3s(0);
         for (const openvdb::Vec3s& v : {normal, a, b, c})
             for (int axis = 0; axis < 3; ++axis) out.raw(v[axis]);

@@ -10,12 +10,12 @@ namespace stratum::exporter {
 /// Whether writeMesh knows the extension: .stl, .ply or .obj, in any case.
 bool isMeshPath(const std::filesystem::path& path);
 
-/// Whether it writes SurfaceMesh::colors there: to .ply.
+/// Whether it writes SurfaceMesh::colors to this path: to .ply.
 bool meshHasColors(const std::filesystem::path& path);
 
 /// Writes by the extension: binary STL (triangles), binary PLY or OBJ text (quads and triangles, shared vertices), a
 /// megabyte at a time. PLY has the points' colors, if there are any. Throws UsageError if the mesh has more faces than
-/// the format can count, OutputError if it can't be written; the old file then stays.
+/// the format allows, OutputError if it can't be written; the old file then stays.
 void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace stratum::exporter

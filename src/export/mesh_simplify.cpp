@@ -13,12 +13,12 @@ namespace {
 using openvdb::Vec3d;
 
 constexpr std::uint32_t kNone = SurfaceMesh::kNone;
-// Shares of the squared error allowed, pass by pass: flat places go first. The last is repeated.
+// Shares of the allowed squared error, by pass: flat areas are collapsed first. The last one is repeated.
 constexpr std::array kSchedule{0.0005, 0.005, 0.03, 0.1, 0.25, 0.5, 1.0};
 constexpr std::size_t kMostPasses = 24;
-// Root of the mean squared distance from the planes, as a share of the error allowed: the largest is about twice that.
+// Root mean square distance from the planes, as a share of the allowed error: the largest is about twice that.
 constexpr double kMeanShare = 0.45;
-constexpr double kEnough = 0.01;        // a pass that takes away a smaller share of the faces is the last
+constexpr double kEnough = 0.01;        // a pass that removes a smaller share of the faces is the last
 constexpr double kLeastCosine = 0.35;   // between a face's normals before and after a step
 constexpr double kLeastSine = 0.003;    // of the flattest corner of a new face
 constexpr std::size_t kMostFaces = 48;  // around a point: the work at it grows with the square
@@ -42,7 +42,7 @@ struct Quadric {
         return p[0] * (xx * p[0] + 2 * (xy * p[1] + xz * p[2] + x)) + p[1] * (yy * p[1] + 2 * (yz * p[2] + y)) +
                p[2] * (zz * p[2] + 2 * z) + c;
     }
-    // Where it is least, if the planes fix a point well.
+    // Its minimum, if the planes determine a point well.
     bool least(Vec3d& p) const {
         const double a = yy * zz - yz * yz;
         const double b = xz * yz - xy * zz;
@@ -58,7 +58,7 @@ struct Quadric {
     }
 };
 
-// A few numbers, without a heap.
+// A small vector without heap allocation.
 template <typename T, std::size_t kMost>
 struct Few {
     std::array<T, kMost> items;
@@ -135,7 +135,8 @@ private:
 
     static Vec3d normalOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return (b - a).cross(c - a); }
 
-    // One look at every edge; a point that was moved rests until the next. Returns the faces that went.
+    // One pass over all edges; a point that was moved is skipped until the next pass. Returns the number of removed
+    // faces.
     std::size_t once() {
         std::size_t gone = 0;
         for (std::size_t f = 0; f < faces_.size(); ++f)
@@ -168,7 +169,7 @@ private:
             else
                 *std::find(face.begin(), face.end(), b) = a;
         }
-        // What is dead leaves the list when it is read next.
+        // Removed faces are deleted from the list when it is read next.
         std::uint32_t* end = &first_[a];
         while (*end != kNone) end = &next_[*end];
         *end = std::exchange(first_[b], kNone);
@@ -179,7 +180,7 @@ private:
         const Vec3d& pa = points_[a];
         const Vec3d& pb = points_[b];
         if (!labels_.empty() && labels_[a] != labels_[b]) return false;
-        // Not far from the edge, even if the planes meet there.
+        // Not far from the edge, even if the planes intersect there.
         if (quadric.least(p) && (p - 0.5 * (pa + pb)).lengthSqr() < (pa - pb).lengthSqr() &&
             quadric.at(p) <= limit_ * quadric.weight)
             return true;
@@ -194,7 +195,7 @@ private:
         return found;
     }
 
-    // The faces at a point; false if they are too many. Takes dead ones off the list.
+    // The faces at a point; false if they are too many. Deletes removed ones from the list.
     bool facesOf(std::uint32_t point, Around& out) {
         std::uint32_t* corner = &first_[point];
         while (*corner != kNone) {
@@ -218,7 +219,7 @@ private:
                 shared += point == b ? 1 : 0;
                 if (point != a && !near_a.has(point)) near_a.add(point);
             }
-        // Of a tetrahedron two equal faces would be left.
+        // Collapsing an edge of a tetrahedron would leave two equal faces.
         if (shared != 2 || faces_a.count + faces_b.count < 7) return false;
         Few<std::uint32_t, 2 * kMostFaces> near_b;
         std::size_t common = 0;
@@ -258,7 +259,7 @@ private:
     const Vec3d origin_;
     std::vector<Vec3d> points_;
     std::vector<Quadric> quadrics_;
-    std::vector<Face> faces_;           // the first corner of one that is gone is kNone
+    std::vector<Face> faces_;           // the first corner of a removed face is kNone
     std::vector<std::uint32_t> first_;  // by point: a corner (three times the face and which) at it
     std::vector<std::uint32_t> next_;   // by corner: the next at that point
     std::vector<std::uint8_t> moved_;   // by point: the pass

@@ -1,4 +1,4 @@
-// Fewer triangles for a surface, within a stated error.
+// Simplifies a surface mesh within a given error.
 #pragma once
 
 #include "export/surface_mesh.h"
@@ -8,11 +8,10 @@
 
 namespace stratum::exporter {
 
-/// Collapses edges where the surface is flat or curves one way only. After M. Garland and P. Heckbert, "Surface
-/// Simplification Using Quadric Error Metrics" (SIGGRAPH 97), with planes weighted by area: the root of a
-/// point's mean squared distance from the planes of the faces that it stands for stays below 0.45 `error` (world
-/// units). That is no bound of the largest distance, which was found to stay below 1.2 `error` and a twentieth of a
-/// voxel.
+/// Collapses edges where the surface is flat or curved in one direction only. After M. Garland and P. Heckbert,
+/// "Surface Simplification Using Quadric Error Metrics" (SIGGRAPH 97), with planes weighted by area: the root mean
+/// square distance of a point from the planes of the faces that it represents stays below 0.45 `error` (world units).
+/// That is no bound of the largest distance, which was measured to be below 1.2 `error` and a twentieth of a voxel.
 ///
 /// A closed mesh stays closed and keeps its genus: only edges of two faces, whose ends have two neighbours in common,
 /// are collapsed, and no face turns by more than about 70 degrees at a step. Quads become triangles. `labels`, one a

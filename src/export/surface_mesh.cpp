@@ -25,7 +25,7 @@ void clearSurface(openvdb::FloatGrid& grid) {
     });
 }
 
-// Points that an edge of no length joins are one: union-find with path halving, the lowest index leads.
+// Merges the ends of edges of length 0: union-find with path halving; the lowest index is the representative.
 class Merging {
 public:
     explicit Merging(std::size_t points) : leader_(points) { std::iota(leader_.begin(), leader_.end(), 0U); }
@@ -53,8 +53,8 @@ double sixfoldVolume(const SurfaceMesh& mesh, std::uint32_t from, std::uint32_t 
         .dot((openvdb::Vec3d(mesh.points[b]) - origin).cross(openvdb::Vec3d(mesh.points[c]) - origin));
 }
 
-// What is left of a face when its corners are merged; false if it has no inside any more. A face that collapses to a
-// line takes away each of its edges in both directions, so its neighbours meet instead.
+// The face after merging its corners; false if it has no area any more. A face that collapses to a line removes each of
+// its edges in both directions, so its neighbours become adjacent.
 bool reduce(SurfaceMesh::Face& face) {
     std::array<std::uint32_t, 4> left{};
     std::size_t count = 0;
@@ -67,13 +67,13 @@ bool reduce(SurfaceMesh::Face& face) {
     return true;
 }
 
-// The surface of a cavity is a part of its own, and its faces see the cavity's inside as outside.
+// The surface of a cavity is a connected part of its own, whose faces are oriented towards the cavity.
 void dropCavities(SurfaceMesh& mesh) {
     Merging parts(mesh.points.size());
     for (const SurfaceMesh::Face& face : mesh.faces)
         for (const std::uint32_t corner : face)
             if (corner != SurfaceMesh::kNone) parts.join(face[0], corner);
-    // From a point of the same part, so that a small one far away keeps its digits.
+    // Relative to a point of the same part, for the precision of small distant parts.
     std::vector<double> volume(mesh.points.size(), 0.0);
     mesh.forEachTriangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const std::uint32_t part = parts.find(a);
@@ -82,7 +82,7 @@ void dropCavities(SurfaceMesh& mesh) {
     std::erase_if(mesh.faces, [&](const SurfaceMesh::Face& face) { return !(volume[parts.find(face[0])] > 0); });
 }
 
-// The others keep their order.
+// The remaining points keep their order.
 void dropUnusedPoints(SurfaceMesh& mesh) {
     std::vector<std::uint32_t> place(mesh.points.size(), SurfaceMesh::kNone);
     for (const SurfaceMesh::Face& face : mesh.faces)
@@ -112,7 +112,7 @@ std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3
     std::vector<std::uint32_t> colors(mesh.points.size());
     parallelFor(colors.size(), 4096, [&](std::size_t first, std::size_t last) {
         const auto voxels = grid.getConstAccessor();
-        // Few colors, many points: a power costs more than a comparison.
+        // Cached, because there are few colors and many points.
         openvdb::Vec3f known(-1);
         std::uint32_t packed = 0;
         for (std::size_t n = first; n != last; ++n) {
@@ -188,7 +188,7 @@ std::size_t SurfaceMesh::triangleCount() const {
 
 double SurfaceMesh::volume() const {
     if (points.empty()) return 0;
-    // From a point of the surface: from the world's origin, large coordinates would cost digits.
+    // Relative to a point of the surface, for precision.
     double six = 0;
     forEachTriangle(
         [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { six += sixfoldVolume(*this, 0, a, b, c); });

@@ -10,8 +10,8 @@
 
 namespace stratum::exporter {
 
-/// A closed surface: every edge of a face is met by as many faces one way as the other. Points in world units; no face
-/// has a point twice, no point is unused. Faces are counter-clockwise from outside.
+/// A closed surface: every edge is used by equally many faces in both directions. Points in world units; no face has a
+/// point twice, no point is unused. Faces are counter-clockwise from outside.
 struct SurfaceMesh {
     /// A quad, or a triangle whose last corner is kNone.
     using Face = std::array<std::uint32_t, 4>;
@@ -39,18 +39,17 @@ struct SurfaceMesh {
 struct MeshOptions {
     /// Leaves out the surfaces of cavities: parts of the mesh that enclose a negative volume.
     bool outside_only = false;
-    /// Voxels: how far the simplified mesh may lie from the full one; 0 keeps a point in every surface cell. See
-    /// mesh_simplify.h for what that bounds.
+    /// Voxels: allowed error of the simplified mesh, see mesh_simplify.h; 0 keeps a point in every surface cell.
     double error = 0.0;
-    /// Colors the points by the nearest active voxel of this grid (linear sRGB), and keeps the faces between colors as
-    /// they are; may be null.
+    /// Colors the points by the nearest active voxel of this grid (linear sRGB), and doesn't simplify faces between
+    /// colors; may be null.
     const openvdb::Vec3SGrid* color = nullptr;
 };
 
 /// Meshes the zero level with OpenVDB's dual mesher (volumeToMesh; Ju et al., SIGGRAPH 2002, is the method). Samples
-/// within a thousandth of a voxel of the surface are first put that far inside: a print's layer planes lie on samples,
-/// and a sheet of zeros between two solids would become two faces in one place. Where neighbouring cells still get the
-/// same point, faces are collapsed, which opens nothing. Works on a copy of the grid.
+/// within a thousandth of a voxel of the surface are first moved that far inside: a print's layer planes are on
+/// samples, and a sheet of zeros between two solids would become two coincident faces. Where neighbouring cells still
+/// get the same point, faces are collapsed; the mesh stays closed. Works on a copy of the grid.
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options = {});
 
 }  // namespace stratum::exporter

@@ -1,4 +1,4 @@
-// A .usda beside a .vdb: how a USD scene (Houdini Solaris, Omniverse, Karma) refers to the grids of the file.
+// Writes a .usda beside a .vdb: references to its grids for USD (Houdini Solaris, Omniverse, Karma).
 #pragma once
 
 #include <openvdb/openvdb.h>

@@ -10,8 +10,8 @@
 namespace stratum::exporter {
 namespace {
 
-// openvdb::io::File writes the same bytes, but to a stream of its own whose failures it doesn't look at: on a full disk
-// half a file would pass for a whole one.
+// openvdb::io::File writes the same bytes, but ignores write errors of its own stream: on a full disk it would leave a
+// truncated file without an error.
 class CheckedArchive : public openvdb::io::Archive {
 public:
     void writeTo(std::ostream& stream, const openvdb::GridPtrVec& grids) const { write(stream, grids, true); }
@@ -56,7 +56,7 @@ void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& pat
     try {
         CheckedArchive archive;
         std::uint32_t flags = openvdb::io::COMPRESS_NONE;
-        // The active mask says which voxels differ from the background; the rest need no bytes.
+        // Inactive voxels are not stored: they have the background value.
         if (options.compression == Compression::blosc)
             flags = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
         if (options.compression == Compression::zip)

@@ -1,4 +1,4 @@
-// FloatGrid -> .vdb: metadata that says what the grid is and where it came from, written whole or not at all.
+// FloatGrid -> .vdb with metadata about the grid and its origin; written whole or not at all.
 #pragma once
 
 #include "voxelize/beads/lattice.h"
@@ -12,7 +12,7 @@
 
 namespace stratum::exporter {
 
-/// What the file says about its origin. Written as grid metadata under the names given here.
+/// The origin of a grid, written as grid metadata with the names given here.
 struct Provenance {
     std::string source_file;     ///< "source_file": name without folders
     std::string source_sha256;   ///< "source_sha256"
@@ -22,10 +22,10 @@ struct Provenance {
     std::string snapshot;        ///< "snapshot": label of a partial print, left out if empty
     std::string filament_color;  ///< "filament_color": "#RRGGBB", sRGB, if all beads have one and it is stated
     std::string selection;       ///< "selection": --layers and --features, left out if empty
-    /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without what is printed beside it; see
+    /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without skirts and towers; see
     /// partBounds(). Left out if empty.
     std::optional<voxelize::Bounds> part;
-    bool culled = false;  ///< "enclosed": whether surfaces that the outside can't reach are there
+    bool culled = false;  ///< "enclosed": whether enclosed surfaces have been removed
     bool swept = false;   ///< "interior": whether negative values are distances
 };
 

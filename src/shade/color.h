@@ -1,4 +1,4 @@
-// Colour as the renderer computes with it.
+// Color as the renderer computes with it.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -8,10 +8,10 @@
 
 namespace stratum::shade {
 
-/// Linear light in Rec. 709 / sRGB primaries with a D65 white. Radiance, irradiance or reflectance, as the place says.
+/// Linear light in Rec. 709 / sRGB primaries with a D65 white. Radiance, irradiance or reflectance, as each use states.
 ///
-/// Radiance is relative: under `--env constant:1,1,1` a white surface has radiance 1; the built-in studio gives one
-/// that looks up 1.5. A measured environment keeps the unit of its file.
+/// Radiance is relative: under `--env constant:1,1,1` a white surface has radiance 1; in the built-in studio a white
+/// surface that faces up has 1.5. A measured environment keeps the unit of its file.
 using Color = glm::vec3;
 
 /// Relative luminance (Rec. 709 weights).

@@ -1,4 +1,4 @@
-// How a surface scatters light: the one interface of every material.
+// The interface of all BRDFs.
 #pragma once
 
 #include "shade/color.h"
@@ -37,17 +37,16 @@ public:
     virtual std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const = 0;
     /// Density of sample() per steradian.
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
-    /// The same with another body colour (reflectance in [0, 1]); null for materials whose colour can't be taken off
-    /// them.
+    /// The same with another body color (reflectance in [0, 1]); null for materials without a body color.
     virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
-    /// What a report must say of it: where a table came from, and whether it was measured.
+    /// Notes for reports: the source of a table, and whether it was measured.
     virtual const std::vector<std::string>& notes() const;
 };
 
-/// pi f with the viewer above and the light at 45 degrees: the colour that a colorimeter (geometry 45/0) reads.
+/// pi f with the viewer above and the light at 45 degrees: the color that a colorimeter (geometry 45/0) reads.
 Color reflectanceFactor(const Brdf& brdf);
 
-/// What a print is made of when nobody says: satin orange PLA.
+/// The default material: satin orange PLA.
 extern const char* const kDefaultBrdf;
 
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
@@ -56,7 +55,8 @@ extern const char* const kDefaultBrdf;
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in
 ///                        $STRATUM_DATA/brdf, or where it was installed or built
-///   COLOR                "#ff6600" or a colour's name: plastic of it, see filament_color.h; nothing: kDefaultBrdf
+///   COLOR                "#ff6600" or a color's name: plastic of that color, see filament_color.h; nothing:
+///                        kDefaultBrdf
 /// Throws UsageError, InputError.
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text);
 

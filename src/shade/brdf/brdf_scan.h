@@ -1,4 +1,4 @@
-// What a scatterometer writes: a BRDF at a few angles of incidence, densely over the hemisphere of detection.
+// Scatterometer data: a BRDF at a few angles of incidence, sampled densely over the hemisphere of detection.
 #pragma once
 
 #include "shade/color.h"
@@ -13,7 +13,7 @@
 
 namespace stratum::shade {
 
-/// No instrument turns its lamp in finer steps than degrees; what is made of a scan takes time for each.
+/// Limit of incidences: instruments have steps of degrees, and interpolants take time for each.
 inline constexpr std::size_t kMostIncidences = 180;
 
 /// A BRDF in 1/sr, sampled on incidences x azimuths x polars. Angles in radians, each list strictly ascending.
@@ -23,7 +23,7 @@ struct BrdfScan {
     std::vector<double> azimuths;    ///< [0, 2 pi]; after foldScan [0, pi]
     std::vector<double> polars;      ///< of the detector to the normal, [0, pi/2]
     std::vector<Color> values;       ///< polar fastest, then azimuth, then incidence
-    std::vector<std::string> notes;  ///< what the file says of itself and what the reader found odd, for reports
+    std::vector<std::string> notes;  ///< the file's statements and the reader's remarks, for reports
 
     std::size_t index(std::size_t incidence, std::size_t azimuth, std::size_t polar) const {
         return (incidence * azimuths.size() + azimuth) * polars.size() + polar;
@@ -33,25 +33,25 @@ struct BrdfScan {
     void check(std::string_view name) const;
 };
 
-/// Where a value lies among ascending nodes: between nodes `low` and `low + 1` at `weight`; the ends are clamped.
+/// The interval of a value among ascending nodes: between nodes `low` and `low + 1` at `weight`; clamped at the ends.
 struct NodePlace {
     std::size_t low;
     double weight;
 };
 NodePlace placeAmong(const std::vector<double>& nodes, double value);
 
-/// Bilinear value at one measured incidence; azimuth is round.
+/// Bilinear value at one measured incidence; azimuth is periodic.
 glm::dvec3 scanAt(const BrdfScan& scan, std::size_t incidence, double azimuth, double polar);
 
-/// The same scan over azimuths [0, pi]: both sides of the plane of incidence averaged, as for any surface without a
-/// grain. Half scans are taken as they are. Negative readings become 0.
+/// The same scan over azimuths [0, pi]: the mean of both sides of the plane of incidence, assuming isotropy. Half scans
+/// are not changed. Negative readings become 0.
 BrdfScan foldScan(const BrdfScan& scan);
 
-/// Where, among quarter turns, the mirror side lies in a scan whose azimuths count from somewhere else: the azimuth, in
-/// radians, around which light is mirrored. Notes what it found. Without any oblique incidence: pi.
+/// The azimuth of the mirror direction, in radians, a multiple of a quarter turn, for scans with an unknown origin of
+/// azimuths. Adds a note of the result. pi if there is no oblique incidence.
 double findMirrorAzimuth(const BrdfScan& scan);
 
-/// Turns the azimuths so that `mirror` becomes pi.
+/// Shifts the azimuths so that `mirror` becomes pi.
 BrdfScan turnScan(const BrdfScan& scan, double mirror);
 
 /// Hemispherical reflectance of one measured incidence: integral of f cos over the detector's hemisphere.

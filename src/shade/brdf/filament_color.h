@@ -1,4 +1,4 @@
-// The colour that a maker, a slicer or a person names for a filament, and the plastic that shows it.
+// Named colors of filaments, and the reflectance of plastic that appears in such a color.
 #pragma once
 
 #include "shade/color.h"
@@ -9,16 +9,16 @@
 
 namespace stratum::shade {
 
-/// "#RRGGBB", "#RGB", or a colour's name in CSS Color 4, e.g. "teal", in any case of letters. Linear RGB of the sRGB
-/// that is meant; nothing for other texts.
+/// Parses "#RRGGBB", "#RGB", or a color's name in CSS Color 4, e.g. "teal", in any case of letters. Linear RGB of that
+/// sRGB color; nothing for other texts.
 std::optional<Color> parseNamedColor(std::string_view text);
 
 /// "#rrggbb" of linear RGB, the nearest.
 std::string hexOf(const Color& linear);
 
-/// Body reflectance of a satin plastic that is seen as about this colour where the studio's light falls on it: between
-/// the faces that look up and the upright ones. Black plastic still reflects a little, and white plastic not all: each
-/// channel is from kBlackest to kWhitest.
+/// Body reflectance of a satin plastic that appears in about this color in the studio's light: a compromise between
+/// horizontal and vertical faces. Each channel is in [kBlackest, kWhitest], because black plastic reflects a little,
+/// and white plastic not everything.
 Color bodyOf(const Color& stated);
 inline constexpr float kBlackest = 0.012f;
 inline constexpr float kWhitest = 0.86f;

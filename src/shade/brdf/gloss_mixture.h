@@ -1,4 +1,4 @@
-// A glossy lobe and a matt one, drawn from by a share: how every glossy material here makes its samples.
+// Sampling of a mixture of a glossy and a diffuse lobe, used by all glossy materials.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -8,7 +8,7 @@ namespace stratum::shade {
 
 /// Directions by visible GGX normals with probability `share`, else by the cosine. Local frame.
 struct GlossMixture {
-    /// Below this cosine floats can't tell directions apart (wo + wi may vanish); no light is scattered there.
+    /// Below this cosine floats can't resolve directions (wo + wi may vanish); no light is scattered there.
     static constexpr float kGrazing = 1e-6f;
     static bool above(const glm::vec3& w) { return w.z > kGrazing; }
 
@@ -17,7 +17,7 @@ struct GlossMixture {
 
     /// Per steradian; 0 unless both directions are above the surface.
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const;
-    /// A sample of `brdf`, which this is to draw for; nothing if it falls below the surface.
+    /// A sample for `brdf`; nothing if it is below the surface.
     /// @param lobe, u  as for Brdf::sample
     std::optional<BrdfSample> sample(const Brdf& brdf, const glm::vec3& wo, float lobe, const glm::vec2& u) const;
 };

@@ -1,4 +1,4 @@
-// A BRDF as a table over half and difference angles, ready to be looked up for every ray.
+// A BRDF as a table over half and difference angles.
 #pragma once
 
 #include "shade/color.h"
@@ -12,8 +12,8 @@
 namespace stratum::shade {
 
 /// 90 x 90 x 180 cells over the half vector's angle to the normal (square-root warped: the highlight gets most cells),
-/// the difference angle, and the turn of the difference about the half vector over [0, pi): the other half is the same
-/// by reciprocity, so that look-ups are reciprocal by construction. Values sit in the middle of cells and are
+/// the difference angle, and the rotation of the difference about the half vector over [0, pi): the other half is the
+/// same by reciprocity, so that lookups are reciprocal by construction. Values are at the centers of cells and are
 /// interpolated linearly.
 /// Sources: S. Rusinkiewicz, "A New Change of Variables for Efficient BRDF Representation", EGRW 1998; the layout is
 /// that of W. Matusik et al., "A Data-Driven Reflectance Model", SIGGRAPH 2003 (the MERL database).
@@ -24,12 +24,12 @@ public:
     static constexpr int kTurn = 180;
     static constexpr std::size_t kCells = std::size_t{kHalf} * kDiff * kTurn;
 
-    /// @param values  kCells, 1/sr, finite, >= 0: turn fastest, then difference, then half angle
+    /// @param values  kCells, 1/sr, finite, >= 0: rotation fastest, then difference, then half angle
     explicit HalfDiffTable(std::vector<Color> values) : values_(std::move(values)) {}
 
     /// Bakes a reciprocal, isotropic function of unit vectors towards light and viewer that is its own mirror image
-    /// (half of the cells are filled by that symmetry), on all threads. It is asked also for pairs
-    /// of which one lies below the horizon, z <= 0: it must answer as for the nearest above, or so.
+    /// (half of the cells are filled by that symmetry), on all threads. It is also called for pairs with a direction
+    /// below the horizon, z <= 0, where it should return about the value of the nearest direction above.
     static HalfDiffTable bake(const std::function<glm::dvec3(const glm::dvec3&, const glm::dvec3&)>& brdf);
 
     /// 1/sr; both unit and above the horizon.

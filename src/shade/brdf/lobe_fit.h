@@ -1,4 +1,4 @@
-// The simplest surface like a measured one: a diffuse and a glossy lobe.
+// Fits a diffuse and a glossy lobe to a measured BRDF.
 #pragma once
 
 #include "shade/brdf/brdf_scan.h"

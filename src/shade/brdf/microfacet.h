@@ -32,7 +32,7 @@ struct Ggx {
 
     /// Density of facet normals, per steradian of projected area.
     float d(const glm::vec3& h) const {
-        // sin^2 from x and y, not from 1 - z^2: a narrow lobe lives in the digits that the difference would lose.
+        // sin^2 from x and y, not from 1 - z^2, which would lose the digits that a narrow lobe needs.
         const float a2 = alpha * alpha;
         const float k = a2 * h.z * h.z + h.x * h.x + h.y * h.y;
         return a2 / (kPi * k * k);
@@ -44,12 +44,12 @@ struct Ggx {
     float visibility(const glm::vec3& wo, const glm::vec3& wi) const {
         return 0.5f / (stretch(wo) * wi.z + stretch(wi) * wo.z);
     }
-    /// G2 / G1(wo): what a reflection off a visible normal keeps.
+    /// G2 / G1(wo): the weight of a reflection from a visible normal.
     float shadowing(const glm::vec3& wo, const glm::vec3& wi) const {
         return wi.z * (wo.z + stretch(wo)) / (stretch(wo) * wi.z + stretch(wi) * wo.z);
     }
 
-    /// A facet normal that `wo` sees, wo.z > 0.
+    /// A sample of the facet normals visible from `wo`, wo.z > 0.
     glm::vec3 sampleVisible(const glm::vec3& wo, const glm::vec2& u) const {
         const glm::vec3 stretched = glm::normalize(glm::vec3(wo.x * alpha, wo.y * alpha, wo.z));
         const float phi = 2.0f * kPi * u.x;

@@ -1,4 +1,4 @@
-// Satin plastic: a coloured diffuse body under a rough, colourless dielectric coat. The look of printed filament.
+// Satin plastic: a colored diffuse body under a rough, colorless dielectric coat, as of printed filament.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -10,9 +10,9 @@ namespace stratum::shade {
 
 /// f = F D G2 / (4 cos cos) + kd / pi (1 - E(o)) (1 - E(i)) / (1 - Eavg)
 ///
-/// E is the coat's directional albedo, tabulated at construction, so that body and coat share the light: with kd = 1
-/// nothing is lost and nothing is gained at any angle (to the table's 1e-4). Light that a single bounce between facets
-/// would lose is given to the body. Exact Fresnel, eta 1.5.
+/// E is the coat's directional albedo, tabulated at construction, so that energy is conserved: with kd = 1 the albedo
+/// is 1 at any angle (to the table's 1e-4). Energy of multiple scattering between facets is added to the body. Exact
+/// Fresnel, eta 1.5.
 /// Source of the coupling: C. Kelemen, L. Szirmay-Kalos, EG 2001; A. Kulla, A. Conty, SIGGRAPH course 2017.
 class Plastic final : public Brdf {
 public:
@@ -27,7 +27,7 @@ public:
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::shared_ptr<const Brdf> recolored(const Color& body) const override;
 
-    /// Share of light from this angle that the coat reflects.
+    /// The coat's directional albedo E at this angle.
     /// @param cosine  to the normal, in [0, 1]
     float coatAlbedo(float cosine) const;
 

@@ -1,4 +1,4 @@
-// The small language of options like `plastic:0.8,0.2,0.1,0.25`: a name and numbers.
+// Parses options like `plastic:0.8,0.2,0.1,0.25`: a name and numbers.
 #pragma once
 
 #include <cstddef>

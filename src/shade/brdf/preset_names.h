@@ -1,4 +1,4 @@
-// Names that come before files and folders of the same name; such a file is reached as ./NAME.
+// Preset names. They have priority over files of the same name; such a file is given as ./NAME.
 #pragma once
 
 #include <filesystem>

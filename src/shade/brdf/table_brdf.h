@@ -1,4 +1,4 @@
-// A measured material.
+// The BRDF of a measured table.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -11,14 +11,14 @@
 
 namespace stratum::shade {
 
-/// Looks a table up and draws from a mixture of the cosine and the GGX lobe fitted to it.
+/// Looks up a table; samples a mixture of the cosine and the GGX lobe fitted to it.
 ///
-/// What is measured need not conserve energy, least of all where it is extrapolated. The directional albedo a is
+/// Measured tables need not conserve energy, particularly where they are extrapolated. The directional albedo a is
 /// tabulated at construction and every value scaled by min(s(wo), s(wi)), s = min(1, 1 / a) per channel: reciprocal,
 /// and no albedo above 1.
 class TableBrdf final : public Brdf {
 public:
-    /// @param lobes  per channel, fitted to the table: they only steer the sampling
+    /// @param lobes  per channel, fitted to the table; used for sampling only
     /// @param notes  see Brdf::notes
     TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std::vector<std::string> notes);
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
@@ -26,7 +26,7 @@ public:
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
     const std::vector<std::string>& notes() const override { return notes_; }
 
-    /// The largest directional albedo that the table itself has, before scaling.
+    /// The largest directional albedo of the table, before scaling.
     float tableAlbedo() const { return table_albedo_; }
     const HalfDiffTable& table() const { return table_; }
 

@@ -1,4 +1,4 @@
-// Where the picture is taken from.
+// The camera: pinhole or thin lens.
 #pragma once
 
 #include "trace/intersector.h"
@@ -12,7 +12,7 @@
 
 namespace stratum::shade {
 
-/// Named directions to look from. z is up and the front of a printer is at -y.
+/// Named viewing directions. z is up and the front of a printer is at -y.
 enum class View { iso, front, back, left, right, top, bottom };
 
 /// Throws UsageError and names the choices.
@@ -24,21 +24,21 @@ struct CameraOptions {
     std::optional<glm::dvec3> look_at;  ///< world space; needs `eye`; default: the middle of the box
     std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
     double fov = 28.0;             ///< degrees, vertical, whole angle, in (0, 170]
-    double aperture = 0.0;         ///< diameter of the lens, world units, >= 0; 0 is a pinhole: all is sharp
-    double f_number = 0.0;         ///< or the same as on a camera with a picture 24 mm high; 0: none
-    double mm_per_unit = 1.0;      ///< millimetres a world unit: how large that camera's lens is here; > 0
-    std::optional<double> focus_distance;   ///< world units before the eye, along the line of sight; > 0
+    double aperture = 0.0;         ///< diameter of the lens, world units, >= 0; 0 is a pinhole: everything is sharp
+    double f_number = 0.0;         ///< or as the f-number of a camera with a sensor 24 mm high; 0: none
+    double mm_per_unit = 1.0;      ///< millimetres a world unit, for that lens; > 0
+    std::optional<double> focus_distance;   ///< world units from the eye along the viewing direction; > 0
     std::optional<glm::dvec3> focus_point;  ///< or this world-space point is sharp; default: the middle of the box
     bool all_around = false;                ///< fit a named view so that the box fits from all sides, for turntables
-    double zoom = 1.0;     ///< how many times larger all is seen from the same place, in [0.05, 50]; narrows the fov
-    double margin = 0.05;  ///< share of the frame kept free on each side of a fitted view, in [0, 0.45]
+    double zoom = 1.0;                      ///< magnification from the same eye, in [0.05, 50]; narrows the fov
+    double margin = 0.05;  ///< share of the frame left free on each side of a fitted view, in [0, 0.45]
 
     /// Throws UsageError.
     void validate() const;
 };
 
-/// A pinhole, or a thin lens in its place. Pixels are square; (0, 0) is the upper left corner of the frame, (width,
-/// height) the lower right one. Immutable.
+/// A pinhole or a thin lens. Pixels are square; (0, 0) is the upper left corner of the frame, (width, height) the lower
+/// right one. Immutable.
 class Camera {
 public:
     /// World space; `up` of any length.
@@ -47,8 +47,8 @@ public:
     /// Throws UsageError if eye and look_at coincide or `up` is parallel to the line between them.
     Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec3& up, double fov, int width, int height);
 
-    /// The camera of `options` for this box. A named view stands as close as it can with all corners of the box inside
-    /// the frame less its margin, and centred. Throws UsageError.
+    /// The camera of `options` for this box. A named view is as close as possible with all corners of the box inside
+    /// the frame without its margin, and centered. Throws UsageError.
     static Camera make(const CameraOptions& options, const trace::Box& box, int width, int height);
 
     /// The ray through a point of the frame, in pixels.
@@ -61,18 +61,18 @@ public:
         ray.direction = glm::normalize(forward_ + x * right_ + y * up_);
         return ray;
     }
-    /// Whether the picture has a depth of field; then rays leave from all over the lens.
+    /// Whether the camera has a lens, i.e. depth of field.
     bool hasLens() const { return lens_radius_ > 0.0; }
     /// The ray through a point of the frame and a point of the lens.
     /// @param u  uniform in [0, 1)^2
     trace::Ray ray(const glm::dvec2& pixel, const glm::vec2& u) const;
     /// The same camera with a lens. World units; focus is along forward(), > 0.
     Camera withLens(double radius, double focus) const;
-    /// The same camera with a longer (factor above 1) or shorter focal length: the middle stays, all is seen larger.
+    /// The same camera with a longer (factor above 1) or shorter focal length: magnified about the middle.
     Camera zoomed(double factor) const;
-    /// The same camera turned counter-clockwise, as seen from above, about a vertical axis.
+    /// The same camera rotated about a vertical axis, counter-clockwise as seen from above.
     Camera turned(double degrees, const glm::dvec3& about) const;
-    /// Where a world-space point is seen, in pixels; nothing if it is not in front of the camera.
+    /// Projects a world-space point, in pixels; nothing if it is not in front of the camera.
     std::optional<glm::dvec2> project(const glm::dvec3& point) const;
 
     const glm::dvec3& eye() const { return eye_; }

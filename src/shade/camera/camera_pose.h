@@ -1,4 +1,4 @@
-// Where a photograph was taken from, by points that are known both in it and in the scene.
+// Camera pose of a photograph, from points with known pixels and world positions.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -9,7 +9,7 @@
 
 namespace stratum::shade {
 
-/// One point, seen and known.
+/// A point in the photograph and in the scene.
 struct PointPair {
     glm::dvec2 pixel{0.0};  ///< from the upper left corner, y down
     glm::dvec3 point{0.0};  ///< world space
@@ -20,7 +20,7 @@ struct CameraPose {
     glm::dvec3 forward{0.0, 1.0, 0.0};  ///< unit, into the picture
     glm::dvec3 up{0.0, 0.0, 1.0};       ///< unit, up in the picture
     double fov = 0.0;                   ///< degrees, vertical, whole angle
-    double rms_pixels = 0.0;            ///< root mean square of the distances between seen and computed places
+    double rms_pixels = 0.0;            ///< root mean square of the reprojection errors
     double worst_pixels = 0.0;          ///< the largest of them
     std::size_t worst = 0;              ///< the pair that has it, from 0
 };

@@ -1,4 +1,4 @@
-// How a pixel weighs the light around it.
+// The reconstruction filter of pixels.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -9,8 +9,8 @@
 
 namespace stratum::shade {
 
-/// A separable Blackman-Harris window, drawn from instead of weighed by: every sample belongs to one pixel and counts
-/// the same, so that each pixel is owned by one thread.
+/// A separable Blackman-Harris window, by importance sampling instead of weights: every sample belongs to one pixel and
+/// has the same weight, so that each pixel is owned by one thread.
 /// Source: M. Ernst, M. Stamminger, G. Greiner, "Filter Importance Sampling", IEEE RT 2006.
 class PixelFilter {
 public:

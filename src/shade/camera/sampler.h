@@ -1,4 +1,4 @@
-// Random numbers that are well spread and belong to nobody: a pure function of pixel, sample, dimension and seed.
+// Quasi-random numbers as a pure function of pixel, sample, dimension and seed.
 //
 // Owen-scrambled Sobol' points, padded: every draw is its own (0,2)-sequence in one or two dimensions, shuffled and
 // scrambled by hashes. Any power-of-two prefix of a pixel's samples is a stratified set in every draw.
@@ -66,12 +66,12 @@ inline float toFloat(std::uint32_t v) { return static_cast<float>(v >> 8) * 0x1p
 
 /// The numbers of one sample of one pixel, in the order in which they are drawn. Not shared between threads; cheap.
 ///
-/// The pixels of a 64 x 64 block take consecutive stretches of one sequence along a Z-curve, so that neighbours
-/// complement each other and what error remains looks like fine grain: A. Ahmed, P. Wonka, "Screen-Space Blue-Noise
-/// Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", SIGGRAPH Asia 2020.
+/// The pixels of a 64 x 64 block use consecutive parts of one sequence along a Z-curve, so that the samples of
+/// neighbouring pixels complement each other and the remaining error is blue noise: A. Ahmed, P. Wonka, "Screen-Space
+/// Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", SIGGRAPH Asia 2020.
 class Sampler {
 public:
-    /// @param seed  another seed, other numbers
+    /// @param seed  selects the sequence
     /// @param spp   samples that a pixel will take, 1 to 65536; more than that repeat the neighbours' numbers
     Sampler(std::uint32_t seed, std::uint32_t spp)
         : seed_(sobol::hash(seed, 0x5eedu)), stretch_(static_cast<unsigned>(std::bit_width(spp > 1 ? spp - 1 : 0u))) {}
@@ -85,9 +85,9 @@ public:
         draw_ = 0;
     }
 
-    /// Leaves out a draw, of one dimension or of two.
+    /// Skips a draw, of one dimension or of two.
     void skip() { ++draw_; }
-    /// What the next draw is made of: those of one block differ by index alone, those of one index by block.
+    /// State of the next draw: draws of one block differ by index alone, those of one index by block.
     std::uint32_t block() const { return block_; }
     std::uint32_t index() const { return index_; }
     std::uint32_t draw() const { return draw_; }

@@ -1,4 +1,4 @@
-// Maps from the unit square to the places one draws from.
+// Maps from the unit square to distributions, and weights of multiple importance sampling.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -13,7 +13,7 @@ namespace stratum::shade {
 inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
-/// Uniform on the unit disc, keeping neighbours together.
+/// Uniform on the unit disc; preserves adjacency.
 /// Source: P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3) 1997.
 inline glm::vec2 toDisc(const glm::vec2& u) {
     const float a = 2.0f * u.x - 1.0f;

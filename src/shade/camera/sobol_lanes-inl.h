@@ -65,8 +65,8 @@ struct Draw2D {
 };
 HWY_INLINE Draw2D draw2D(VU block, VU index, VU draw) {
     const VU key = hashPair(block, hash(draw));
-    // What owenScramble turns around at its end is turned back by dimension0, and dimension1 of it and the next
-    // scramble's beginning cancel likewise.
+    // The bit reversal at the end of owenScramble cancels with that in dimension0, and the one in dimension1 with that
+    // at the beginning of the next scramble.
     const VU reversed = reverseBits(scrambleReversed(reverseBits(index), key));
     return {reverseBits(scrambleReversed(reversed, hashPair(key, set(sobol::hash(1u))))),
             reverseBits(scrambleReversed(pascal(reversed), hashPair(key, set(sobol::hash(2u)))))};

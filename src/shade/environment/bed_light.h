@@ -1,4 +1,4 @@
-// The environment as the bed receives it.
+// Importance sampling of an environment on the bed.
 #pragma once
 
 #include "shade/environment/environment.h"
@@ -7,9 +7,9 @@
 
 namespace stratum::shade {
 
-/// Draws directions by radiance times the cosine to +z: what a horizontal matt surface scatters. Where nothing is in
-/// the way every sample has nearly the same value, so the open bed, most of a picture, is nearly free of noise.
-/// Complete on its own: pdf > 0 wherever light comes from above. Keeps a reference to the environment.
+/// Samples directions by radiance times the cosine to +z, for a horizontal matt surface. Without occlusion all samples
+/// have nearly the same value, so the unoccluded bed, most of a picture, is nearly free of noise. Unbiased on its own:
+/// pdf > 0 wherever light comes from above. Keeps a reference to the environment.
 class BedLight {
 public:
     virtual ~BedLight() = default;
@@ -25,7 +25,7 @@ public:
     virtual void evalStream(std::span<const glm::vec3> directions, std::span<EnvironmentSample> samples) const;
 };
 
-/// For light that is much the same from everywhere: by the cosine alone.
+/// By the cosine alone, for nearly constant environments.
 class CosineBedLight final : public BedLight {
 public:
     explicit CosineBedLight(const Environment& environment) : environment_(environment) {}

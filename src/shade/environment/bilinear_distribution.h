@@ -1,4 +1,4 @@
-// Drawing directions exactly as a map of light, interpolated between its texels, is bright.
+// Samples directions exactly proportional to a bilinearly interpolated map of light.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -10,24 +10,24 @@
 
 namespace stratum::shade {
 
-/// A density on the latitude-longitude square [0, 1)^2 that is the bilinear interpolation of weights at texel centres
-/// (round in u, constant beyond the first and last row) times, per row of cells, the mean sine of the polar angle.
-/// The quotient of the interpolated weight and the density, per steradian, is thus nearly the same everywhere: what is
-/// drawn has hardly any noise of its own, also on the edges of a texel that is 10^5 times brighter than its neighbours.
+/// A density on the latitude-longitude square [0, 1)^2 that is the bilinear interpolation of weights at texel centers
+/// (periodic in u, constant beyond the first and last row) times, per row of cells, the mean sine of the polar angle.
+/// The ratio of the interpolated weight to the density, per steradian, is thus nearly constant: samples have hardly any
+/// variance of their own, even at the edges of a texel that is 10^5 times brighter than its neighbours.
 ///
-/// If it is told where places of the square lie on the sphere, there is a density for each of NormalBins: blocks of
-/// cells, some 32 x 17 of them, weigh by the cosine to the bin's normals as well. A surface that is lit by half of the
-/// sky then draws from that half, and from where light falls straight.
+/// With a function from the square to the sphere, there is a density for each of NormalBins: blocks of cells, some
+/// 32 x 17 of them, are weighted by the cosine to the bin's normals as well. A surface then samples only the hemisphere
+/// above it, and mostly directions of normal incidence.
 class BilinearDistribution {
 public:
-    /// A place of the square as a unit direction, in the space of the normals.
+    /// From the square to unit directions, in the space of the normals.
     using Direction = std::function<glm::vec3(const glm::dvec2& place)>;
 
     /// @param weights    columns * rows values at texel centres, row by row, >= 0 and finite. All zero means uniform.
     /// @param direction  none: one bin, without cosines
     BilinearDistribution(std::vector<float> weights, int columns, int rows, const Direction& direction = {});
 
-    /// The bin to draw from on a surface.
+    /// The bin of a surface.
     /// @param normal  finite, not 0
     int bin(const glm::vec3& normal) const;
     /// @param u    uniform in [0, 1)^2
@@ -35,7 +35,7 @@ public:
     glm::dvec2 sample(int bin, const glm::dvec2& u, double& pdf) const;
     double pdf(int bin, const glm::dvec2& point) const;
 
-    /// The tables themselves, for those who read many places at once; the private part tells what they hold.
+    /// The tables themselves, for vector code; described at the private members.
     struct View {
         int columns, rows;
         unsigned shift;

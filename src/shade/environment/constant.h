@@ -1,4 +1,4 @@
-// The simplest sky: the same from everywhere.
+// Constant environment light.
 #pragma once
 
 #include "shade/environment/environment.h"

@@ -29,7 +29,7 @@ std::string nameOf(std::string_view text) { return std::string(text.substr(0, te
 
 std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlacement& placement) {
     SkyOptions sky;
-    // Behind the camera's left shoulder: from its right-hand side a quarter turn back, and as much again.
+    // Behind the camera's left shoulder: three eighths of a turn clockwise from its right-hand side.
     sky.azimuth = placement.azimuth - 0.75 * std::numbers::pi;
     if (!preset.values.empty()) {
         if (preset.values.size() == 2) preset.values.push_back(static_cast<float>(sky.turbidity));

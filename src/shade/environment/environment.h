@@ -1,4 +1,4 @@
-// Light from infinitely far away, over the whole sphere of directions.
+// Environment light: radiance from infinitely far away, by direction.
 #pragma once
 
 #include "shade/color.h"
@@ -19,15 +19,15 @@ class Light;
 struct EnvironmentSample {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
     Color radiance{0.0f};                   ///< radiance(direction)
-    float pdf = 0.0f;                       ///< pdf(direction, normal): of all strategies; 0 means "no sample"
+    float pdf = 0.0f;                       ///< pdf(direction, normal), the sum of all strategies; 0 means "no sample"
 };
 
 /// Radiance by direction (see color.h for the unit). World space, z up.
 ///
-/// sample() is made to be joined with samples of a BRDF by multiple importance sampling: pdf may be 0 where radiance is
-/// small and finds its way by the BRDF. Alone it is not enough. There may be several strategies, e.g. one for a sun and
-/// one for the rest of the sky, so that none is left to chance: each is drawn from once at every point, and they are
-/// joined by the balance heuristic, so that a sample counts radiance / pdf. Immutable; shared by all threads.
+/// sample() is to be combined with samples of a BRDF by multiple importance sampling: its pdf may be 0 where radiance
+/// is small, so alone it is biased. There may be several strategies, e.g. one for the sun and one for the rest of the
+/// sky: each is sampled once at every point, and they are combined by the balance heuristic, so that the contribution
+/// of a sample is radiance / pdf. Immutable; shared by all threads.
 class Environment {
 public:
     virtual ~Environment() = default;
@@ -36,7 +36,7 @@ public:
     virtual int strategies() const { return 1; }
     /// @param strategy  in [0, strategies())
     /// @param u         uniform in [0, 1)^2
-    /// @param normal    of the surface to light, world space, unit: what is below its horizon may be left out
+    /// @param normal    of the surface, world space, unit: directions below its horizon may be left out
     virtual EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const = 0;
     /// Sum of the strategies' densities per steradian, for a surface of that normal.
     virtual float pdf(const glm::vec3& direction, const glm::vec3& normal) const = 0;
@@ -50,24 +50,25 @@ public:
                               std::span<EnvironmentSample> samples) const;
     virtual void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
                             std::span<EnvironmentSample> samples) const;
-    /// Whether a camera may see it. Lamps are hidden behind a Backdrop; a landscape is the backdrop.
+    /// Whether a camera may see it: true for landscapes, false for softboxes.
     virtual bool visible() const { return true; }
-    /// What a horizontal matt surface draws by. The environment must outlive it.
+    /// The sampling of this environment on the bed. The environment must outlive it.
     virtual std::unique_ptr<const BedLight> makeBedLight() const;
-    /// A lamp that belongs to it and is not in radiance(): too small for a table. Null if there is none.
+    /// A light of this environment that is not in radiance(), because it is too small for a table. Null if there is
+    /// none.
     virtual std::shared_ptr<const Light> sun() const { return nullptr; }
 };
 
-/// Where the environment stands.
+/// Orientation and exposure of the environment.
 struct EnvironmentPlacement {
-    double azimuth = 0.0;   ///< radians about +z, from +x: where the camera's right-hand side points
+    double azimuth = 0.0;   ///< radians about +z, from +x: direction of the camera's right-hand side
     bool bed = true;        ///< a bed hides the lower hemisphere, so a studio needs no light from below
-    double rotation = 0.0;  ///< --env-rotation, radians: turns the light counter-clockwise as seen from above
+    double rotation = 0.0;  ///< --env-rotation, radians: rotates the light counter-clockwise as seen from above
     double exposure = 0.0;  ///< --env-exposure, stops: radiance of a map is scaled by 2^exposure, in [-30, 30]
 };
 
 /// An environment from the text of --env.
-///   studio            softboxes that turn with the camera's azimuth, as on a photographer's turntable
+///   studio            softboxes that rotate with the camera's azimuth, as on a photographer's turntable
 ///   sky               a clear day, the sun behind the camera's left shoulder
 ///   sky:ELEVATION,AZIMUTH[,TURBIDITY]  the sun in degrees above the horizon and from +x; haze from 2 to 8
 ///   constant:R,G,B    the same radiance from everywhere
@@ -75,7 +76,7 @@ struct EnvironmentPlacement {
 /// Throws UsageError, InputError.
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement);
 
-/// Irradiance on a horizontal surface that looks up, from the upper hemisphere, by quadrature. (relative, times pi)
+/// Irradiance of a horizontal surface that faces up, by quadrature. (relative, times pi)
 Color irradianceFromAbove(const Environment& environment);
 
 }  // namespace stratum::shade

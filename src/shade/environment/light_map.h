@@ -1,4 +1,4 @@
-// A picture of light from all around: latitude-longitude radiance, as .hdr and .exr files hold it.
+// A latitude-longitude map of radiance, as in .hdr and .exr files.
 #pragma once
 
 #include "shade/color.h"
@@ -9,7 +9,7 @@
 
 namespace stratum::shade {
 
-/// Radiance by direction, row by row from straight up to straight down. Texel (x, y) is the radiance at its centre:
+/// Radiance by direction, row by row from straight up to straight down. Texel (x, y) is the radiance at its center:
 /// azimuth (x + 0.5) / width of a turn, polar angle (y + 0.5) / height of pi.
 struct LightMap {
     int width = 0;   ///< texels
@@ -24,7 +24,7 @@ struct LightMap {
 /// The largest map that is read: 2^27 texels, 1.6 GB. 16384 x 8192 is the largest that people publish.
 inline constexpr std::size_t kMostMapTexels = std::size_t{1} << 27;
 
-/// Reads a .hdr or .exr map, told apart by content. Throws InputError: missing, of another kind, damaged, too large,
+/// Reads a .hdr or .exr map, recognized by content. Throws InputError: missing, of another kind, damaged, too large,
 /// not twice as wide as high, with texels that are negative or no number, or black all over.
 LightMap readLightMap(const std::filesystem::path& path);
 

@@ -42,8 +42,8 @@ double meanOf(const std::vector<float>& weights, int width, int height) {
     return sum / total;
 }
 
-/// Splits weights into those of texels that outshine the mean by far and those of the others, if the first ones hold
-/// enough to be worth a ray of their own; else all are "others". A sun holds about half of a clear sky's light.
+/// Splits weights into those of texels much brighter than the mean and those of the others, if the first ones have a
+/// large enough share for a ray of their own; else all are "others". A sun has about half of a clear sky's light.
 struct Split {
     std::vector<float> lamps, others;  // lamps is empty if there are none
 };
@@ -62,17 +62,17 @@ Split splitOf(std::vector<float> weights, int width, int height) {
     return split;
 }
 
-/// What is above the mean: what is left for the map to draw when the BRDF draws as well.
+/// The weights above the mean: MIS compensation, see MapEnvironment.
 std::vector<float> compensated(std::vector<float> weights, int width, int height) {
     const auto floor = static_cast<float>(meanOf(weights, width, height));
-    // Of a map as even as numbers can be, nothing would be left.
+    // A constant map would have no weight left.
     if (std::all_of(weights.begin(), weights.end(), [floor](float w) { return w <= 1.001f * floor; })) return weights;
     for (float& w : weights) w = std::max(w - floor, 0.0f);
     return weights;
 }
 
-/// @param direction  of places on the map, to draw the others by the cosine. A sun is drawn whole: one that just rises
-///                   above some normal's horizon must not be left to chance.
+/// @param direction  of positions on the map, to include the cosine in the density of the "others". A sun is sampled as
+///                   a whole, because it may be just above the horizon of some normals of a bin.
 std::vector<BilinearDistribution> tablesOf(Split split, int width, int height,
                                            const BilinearDistribution::Direction& direction = {}) {
     std::vector<BilinearDistribution> tables;
@@ -81,7 +81,7 @@ std::vector<BilinearDistribution> tablesOf(Split split, int width, int height,
     return tables;
 }
 
-/// A place on the map as a direction. `sine` is that of the polar angle.
+/// The direction of a position on the map. `sine` is that of the polar angle.
 glm::vec3 directionOf(const glm::dvec2& uv, double rotation, double& sine) {
     const double theta = kPiD * uv.y;
     const double phi = 2.0 * kPiD * (0.5 - uv.x) + rotation;
@@ -89,7 +89,7 @@ glm::vec3 directionOf(const glm::dvec2& uv, double rotation, double& sine) {
     return {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
 }
 
-/// To draw beside a BRDF.
+/// For sampling combined with a BRDF.
 std::vector<BilinearDistribution> compensatedTables(const LightMap& map, double rotation) {
     Split split = splitOf(luminances(map), map.width, map.height);
     split.others = compensated(std::move(split.others), map.width, map.height);
@@ -99,11 +99,11 @@ std::vector<BilinearDistribution> compensatedTables(const LightMap& map, double 
     });
 }
 
-/// To draw alone, on a surface that looks up: luminance times the cosine to +z.
+/// For sampling alone, on a surface that faces up: luminance times the cosine to +z.
 std::vector<BilinearDistribution> cosineTables(const LightMap& map) {
     std::vector<float> weights = luminances(map);
     for (int y = 0; y < map.height; ++y) {
-        // The largest cosine of the row, so that nothing that shines on the bed has no weight.
+        // The largest cosine of the row, so that every direction above the horizon has a weight.
         const auto cosine = static_cast<float>(std::max(0.0, std::cos(kPiD * y / map.height)));
         const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width);
         for (std::size_t x = 0; x < static_cast<std::size_t>(map.width); ++x) weights[row + x] *= cosine;
@@ -113,7 +113,7 @@ std::vector<BilinearDistribution> cosineTables(const LightMap& map) {
 
 }  // namespace
 
-/// Draws by the map's own texels, so that no sun slips through.
+/// Samples by the map's own texels, so that a sun is never missed.
 class MapBedLight final : public BedLight {
 public:
     explicit MapBedLight(const MapEnvironment& environment)

@@ -1,4 +1,4 @@
-// Light from a map: a photograph of all directions, or a tabulated sky.
+// Environment light from a latitude-longitude map: an HDR photograph or a tabulated sky.
 #pragma once
 
 #include "shade/environment/bilinear_distribution.h"
@@ -7,14 +7,13 @@
 
 namespace stratum::shade {
 
-/// A latitude-longitude map, interpolated bilinearly. The map's middle column lies towards +x and azimuth grows to the
-/// left, as in Blender, so that a scene looks the same in both.
+/// A latitude-longitude map, interpolated bilinearly. The map's middle column is towards +x and azimuth increases to
+/// the left, as in Blender, so that a scene looks the same in both.
 ///
-/// sample() is one half of multiple importance sampling and knows it: it draws where the map is brighter than its mean
-/// and leaves the rest to the BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling
-/// Techniques in Multiple Importance Sampling", SIGGRAPH Asia 2019. makeBedLight() draws alone and is complete.
-/// Of what is left it draws by the cosine to the normal, too (see BilinearDistribution).
-/// What little shines much, a sun or lamps, has a strategy of its own.
+/// sample() uses MIS compensation: it samples only where the map is brighter than its mean and leaves the rest to the
+/// BRDF's samples. Source: O. Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
+/// Sampling", SIGGRAPH Asia 2019. makeBedLight() is unbiased on its own. The density also includes the cosine to the
+/// normal (see BilinearDistribution). Small bright areas, a sun or lamps, have a strategy of their own.
 class MapEnvironment final : public Environment {
 public:
     /// @param rotation  radians: turns the light counter-clockwise about +z as seen from above
@@ -39,7 +38,7 @@ public:
 
 private:
     friend class MapBedLight;
-    /// Place in the map, [0, 1)^2, and the sine of the polar angle.
+    /// Position in the map, [0, 1)^2, and the sine of the polar angle.
     glm::dvec2 uvOf(const glm::vec3& direction, double& sine) const;
     Color lookUp(const glm::dvec2& uv) const;
     using Tables = std::vector<BilinearDistribution>;  // one a strategy

@@ -17,7 +17,7 @@
 namespace stratum::shade {
 namespace {
 
-// Surfaces at a time: whole vectors on every target, misses enough to be under way together, and all of it stays in
+// Surfaces at a time: whole vectors on every target, enough cache misses to be served together, and small enough for
 // the first-level cache.
 constexpr std::size_t kBatch = 64;
 constexpr double kTurn = 2.0 * std::numbers::pi;  // radians
@@ -28,7 +28,7 @@ using Batch = std::array<T, kBatch>;
 struct alignas(64) MapBatch {
     Batch<double> u, v;     // draws
     Batch<double> bin;      // of the normals
-    Batch<double> x, y;     // places on the map, [0, 1)
+    Batch<double> x, y;     // positions on the map, [0, 1)
     Batch<double> density;  // there, per unit of area
     Batch<double> dx, dy, dz;
     Batch<double> sine;  // of the polar angle
@@ -45,8 +45,8 @@ namespace {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-// Doubles, as in the scalar functions: the place in a cell of a large map is what is left of a draw after all the
-// digits that chose the cell. Whole numbers in them are indices.
+// Doubles, as in the scalar functions: the position in a cell of a large map is in the digits of a draw below those
+// that select the cell. Whole numbers in them are indices.
 using D = hn::CappedTag<double, 8>;
 using F = hn::Rebind<float, D>;
 using I = hn::Rebind<std::int32_t, D>;
@@ -83,7 +83,7 @@ HWY_INLINE Found find(const T* HWY_RESTRICT sums, VD begin, std::size_t count, V
     const VD below = hn::IfThenZeroElse(hn::Eq(first, begin), gather(sums, before));
     const VD width = hn::Sub(gather(sums, first), below);
     const VD offset = hn::Min(hn::Max(hn::Div(hn::Sub(target, below), width), set(0.0)), set(kBelowOne));
-    // Nothing has no width, and a place in it must not become an index.
+    // An empty interval has width 0, and the offset in it must not become an index.
     return {hn::Sub(first, begin), hn::IfThenElseZero(hn::Gt(width, set(0.0)), offset)};
 }
 
@@ -136,8 +136,8 @@ HWY_INLINE VD binOf(const BilinearDistribution::View& t, const MapBatch& b, std:
     return t.bins == 1 ? set(0.0) : hn::Load(D(), &b.bin[n]);
 }
 
-// BilinearDistribution::sample. Each search is done for the whole batch before the next: so the loads of many draws
-// are under way together.
+// BilinearDistribution::sample. Each search is done for the whole batch before the next one, so that the loads of many
+// draws are served together.
 void Draw(const BilinearDistribution::View& t, MapBatch& b) {
     const D d;
     alignas(64) Batch<double> block_row, block_column, u, v;
@@ -271,7 +271,7 @@ void Directions(double rotation, MapBatch& b) {
 }
 
 // MapEnvironment::place of the directions.
-void Places(double rotation, MapBatch& b) {
+void Positions(double rotation, MapBatch& b) {
     const D d;
     const VD turned = set(0.5 + rotation / kTurn);
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
@@ -338,7 +338,7 @@ namespace {
 HWY_EXPORT(Draw);
 HWY_EXPORT(AddDensity);
 HWY_EXPORT(Directions);
-HWY_EXPORT(Places);
+HWY_EXPORT(Positions);
 HWY_EXPORT(LookUp);
 
 void setBins(std::span<const glm::vec3> normals, std::size_t first, std::size_t count, MapBatch& b) {
@@ -377,7 +377,7 @@ void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2>
             batch.v[n] = static_cast<double>(u[first + n].y);
         }
         HWY_DYNAMIC_DISPATCH(Draw)(placed.tables[chosen].view(), batch);
-        // A draw that gives none stays none.
+        // A draw without a sample stays without one.
         Batch<bool> none;
         for (std::size_t n = 0; n < count; ++n) none[n] = !(batch.density[n] > 0.0);
         for (std::size_t k = 0; k < placed.tables.size(); ++k)
@@ -400,7 +400,7 @@ void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std
         setBins(normals, first, count, batch);
         setDirections(directions, first, count, batch);
         batch.density.fill(0.0);
-        HWY_DYNAMIC_DISPATCH(Places)(placed.rotation, batch);
+        HWY_DYNAMIC_DISPATCH(Positions)(placed.rotation, batch);
         for (const BilinearDistribution& table : placed.tables) HWY_DYNAMIC_DISPATCH(AddDensity)(table.view(), batch);
         HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);
         get(batch, first, count, samples);
@@ -413,7 +413,7 @@ void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions,
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);
         setDirections(directions, first, count, batch);
-        HWY_DYNAMIC_DISPATCH(Places)(placed.rotation, batch);
+        HWY_DYNAMIC_DISPATCH(Positions)(placed.rotation, batch);
         HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);
         for (std::size_t n = 0; n < count; ++n) radiances[first + n] = {batch.r[n], batch.g[n], batch.b[n]};
     }

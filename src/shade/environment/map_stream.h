@@ -1,4 +1,4 @@
-// Maps of light for many surfaces at once: what MapEnvironment does for one, in vectors.
+// MapEnvironment's functions for many surfaces at once, in vectors.
 #pragma once
 
 #include "shade/environment/bilinear_distribution.h"
@@ -13,17 +13,17 @@
 
 namespace stratum::shade {
 
-/// A map where it stands. Keeps references.
+/// A map with its rotation and tables. Keeps references.
 struct PlacedMap {
     const LightMap& map;
     double rotation;                               ///< radians, see MapEnvironment
     std::span<const BilinearDistribution> tables;  ///< one a strategy
 };
 
-/// A large map misses the caches with nearly every sample; in vectors many misses are under way together. Angles are by
-/// polynomials, exact to 3e-8 radians; all else has the bits of the scalar functions on every processor.
+/// In a large map nearly every sample is a cache miss; in vectors many misses are served together. Angles are computed
+/// by polynomials, exact to 3e-8 radians; everything else has the bits of the scalar functions on every processor.
 ///
-/// What MapEnvironment::sample gives, for each draw.
+/// MapEnvironment::sample for each draw.
 /// @param strategy  of the tables
 /// @param u         uniform in [0, 1)^2
 /// @param normals   of the surfaces, finite, not 0; none if all tables were made without directions
@@ -31,14 +31,14 @@ struct PlacedMap {
 void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                std::span<EnvironmentSample> samples);
 
-/// What MapEnvironment::eval gives, for each direction.
+/// MapEnvironment::eval for each direction.
 /// @param directions  unit
 /// @param normals     as above
 /// @param samples     as many as directions
 void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
              std::span<EnvironmentSample> samples);
 
-/// What MapEnvironment::radiance gives, for each direction.
+/// MapEnvironment::radiance for each direction.
 /// @param directions  unit
 /// @param radiances   as many as directions
 void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);

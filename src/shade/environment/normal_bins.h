@@ -1,4 +1,4 @@
-// Surface normals in a few bins, for tables that depend on which way a surface looks.
+// Bins of surface normals, for tables that depend on the normal.
 //
 // Octahedral map: Q. Meyer et al., "On Floating-Point Normal Vectors", EGSR 2010.
 #pragma once
@@ -32,11 +32,11 @@ struct NormalBins {
     }
 
     /// A normal of a bin.
-    /// @param place  in the bin's square, [0, 1]^2
-    static glm::vec3 normal(int bin, const glm::vec2& place) {
+    /// @param uv  in the bin's square, [0, 1]^2
+    static glm::vec3 normal(int bin, const glm::vec2& uv) {
         const int row = bin / kSide;
-        const float x = 2.0f * (static_cast<float>(bin % kSide) + place.x) / kSide - 1.0f;
-        const float y = 2.0f * (static_cast<float>(row) + place.y) / kSide - 1.0f;
+        const float x = 2.0f * (static_cast<float>(bin % kSide) + uv.x) / kSide - 1.0f;
+        const float y = 2.0f * (static_cast<float>(row) + uv.y) / kSide - 1.0f;
         const float z = 1.0f - std::abs(x) - std::abs(y);
         if (z >= 0.0f) return glm::normalize(glm::vec3(x, y, z));
         return glm::normalize(glm::vec3(std::copysign(1.0f - std::abs(y), x), std::copysign(1.0f - std::abs(x), y), z));

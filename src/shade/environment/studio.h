@@ -1,4 +1,4 @@
-// A photographer's studio: softboxes in a dim room, arranged about the camera so that layer lines can be read.
+// Studio light: softboxes in a dim room, arranged around the camera so that layer lines are visible.
 #pragma once
 
 #include "shade/environment/environment.h"
@@ -7,13 +7,12 @@
 
 namespace stratum::shade {
 
-/// Radiance of a white Lambert surface that looks up, with nothing in its way. Bright enough that a print and the paper
-/// under it need no exposure.
+/// Radiance of an unoccluded white Lambert surface that faces up. Bright enough for a print and the paper under it
+/// without exposure compensation.
 inline constexpr float kStudioLevel = 1.5f;
 
-/// A key light high on the left, a broad weak fill on the right, two strips behind that draw the rims, and a room that
-/// is brighter above than at the horizon. Edges are smooth. Tabulated as a map, so that it is drawn from like one; not
-/// visible to the camera.
+/// A key light high on the left, a broad weak fill light on the right, two rim lights behind, and a room that is
+/// brighter above than at the horizon. Edges are smooth. Tabulated and sampled as a map; not visible to the camera.
 std::shared_ptr<const Environment> makeStudio(const EnvironmentPlacement& placement);
 
 }  // namespace stratum::shade

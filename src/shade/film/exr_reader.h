@@ -1,4 +1,4 @@
-// OpenEXR pictures as plain numbers.
+// Reads OpenEXR pictures.
 #pragma once
 
 #include "shade/color.h"
@@ -12,8 +12,8 @@
 
 namespace stratum::shade {
 
-/// The R, G and B channels (or Y alone, as grey) of the data window, row by row from the top, and what the header says
-/// in words and numbers.
+/// The R, G and B channels (or Y alone, as gray) of the data window, row by row from the top, and the attributes of the
+/// header.
 struct ExrImage {
     int width = 0;
     int height = 0;
@@ -24,7 +24,7 @@ struct ExrImage {
 bool isExr(std::string_view bytes);
 
 /// Reads the first part of a file, scanlines or tiles.
-/// @param most  pixels; a larger picture is refused before any memory is taken
+/// @param most  pixels; a larger picture is refused before memory is allocated
 /// Throws InputError.
 ExrImage readExr(const std::filesystem::path& path, std::size_t most);
 

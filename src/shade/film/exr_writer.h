@@ -1,4 +1,4 @@
-// Linear pictures in full precision.
+// Writes films as OpenEXR: linear, in full precision.
 #pragma once
 
 #include "shade/film/film.h"
@@ -13,7 +13,7 @@ namespace stratum::shade {
 /// The film's layers follow as channels LAYER.CHANNEL. The display window is the frame, the data window the film's
 /// region.
 /// @param metadata  name -> UTF-8 text, written as string attributes
-/// Throws OutputError; std::invalid_argument for a name that the format uses itself.
+/// Throws OutputError; std::invalid_argument for a name that is reserved by the format.
 void writeExr(const std::filesystem::path& path, const Film& film, const std::map<std::string, std::string>& metadata);
 
 }  // namespace stratum::shade

@@ -1,4 +1,4 @@
-// The picture as numbers: linear RGB and coverage for every pixel.
+// A film: linear RGB and coverage for every pixel.
 #pragma once
 
 #include "shade/color.h"
@@ -18,9 +18,9 @@ struct PixelBox {
     bool operator==(const PixelBox&) const = default;
 };
 
-/// What the numbers mean, so that a viewable picture can be made of them.
+/// The meaning of the values, for conversion into a viewable picture.
 enum class FilmContent {
-    radiance,  ///< light; wants exposure and tone mapping
+    radiance,  ///< light; needs exposure and tone mapping
     unit,      ///< a share in [0, 1], e.g. ambient occlusion
     normal,    ///< world-space unit vectors, components in [-1, 1], times alpha
     depth,     ///< distance along the ray in world units, times alpha
@@ -45,7 +45,7 @@ class Film {
 public:
     Film() = default;
     /// @param frame_width, frame_height  pixels of the whole picture
-    /// @param region                     the part that is held here, inside the frame
+    /// @param region                     the part that this film holds, inside the frame
     Film(int frame_width, int frame_height, const PixelBox& region, FilmContent content = FilmContent::radiance);
 
     int frameWidth() const { return frame_width_; }
@@ -61,12 +61,12 @@ public:
     /// Row by row from the top.
     std::vector<Pixel>& pixels() { return pixels_; }
     const std::vector<Pixel>& pixels() const { return pixels_; }
-    /// Where a pixel lies in pixels() and in each layer.
+    /// The index of a pixel in pixels() and in each layer.
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y - region_.y0) * static_cast<std::size_t>(region_.width()) +
                static_cast<std::size_t>(x - region_.x0);
     }
-    /// What a film of a smaller region would hold; `region` lies inside this one's.
+    /// The film of a smaller region, inside this one's.
     Film part(const PixelBox& region) const;
     std::vector<FilmLayer>& layers() { return layers_; }
     const std::vector<FilmLayer>& layers() const { return layers_; }

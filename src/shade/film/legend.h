@@ -1,4 +1,4 @@
-// What the colours of a picture mean: as data for a report, and drawn into it.
+// The legend of a picture's colors: as data for a report, and drawn into the picture.
 #pragma once
 
 #include "shade/color.h"
@@ -9,15 +9,15 @@
 
 namespace stratum::shade {
 
-/// Names with colours, or a ramp between two numbers; one of both is empty.
+/// Names with colors, or a ramp between two numbers; one of the two is empty.
 struct Legend {
     struct Entry {
         std::string name;
-        Color color{0.0f};  ///< linear, before light falls on it
+        Color color{0.0f};  ///< linear reflectance
     };
     std::string title;           ///< the attribute, e.g. "feature"
     std::string unit;            ///< of a ramp's numbers, e.g. "mm/s"; may be empty
-    std::vector<Entry> entries;  ///< of values that are there, ascending
+    std::vector<Entry> entries;  ///< of existing values, ascending
     std::vector<Color> ramp;     ///< linear, from `least` to `most`, evenly
     double least = 0.0, most = 0.0;
 };
@@ -25,8 +25,8 @@ struct Legend {
 /// The unit of a print's attribute: "mm" of width, "mm/s" of speed, "s" of time; nothing for others.
 std::string unitOfAttribute(const std::string& attribute);
 
-/// Draws it into the upper left corner of an 8-bit sRGB picture, on a light panel, in letters that suit the picture's
-/// height. What doesn't fit below the picture's edge is left out, and the last line says how many.
+/// Draws it into the upper left corner of an 8-bit sRGB picture, on a light panel, in a size relative to the picture's
+/// height. Entries that don't fit are left out, and the last line states their number.
 /// @param rgb  3 * width * height bytes, row by row from the top
 void draw(const Legend& legend, int width, int height, std::vector<std::uint8_t>& rgb);
 

@@ -1,4 +1,4 @@
-// A film as a file: a viewable PNG or a linear EXR, by the name's ending.
+// Writes a film as a file: a viewable PNG or a linear EXR, by the name's ending.
 #pragma once
 
 #include "base/atomic_file.h"
@@ -16,14 +16,14 @@ namespace stratum::shade {
 /// Keywords: 1 to 79 printable Latin-1 characters (PNG's rule).
 using Metadata = std::map<std::string, std::string>;
 
-/// A picture file in the making. Make it before the work so that a bad name fails at once.
+/// A picture file to be written. Construct it before rendering, so that a bad name fails at once.
 class PictureFile {
 public:
     /// Standard output: "-" (PNG), "-.exr". Throws UsageError for other names than *.png and *.exr, and OutputError.
     explicit PictureFile(const std::filesystem::path& path);
     /// Whether it keeps linear values and layers: an EXR.
     bool linear() const { return exr_; }
-    /// Writes all of it and puts it in its place. `tone` is for PNG only. Throws OutputError.
+    /// Writes the picture and commits the file. `tone` is for PNG only. Throws OutputError.
     /// @param legend  drawn into a PNG's upper left corner, if given
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
                const Legend* legend = nullptr);

@@ -1,4 +1,4 @@
-// 8-bit RGB pictures with text in them.
+// Writes 8-bit RGB pictures with text metadata as PNG.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// From linear light to the 8 bits of a screen.
+// Tone mapping: from linear light to 8-bit sRGB.
 #pragma once
 
 #include "shade/color.h"
@@ -16,7 +16,7 @@ struct ToneOptions {
     void validate() const;
 };
 
-/// Khronos PBR Neutral: base colours keep their hue and value up to about 0.8, highlights roll off to white.
+/// Khronos PBR Neutral: base colors keep their hue and value up to about 0.8, highlights roll off to white.
 /// Input: linear, >= 0. Output: linear, in [0, 1].
 /// Source: https://github.com/KhronosGroup/ToneMapping/tree/main/PBR_Neutral
 Color toneMapNeutral(Color color);

@@ -25,7 +25,7 @@ SunLight::SunLight(const glm::vec3& to_light, const Color& irradiance, float dia
 }
 
 std::optional<LightSample> SunLight::sample(const glm::dvec3&, const glm::vec2& u) const {
-    // Uniform on the cap by the disc below it, which keeps neighbours together.
+    // Uniform on the spherical cap by the disc below it; preserves adjacency.
     const glm::dvec2 d(toDisc(u));
     const double r2 = glm::dot(d, d);
     const double drop = r2 * lift_;
@@ -39,7 +39,7 @@ std::optional<LightSample> SunLight::sample(const glm::dvec3&, const glm::vec2& 
 }
 
 std::optional<LightHit> SunLight::intersect(const trace::Ray& ray) const {
-    // |a - b|^2 = 2 (1 - cos) has the digits that the dot product lacks.
+    // |a - b|^2 = 2 (1 - cos) is more accurate than the dot product.
     const glm::dvec3 apart = ray.direction - glm::dvec3(to_light_);
     if (0.5 * glm::dot(apart, apart) > lift_) return std::nullopt;
     return LightHit{std::numeric_limits<double>::infinity(), radiance_, pdf_};

@@ -1,4 +1,4 @@
-// Light from so far away that its rays are parallel, or nearly so.
+// Lights at infinity: one direction, or a disc in the sky.
 #pragma once
 
 #include "shade/light/light.h"
@@ -19,7 +19,7 @@ private:
     Color irradiance_;
 };
 
-/// A disc of even radiance in the sky: soft shadows, and a highlight that has a size.
+/// A disc of constant radiance in the sky: soft shadows, and highlights with a size.
 class SunLight final : public Light {
 public:
     static constexpr float kRealDiameter = 0.53f;  ///< degrees
@@ -35,7 +35,7 @@ public:
 private:
     glm::vec3 to_light_;
     Color radiance_;
-    double lift_;  // 1 - cosine of the half angle; by itself, as a float's 1 - cos would have few digits left
+    double lift_;  // 1 - cosine of the half angle; stored itself, because a float's 1 - cos would lose digits
     float pdf_;
 };
 

@@ -1,4 +1,4 @@
-// A lamp without size.
+// A point light.
 #pragma once
 
 #include "shade/light/light.h"

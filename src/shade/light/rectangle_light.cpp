@@ -8,7 +8,7 @@
 
 namespace stratum::shade {
 
-/// The spherical rectangle as a point sees it, in the names of the paper.
+/// The spherical rectangle from a point, in the names of the paper.
 struct RectangleLight::View {
     double x0, x1, y0, y1, z0;  // of the corners, about the point; z0 < 0, or 0 in its plane
     double side;                // 1, or -1 if the point is behind it: then z points the other way
@@ -75,7 +75,7 @@ std::optional<LightSample> RectangleLight::sample(const glm::dvec3& point, const
         y = h * h < 1.0 - 1e-12 ? std::clamp(h * d / std::sqrt(1.0 - h * h), v.y0, v.y1) : v.y1;
         pdf = 1.0 / v.solid_angle;
     } else {
-        // So small or so far that the sum of angles has no digits left: then it is flat, too.
+        // So small or so far that the sum of angles cancels: sampled as a flat rectangle.
         x = v.x0 + static_cast<double>(u.x) * (v.x1 - v.x0);
         y = v.y0 + static_cast<double>(u.y) * (v.y1 - v.y0);
         const double r2 = x * x + y * y + v.z0 * v.z0;

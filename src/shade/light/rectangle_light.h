@@ -1,11 +1,11 @@
-// A flat lamp: a softbox, a window, a screen.
+// A rectangular area light: a softbox, a window, a screen.
 #pragma once
 
 #include "shade/light/light.h"
 
 namespace stratum::shade {
 
-/// A rectangle of even radiance that shines to both sides. Drawn from by the solid angle in which the point sees it:
+/// A rectangle of constant radiance that emits to both sides. Sampled by solid angle:
 /// C. Urena, M. Fajardo, A. King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
 class RectangleLight final : public Light {
 public:

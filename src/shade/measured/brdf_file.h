@@ -1,4 +1,4 @@
-// A measured material from any of the files that such things come in.
+// Reads measured materials from files of all supported formats.
 #pragma once
 
 #include "shade/brdf/brdf_scan.h"
@@ -12,18 +12,18 @@
 
 namespace stratum::shade {
 
-/// What a file holds, before a whole BRDF is made of it.
+/// The contents of a file, before a complete BRDF is made from it.
 struct MeasuredMaterial {
     std::string kind;  ///< of file
     std::variant<BrdfScan, HalfDiffTable> data;
 };
 
-/// The reading half of readBrdfFile(). Throws InputError.
+/// Reads only, without making a BRDF. Throws InputError.
 MeasuredMaterial readMeasuredMaterial(const std::filesystem::path& path);
 
-/// Reads Mini-Diff (LightTools), Zemax or ASTM E1392 text, also gzip-compressed, a MERL .binary or an EXR texture, told
-/// apart by content, and makes a BRDF of it: scans by ScanInterpolant, baked to a HalfDiffTable; MERL tables as they
-/// are. notes() tell where it came from and what was found. Uses all threads. Throws InputError.
+/// Reads Mini-Diff (LightTools), Zemax or ASTM E1392 text, also gzip-compressed, a MERL .binary or an EXR texture,
+/// recognized by content, and makes a BRDF from it: scans by ScanInterpolant, baked to a HalfDiffTable; MERL tables
+/// unchanged. notes() has the source and remarks. Uses all threads. Throws InputError.
 std::shared_ptr<const TableBrdf> readBrdfFile(const std::filesystem::path& path);
 
 /// Writes the table as MERL's if the name ends in .binary, as an EXR texture at 0, 20, 40 and 60 degrees if in .exr.

@@ -8,8 +8,8 @@
 
 namespace stratum::shade {
 
-/// Which of the wavelengths (nm) stand for red, green and blue: the ones nearest to 612, 549 and 465 nm, the dominant
-/// wavelengths of the primaries. One wavelength stands for all three: grey.
+/// Indices of the wavelengths (nm) for red, green and blue: the nearest to 612, 549 and 465 nm, the dominant
+/// wavelengths of the primaries. A single wavelength is used for all three: gray.
 struct ChannelChoice {
     std::size_t red, green, blue;
 };

@@ -1,4 +1,4 @@
-// A whole BRDF from a scan at a few angles of incidence.
+// A complete BRDF from a scan at a few angles of incidence.
 #pragma once
 
 #include "shade/brdf/brdf_scan.h"
@@ -8,24 +8,23 @@
 
 namespace stratum::shade {
 
-/// Between measured incidences, and past the last one.
+/// Interpolates between measured incidences, and extrapolates beyond the last one.
 ///
 /// 1. A diffuse and a GGX lobe are fitted per channel to all readings (fitLobes).
-/// 2. What they leave, log(measured / fitted), varies slowly. At another incidence it is taken from the measured
-///    neighbours, in a map of the unit disc of projected directions that carries the one mirror direction to the other
-///    and leaves the rim in place: along the straight ray from the mirror point to the rim. Past the last incidence the
-///    last one's is taken.
-/// 3. F(light, detector) and F(detector, light) are both such answers. They are blended, each weighted to the side
-/// whose
-///    incidence is nearer to a measured one, so that the result is reciprocal and still exact at measured incidences.
-///    Beyond the last measured incidence distance counts threefold: there nothing holds the answer on the far side.
+/// 2. The residual, log(measured / fitted), varies slowly. At another incidence it is interpolated between the measured
+///    neighbours, by a map of the unit disc of projected directions that moves one mirror direction to the other and
+///    keeps the rim fixed: linear along each ray from the mirror point to the rim. Beyond the last incidence the last
+///    one's residual is used.
+/// 3. F(light, detector) and F(detector, light) are blended, with more weight for the one whose incidence is nearer to
+///    a measured one, so that the result is reciprocal and still exact at measured incidences. Beyond the last measured
+///    incidence the distance counts threefold, because that is extrapolation.
 /// Isotropic. Immutable; safe to share between threads.
 class ScanInterpolant {
 public:
     /// @param scan  folded, checked
     explicit ScanInterpolant(const BrdfScan& scan);
 
-    /// 1/sr, > 0. Both unit, z up; directions below 89.9 degrees are taken as that.
+    /// 1/sr, > 0. Both unit, z up; polar angles above 89.9 degrees are clamped to that.
     glm::dvec3 eval(const glm::dvec3& light, const glm::dvec3& detector) const;
     const std::array<Lobes, 3>& lobes() const { return lobes_; }
 

@@ -1,4 +1,4 @@
-// The lines and numbers of a scatterometer's text file, with places for messages.
+// Reads lines and numbers of a scatterometer's text file, with positions for messages.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace stratum::shade {
 
-/// Reads a text line by line. LF and CR LF; lines that start with '#' are comments and kept aside.
+/// Reads a text line by line. LF and CR LF; lines that start with '#' are comments, which are collected.
 class ScanText {
 public:
     /// @param name  of the file, for messages
@@ -18,7 +18,7 @@ public:
     bool next(std::string_view& line);
     /// The same; throws InputError if there is none, naming what was expected.
     std::string_view expect(std::string_view what);
-    /// Exactly `count` numbers from the next lines, as many lines as it takes. Throws InputError.
+    /// Exactly `count` numbers from the next lines. Throws InputError.
     std::vector<double> numbers(std::size_t count, std::string_view what);
     /// All numbers of a text, separated by white space, commas or semicolons. Throws InputError.
     std::vector<double> parse(std::string_view text, std::string_view what) const;

@@ -7,26 +7,26 @@
 
 namespace stratum::shade {
 
-/// The numbers of the estimator; denoise.h says what they belong to.
+/// The parameters of the estimator described in denoise.h.
 struct Denoising {
-    static constexpr int kRadius = 7;      ///< pixels: how far neighbours may be
-    static constexpr int kPatch = 2;       ///< pixels about each of the two that are compared
-    static constexpr float kLight = 0.6f;  ///< how much larger than the noise a difference of light may be (Rousselle)
-    /// Ridge of the regression, relative to the sum of weights: a guide whose standard deviation is less than the root
-    /// of this is not to be trusted.
+    static constexpr int kRadius = 7;      ///< pixels: largest offset of neighbours
+    static constexpr int kPatch = 2;       ///< pixels: radius of the patches that are compared
+    static constexpr float kLight = 0.6f;  ///< tolerance of differences in color, relative to the noise (Rousselle)
+    /// Ridge of the regression, relative to the sum of weights: guides whose standard deviation is less than the root
+    /// of this have little influence.
     static constexpr float kRidge = 3e-5f;
-    /// The weight of a distance d is max(0, 1 - d / 8)^8: close to exp(-d), and ends.
+    /// The weight of a distance d is max(0, 1 - d / 8)^8: close to exp(-d), with finite support.
     static constexpr float kEnd = 8.0f;
 };
 
-/// A film as planes of floats with a mirrored margin, so that loops need not ask where it ends.
+/// A film as planes of floats with a mirrored margin, so that loops need no bounds checks.
 class DenoisePlanes {
 public:
     enum Plane {
         brightness,
         variance,   // of the mean luminance
-        closeness,  // kCloseness planes: the squared differences of all are the distance of two pixels in guides
-        terms = closeness + 7,  // kTerms planes: what the light is taken to be a linear function of, beside the place
+        closeness,  // kCloseness planes: the distance of two pixels in guides is the sum of their squared differences
+        terms = closeness + 7,  // kTerms planes: variables of the linear function, beside the position
         color = terms + 3,      // 3 planes
         kPlanes = color + 3
     };
@@ -55,14 +55,14 @@ private:
     std::array<std::vector<float>, kPlanes> values_;
 };
 
-/// What a thread needs for a block.
+/// Scratch memory of one thread.
 struct DenoiseScratch {
     std::vector<float> weights;                ///< of each neighbour, of each pixel
     std::array<std::vector<float>, 3> colors;  ///< the result: kBlockHeight rows of kBlockWidth
 };
 
-/// Denoises the block whose upper left pixel is (x0, y0); the block may reach beyond the film. A pixel's result depends
-/// on its neighbours alone, not on the block. The same bits on all processors that can multiply and add in one step.
+/// Denoises the block whose upper left pixel is (x0, y0); the block may extend beyond the film. A pixel's result
+/// depends on its neighbours alone, not on the block. The same bits on all processors with fused multiply-add.
 void denoiseBlock(const DenoisePlanes& planes, int x0, int y0, DenoiseScratch& scratch);
 
 }  // namespace stratum::shade

@@ -1,4 +1,4 @@
-// How bright a picture is to be shown, found from its light.
+// Automatic exposure from the light of a scene.
 #pragma once
 
 #include "shade/scene/scene.h"
@@ -7,10 +7,10 @@
 
 namespace stratum::shade {
 
-/// Stops by which light must be scaled (2^stops) so that a white surface at `point` is shown about as bright as under
-/// the studio: one that looks up, or three quarters of the one that gets most, if that is more, so that neither the bed
-/// nor a wall in a low sun is burnt. From environment, lamps and bed alone: the same for any crop, size and print.
-/// 0 where there is no light.
+/// Exposure in stops for which a white surface at `point` appears about as bright as in the studio: one that faces up,
+/// or three quarters of the brightest one if that is more, so that neither the bed nor a wall in a low sun is
+/// overexposed. Depends on environment, lights and bed alone: the same for any crop, size and print. 0 if there is no
+/// light.
 double automaticExposure(const SceneDescription& scene, const glm::dvec3& point);
 
 }  // namespace stratum::shade

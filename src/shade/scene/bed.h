@@ -1,4 +1,4 @@
-// What the print stands on and what is behind it: a photographer's seamless sweep.
+// The bed under the print and the backdrop behind it: a seamless sweep as in product photography.
 #pragma once
 
 #include "shade/color.h"
@@ -21,10 +21,10 @@ struct Backdrop {
     Color radiance(const glm::vec3& direction) const;
 };
 
-/// An infinite horizontal sheet. Seen from above only: from below it isn't there.
+/// An infinite horizontal sheet, one-sided: rays from below pass through.
 ///
-/// Light sees an endless plane. The camera sees it fade into the backdrop with distance, so that sheet and
-/// backdrop are one sweep without a horizon.
+/// For light it is an infinite plane. For the camera it fades into the backdrop with distance, so that there is no
+/// visible horizon.
 struct Bed {
     double z = 0.0;  ///< world units
     BedTexture texture{BedSurface::paper};
@@ -32,7 +32,7 @@ struct Bed {
     double fade_begin = 1.0;  ///< world units from the centre: nothing faded yet
     double fade_end = 2.0;    ///< world units from the centre: all faded; > fade_begin
 
-    /// Distance along a ray to the sheet, if it lies in the ray's interval and is met from above.
+    /// Distance along a ray to the sheet, if it is in the ray's interval and hit from above.
     std::optional<double> intersect(const trace::Ray& ray) const;
     /// Share of the backdrop, 0 to 1, in what the camera sees at this point.
     double fade(const glm::dvec3& point) const;

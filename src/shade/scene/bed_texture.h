@@ -1,4 +1,4 @@
-// What the bed is covered with: plain paper, or the sheets that printers have.
+// The material of the bed: plain paper, or printers' build plates.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -22,7 +22,7 @@ enum class BedSurface : std::uint8_t {
 /// Throws UsageError.
 BedSurface parseBedSurface(std::string_view text);
 
-/// Reflectance and slope by place, by formula: nothing is stored, and it has no end. Immutable.
+/// Procedural reflectance and normal by position, unbounded. Immutable.
 class BedTexture {
 public:
     struct Finish {
@@ -37,10 +37,10 @@ public:
 
     /// @param place  world units
     const Finish& at(const glm::dvec2& place) const;
-    /// The normal to shade with, unit, upwards.
+    /// The shading normal, unit, upwards.
     /// @param place  world units
     glm::dvec3 normal(const glm::dvec2& place) const;
-    /// Reflectance over a large piece.
+    /// Mean reflectance over a large area.
     const Color& mean() const { return mean_; }
 
 private:

@@ -1,4 +1,4 @@
-// What an object is made of: one BRDF, or many that an attribute of its voxels chooses among.
+// The material of an object: one BRDF, or several that are selected by an attribute.
 #pragma once
 
 #include "shade/brdf/brdf.h"
@@ -17,10 +17,10 @@
 
 namespace stratum::shade {
 
-/// An object's material in words.
+/// The description of an object's material.
 struct MaterialOptions {
-    std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: where `each` has nothing
-    std::string by;    ///< name of the attribute that chooses; empty: one material
+    std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: for values that are not in `each`
+    std::string by;    ///< name of the attribute that selects; empty: one material
     std::map<std::string, std::string>
         each;  ///< value, or its name -> see makeBrdf; empty: `brdf` in a palette's colours
 };
@@ -36,8 +36,7 @@ class ObjectMaterial {
 public:
     explicit ObjectMaterial(std::shared_ptr<const Brdf> brdf);
     /// @param attribute  number of the attribute, see Tracer::attribute()
-    /// @param brdfs      at least one; the first is for places without a value, the last for values that are no finite
-    ///                   numbers
+    /// @param brdfs      at least one; the first is for points without a value, the last for values that are not finite
     /// @param choose     finite value -> index into brdfs
     ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
                    std::function<std::size_t(const glm::vec3&)> choose);
@@ -57,20 +56,20 @@ private:
 };
 
 /// The material of `options` for an object whose attribute `options.by` has this number and summary.
-/// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colours: of the attribute itself if it
-/// holds colours, of a palette for up to 32 whole numbers (features have colours of their own), else of a ramp from the
-/// least value to the most; gray where a value is no finite number. Throws UsageError: a BRDF that can't be coloured (a
-/// table), a name that the attribute doesn't have.
+/// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colors: those of the attribute itself if
+/// its values are colors, of a palette for up to 32 whole numbers (features have fixed colors), else of a ramp from the
+/// least value to the most; gray where a value is not finite. Throws UsageError: a BRDF without a body color (a table),
+/// a name that the attribute doesn't have.
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary);
 
-/// What the colours of that material mean: values that the attribute has, or its ramp.
+/// The legend of that material's colors: the attribute's values, or its ramp.
 Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary& summary,
                   const ObjectMaterial& material);
 
-/// The n-th of a set of colours that are easy to tell apart; they repeat. Linear RGB.
+/// The n-th of a set of clearly distinct colors; they repeat. Linear RGB.
 Color categoryColor(std::size_t n);
-/// A ramp from dark blue (0) by green to yellow (1) of growing lightness. Linear RGB.
+/// A ramp from dark blue (0) through green to yellow (1) of increasing lightness. Linear RGB.
 Color rampColor(double t);
 
 }  // namespace stratum::shade
