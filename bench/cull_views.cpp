@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
         intersectors[cull] = march::makeBrickIntersector(*grid);
     }
     const trace::Box box = intersectors[0]->bounds();
-    const glm::dvec3 centre = 0.5 * (box.min + box.max);
+    const glm::dvec3 center = 0.5 * (box.min + box.max);
     const double radius = 0.5 * glm::length(box.max - box.min);
     const double offset = intersectors[0]->surfaceOffset();
 
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
         glm::dvec3 eye{0.0};
         if (!outer) {
             trace::Hit hit;
-            if (!intersectors[0]->makeTracer()->intersect({centre + from * (2 * radius), -from}, hit)) continue;
+            if (!intersectors[0]->makeTracer()->intersect({center + from * (2 * radius), -from}, hit)) continue;
             eye = hit.position + hit.normal;
         }
         parallelFor(static_cast<std::size_t>(size), 8, [&](std::size_t first, std::size_t last) {
@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
                     trace::Ray ray;
                     if (outer) {
                         ray.origin =
-                            centre + from * (2 * radius) + (2 * u - 1) * radius * side + (2 * v - 1) * radius * up;
+                            center + from * (2 * radius) + (2 * u - 1) * radius * side + (2 * v - 1) * radius * up;
                         ray.direction = -from;
                     } else {
                         ray.origin = eye;

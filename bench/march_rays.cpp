@@ -18,13 +18,13 @@ constexpr int kTile = 32;
 constexpr double kShort = 5;  // mm
 
 std::vector<Ray> primaryRays(const trace::Box& box, int side) {
-    const glm::dvec3 centre = 0.5 * (box.min + box.max);
+    const glm::dvec3 center = 0.5 * (box.min + box.max);
     const double radius = 0.5 * glm::length(box.max - box.min);
     const glm::dvec3 forward = glm::normalize(glm::dvec3(0.6, 0.75, -0.45));
     const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0, 0, 1)));
     const glm::dvec3 up = glm::cross(right, forward);
     constexpr double kDistance = 4;  // of the eye, in radii
-    const glm::dvec3 eye = centre - kDistance * radius * forward;
+    const glm::dvec3 eye = center - kDistance * radius * forward;
     double half = 0;  // tangent: the box just fits
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p =

@@ -46,7 +46,7 @@ voxelize::Placement placementFor(const ConvertCommand& o, const voxelize::Bounds
     placement.unit = 1 / voxelize::millimetresIn(o.unit);
     if (o.origin == "bed") return placement;
     for (int axis = 0; axis < 2; ++axis)
-        placement.offset[axis] = o.origin == "center" ? -bounds.centre(axis) : -bounds.min[axis];
+        placement.offset[axis] = o.origin == "center" ? -bounds.center(axis) : -bounds.min[axis];
     placement.offset[2] = -bounds.min[2];
     return placement;
 }

@@ -15,12 +15,12 @@ class ByteCursor {
 public:
     explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
 
-    std::uint64_t place() const { return place_; }
-    bool done() const { return place_ == bytes_.size(); }
+    std::uint64_t offset() const { return offset_; }
+    bool done() const { return offset_ == bytes_.size(); }
     std::string_view take(std::uint64_t count) {
-        if (count > bytes_.size() - place_) static_cast<const Format&>(*this).endsEarly();
-        const std::string_view taken = bytes_.substr(place_, static_cast<std::size_t>(count));
-        place_ += static_cast<std::size_t>(count);
+        if (count > bytes_.size() - offset_) static_cast<const Format&>(*this).endsEarly();
+        const std::string_view taken = bytes_.substr(offset_, static_cast<std::size_t>(count));
+        offset_ += static_cast<std::size_t>(count);
         return taken;
     }
     template <typename T>
@@ -36,7 +36,7 @@ public:
 
 protected:
     std::string_view bytes_;
-    std::size_t place_ = 0;  // at most bytes_.size()
+    std::size_t offset_ = 0;  // at most bytes_.size()
 };
 
 }  // namespace stratum

@@ -27,8 +27,8 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
     double around = lattice.background();
     if (rank < layout.stack.first_direct) {
         // The widest sampled section need not be the widest section.
-        const double centre = 0.5 * (solid.min[2] + solid.max[2]);
-        const double off = std::abs(std::remainder(centre - lattice.origin_z, h));
+        const double center = 0.5 * (solid.min[2] + solid.max[2]);
+        const double off = std::abs(std::remainder(center - lattice.origin_z, h));
         const double far = field.radius() + lattice.background();
         around = std::sqrt(far * far - off * off) - field.radius();
     }

@@ -50,7 +50,7 @@ public:
         slabs_.resize(static_cast<std::size_t>(map_.macros[2]));
         for (const voxelize::Layer& layer : stack.layers) {
             const double radius = layer.radius * (1 + 2 * voxelize::kWeldGap);
-            addRun(runOf(layer.centre_z - radius, layer.centre_z + radius), layer.first, layer.last);
+            addRun(runOf(layer.center_z - radius, layer.center_z + radius), layer.first, layer.last);
         }
         for (std::uint32_t rank = stack.first_direct; rank < stack.beads.size(); ++rank) {
             const voxelize::Extent& extent = stack.extentOf(rank);

@@ -81,10 +81,10 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     const double z_max = height(origin[2] + static_cast<int>(planes) - 1);
     // Ranks ascend with the layers' planes: the layers that reach this leaf are one interval. The column is opened for
     // these alone, not for its hundreds of layers.
-    const auto below = [](const voxelize::Layer& layer, double z) { return layer.centre_z < z; };
+    const auto below = [](const voxelize::Layer& layer, double z) { return layer.center_z < z; };
     const auto first = std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below);
     auto last = first;
-    while (last != stack.layers.end() && last->centre_z < z_max + layout_.reach) ++last;
+    while (last != stack.layers.end() && last->center_z < z_max + layout_.reach) ++last;
     const std::span<const std::uint32_t> all = layout_.bins[*column];
     const std::uint32_t end_rank = stack.first_direct;
     const auto rankOf = [&](auto layer) { return layer != stack.layers.end() ? layer->first : end_rank; };

@@ -32,7 +32,7 @@ struct PrintLayout {
     const double unit;
     const voxelize::LayerStack stack;
     const voxelize::PlanBins bins;
-    const double reach;  ///< mm: a layer's centre plane affects leaves within this distance; of the thickest layer
+    const double reach;  ///< mm: a layer's center plane affects leaves within this distance; of the thickest layer
 };
 
 /// Evaluates single leaves at any position. Belongs to one thread.

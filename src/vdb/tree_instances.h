@@ -18,4 +18,4 @@
 
 STRATUM_TREE_INSTANCES(extern, FloatTree);  // level sets, attributes
 STRATUM_TREE_INSTANCES(extern, Int32Tree);  // layers, tools, features, objects
-STRATUM_TREE_INSTANCES(extern, Vec3STree);  // colours
+STRATUM_TREE_INSTANCES(extern, Vec3STree);  // colors

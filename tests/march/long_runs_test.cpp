@@ -59,7 +59,7 @@ protected:
             }
         });
     }
-    static glm::dvec3 centre() { return 0.5 * (intersector_->bounds().min + intersector_->bounds().max); }
+    static glm::dvec3 center() { return 0.5 * (intersector_->bounds().min + intersector_->bounds().max); }
     static double radius() { return 0.5 * glm::length(intersector_->bounds().max - intersector_->bounds().min); }
     static glm::dvec3 anywhere(std::mt19937& random) {
         const trace::Box box = intersector_->bounds();
@@ -84,7 +84,7 @@ TEST_F(LongRuns, AMillionRaysMeetWhatTheBruteMarchMeets) {
         for (std::size_t n = 0; n < count; ++n) {
             trace::Ray ray;
             const glm::dvec3 target = anywhere(random);
-            ray.origin = n % 2 == 0 ? anywhere(random) : centre() + 3 * radius() * test::randomDirection(random);
+            ray.origin = n % 2 == 0 ? anywhere(random) : center() + 3 * radius() * test::randomDirection(random);
             ray.direction = glm::normalize(target - ray.origin);
             const auto expected = brute(ray);
             trace::Hit hit;

@@ -19,8 +19,8 @@ inline openvdb::FloatGrid::Ptr rubble(float voxel, bool rough) {
     std::uniform_real_distribution<float> size(0.5F, 1.2F);
     auto all = sphereGrid(1, openvdb::Vec3f(0), voxel);
     for (int n = 0; n < 25; ++n) {
-        const openvdb::Vec3f centre(where(random), where(random), where(random));
-        auto ball = sphereGrid(size(random), centre, voxel);
+        const openvdb::Vec3f center(where(random), where(random), where(random));
+        auto ball = sphereGrid(size(random), center, voxel);
         openvdb::tools::csgUnion(*all, *ball);
     }
     if (rough) {

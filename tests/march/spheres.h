@@ -6,9 +6,9 @@
 
 namespace stratum::test {
 
-inline openvdb::FloatGrid::Ptr sphereGrid(float radius, const openvdb::Vec3f& centre, float voxel,
+inline openvdb::FloatGrid::Ptr sphereGrid(float radius, const openvdb::Vec3f& center, float voxel,
                                           float half_width = 3) {
-    auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, centre, voxel, half_width);
+    auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, center, voxel, half_width);
     grid->setName("surface");
     return grid;
 }

@@ -37,7 +37,7 @@ TEST(PrintAttribute, SaysWhatTheGridSays) {
         EXPECT_EQ(attributeNamed(voxelize::attributeName(kAll[n])), kAll[n]);
         const auto eager = march::makeAttributeLookup(*grids[n]);
         const auto source = makePrintAttribute(field, kAll[n]);
-        const auto late = source->makeLookup();
+        const auto lazy = source->makeLookup();
         // Points in and around the narrow band, in no order.
         std::mt19937 random(7);
         std::uniform_real_distribution<double> near(-2, 2);
@@ -49,7 +49,7 @@ TEST(PrintAttribute, SaysWhatTheGridSays) {
             const openvdb::Vec3d p = surface->indexToWorld(it.getCoord().asVec3d() +
                                                            openvdb::Vec3d(near(random), near(random), near(random)));
             const auto a = eager->at({p[0], p[1], p[2]});
-            const auto b = late->at({p[0], p[1], p[2]});
+            const auto b = lazy->at({p[0], p[1], p[2]});
             ASSERT_EQ(a.has_value(), b.has_value()) << p;
             nothing += a ? 0 : 1;
             if (!a) continue;

@@ -93,10 +93,10 @@ void expectSameSamples(const PrintField& field, const openvdb::FloatGrid& grid) 
 // The brick grids of both have the same box, and every surface cell of one is one of the other.
 void expectSameBricks(const std::shared_ptr<const PrintField>& field, const openvdb::FloatGrid& grid) {
     const march::BrickGrid eager(grid, march::BrickValues::Int16);
-    const march::BrickGrid late(field, march::BrickValues::Int16);
-    ASSERT_EQ(late.origin(), eager.origin());
-    ASSERT_EQ(late.size(), eager.size());
-    EXPECT_EQ(late.brickCount(), 0U);
+    const march::BrickGrid lazy(field, march::BrickValues::Int16);
+    ASSERT_EQ(lazy.origin(), eager.origin());
+    ASSERT_EQ(lazy.size(), eager.size());
+    EXPECT_EQ(lazy.brickCount(), 0U);
     const auto size = eager.size();
     std::atomic<std::size_t> wrong{0};
     std::atomic<std::size_t> surface_cells{0};
@@ -105,7 +105,7 @@ void expectSameBricks(const std::shared_ptr<const PrintField>& field, const open
             for (int y = 0; y < size[1]; ++y)
                 for (int z = 0; z < size[2]; ++z) {
                     const march::Block a = findBlock(eager, {x, y, z});
-                    const march::Block b = findBlock(late, {x, y, z});
+                    const march::Block b = findBlock(lazy, {x, y, z});
                     if (a.surface != b.surface) ++wrong;
                     if (!a.surface || !b.surface) {
                         // Skip what both know to be empty, along z.
@@ -113,12 +113,12 @@ void expectSameBricks(const std::shared_ptr<const PrintField>& field, const open
                         continue;
                     }
                     ++surface_cells;
-                    if (cornersOf(eager, a.brick, {x, y, z}) != cornersOf(late, b.brick, {x, y, z})) ++wrong;
+                    if (cornersOf(eager, a.brick, {x, y, z}) != cornersOf(lazy, b.brick, {x, y, z})) ++wrong;
                 }
     });
     EXPECT_EQ(wrong.load(), 0U);
     EXPECT_GT(surface_cells.load(), 1000U);
-    EXPECT_EQ(late.brickCount(), eager.brickCount());
+    EXPECT_EQ(lazy.brickCount(), eager.brickCount());
 }
 
 void expectSame(const ToolpathPtr& toolpath, const std::vector<std::uint32_t>& selection,
@@ -191,13 +191,13 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
     const voxelize::Lattice lattice =
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {std::nullopt, 2});
     const auto field = std::make_shared<PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print");
-    march::BrickGrid late(std::shared_ptr<const march::LeafField>(field), march::BrickValues::Int16);
+    march::BrickGrid lazy(std::shared_ptr<const march::LeafField>(field), march::BrickValues::Int16);
     const auto whole = static_cast<std::uint32_t>(toolpath->beads.size());
     std::size_t changed_before = 0;
     for (const std::uint32_t end : {whole, whole / 2 + 7, whole / 2 + 8, whole / 3, whole}) {
         SCOPED_TRACE(end);
         const auto changed = field->printUntil(end);
-        late.update(changed);
+        lazy.update(changed);
         if (end == whole / 2 + 8) {
             // One bead.
             EXPECT_GT(changed.size(), 0U);
@@ -206,14 +206,14 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
         changed_before = changed.size();
         voxelize::Voxelizer voxelizer(*toolpath, selection, lattice);
         const march::BrickGrid eager(*voxelizer.printUntil(end), march::BrickValues::Int16);
-        const openvdb::Coord shift = eager.origin() - late.origin();
+        const openvdb::Coord shift = eager.origin() - lazy.origin();
         std::atomic<std::size_t> wrong{0};
         std::atomic<std::size_t> surface_cells{0};
-        parallelFor(static_cast<std::size_t>(late.size()[0]), 8, [&](std::size_t first, std::size_t last) {
+        parallelFor(static_cast<std::size_t>(lazy.size()[0]), 8, [&](std::size_t first, std::size_t last) {
             for (int x = static_cast<int>(first); x != static_cast<int>(last); ++x)
-                for (int y = 0; y < late.size()[1]; ++y)
-                    for (int z = 0; z < late.size()[2]; ++z) {
-                        const march::Block b = findBlock(late, {x, y, z});
+                for (int y = 0; y < lazy.size()[1]; ++y)
+                    for (int z = 0; z < lazy.size()[2]; ++z) {
+                        const march::Block b = findBlock(lazy, {x, y, z});
                         const glm::ivec3 at(x - shift[0], y - shift[1], z - shift[2]);
                         const bool within = at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < eager.size()[0] &&
                                             at.y < eager.size()[1] && at.z < eager.size()[2];
@@ -225,12 +225,12 @@ TEST(PrintField, ChangesOnlyWhatANewMomentChanges) {
                             continue;
                         }
                         ++surface_cells;
-                        if (cornersOf(eager, a.brick, at) != cornersOf(late, b.brick, {x, y, z})) ++wrong;
+                        if (cornersOf(eager, a.brick, at) != cornersOf(lazy, b.brick, {x, y, z})) ++wrong;
                     }
         });
         EXPECT_EQ(wrong.load(), 0U);
         EXPECT_GT(surface_cells.load(), 1000U);
-        EXPECT_EQ(late.brickCount(), eager.brickCount());
+        EXPECT_EQ(lazy.brickCount(), eager.brickCount());
     }
 }
 
@@ -256,16 +256,16 @@ TEST(PrintField, IsTracedByManyThreadsAsTheGridIs) {
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.1, std::nullopt});
     const auto grid = voxelize::voxelize(*toolpath, selection, lattice);
     const auto eager = march::makeBrickIntersector(*grid);
-    const auto [late, bricks] = march::makeTracedBricks(
+    const auto [lazy, bricks] = march::makeTracedBricks(
         std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"));
-    ASSERT_EQ(late->bounds().min, eager->bounds().min);
-    ASSERT_EQ(late->bounds().max, eager->bounds().max);
+    ASSERT_EQ(lazy->bounds().min, eager->bounds().min);
+    ASSERT_EQ(lazy->bounds().max, eager->bounds().max);
     const std::vector<trace::Ray> rays = raysThrough(2000);
     std::vector<trace::Hit> expected(rays.size());
     eager->makeTracer()->intersectStream(rays, expected);
     std::atomic<std::size_t> wrong{0};
     std::atomic<std::size_t> hits{0};
-    parallelFor(8, 1, [&, &shape = *late](std::size_t, std::size_t) {
+    parallelFor(8, 1, [&, &shape = *lazy](std::size_t, std::size_t) {
         std::vector<trace::Hit> found(rays.size());
         shape.makeTracer()->intersectStream(rays, found);
         for (std::size_t n = 0; n < rays.size(); ++n) {
@@ -294,11 +294,11 @@ TEST(PrintField, IsTracedInLittleRoomAsTheGridIs) {
     eager->makeTracer()->intersectStream(rays, expected);
     for (const std::size_t room : {march::BrickSlots::kLeastBound, std::size_t{100}, std::size_t{500}}) {
         SCOPED_TRACE(room);
-        const auto [late, bricks] = march::makeTracedBricks(
+        const auto [lazy, bricks] = march::makeTracedBricks(
             std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print"),
             march::BrickValues::Int16, room * brick);
         std::atomic<std::size_t> wrong{0};
-        parallelFor(4, 1, [&, &shape = *late](std::size_t first, std::size_t) {
+        parallelFor(4, 1, [&, &shape = *lazy](std::size_t first, std::size_t) {
             const auto tracer = shape.makeTracer();
             std::vector<trace::Hit> found(rays.size());
             std::vector<std::uint8_t> blocked(rays.size());
@@ -332,9 +332,9 @@ TEST(PrintField, ListsFewBricksWithoutSurface) {
     const voxelize::Lattice lattice =
         voxelize::chooseLattice(*toolpath, selection, voxelize::boundsOf(*toolpath, selection), {0.05, std::nullopt});
     const auto field = std::make_shared<const PrintField>(toolpath, selection, lattice, voxelize::Placement(), "print");
-    const march::BrickGrid late(field, march::BrickValues::Int16);
+    const march::BrickGrid lazy(field, march::BrickValues::Int16);
     const march::BrickGrid eager(*voxelize::voxelize(*toolpath, selection, lattice), march::BrickValues::Int16);
-    EXPECT_LE(late.listedCount(), 2 * eager.brickCount());
+    EXPECT_LE(lazy.listedCount(), 2 * eager.brickCount());
     EXPECT_EQ(field->leavesMade(), 0U);
 }
 

@@ -50,9 +50,9 @@ inline FunctionIntersector nothing(double half = 1.0) {
     return {{glm::dvec3(-half), glm::dvec3(half)}, 1e-6, [](const trace::Ray&, trace::Hit&) { return false; }};
 }
 
-inline FunctionIntersector sphere(const glm::dvec3& centre, double radius) {
-    return {{centre - radius, centre + radius}, 1e-6 * radius, [=](const trace::Ray& ray, trace::Hit& hit) {
-                const glm::dvec3 m = ray.origin - centre;
+inline FunctionIntersector sphere(const glm::dvec3& center, double radius) {
+    return {{center - radius, center + radius}, 1e-6 * radius, [=](const trace::Ray& ray, trace::Hit& hit) {
+                const glm::dvec3 m = ray.origin - center;
                 const double b = glm::dot(m, ray.direction);
                 const double root = b * b - glm::dot(m, m) + radius * radius;
                 if (root < 0.0) return false;
@@ -60,7 +60,7 @@ inline FunctionIntersector sphere(const glm::dvec3& centre, double radius) {
                     if (t < ray.t_min || t > ray.t_max) continue;
                     hit.t = t;
                     hit.position = ray.origin + t * ray.direction;
-                    hit.normal = glm::normalize(hit.position - centre);
+                    hit.normal = glm::normalize(hit.position - center);
                     return true;
                 }
                 return false;

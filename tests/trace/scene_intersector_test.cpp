@@ -17,8 +17,8 @@
 namespace stratum::trace {
 namespace {
 
-std::shared_ptr<const Intersector> ball(const openvdb::Vec3f& centre, float radius) {
-    return makeBrickIntersector(*test::sphereGrid(radius, centre, 0.1F));
+std::shared_ptr<const Intersector> ball(const openvdb::Vec3f& center, float radius) {
+    return march::makeBrickIntersector(*test::sphereGrid(radius, center, 0.1F));
 }
 
 TEST(SceneIntersector, ASingleObjectInItsPlaceIsItself) {
@@ -42,7 +42,7 @@ TEST(SceneIntersector, FindsTheNearestOfAll) {
     // Overlapping balls, one of them twice, against the union of the same in one grid, whose field is the minimum.
     const auto one = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     const Placement aside{glm::dmat3(1.0), {1.5, 0.3, 0}};
-    const auto shape = std::shared_ptr<const Intersector>(makeBrickIntersector(*one));
+    const auto shape = std::shared_ptr<const Intersector>(march::makeBrickIntersector(*one));
     const auto other = ball(openvdb::Vec3f(-1.2F, 0.4F, 0.9F), 0.8F);
     const auto scene = makeSceneIntersector({{shape, {}}, {other, {}}, {shape, aside}});
     const auto tracer = scene->makeTracer();
@@ -83,7 +83,7 @@ TEST(SceneIntersector, FindsTheNearestOfAll) {
 }
 
 TEST(SceneIntersector, StreamsGiveTheSameBits) {
-    const auto shape = std::shared_ptr<const Intersector>(makeBrickIntersector(*test::rubble(0.1F, false)));
+    const auto shape = std::shared_ptr<const Intersector>(march::makeBrickIntersector(*test::rubble(0.1F, false)));
     const auto scene = makeSceneIntersector({{shape, {}},
                                              {shape, Placement::of({0.5, 0.5, 0.7}, {10, 20, 30}, {3, 1, 0})},
                                              {shape, {glm::dmat3(1.0), {-2, -6, 0}}}});
@@ -110,7 +110,7 @@ TEST(SceneIntersector, StreamsGiveTheSameBits) {
 
 /// `count` copies of two shapes: on a plate, some turned, some exactly in the same place, and a plane without an end.
 std::vector<SceneObject> crowd(int count) {
-    const auto shape = std::shared_ptr<const Intersector>(makeBrickIntersector(*test::rubble(0.2F, false)));
+    const auto shape = std::shared_ptr<const Intersector>(march::makeBrickIntersector(*test::rubble(0.2F, false)));
     const auto other = ball(openvdb::Vec3f(0.05F, 0, 0), 1);
     std::vector<SceneObject> objects;
     for (int n = 0; n < count; ++n) {

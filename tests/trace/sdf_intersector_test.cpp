@@ -27,12 +27,12 @@ TEST(SdfIntersector, HitsASphereToRounding) {
     std::mt19937 random(1);
     int hits = 0;
     for (int n = 0; n < 20000; ++n) {
-        const glm::dvec3 centre(1, 2, 3);
+        const glm::dvec3 center(1, 2, 3);
         Ray ray;
-        ray.origin = centre + 30.0 * test::randomDirection(random);
-        ray.direction = glm::normalize(centre + 2.5 * test::randomDirection(random) - ray.origin);
-        const double along = glm::dot(centre - ray.origin, ray.direction);
-        const double miss = glm::length(centre - ray.origin - along * ray.direction);
+        ray.origin = center + 30.0 * test::randomDirection(random);
+        ray.direction = glm::normalize(center + 2.5 * test::randomDirection(random) - ray.origin);
+        const double along = glm::dot(center - ray.origin, ray.direction);
+        const double miss = glm::length(center - ray.origin - along * ray.direction);
         Hit hit;
         const bool found = tracer->intersect(ray, hit);
         EXPECT_EQ(tracer->occluded(ray), found);
@@ -43,7 +43,7 @@ TEST(SdfIntersector, HitsASphereToRounding) {
         if (!found) continue;
         ++hits;
         EXPECT_NEAR(hit.t, along - std::sqrt(4 - miss * miss), 1e-12 / std::max(chord, 1e-3));
-        EXPECT_GT(glm::dot(hit.normal, glm::normalize(hit.position - centre)), 1 - 1e-10);
+        EXPECT_GT(glm::dot(hit.normal, glm::normalize(hit.position - center)), 1 - 1e-10);
     }
     EXPECT_GT(hits, 8000);
 }
@@ -54,8 +54,8 @@ TEST(SdfIntersector, AgreesWithItsOwnVoxels) {
     const auto exact_tracer = exact->makeTracer();
     double last = 1e9;
     for (const double voxel : {0.08, 0.04, 0.02}) {
-        const auto grid = makeSdfGrid(*part, voxel);
-        const auto bricks = makeBrickIntersector(*grid);
+        const auto grid = march::makeSdfGrid(*part, voxel);
+        const auto bricks = march::makeBrickIntersector(*grid);
         const auto tracer = bricks->makeTracer();
         int hits = 0;
         int differ = 0;
@@ -128,9 +128,9 @@ TEST(SdfIntersector, EndlessShapesAreTraced) {
     EXPECT_FALSE(tracer->intersect({{1, 1, 5}, {0, 0, 1}}, hit));
     EXPECT_FALSE(tracer->intersect({{1, 1, 5}, {1, 0, 0}}, hit));  // between the rows, for ever
     EXPECT_FALSE(tracer->intersect({{1, 1, 5}, {std::nan(""), 0, 1}}, hit));
-    EXPECT_THROW(makeSdfGrid(*sdfPlane({0, 0, 1}, 0), 0.1), UsageError);
-    EXPECT_THROW(makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 0), UsageError);
-    EXPECT_THROW(makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 1e-9), UsageError);
+    EXPECT_THROW(march::makeSdfGrid(*sdfPlane({0, 0, 1}, 0), 0.1), UsageError);
+    EXPECT_THROW(march::makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 0), UsageError);
+    EXPECT_THROW(march::makeSdfGrid(*sdfSphere({0, 0, 0}, 1), 1e-9), UsageError);
     EXPECT_THROW(makeSdfIntersector(sdfSphere({0, 0, 0}, 1), 0), UsageError);
 }
 
@@ -139,10 +139,10 @@ TEST(SdfGrid, IsRefusedIfItWouldNotFit) {
     openvdb::initialize();
     const auto shape = sdfUnion({sdfSphere({0, 0, 0}, 1), sdfTorus({1, 0, 0}, 2, 0.3, 2)});
     for (const double voxel : {0.1, 0.03, 0.01}) {
-        const auto bytes = static_cast<double>(makeSdfGrid(*shape, voxel)->memUsage());
-        EXPECT_NO_THROW(makeSdfGrid(*shape, voxel, static_cast<std::size_t>(2 * bytes))) << voxel;
+        const auto bytes = static_cast<double>(march::makeSdfGrid(*shape, voxel)->memUsage());
+        EXPECT_NO_THROW(march::makeSdfGrid(*shape, voxel, static_cast<std::size_t>(2 * bytes))) << voxel;
         try {
-            makeSdfGrid(*shape, voxel, static_cast<std::size_t>(0.4 * bytes));
+            march::makeSdfGrid(*shape, voxel, static_cast<std::size_t>(0.4 * bytes));
             ADD_FAILURE() << "not refused";
         } catch (const UsageError& error) {
             EXPECT_NE(std::string(error.what()).find("GB are free; take a voxel_size of"), std::string::npos)

@@ -28,14 +28,14 @@ public:
                 const double rho = voxelize::PlanPath(toolpath_, toolpath_.beads[bead]).distance(x, y);
                 d[l] = std::min(d[l], rho - (toolpath_.beads[bead].width / 2 - layer.radius));
             }
-            phi = std::min(phi, std::hypot(std::max(d[l], 0.0), z - layer.centre_z) - layer.radius);
+            phi = std::min(phi, std::hypot(std::max(d[l], 0.0), z - layer.center_z) - layer.radius);
         }
         for (const voxelize::Weld& weld : stack_.welds) {
             const voxelize::Layer& lower = stack_.layers[weld.lower];
             const voxelize::Layer& upper = stack_.layers[weld.upper];
-            const double half = 0.5 * (upper.centre_z - lower.centre_z);
+            const double half = 0.5 * (upper.center_z - lower.center_z);
             const double bound =
-                std::max({d[weld.lower], d[weld.upper], std::abs(z - 0.5 * (lower.centre_z + upper.centre_z)) - half});
+                std::max({d[weld.lower], d[weld.upper], std::abs(z - 0.5 * (lower.center_z + upper.center_z)) - half});
             if (bound < 0) phi = std::min(phi, bound);
         }
         return phi;

@@ -264,7 +264,7 @@ void Machine::setPosition(const Command& command) {
 
 void Machine::setAbsolute(const Command& command) {
     const bool absolute = command.code == 90;
-    if (command.subcode != 0) {  // of arcs' centres only: LinuxCNC's G90.1 and G91.1
+    if (command.subcode != 0) {  // of arcs' centers only: LinuxCNC's G90.1 and G91.1
         if (command.subcode == 1 && absolute) warn("G90.1 is nothing that printers know; I and J count from the start");
         return;
     }

@@ -13,7 +13,7 @@
 
 namespace stratum::gcode {
 
-/// sRGB of the filament of `toolpath.beads[bead]`; nullopt where the file states no colour for its tool.
+/// sRGB of the filament of `toolpath.beads[bead]`; nullopt where the file states no color for its tool.
 std::optional<Rgb> colorOf(const Toolpath& toolpath, std::size_t bead);
 
 /// The distinct colors of the selected beads, in the order of first use; nullopt for beads without a stated color.

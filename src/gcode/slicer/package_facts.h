@@ -28,7 +28,7 @@ PackageFacts readSliceInfo(std::string_view xml, int plate);
 /// The paths of the materials that a UFP's /3D/_rels/model.gcode.rels names, in its order, without the first '/'.
 std::vector<std::string> materialPaths(std::string_view xml);
 
-/// Appends the name and colour of a material (*.xml.fdm_material) as those of the next tool.
+/// Appends the name and color of a material (*.xml.fdm_material) as those of the next tool.
 void readMaterial(std::string_view xml, PackageFacts& facts);
 
 }  // namespace stratum::gcode

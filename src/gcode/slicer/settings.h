@@ -26,7 +26,7 @@ struct Settings {
     std::optional<bool> relative_e;               ///< E words are increments
     std::optional<bool> volumetric_e;             ///< E words are mm^3
     std::string volumetric_reason;                ///< where the file states it
-    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's colour, else the extruder's
+    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's color, else the extruder's
     std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
     std::optional<double> nozzle_diameter;  ///< mm, of the first tool
     std::optional<double> extrusion_width;  ///< mm

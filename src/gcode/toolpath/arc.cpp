@@ -41,8 +41,8 @@ std::optional<Arc> arcFromRadius(PlanPoint start, PlanPoint end, double radius, 
     const double length = std::hypot(chord.x, chord.y);
     if (!(length > kSamePoint) || length / 2 - std::abs(radius) > tolerance(std::abs(radius))) return std::nullopt;
     const double squared = radius * radius - length * length / 4;
-    const double height = squared > 0 ? std::sqrt(squared) : 0;  // of the centre over the chord
-    // Going counter-clockwise the centre of the shorter arc is on the left, of the longer one on the right.
+    const double height = squared > 0 ? std::sqrt(squared) : 0;  // of the center over the chord
+    // Going counter-clockwise the center of the shorter arc is on the left, of the longer one on the right.
     const double side = clockwise != (radius < 0) ? -height : height;
     const Arc arc{.center_x = start.x + chord.x / 2 - side * chord.y / length,
                   .center_y = start.y + chord.y / 2 + side * chord.x / length,

@@ -1,5 +1,5 @@
-// Centre and sweep of a G2/G3 move in the plane, from I/J or from R.
-// Sources: NIST RS274/NGC 3.5.3; Marlin G2_G3.cpp (which of the two centres R means).
+// Center and sweep of a G2/G3 move in the plane, from I/J or from R.
+// Sources: NIST RS274/NGC 3.5.3; Marlin G2_G3.cpp (which of the two centers R means).
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"

@@ -1,4 +1,4 @@
-// "#RRGGBB" as slicers write colours.
+// "#RRGGBB" as slicers write colors.
 #pragma once
 
 #include <array>

@@ -44,8 +44,8 @@ std::string_view featureName(Feature feature);
 Feature featureNamed(std::string_view name);
 
 /// A circular plan path. The path starts at the bead's start, turns by `sweep` radians (counter-clockwise positive,
-/// |sweep| <= 2 pi) about the centre, with z linear in the angle. Its radius is the mean of the distances of start and
-/// end from the centre, so that a file's rounding (a micrometre) is shared by both ends.
+/// |sweep| <= 2 pi) about the center, with z linear in the angle. Its radius is the mean of the distances of start and
+/// end from the center, so that a file's rounding (a micrometre) is shared by both ends.
 struct Arc {
     double center_x = 0;     ///< mm
     double center_y = 0;     ///< mm
@@ -66,7 +66,7 @@ static_assert(sizeof(Bead) == 60);
 
 /// Properties that consecutive beads share; a bead refers to its run by index.
 struct Run {
-    float height = 0;          ///< mm, of the layer: the bead's centre is at z - height / 2
+    float height = 0;          ///< mm, of the layer: the bead's center is at z - height / 2
     float speed = 0;           ///< mm/s, the feed rate in force
     std::uint32_t layer = 0;   ///< 1, 2, ... as slicers count; 0 is what comes before the first layer (prime lines)
     std::uint16_t object = 0;  ///< index into Toolpath::objects; 0 is "no object"
@@ -82,7 +82,7 @@ struct Warning {
     std::uint32_t count = 0;
 };
 
-/// The filament of a tool has another colour from a bead on (a manual change of filament).
+/// The filament of a tool has another color from a bead on (a manual change of filament).
 struct ColorChange {
     std::uint32_t first_bead = 0;  ///< index into Toolpath::beads; may be one past the last
     std::uint8_t tool = 0;

@@ -19,20 +19,20 @@ namespace stratum::march {
 /// grid is not needed afterwards. Throws InputError for grids that requireTraceable() refuses. Tracers keep no state.
 std::unique_ptr<trace::Intersector> makeBrickIntersector(const openvdb::FloatGrid& grid,
                                                          BrickValues values = BrickValues::Int16);
-/// The same of a file: large level sets are laid out, brick by brick, when rays first come there, so that a picture
-/// costs what it shows. The hits are the same. Their samples take no more than `cache_bytes` at a time: what no ray
-/// came to lately makes room. Throws UsageError if that is too little (see BrickGrid).
+/// The same of a file: bricks of large level sets are lazy, i.e. laid out when rays first reach them. The hits are the
+/// same. Their samples take at most `cache_bytes` at a time: bricks not read recently are evicted. Throws UsageError if
+/// that is too little (see BrickGrid).
 std::unique_ptr<trace::Intersector> makeBrickIntersector(
     std::shared_ptr<const LeafFile> file, BrickValues values = BrickValues::Int16,
     std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
-/// The same of a level set whose samples are made where rays come. The hits are those of its grid.
+/// The same of a level set whose samples are computed on demand. The hits are those of its grid.
 std::unique_ptr<trace::Intersector> makeBrickIntersector(
     std::shared_ptr<const LeafField> field, BrickValues values = BrickValues::Int16,
     std::size_t cache_bytes = std::numeric_limits<std::size_t>::max());
 
 class BrickGrid;
-/// An intersector together with the bricks that it traces: to count those that rays came to, and to tell them that
-/// their field has changed. Both share one owner: either keeps the other alive.
+/// An intersector together with the bricks that it traces, to count the bricks that rays reached and to update them
+/// after their field has changed. Both share one owner: either keeps the other alive.
 struct TracedBricks {
     std::shared_ptr<const trace::Intersector> intersector;
     std::shared_ptr<BrickGrid> bricks;

@@ -87,7 +87,7 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
         if (end > file->file_.bytes().size() || first > end) cursor.fail("places of other leaves");
         TreeReader reader(*file);
         walkVdbTree(cursor, file->format_, reader);
-        if (cursor.place() != first) cursor.fail("places of other leaves");
+        if (cursor.offset() != first) cursor.fail("places of other leaves");
         file->placeLeaves(first, end, *grid);
     } catch (const InputError&) {
         throw;
@@ -99,9 +99,9 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
     return file;
 }
 
-VdbCursor LeafFile::cursorAt(std::uint64_t place) const {
+VdbCursor LeafFile::cursorAt(std::uint64_t offset) const {
     VdbCursor cursor(file_.bytes(), where_, &name_);
-    cursor.moveTo(static_cast<std::int64_t>(place));
+    cursor.moveTo(static_cast<std::int64_t>(offset));
     return cursor;
 }
 
@@ -148,32 +148,32 @@ void LeafFile::placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid
         std::istringstream in{std::string(grid.sizes)};
         in.exceptions(std::ios::badbit | std::ios::failbit);
         sizes.read(in);
-        std::uint64_t place = first;
+        std::uint64_t offset = first;
         for (std::size_t n = 0; n < leaves_.size(); ++n) {
-            leaves_[n].place = place;
+            leaves_[n].offset = offset;
             const std::int8_t kind = sizes.getMask(n);
-            place += kLeafMaskBytes + 1 + VdbValues::inactiveOf(kind) * sizeof(float) +
-                     (VdbValues::hasMask(kind) ? kLeafMaskBytes : 0) +
-                     static_cast<std::uint64_t>(sizes.getCompressedSize(n));
+            offset += kLeafMaskBytes + 1 + VdbValues::inactiveOf(kind) * sizeof(float) +
+                      (VdbValues::hasMask(kind) ? kLeafMaskBytes : 0) +
+                      static_cast<std::uint64_t>(sizes.getCompressedSize(n));
         }
-        if (place == end) return;
+        if (offset == end) return;
     }
     VdbCursor cursor = cursorAt(first);
     for (Leaf& leaf : leaves_) {
-        leaf.place = cursor.place();
+        leaf.offset = cursor.offset();
         (void)walkVdbValues(cursor, format_, cursor.take(kLeafMaskBytes));
     }
-    if (cursor.place() != end) cursor.fail("places of other leaves");
+    if (cursor.offset() != end) cursor.fail("places of other leaves");
 }
 
 const float* LeafFile::samples(std::size_t leaf, float* scratch) const {
-    VdbCursor cursor = cursorAt(leaves_[leaf].place);
+    VdbCursor cursor = cursorAt(leaves_[leaf].offset);
     const std::string_view active = cursor.take(kLeafMaskBytes);
     expand(walkVdbValues(cursor, format_, active), active, scratch);
     return scratch;
 }
 
-std::string_view LeafFile::activeOf(const Leaf& leaf) const { return cursorAt(leaf.place).take(kLeafMaskBytes); }
+std::string_view LeafFile::activeOf(const Leaf& leaf) const { return cursorAt(leaf.offset).take(kLeafMaskBytes); }
 
 float LeafFile::tile(const openvdb::Coord& at) const {
     const auto inNode = [&at](int log2_edge, int child_log2) {

@@ -46,12 +46,12 @@ public:
 private:
     struct Leaf {
         openvdb::Coord origin;
-        std::uint64_t place;  // of its values in the file, bytes
+        std::uint64_t offset;  // of its values in the file, bytes
     };
     class TreeReader;
 
     explicit LeafFile(const std::filesystem::path& path) : file_(path), where_(path.string()) {}
-    VdbCursor cursorAt(std::uint64_t place) const;
+    VdbCursor cursorAt(std::uint64_t offset) const;
     void placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid);
     void expand(const VdbValues& values, std::string_view active, float* out) const;
     std::string_view activeOf(const Leaf& leaf) const;

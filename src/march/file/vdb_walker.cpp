@@ -74,7 +74,7 @@ void checkMetadata(VdbCursor& cursor, VdbGrid* grid) {
 
 /// Its bytes.
 std::string_view checkTransform(VdbCursor& cursor) {
-    const std::uint64_t first = cursor.place();
+    const std::uint64_t first = cursor.offset();
     const auto all = [&] { return cursor.since(first); };
     const std::string type = cursor.text();
     std::size_t doubles = 0;
@@ -127,11 +127,11 @@ VdbGrid readDescriptor(VdbCursor& cursor) {
         grid.type.resize(grid.type.size() - kHalf.size());
     }
     grid.parent = cursor.text();
-    grid.place = cursor.read<std::int64_t>();
+    grid.offset = cursor.read<std::int64_t>();
     grid.leaves = cursor.read<std::int64_t>();
     grid.end = cursor.read<std::int64_t>();
     // The next one is there: never before this one, or a list would have no end.
-    if (grid.end < 0 || static_cast<std::uint64_t>(grid.end) < cursor.place()) cursor.fail("grids that overlap");
+    if (grid.end < 0 || static_cast<std::uint64_t>(grid.end) < cursor.offset()) cursor.fail("grids that overlap");
     cursor.moveTo(grid.end);
     return grid;
 }
@@ -165,12 +165,12 @@ VdbNode readNode(VdbCursor& cursor, const VdbValueFormat& format, const openvdb:
 
 void VdbCursor::fail(std::string_view why) const {
     throw InputError(fmt::format("{}: is not a readable .vdb file ({} about byte {}); is it cut short?", where_,
-                                 grid_ != nullptr ? fmt::format("the grid {} is damaged", *grid_) : why, place_));
+                                 grid_ != nullptr ? fmt::format("the grid {} is damaged", *grid_) : why, offset_));
 }
 
-void VdbCursor::moveTo(std::int64_t place) {
-    if (place < 0 || static_cast<std::uint64_t>(place) > bytes_.size()) fail("a place beyond its end");
-    place_ = static_cast<std::size_t>(place);
+void VdbCursor::moveTo(std::int64_t offset) {
+    if (offset < 0 || static_cast<std::uint64_t>(offset) > bytes_.size()) fail("a place beyond its end");
+    offset_ = static_cast<std::size_t>(offset);
 }
 
 VdbHeads walkVdbHeads(VdbCursor& cursor) {
@@ -182,11 +182,11 @@ VdbHeads walkVdbHeads(VdbCursor& cursor) {
     // No room is made for them beforehand: the count is not believed until they are there.
     while (heads.grids.size() < static_cast<std::size_t>(count)) heads.grids.push_back(readDescriptor(cursor));
     for (VdbGrid& grid : heads.grids) {
-        cursor.moveTo(grid.place);
+        cursor.moveTo(grid.offset);
         grid.compression = cursor.read<std::uint32_t>();
         checkMetadata(cursor, &grid);
         grid.transform = checkTransform(cursor);
-        grid.tree = cursor.place();
+        grid.tree = cursor.offset();
     }
     return heads;
 }

@@ -30,11 +30,11 @@ public:
     /// Throws InputError.
     [[noreturn]] void fail(std::string_view why) const;
     [[noreturn]] void endsEarly() const { fail("it ends early"); }
-    void moveTo(std::int64_t place);
+    void moveTo(std::int64_t offset);
     std::string text() { return std::string(take(read<std::uint32_t>())); }
     /// The bytes from `first` to here.
     std::string_view since(std::uint64_t first) const {
-        return bytes_.substr(static_cast<std::size_t>(first), place_ - static_cast<std::size_t>(first));
+        return bytes_.substr(static_cast<std::size_t>(first), offset_ - static_cast<std::size_t>(first));
     }
     const std::string& where() const { return where_; }
 
@@ -52,7 +52,7 @@ struct VdbGrid {
     std::string type;    ///< without what is said of halves
     std::string parent;  ///< the grid that it is an instance of; empty: none
     bool half = false;
-    std::int64_t place = 0, leaves = 0, end = 0;
+    std::int64_t offset = 0, leaves = 0, end = 0;
     std::uint32_t compression = 0;
     /// io::DelayedLoadMetadata: the sizes of the leaves, so that nobody has to look at every one. The bytes begin
     /// with their own number.

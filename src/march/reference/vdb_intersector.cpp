@@ -49,7 +49,7 @@ public:
         : map_(map),
           reference_(reference),
           accessor_(grid.getConstAccessor()),
-          centre_(0.5 * (bounds.min + bounds.max)),
+          center_(0.5 * (bounds.min + bounds.max)),
           diagonal_(glm::length(bounds.max - bounds.min)) {}
 
     bool intersect(const trace::Ray& ray, trace::Hit& hit) override {
@@ -75,7 +75,7 @@ private:
     // the ray is traced; fixed in 13.0.1). The position is correct, and t is computed from it.
     bool nearest(const trace::Ray& ray, openvdb::Vec3d& index) {
         // OpenVDB scales times to index space: infinite ones are avoided.
-        const double t_max = std::min(ray.t_max, glm::length(ray.origin - centre_) + diagonal_);
+        const double t_max = std::min(ray.t_max, glm::length(ray.origin - center_) + diagonal_);
         // OpenVDB requires a start above zero.
         const double t_min = std::max(ray.t_min, openvdb::math::Delta<double>::value());
         if (!(t_max > t_min)) return false;
@@ -86,7 +86,7 @@ private:
     const openvdb::math::MapBase& map_;
     Reference reference_;  // a copy for each tracer: it has an accessor and the current ray
     openvdb::FloatGrid::ConstAccessor accessor_;
-    const glm::dvec3 centre_;  // of the bounds, world units
+    const glm::dvec3 center_;  // of the bounds, world units
     const double diagonal_;
 };
 

@@ -24,7 +24,7 @@ namespace {
 /// The tables that come with the project.
 std::filesystem::path tableFolder() {
     if (const char* data = std::getenv("STRATUM_DATA")) return std::filesystem::path(data) / "brdf";
-    // Installed, they stand where the program does, wherever the tree was moved to.
+    // Installed tables are found relative to the program, so the tree can be moved.
     std::error_code missing;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", missing);
     std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
@@ -99,17 +99,17 @@ std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     if (text.empty()) text = kDefaultBrdf;
     if (!isFormula(text)) return readNamed(text);
     const Preset preset = parsePreset(text, kOption);
-    const auto colour = [&] {
+    const auto bodyColor = [&] {
         for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
         return Color(preset.values[0], preset.values[1], preset.values[2]);
     };
     if (preset.name == "lambert") {
         requireValues(preset, 3, kOption, "lambert:R,G,B");
-        return std::make_shared<Lambert>(colour());
+        return std::make_shared<Lambert>(bodyColor());
     }
     requireValues(preset, 4, kOption, "plastic:R,G,B,ALPHA");
     requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
-    return std::make_shared<Plastic>(colour(), preset.values[3]);
+    return std::make_shared<Plastic>(bodyColor(), preset.values[3]);
 }
 
 }  // namespace stratum::shade

@@ -82,7 +82,7 @@ glm::dvec3 scanAt(const BrdfScan& scan, std::size_t incidence, double azimuth, d
         return (1.0 - p.weight) * glm::dvec3(scan.values[first]) + p.weight * glm::dvec3(scan.values[first + 1]);
     };
     const std::vector<double>& nodes = scan.azimuths;
-    // A half scan is its own mirror image; a full one goes on behind its last node with its first.
+    // A half scan is mirrored; a full one is periodic.
     double phi = wrapped(azimuth);
     if (nodes.back() <= kPiD + 1e-4 && nodes.front() < 0.5 * kPiD) {
         phi = std::min(phi, 2.0 * kPiD - phi);
@@ -129,7 +129,7 @@ double findMirrorAzimuth(const BrdfScan& scan) {
             const glm::dvec3 v = scanAt(scan, i, azimuth, scan.incidences[i]);
             sum += v.x + v.y + v.z;
         }
-        // pi wins ties: the project's own convention.
+        // In doubt pi, the project's own convention.
         if (sum > brightest * (1.0 + 1e-6) || (quarter == 2 && sum >= brightest * (1.0 - 1e-6))) {
             brightest = sum;
             best = azimuth;

@@ -188,8 +188,8 @@ std::optional<std::uint32_t> parseHex(std::string_view digits) {
     return 0x11U * ((value & 0xf00U) << 8 | (value & 0x0f0U) << 4 | (value & 0x00fU));
 }
 
-// What the studio's lamps make of a body's reflectance in the picture: about 1 on faces that look up, less on upright
-// ones. Chosen for the least differences of colour in the test.
+// Color in the picture over reflectance of the body in the studio's light: about 1 on horizontal faces, less on
+// vertical ones. Chosen for the least color differences in the test.
 constexpr float kStudioGain = 0.92f;
 
 }  // namespace

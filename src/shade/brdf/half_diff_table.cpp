@@ -49,12 +49,12 @@ HalfDiffTable HalfDiffTable::bake(const std::function<glm::dvec3(const glm::dvec
 
 Color HalfDiffTable::at(const glm::vec3& wo, const glm::vec3& wi) const {
     const glm::vec3 h = glm::normalize(wo + wi);
-    // Angles by atan2: acos has no digits left near 0, where the highlight is. Differences are made symmetric in wo and
-    // wi, so that f(a, b) and f(b, a) are the same bits.
+    // Angles by atan2: acos is inaccurate near 0, where the highlight is. Differences are symmetric in wo and wi, so
+    // that f(a, b) and f(b, a) are bit-identical.
     const float th = std::atan2(std::sqrt(h.x * h.x + h.y * h.y), h.z);
     const glm::vec3 d = 0.5f * (wi - wo);
     const float td = std::atan2(glm::length(d), 0.5f * glm::length(wo + wi));
-    // The turn: d against the tangent and the binormal of h. At h = n every turn is as good.
+    // The rotation: d in the tangent and binormal of h. At h = n it is arbitrary.
     const float s = std::sqrt(h.x * h.x + h.y * h.y);
     float pd = 0.0f;
     if (s > 0.0f) {

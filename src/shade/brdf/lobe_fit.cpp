@@ -117,10 +117,10 @@ double Lobes::eval(const glm::dvec3& light, const glm::dvec3& detector) const {
 }
 
 std::array<Lobes, 3> fitLobes(const BrdfScan& scan) {
-    // Every reading of a fine scan tells little more than every other one.
+    // A subset of the readings of a fine scan is sufficient.
     const std::size_t step_a = std::max<std::size_t>(1, scan.azimuths.size() / 18);
     const std::size_t step_p = std::max<std::size_t>(1, scan.polars.size() / 45);
-    constexpr double kGrazing = 85.0 * kPiD / 180.0;  // beyond, instruments see little
+    constexpr double kGrazing = 85.0 * kPiD / 180.0;  // beyond, measurements are unreliable
     std::array<Lobes, 3> lobes;
     for (int c = 0; c < 3; ++c) {
         float peak = 0.0f;

@@ -15,7 +15,7 @@ double quadrature(const Ggx& ggx, float cosine) {
     double sum = 0.0;
     for (int i = 0; i < kRings; ++i) {
         for (int j = 0; j < kAngles; ++j) {
-            // wo lies in the plane y = 0, so half of the angles will do.
+            // wo is in the plane y = 0, so half of the angles are sufficient.
             const glm::vec2 u(0.5f * (static_cast<float>(j) + 0.5f) / kAngles, (static_cast<float>(i) + 0.5f) / kRings);
             const glm::vec3 h = ggx.sampleVisible(wo, u);
             const float c = glm::dot(wo, h);
@@ -52,7 +52,7 @@ Plastic::Plastic(const Color& body, float alpha) : body_(body), body_max_(maxCom
 }
 
 std::shared_ptr<const Brdf> Plastic::recolored(const Color& body) const {
-    auto other = std::make_shared<Plastic>(*this);  // the coat's table doesn't know the body
+    auto other = std::make_shared<Plastic>(*this);  // the coat's table doesn't depend on the body
     other->body_ = body;
     other->body_max_ = maxComponent(body);
     return other;
@@ -67,13 +67,13 @@ float Plastic::coatAlbedo(float cosine) const {
 }
 
 float Plastic::coatShare(float cosine) const {
-    // By what each lobe reflects, but the coat gets more than its share: it is the lobe that meets the lamps.
+    // Proportional to the lobes' reflectances, but with more samples for the coat, which reflects small bright lights.
     const float e = coatAlbedo(cosine);
     return std::max(e / (e + (1.0f - e) * body_max_), 0.3f);
 }
 
 float Plastic::coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const {
-    // wo.h and wi.h are equal but for rounding; their mean keeps f(a, b) and f(b, a) the same to the bit.
+    // wo.h and wi.h are equal except for rounding; with their mean f(a, b) and f(b, a) are bit-identical.
     const float c = std::max(0.0f, 0.5f * (glm::dot(wo, h) + glm::dot(wi, h)));
     return fresnelDielectric(c, kEta) * ggx_.d(h) * ggx_.visibility(wo, wi);
 }

@@ -10,7 +10,7 @@ namespace stratum::shade {
 
 TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std::vector<std::string> notes)
     : table_(std::move(table)), notes_(std::move(notes)) {
-    // One lobe for all channels, and rather a little too wide: what is missed in the tails makes noise.
+    // One lobe for all channels, slightly too wide: undersampled tails would be noisy.
     double weight = 0.0;
     double log_alpha = 0.0;
     Color body(0.0f);
@@ -21,7 +21,7 @@ TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std
         body[c] = static_cast<float>(std::min(l.kd, 1.0));
     }
     ggx_.alpha = static_cast<float>(std::clamp(1.1 * std::exp(log_alpha / std::max(weight, 1e-12)), 0.005, 1.0));
-    // The albedo wants a density, the density a share of the lobes: half and half serves for the first.
+    // The albedo's quadrature needs a density, whose lobe weights depend on the albedo: it starts with equal weights.
     gloss_share_.fill(0.5f);
     scale_.fill(Color(1.0f));
     std::array<float, kNodes> shares{};
@@ -31,7 +31,7 @@ TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std
         const float cosine = s * s;
         const Color a = albedo({std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine});
         table_albedo_ = std::max(table_albedo_, maxComponent(a));
-        // A little below 1, so that neither the quadrature nor the straight line between nodes can reach above it.
+        // Slightly below 1, so that errors of quadrature and interpolation don't exceed it.
         for (int c = 0; c < 3; ++c) scale_[n][c] = a[c] > 0.995f ? 0.995f / a[c] : 1.0f;
         scaled = scaled || std::min({scale_[n].r, scale_[n].g, scale_[n].b}) < 1.0f;
         const float all = std::max(luminance(a), 1e-6f);

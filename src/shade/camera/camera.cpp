@@ -21,8 +21,7 @@ struct NamedView {
     glm::dvec3 forward;  // from the camera into the scene
 };
 
-/// Three-quarter view from the front right, 28 degrees above the bed: lower than a true isometric view, as one looks at
-/// a thing on a table.
+/// Three-quarter view from the front right, 28 degrees above the bed: lower than a true isometric view.
 const glm::dvec3 kIso = {-std::cos(28.0 * std::numbers::pi / 180.0) * std::sin(35.0 * std::numbers::pi / 180.0),
                          std::cos(28.0 * std::numbers::pi / 180.0) * std::cos(35.0 * std::numbers::pi / 180.0),
                          -std::sin(28.0 * std::numbers::pi / 180.0)};
@@ -57,7 +56,7 @@ struct Axis {
         return -(high + low) / (2.0 * slope);
     }
     /// Position at this depth from which the points are seen equally far to both sides.
-    double centred(double back) const {
+    double centered(double back) const {
         double narrow = 0.0;
         double wide = slope;
         double position = 0.0;
@@ -125,7 +124,7 @@ Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec
 
 namespace {
 
-/// With the lens that the options ask for.
+/// The camera with the lens of the options.
 Camera focused(const Camera& camera, const CameraOptions& options, const trace::Box& box) {
     double radius = 0.5 * options.aperture;
     if (options.f_number > 0.0) {
@@ -185,7 +184,7 @@ Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, int w
     double back = std::min(x.tightest(), y.tightest());
     // A box without any size has no distance of its own.
     if (glm::length(box.max - box.min) <= 0.0) back = -1.0;
-    camera.eye_ = middle + back * camera.forward_ + x.centred(back) * camera.right_ + y.centred(back) * camera.up_;
+    camera.eye_ = middle + back * camera.forward_ + x.centered(back) * camera.right_ + y.centered(back) * camera.up_;
     return camera;
 }
 

@@ -19,7 +19,7 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::size_t kFewest = 6;
-constexpr double kFlat = 1e-3;  // thickness of the points against their spread; less is a plane to a photograph
+constexpr double kFlat = 1e-3;  // thickness of the points over their spread; less counts as a plane
 
 template <std::size_t N>
 using Matrix = std::array<std::array<double, N>, N>;
@@ -104,7 +104,7 @@ double costOf(const Pinhole& camera, const std::vector<PointPair>& pairs) {
     for (const PointPair& pair : pairs) {
         const glm::dvec2 off = camera.project(pair.point) - pair.pixel;
         sum += glm::dot(off, off);
-        // Behind the camera is nowhere.
+        // Points behind the camera have no projection.
         if (!(glm::dot(camera.rows[2], pair.point - camera.eye) > 0)) return std::numeric_limits<double>::infinity();
     }
     return sum;
@@ -187,18 +187,18 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
         refuse("the photograph's size must be two numbers above 0");
     if (pairs.size() < kFewest)
         refuse(fmt::format("{} matched points; at least {} are needed, not all in a plane", pairs.size(), kFewest));
-    // Points about their middle and of unit spread, pixels about the picture's middle: or the equations drown in
-    // rounding.
+    // Normalization against rounding errors: points relative to their mean and of unit spread, pixels relative to the
+    // picture's middle.
     glm::dvec3 middle(0.0);
-    std::vector<PointPair> centred;
+    std::vector<PointPair> centered;
     for (const PointPair& pair : pairs) {
         const double sum = pair.pixel.x + pair.pixel.y + pair.point.x + pair.point.y + pair.point.z;
-        if (!std::isfinite(sum)) refuse(fmt::format("pair {} has a value that is no finite number", centred.size()));
-        centred.push_back({pair.pixel - 0.5 * glm::dvec2(width, height), pair.point});
+        if (!std::isfinite(sum)) refuse(fmt::format("pair {} has a value that is no finite number", centered.size()));
+        centered.push_back({pair.pixel - 0.5 * glm::dvec2(width, height), pair.point});
         middle += pair.point / static_cast<double>(pairs.size());
     }
     Matrix<3> spread{};
-    for (PointPair& pair : centred) {
+    for (PointPair& pair : centered) {
         pair.point -= middle;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
@@ -212,7 +212,7 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
         refuse("the points lie in a plane, which says too little of the focal length; add some that stand out of it");
     const double scale = 0.5 * std::max(width, height);
     Matrix<12> products{};
-    for (PointPair& pair : centred) {
+    for (PointPair& pair : centered) {
         pair.point /= size;
         const glm::dvec3& p = pair.point;
         const glm::dvec2 q = pair.pixel / scale;
@@ -223,14 +223,14 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
                 for (std::size_t c = 0; c < 12; ++c) products[r][c] += row[r] * row[c];
     }
     const auto [values, vectors] = eigen(products);
-    // A second solution as good as the first: a configuration that leaves the camera open.
+    // A second solution as good as the first: the configuration doesn't determine the camera.
     if (!(values[1] > 1e-10 * values[11]))
         refuse("the points leave more than one pose open; add more, and spread them");
     const auto& v = vectors[0];
     glm::dvec3 m[3] = {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, {v[8], v[9], v[10]}};
     glm::dvec3 last(v[3], v[7], v[11]);
     double depth = 0;
-    for (const PointPair& pair : centred) depth += glm::dot(m[2], pair.point) + last.z;
+    for (const PointPair& pair : centered) depth += glm::dot(m[2], pair.point) + last.z;
     const double norm = (depth < 0 ? -1 : 1) * glm::length(m[2]);
     if (!(std::abs(norm) > 0)) refuse("no camera sees these points there; are the pairs in order?");
     for (glm::dvec3& row : m) row /= norm;
@@ -250,19 +250,19 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
     const glm::dmat3 rows = glm::transpose(glm::dmat3(m[0], m[1], m[2]));
     if (!(std::abs(glm::determinant(rows)) > 0)) refuse("no camera sees these points there; are the pairs in order?");
     camera.eye = -(glm::inverse(rows) * last);
-    camera = refined(camera, centred, 1.0);
+    camera = refined(camera, centered, 1.0);
 
     CameraPose pose;
     double squares = 0;
-    for (std::size_t n = 0; n < centred.size(); ++n) {
-        const double off = glm::length(camera.project(centred[n].point) - centred[n].pixel);
+    for (std::size_t n = 0; n < centered.size(); ++n) {
+        const double off = glm::length(camera.project(centered[n].point) - centered[n].pixel);
         squares += off * off;
         if (!(off <= pose.worst_pixels)) {
             pose.worst_pixels = off;
             pose.worst = n;
         }
     }
-    pose.rms_pixels = std::sqrt(squares / static_cast<double>(centred.size()));
+    pose.rms_pixels = std::sqrt(squares / static_cast<double>(centered.size()));
     pose.eye = middle + size * camera.eye;
     pose.forward = camera.rows[2];
     pose.up = -camera.rows[1];

@@ -17,7 +17,7 @@ public:
     static constexpr double kRadius = 1.5;  ///< pixels
 
     PixelFilter();
-    /// Offset from the pixel's centre, in pixels, within +-kRadius.
+    /// Offset from the pixel's center, in pixels, within +-kRadius.
     /// @param u  uniform in [0, 1)^2
     glm::dvec2 offset(const glm::vec2& u) const { return {quantile(u.x), quantile(u.y)}; }
     /// The offsets at equal steps of u, from 0 to 1; between them offset() is linear.

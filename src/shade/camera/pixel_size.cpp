@@ -11,7 +11,7 @@
 namespace stratum::shade {
 namespace {
 
-// Of the ray to a corner of the frame, against the line of sight: no ray goes farther for the same depth.
+// Cosine between the ray to a corner of the frame and the viewing direction: the least of all rays.
 double leastCosine(const Camera& camera) {
     const double slope = std::tan(camera.fov() * std::numbers::pi / 360.0);
     const double across = slope * camera.width() / camera.height();
@@ -25,8 +25,8 @@ double inOnePicture(const Camera& camera, const trace::Box& box) {
                            (corner & 4) != 0 ? box.max.z : box.min.z);
         depth = std::min(depth, glm::dot(p - camera.eye(), camera.forward()));
     }
-    // What is beside or behind the camera isn't seen: within the frame, depth is at least the distance times the cosine
-    // of the farthest corner.
+    // Within the frame, depth is at least the distance times the cosine of the farthest corner; points beside or behind
+    // the camera are invisible.
     const double distance = glm::length(camera.eye() - glm::clamp(camera.eye(), box.min, box.max));
     return std::max(depth, distance * leastCosine(camera)) * camera.pixelSize();
 }

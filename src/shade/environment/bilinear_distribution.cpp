@@ -14,7 +14,7 @@ constexpr double kPiD = std::numbers::pi;
 constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 constexpr int kBlocksAcross = 32;
 
-/// The interval of a running sum in which u times its end falls, never an empty one, and how far into it.
+/// The interval of a running sum that contains u times its last value, never an empty one, and the offset in it.
 struct Place {
     std::size_t index;
     double offset;  // [0, 1)
@@ -24,7 +24,7 @@ struct Place {
 template <typename T>
 Place find(const T* sums, std::size_t count, double u) {
     const double target = u * static_cast<double>(sums[count - 1]);
-    // The first sum above the target: a search without branches that would be guessed wrong half of the time.
+    // The first sum above the target: a branchless search, because branches would be mispredicted half of the time.
     const T* first = sums;
     for (std::size_t left = count; left > 1;) {
         const std::size_t half = left / 2;
@@ -36,7 +36,7 @@ Place find(const T* sums, std::size_t count, double u) {
     return {static_cast<std::size_t>(first - sums), std::clamp((target - below) / width, 0.0, kBelowOne)};
 }
 
-/// Where a density that goes linearly from a to b over [0, 1) has the share u below it.
+/// The quantile u of a density that is linear from a to b over [0, 1).
 double drawLinear(double a, double b, double u) {
     if (!(a + b > 0.0)) return u;
     // The root without cancellation, for falling and rising densities alike.
@@ -44,7 +44,7 @@ double drawLinear(double a, double b, double u) {
     return std::clamp(x, 0.0, kBelowOne);
 }
 
-/// Scales running sums so that they end at 1, if they hold anything.
+/// Scales running sums so that they end at 1, unless all are 0.
 void normalize(const double* sums, std::size_t count, float* result) {
     const double total = sums[count - 1];
     for (std::size_t n = 0; n < count; ++n) result[n] = total > 0.0 ? static_cast<float>(sums[n] / total) : 0.0f;
@@ -64,7 +64,7 @@ BilinearDistribution::BilinearDistribution(std::vector<float> weights, int colum
     weighBlocks(direction);
 }
 
-/// What lies inside the blocks.
+/// Sums of the rows and cells in each block.
 void BilinearDistribution::sumCells() {
     for (int row = 0; row <= rows_; ++row) {
         const double above = kPiD * std::max(0.0, (row - 0.5) / rows_);
@@ -98,12 +98,12 @@ void BilinearDistribution::sumCells() {
     }
 }
 
-/// How much each block counts, for each bin.
+/// The weight of each block, for each bin.
 void BilinearDistribution::weighBlocks(const Direction& direction) {
     constexpr std::array<glm::vec2, 5> kInBin = {
         {{0.5f, 0.5f}, {0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}, {1.0f, 1.0f}}};
     constexpr std::size_t kProbes = 3;  // of a block, each way; the outer ones on its edges
-    // Nothing that may rise above some normal's horizon, between probes, is left without weight.
+    // A least weight for blocks that may be above the horizon of some normal between the probes.
     constexpr float kBelowHorizon = 0.03f;
     std::vector<glm::vec3> probes;
     if (direction) {

@@ -23,7 +23,7 @@ public:
     /// From the square to unit directions, in the space of the normals.
     using Direction = std::function<glm::vec3(const glm::dvec2& place)>;
 
-    /// @param weights    columns * rows values at texel centres, row by row, >= 0 and finite. All zero means uniform.
+    /// @param weights    columns * rows values at texel centers, row by row, >= 0 and finite. All zero means uniform.
     /// @param direction  none: one bin, without cosines
     BilinearDistribution(std::vector<float> weights, int columns, int rows, const Direction& direction = {});
 
@@ -65,7 +65,7 @@ public:
     }
 
 private:
-    /// Weights at the corners of a cell between texel centres. Row 0 lies above the first row of centres.
+    /// Weights at the corners of a cell between texel centers. Row 0 lies above the first row of centers.
     struct Corners {
         double w00, w10, w01, w11;
         double at(double x, double y) const {

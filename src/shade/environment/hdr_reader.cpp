@@ -18,8 +18,8 @@
 namespace stratum::shade {
 namespace {
 
-/// Feeds the decoder and notices when it asks for more than there is. It would go on with zeros, and never stop: a run
-/// of none is a step to it. So it gets the longest runs from there, which soon are too long for a row.
+/// Feeds the decoder and detects reads past the end. With zeros the decoder would never stop, because runs of length 0
+/// make no progress; so past the end it gets runs of the largest length, which soon exceed a row.
 struct Feed {
     std::string_view bytes;
     std::size_t position = 0;
@@ -86,7 +86,7 @@ std::size_t leastBytes(int width, int height) {
     constexpr std::size_t kLongestRun = 127;
     const auto columns = static_cast<std::size_t>(width);
     const auto rows = static_cast<std::size_t>(height);
-    // Rows that are too short or too long for run lengths are written out.
+    // Rows that are too short or too long for run lengths are stored uncompressed.
     if (width < 8 || width >= 32768) return 4 * columns * rows;
     // A mark a row, and a run of two bytes a channel.
     constexpr std::size_t kRunOfAll = 8;
@@ -100,7 +100,7 @@ bool isHdr(std::string_view bytes) { return bytes.starts_with("#?RADIANCE") || b
 LightMap readHdr(std::string_view bytes, std::string_view name) {
     const Header header = readHeader(bytes, name);
     const stbi_io_callbacks callbacks{Feed::read, Feed::skip, Feed::eof};
-    // The size first, so that an absurd one is refused before any memory is taken.
+    // The size first, so that an impossible one is refused before memory is allocated.
     LightMap map;
     Feed feed{bytes};
     int channels = 0;

@@ -71,14 +71,14 @@ struct Model {
         const double elevation = std::asin(sun.z) * 180.0 / kPiD;
         const double mass = 1.0 / (sun.z + 0.15 * std::pow(elevation + 3.885, -1.253));
         const double beta = 0.04608365822050 * turbidity - 0.04586025928522;
-        glm::dvec3 colour;
+        glm::dvec3 color;
         constexpr std::array<double, 3> kMicrometres = {0.61, 0.55, 0.465};  // of the primaries
         for (int i = 0; i < 3; ++i) {
             const double l = kMicrometres[static_cast<std::size_t>(i)];
-            colour[i] = std::exp(-mass * (0.008735 * std::pow(l, -4.08) + beta * std::pow(l, -1.3)));
+            color[i] = std::exp(-mass * (0.008735 * std::pow(l, -4.08) + beta * std::pow(l, -1.3)));
         }
-        const double y = 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b;
-        return colour / y * 127.5 * std::exp(-0.21 / sun.z);
+        const double y = 0.2126 * color.r + 0.7152 * color.g + 0.0722 * color.b;
+        return color / y * 127.5 * std::exp(-0.21 / sun.z);
     }
 };
 

@@ -14,7 +14,7 @@ struct SkyOptions {
 /// Sky above dim ground; the sun is a light of its own, half a degree wide (sun()). Scaled so that a white sheet that
 /// faces up has the radiance kStudioLevel, sun included.
 /// Source: A. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999 (sky and the
-/// sun's colour by Rayleigh scattering and haze); direct to diffuse ratio by the clear-day formula of the IES Lighting
+/// sun's color by Rayleigh scattering and haze); direct to diffuse ratio by the clear-day formula of the IES Lighting
 /// Handbook, E = 127.5 klx exp(-0.21 / sin h).
 std::shared_ptr<const Environment> makeSky(const SkyOptions& options);
 

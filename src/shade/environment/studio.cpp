@@ -60,7 +60,8 @@ const std::array<Softbox, 4>& softboxes() {
 
 /// @param d  studio frame
 Color unscaled(const glm::vec3& d, bool bed) {
-    // With no bed to send light back, the lamps' weaker mirror images do it: a view from below is lit as well.
+    // Without a bed, weaker mirror images of the lights replace its reflection, so that views from below are lit as
+    // well.
     if (d.z < 0.0f) return bed ? Color(0.0f) : 0.5f * unscaled({d.x, d.y, -d.z}, bed);
     Color sum = Color(0.16f, 0.17f, 0.19f) + Color(0.20f, 0.20f, 0.19f) * d.z;
     for (const Softbox& box : softboxes()) sum += box(d);

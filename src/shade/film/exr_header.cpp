@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "the file's numbers ar
 
 constexpr std::uint32_t kLongNames = 0x400, kDeep = 0x800, kParts = 0x1000;
 constexpr std::uint64_t kMostSide = std::uint64_t{1} << 17;  // pixels
-constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;     // bytes that anybody may take
+constexpr std::uint64_t kSmall = std::uint64_t{1} << 20;     // bytes that are always allowed
 constexpr std::uint64_t kMostChannels = 1024;
 constexpr int kMostParts = 256;
 
@@ -31,12 +31,12 @@ public:
 
     [[noreturn]] void fail(std::string_view why) const {
         throw InputError(
-            fmt::format("{}: can't be read as OpenEXR ({} about byte {}); copy or save it again", name_, why, place_));
+            fmt::format("{}: can't be read as OpenEXR ({} about byte {}); copy or save it again", name_, why, offset_));
     }
     [[noreturn]] void endsEarly() const { fail("the header ends early"); }
-    /// Up to a zero, which is taken too.
+    /// Reads up to and including a zero.
     std::string_view text(std::size_t most) {
-        const std::size_t length = bytes_.substr(place_, most + 1).find('\0');
+        const std::size_t length = bytes_.substr(offset_, most + 1).find('\0');
         if (length == std::string_view::npos) fail("a name does not end");
         return take(length + 1).substr(0, length);
     }
@@ -51,7 +51,7 @@ struct Part {
     std::uint64_t lines = 1;  // a chunk
     bool dwa = false;
     std::optional<std::array<std::uint32_t, 2>> tile;  // pixels
-    std::int64_t chunks = 0;                           // as it says
+    std::int64_t chunks = 0;                           // as stated in the header
     bool deep = false;
 };
 
@@ -71,8 +71,7 @@ std::uint64_t bytesOfPixel(Cursor channels, std::size_t longest) {
     return sum;
 }
 
-/// Bytes of a value; nothing for those of any length. OpenEXR reads by kind, whatever length a file gives, and what
-/// follows from there.
+/// Bytes of a value; nothing for types of variable length. OpenEXR ignores the stated length of types of fixed length.
 std::optional<std::uint32_t> sizeOf(std::string_view kind) {
     constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes = {{
         {"box2f", 16},      {"box2i", 16},         {"chromaticities", 32},
@@ -100,7 +99,7 @@ bool readPart(Cursor& cursor, std::size_t longest, std::string_view name, Part& 
         Cursor value(bytes, name);
         if (size != sizeOf(kind).value_or(size) || (kind == "floatvector" && size % 4 != 0))
             cursor.fail(fmt::format("{} of another size than its kind, {},", key, kind));
-        // Lists of channels and previews under any name: they are read all the same.
+        // OpenEXR reads lists of channels and previews of any name.
         if (kind == "chlist") {
             const std::uint64_t pixel_bytes = bytesOfPixel(value, longest);
             if (key == "channels") part.pixel_bytes = pixel_bytes;
@@ -163,7 +162,7 @@ void check(const Part& part, std::size_t file_bytes, std::size_t most, const Cur
 
 void checkExrHeader(std::string_view bytes, std::size_t most, std::string_view name) {
     Cursor cursor(bytes, name);
-    (void)cursor.take(4);  // what isExr() looks at
+    (void)cursor.take(4);  // the magic number, see isExr()
     const auto version = cursor.read<std::uint32_t>();
     if ((version & 0xff) > 2) cursor.fail("a version that is not known");
     if ((version & kDeep) != 0) throw InputError(fmt::format("{}: holds deep data; save it as a flat picture", name));

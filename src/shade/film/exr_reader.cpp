@@ -40,8 +40,8 @@ ExrImage read(const std::filesystem::path& path, std::size_t most) {
         throw InputError(fmt::format("{}: {} x {} pixels; at most {} can be read. Scale it down", path.string(), width,
                                      height, most));
     const Imf::ChannelList& channels = file.header().channels();
-    const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
-    if (!colour && !channels.findChannel("Y"))
+    const bool color = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+    if (!color && !channels.findChannel("Y"))
         throw InputError(fmt::format("{}: has neither channels R, G, B nor Y", path.string()));
     for (const char* name : {"R", "G", "B", "Y"}) {
         const Imf::Channel* channel = channels.findChannel(name);
@@ -52,14 +52,14 @@ ExrImage read(const std::filesystem::path& path, std::size_t most) {
 
     ExrImage image{static_cast<int>(width), static_cast<int>(height), {}, attributesOf(file.header())};
     image.rgb.resize(static_cast<std::size_t>(width * height));
-    const std::array<const char*, 3> names = {colour ? "R" : "Y", "G", "B"};
+    const std::array<const char*, 3> names = {color ? "R" : "Y", "G", "B"};
     Imf::FrameBuffer buffer;
-    for (std::size_t c = 0; c < (colour ? 3u : 1u); ++c)
+    for (std::size_t c = 0; c < (color ? 3u : 1u); ++c)
         buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &image.rgb[0][static_cast<int>(c)], window, sizeof(Color),
                                                  sizeof(Color) * static_cast<std::size_t>(width)));
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
-    if (!colour)
+    if (!color)
         for (Color& p : image.rgb) p = Color(p.r);
     return image;
 }

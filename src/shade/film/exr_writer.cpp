@@ -35,7 +35,7 @@ void writeExr(const std::filesystem::path& path, const Film& film, const std::ma
     }
 
     // OpenEXR addresses pixels by frame coordinates: its base is where (0, 0) would be.
-    // Its frame buffers are for reading, too, and so want no const; it writes to none of ours.
+    // Its frame buffers are also used for reading, and therefore not const; they are not written to here.
     static_assert(sizeof(Pixel) == kChannels * sizeof(float) && std::is_standard_layout_v<Pixel>);
     const auto step_y = sizeof(Pixel) * static_cast<std::size_t>(film.width());
     auto* const pixels = reinterpret_cast<float*>(const_cast<Pixel*>(film.pixels().data()));
@@ -54,7 +54,7 @@ void writeExr(const std::filesystem::path& path, const Film& film, const std::ma
         }
     }
     try {
-        // The same bytes for any number.
+        // The bytes don't depend on the number of threads.
         const auto threads =
             static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
         if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);

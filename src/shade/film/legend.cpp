@@ -60,7 +60,7 @@ void draw(const Legend& legend, int width, int height, std::vector<std::uint8_t>
     const std::string title = titleOf(legend);
     const std::string least = fmt::format("{:.4g}", legend.least);
     const std::string most = fmt::format("{:.4g}", legend.most);
-    // Lines below the title that the picture has room for; the last one says what is left out.
+    // Number of lines below the title that fit into the picture; the last one states how many are left out.
     const auto room = static_cast<std::size_t>(
         std::max(1.0f, std::floor((static_cast<float>(height) - 4.0f * s.margin) / s.line) - 1));
     const bool cut = legend.entries.size() > room;

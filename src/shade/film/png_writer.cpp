@@ -28,7 +28,7 @@ void checkKeyword(const std::string& keyword) {
         throw std::invalid_argument(fmt::format("'{}' can't be the keyword of a PNG text", keyword));
 }
 
-/// What libpng writes. Only plain data: its errors longjmp over it.
+/// Output state of libpng. Trivially destructible, because libpng's errors longjmp over it.
 struct Job {
     std::FILE* file;
     png_uint_32 width, height;
@@ -53,8 +53,8 @@ bool run(const Job& job) {
     png_set_user_limits(png, 0x7fffffffu, 0x7fffffffu);
     png_set_IHDR(png, info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // Half the time of zlib's and libpng's own choice, for files from 3 % smaller to 5 % larger (the noisier the
-    // picture): a fast picture should not wait for its file.
+    // Half the time of zlib's and libpng's defaults, for files from 3 % smaller to 5 % larger (the noisier the picture
+    // the larger).
     png_set_compression_level(png, 3);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -73,7 +73,7 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
     const std::size_t stride = 3 * static_cast<std::size_t>(width);
     if (width < 1 || height < 1 || rgb.size() != stride * static_cast<std::size_t>(height))
         throw std::invalid_argument(fmt::format("{} bytes are no RGB picture of {} x {}", rgb.size(), width, height));
-    // libpng wants pointers to non-const throughout, and writes to none of them.
+    // libpng takes pointers to non-const, but doesn't write to them.
     std::vector<std::uint8_t> pixels = rgb;
     std::vector<png_bytep> rows;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) rows.push_back(pixels.data() + y * stride);

@@ -13,7 +13,7 @@
 namespace stratum::shade {
 namespace {
 
-/// A fixed number in [-0.5, 0.5) for a place and a channel.
+/// A fixed number in [-0.5, 0.5) for a pixel and a channel.
 float dither(int x, int y, std::uint32_t channel) {
     const std::uint32_t key =
         sobol::hash(static_cast<std::uint32_t>(x) ^ (channel << 30), static_cast<std::uint32_t>(y));
@@ -64,7 +64,7 @@ void ToneOptions::validate() const {
 Color toneMapNeutral(Color color) {
     constexpr float kStart = 0.8f - 0.04f;
     constexpr float kDesaturation = 0.15f;
-    // Takes away what a 4 % Fresnel reflection of the surroundings adds to a base colour.
+    // Subtracts the 4 % Fresnel reflection of the surroundings from a base color.
     const float low = std::min({color.r, color.g, color.b});
     color -= low < 0.08f ? low - 6.25f * low * low : 0.04f;
     const float peak = maxComponent(color);

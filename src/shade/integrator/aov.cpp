@@ -128,7 +128,7 @@ void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, do
             case Aov::layer:
             case Aov::tool:
             case Aov::feature: {
-                // Kept one higher, so that 0 is "not yet".
+                // Stored one higher, so that 0 means "not set".
                 const float value = point.labels[static_cast<std::size_t>(*labelOf(aov))];
                 if (*sums == 0.0 && value >= 0.0f) *sums = static_cast<double>(value) + 1.0;
                 ++sums;

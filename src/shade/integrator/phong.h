@@ -10,7 +10,7 @@ namespace stratum::shade {
 
 /// Phong's model with hard shadows and mirrors:
 ///   I = ka Ia + sum over lights of visible Ii [kd max(0, n.l) + ks max(0, r.v)^shininess]
-///   colour = (1 - kr) base I + kr (what the mirror shows), to a depth of five
+///   color = (1 - kr) base I + kr (what the mirror shows), to a depth of five
 /// with base the reflectanceFactor of the surface. Ii is the number given with --light: the intensity of a point light
 /// (without distance falloff), the irradiance of a directional one; lights with extent are sampled at their center.
 /// Ia is --light ambient. Without any light: Ia = 0.2 and one directional light of 0.8 from above the camera's left

@@ -21,7 +21,7 @@ glm::dvec3 vectorAt(const Preset& preset, std::size_t first) {
     return {preset.values[first], preset.values[first + 1], preset.values[first + 2]};
 }
 
-Color colourAt(const Preset& preset, std::size_t first, std::string_view what) {
+Color colorAt(const Preset& preset, std::size_t first, std::string_view what) {
     for (std::size_t i = first; i < first + 3; ++i) requireRange(preset, i, 0.0f, 1e9f, kOption, what);
     return Color(vectorAt(preset, first));
 }
@@ -40,18 +40,17 @@ std::shared_ptr<const Light> parseLight(std::string_view text) {
     Preset preset = parsePreset(text, kOption);
     if (preset.name == "directional") {
         requireValues(preset, 6, kOption, "directional:X,Y,Z,R,G,B");
-        return std::make_shared<DirectionalLight>(towards(preset, text), colourAt(preset, 3, "an irradiance"));
+        return std::make_shared<DirectionalLight>(towards(preset, text), colorAt(preset, 3, "an irradiance"));
     }
     if (preset.name == "sun") {
         if (preset.values.size() == 6) preset.values.push_back(SunLight::kRealDiameter);
         requireValues(preset, 7, kOption, "sun:X,Y,Z,R,G,B,DEGREES");
         requireRange(preset, 6, 0.01f, 90.0f, kOption, "its diameter in degrees");
-        return std::make_shared<SunLight>(towards(preset, text), colourAt(preset, 3, "an irradiance"),
-                                          preset.values[6]);
+        return std::make_shared<SunLight>(towards(preset, text), colorAt(preset, 3, "an irradiance"), preset.values[6]);
     }
     if (preset.name == "point") {
         requireValues(preset, 6, kOption, "point:X,Y,Z,R,G,B");
-        return std::make_shared<PointLight>(vectorAt(preset, 0), colourAt(preset, 3, "an intensity"));
+        return std::make_shared<PointLight>(vectorAt(preset, 0), colorAt(preset, 3, "an intensity"));
     }
     if (preset.name == "rectangle") {
         requireValues(preset, 12, kOption, "rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B");
@@ -61,7 +60,7 @@ std::shared_ptr<const Light> parseLight(std::string_view text) {
             std::abs(glm::dot(u, v)) > 1e-4 * glm::length(u) * glm::length(v))
             throw UsageError(
                 fmt::format("{} {}: the half edges U and V must be perpendicular and not zero", kOption, text));
-        return std::make_shared<RectangleLight>(vectorAt(preset, 0), u, v, colourAt(preset, 9, "a radiance"));
+        return std::make_shared<RectangleLight>(vectorAt(preset, 0), u, v, colorAt(preset, 9, "a radiance"));
     }
     throw UsageError(
         fmt::format("{} {}: unknown light; write directional:, sun:, point:, rectangle: or ambient: and "
@@ -73,7 +72,7 @@ std::optional<Color> parseAmbient(std::string_view text) {
     if (text.substr(0, text.find(':')) != "ambient") return std::nullopt;
     const Preset preset = parsePreset(text, kOption);
     requireValues(preset, 3, kOption, "ambient:R,G,B");
-    return colourAt(preset, 0, "a radiance");
+    return colorAt(preset, 0, "a radiance");
 }
 
 Color irradianceFrom(const Light& light, const glm::dvec3& point) {

@@ -46,7 +46,7 @@ public:
 ///   directional:X,Y,Z,R,G,B    parallel light that travels along X,Y,Z; R,G,B is its irradiance
 ///   sun:X,Y,Z,R,G,B[,DEGREES]  the same with soft shadows: a disc this wide in the sky (default 0.53)
 ///   point:X,Y,Z,R,G,B          from the position X,Y,Z; R,G,B is its intensity: irradiance times squared distance
-///   rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B  centre, two perpendicular half edges; shines with radiance R,G,B to
+///   rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B  center, two perpendicular half edges; shines with radiance R,G,B to
 ///                              both sides
 /// Throws UsageError.
 std::shared_ptr<const Light> parseLight(std::string_view text);

@@ -16,9 +16,9 @@ struct RectangleLight::View {
     double solid_angle;
 };
 
-RectangleLight::RectangleLight(const glm::dvec3& centre, const glm::dvec3& half_u, const glm::dvec3& half_v,
+RectangleLight::RectangleLight(const glm::dvec3& center, const glm::dvec3& half_u, const glm::dvec3& half_v,
                                const Color& radiance)
-    : centre_(centre),
+    : center_(center),
       x_(glm::normalize(half_u)),
       z_(glm::normalize(glm::cross(half_u, half_v))),
       half_x_(glm::length(half_u)),
@@ -29,7 +29,7 @@ RectangleLight::RectangleLight(const glm::dvec3& centre, const glm::dvec3& half_
 
 RectangleLight::View RectangleLight::viewFrom(const glm::dvec3& point) const {
     constexpr double kPiD = std::numbers::pi;
-    const glm::dvec3 d = centre_ - point;
+    const glm::dvec3 d = center_ - point;
     View v{};
     v.x0 = glm::dot(d, x_) - half_x_;
     v.x1 = v.x0 + 2.0 * half_x_;
@@ -91,9 +91,9 @@ std::optional<LightSample> RectangleLight::sample(const glm::dvec3& point, const
 std::optional<LightHit> RectangleLight::intersect(const trace::Ray& ray) const {
     const double facing = glm::dot(ray.direction, z_);
     if (facing == 0.0) return std::nullopt;
-    const double t = glm::dot(centre_ - ray.origin, z_) / facing;
+    const double t = glm::dot(center_ - ray.origin, z_) / facing;
     if (!(t > 0.0)) return std::nullopt;
-    const glm::dvec3 p = ray.origin + t * ray.direction - centre_;
+    const glm::dvec3 p = ray.origin + t * ray.direction - center_;
     if (std::abs(glm::dot(p, x_)) > half_x_ || std::abs(glm::dot(p, y_)) > half_y_) return std::nullopt;
     const View v = viewFrom(ray.origin);
     const double pdf =

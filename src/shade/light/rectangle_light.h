@@ -10,7 +10,7 @@ namespace stratum::shade {
 class RectangleLight final : public Light {
 public:
     /// @param half_u, half_v  perpendicular. World units
-    RectangleLight(const glm::dvec3& centre, const glm::dvec3& half_u, const glm::dvec3& half_v, const Color& radiance);
+    RectangleLight(const glm::dvec3& center, const glm::dvec3& half_u, const glm::dvec3& half_v, const Color& radiance);
     std::optional<LightSample> sample(const glm::dvec3& point, const glm::vec2& u) const override;
     std::optional<LightHit> intersect(const trace::Ray& ray) const override;
     bool hasExtent() const override { return true; }
@@ -19,7 +19,7 @@ private:
     struct View;
     View viewFrom(const glm::dvec3& point) const;
 
-    glm::dvec3 centre_, x_, y_, z_;  // unit axes; z is across
+    glm::dvec3 center_, x_, y_, z_;  // unit axes; z is across
     double half_x_, half_y_;         // world units
     Color radiance_;
 };

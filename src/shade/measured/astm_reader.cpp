@@ -51,7 +51,7 @@ Channels readNames(ScanText& text, std::string_view list) {
     return channels;
 }
 
-/// An angle as one of a list of its kind; rounding in a text makes several of one.
+/// The index of an angle in a list; angles that differ by rounding are the same.
 long keyOf(double angle) { return std::lround(angle / kSame); }
 
 }  // namespace
@@ -96,13 +96,13 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
         if (polar > 0.5 * kPiD + kSame) continue;  // transmission
         const auto value = [&](std::size_t c) { return row[4 + c]; };
         const ChannelChoice& ch = channels.choice;
-        const Color colour = channels.xyz ? fromXyz(value(0), value(1), value(2))
-                                          : Color(glm::dvec3(value(ch.red), value(ch.green), value(ch.blue)));
+        const Color color = channels.xyz ? fromXyz(value(0), value(1), value(2))
+                                         : Color(glm::dvec3(value(ch.red), value(ch.green), value(ch.blue)));
         incidences.emplace(keyOf(incidence), incidence);
         azimuths.emplace(keyOf(azimuth), azimuth);
         polars.emplace(keyOf(polar), std::min(polar, 0.5 * kPiD));
-        readings.insert_or_assign({keyOf(incidence), keyOf(azimuth), keyOf(polar)}, colour);
-        if (keyOf(polar) == 0) at_pole.emplace(keyOf(incidence), colour);
+        readings.insert_or_assign({keyOf(incidence), keyOf(azimuth), keyOf(polar)}, color);
+        if (keyOf(polar) == 0) at_pole.emplace(keyOf(incidence), color);
     }
     BrdfScan scan;
     for (const std::string& comment : text.comments()) scan.notes.push_back(comment);

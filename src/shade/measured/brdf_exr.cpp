@@ -41,7 +41,7 @@ struct Words {
     [[noreturn]] void fail(const std::string& message) const { throw InputError(fmt::format("{}: {}", name, message)); }
 };
 
-/// How much the picture jumps at the inner seams of a layout, against elsewhere.
+/// The discontinuity of the picture at the inner seams of a layout, relative to other positions.
 double seamContrast(const ExrImage& image, Layout layout) {
     const int tile_w = image.width / layout.columns;
     const int tile_h = image.height / layout.rows;
@@ -118,7 +118,7 @@ bool highlightAtTop(const BrdfScan& scan) {
         if (scan.incidences[i] < 15.0 * kRadians) continue;
         double brightest = -1.0, where = 0.0;
         for (std::size_t p = 0; p < scan.polars.size(); ++p) {
-            if (scan.polars[p] > 75.0 * kRadians) continue;  // grazing light is bright in any table
+            if (scan.polars[p] > 75.0 * kRadians) continue;  // all tables are bright at grazing angles
             for (std::size_t a = 0; a < scan.azimuths.size(); ++a) {
                 const double v = static_cast<double>(luminance(scan.values[scan.index(i, a, p)]));
                 if (v <= brightest) continue;

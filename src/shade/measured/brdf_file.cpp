@@ -50,7 +50,7 @@ std::string gunzip(const std::filesystem::path& path) {
     return text;
 }
 
-/// What a table looks like through a scatterometer, to steer its sampling by.
+/// A table sampled like a scatterometer scan, to fit the lobes for importance sampling.
 BrdfScan scanOfTable(const HalfDiffTable& table, std::vector<double> incidences) {
     return makeScan([&table](const glm::dvec3& light,
                              const glm::dvec3& detector) { return table.at(glm::vec3(detector), glm::vec3(light)); },

@@ -19,7 +19,7 @@ glm::dvec3 directionOf(double polar, double azimuth) {
     return {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)};
 }
 
-/// A direction seen from straight above, carried along with its mirror point.
+/// Maps a projected direction when the mirror point moves.
 /// @param from, to  incidences; their mirror points lie at azimuth pi
 void carry(double from, double to, double& polar, double& azimuth) {
     const double m = -std::sin(from);
@@ -49,7 +49,7 @@ void carry(double from, double to, double& polar, double& azimuth) {
 ScanInterpolant::ScanInterpolant(const BrdfScan& scan) : scan_(scan), lobes_(fitLobes(scan)) {
     glm::dvec3 least(0.0);
     for (const Color& v : scan.values) least = glm::max(least, glm::dvec3(v));
-    least = glm::max(least * 1e-5, glm::dvec3(1e-7));  // a logarithm needs a floor: a scatterometer's own is higher
+    least = glm::max(least * 1e-5, glm::dvec3(1e-7));  // a floor for the logarithm, below that of scatterometers
     residuals_.reserve(scan.values.size());
     std::size_t n = 0;
     for (const double i : scan.incidences) {
@@ -109,7 +109,7 @@ glm::dvec3 ScanInterpolant::eval(const glm::dvec3& light, const glm::dvec3& dete
     };
     const double ti = polarOf(light);
     const double to = polarOf(detector);
-    // Around the normal; of directions along it any will do.
+    // Azimuth around the normal; arbitrary for directions along it.
     const double cross = light.x * detector.y - light.y * detector.x;
     const double azimuth = std::abs(std::atan2(cross, light.x * detector.x + light.y * detector.y));
     const double di = distanceToMeasured(ti);

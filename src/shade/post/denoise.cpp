@@ -66,7 +66,7 @@ DenoisePlanes planesOf(const Film& film) {
         *planes.at(guide + 6, x, y) = depth[n] > 0.0f ? std::log(depth[n]) / kDepth : 0.0f;
         *planes.at(DenoisePlanes::terms, x, y) = shading[2 * n];
         *planes.at(DenoisePlanes::terms + 1, x, y) = shading[2 * n + 1];
-        // One number that tells most pairs of colours apart.
+        // A scalar that differs for most pairs of colors.
         *planes.at(DenoisePlanes::terms + 2, x, y) =
             0.3f * albedo[3 * n] + 0.5f * albedo[3 * n + 1] + 0.2f * albedo[3 * n + 2];
     };

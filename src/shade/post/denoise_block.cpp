@@ -37,8 +37,8 @@ constexpr std::size_t kTall = kHeight + kPatchSide - 1;
 constexpr std::size_t kWide = kWidth + 16;  // whole vectors
 static_assert(kPatchSide - 1 <= 16);
 
-/// The unknowns: slopes along the place and the terms, and the constant, which is last, so that it is the first to be
-/// known on the way back.
+/// The unknowns: slopes of position and terms, and the constant, which is last, so that back substitution computes it
+/// first.
 constexpr std::size_t kSlopes = 2 + std::size_t{DenoisePlanes::kTerms};
 constexpr std::size_t kUnknowns = kSlopes + 1;
 

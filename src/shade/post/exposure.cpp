@@ -8,8 +8,8 @@
 namespace stratum::shade {
 namespace {
 
-/// Radiance that the white surface is brought to. A little below kStudioLevel: a sun's shadows leave less of the bed
-/// to carry the picture than a studio's do, and what lies in the sun shall keep its colour.
+/// Radiance of the white surface after exposure. Slightly below kStudioLevel, so that surfaces in direct sun keep their
+/// color.
 constexpr double kLevel = 1.3;
 
 }  // namespace

@@ -21,7 +21,7 @@ std::optional<double> Bed::intersect(const trace::Ray& ray) const {
 }
 
 double Bed::fade(const glm::dvec3& point) const {
-    const double r = glm::length(glm::dvec2(point.x, point.y) - centre);
+    const double r = glm::length(glm::dvec2(point.x, point.y) - center);
     const double t = std::clamp((r - fade_begin) / (fade_end - fade_begin), 0.0, 1.0);
     return t * t * t * (t * (6.0 * t - 15.0) + 10.0);
 }

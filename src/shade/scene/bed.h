@@ -28,9 +28,9 @@ struct Backdrop {
 struct Bed {
     double z = 0.0;  ///< world units
     BedTexture texture{BedSurface::paper};
-    glm::dvec2 centre{0.0};   ///< world units: the fade is round about this point
-    double fade_begin = 1.0;  ///< world units from the centre: nothing faded yet
-    double fade_end = 2.0;    ///< world units from the centre: all faded; > fade_begin
+    glm::dvec2 center{0.0};   ///< world units: the fade is round about this point
+    double fade_begin = 1.0;  ///< world units from the center: nothing faded yet
+    double fade_end = 2.0;    ///< world units from the center: all faded; > fade_begin
 
     /// Distance along a ray to the sheet, if it is in the ray's interval and hit from above.
     std::optional<double> intersect(const trace::Ray& ray) const;

@@ -15,7 +15,7 @@
 namespace stratum::shade {
 namespace {
 
-/// A number in [0, 1) of its own for each knot of a lattice.
+/// A hash in [0, 1) for each knot of a lattice.
 double knot(std::int64_t x, std::int64_t y) {
     const std::uint32_t h = sobol::hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
     return static_cast<double>(h) * 0x1p-32;
@@ -27,7 +27,7 @@ glm::dvec2 noiseGradient(const glm::dvec2& p) {
     const glm::dvec2 s = p - low;
     const glm::dvec2 w = s * s * (3.0 - 2.0 * s);
     const glm::dvec2 rise = 6.0 * s * (1.0 - s);
-    // Far away, where doubles are no longer whole lattices apart, any knot is as good as another.
+    // Far away, where doubles can't resolve the lattice, the knot is arbitrary.
     const auto x = static_cast<std::int64_t>(std::clamp(low.x, -1e15, 1e15));
     const auto y = static_cast<std::int64_t>(std::clamp(low.y, -1e15, 1e15));
     const double a = knot(x, y);
@@ -37,7 +37,7 @@ glm::dvec2 noiseGradient(const glm::dvec2& p) {
     return {rise.x * ((1.0 - w.y) * (b - a) + w.y * (d - c)), rise.y * ((1.0 - w.x) * (c - a) + w.x * (d - b))};
 }
 
-/// Slope of the powder coat. Two lattices that are turned against each other, so that neither shows.
+/// Slope of the powder coat. Two lattices rotated against each other, so that neither is visible.
 glm::dvec2 coatSlope(const glm::dvec2& mm) {
     constexpr double kGrain = 0.45;  // mm between knots of the coarser lattice
     constexpr double kFine = 1.7;    // times as many of the finer one

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMostCategories = 32;
 constexpr std::size_t kRampSteps = 256;
-constexpr float kBrightest = 0.95f;  // no filament reflects all
+constexpr float kBrightest = 0.95f;  // no filament reflects everything
 const Color kNeutral(0.18f);         // of values that are no numbers
 
 Color fromSrgb(std::uint32_t hex) {
@@ -31,7 +31,7 @@ Color fromSrgb(std::uint32_t hex) {
     return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
 }
 
-/// What slicers' users are used to, more or less.
+/// Similar to the usual colors of slicers.
 struct Named {
     std::string_view name;
     std::uint32_t color;
@@ -51,7 +51,7 @@ constexpr std::array<Named, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d},
                                                    {"support-interface", 0x1e7a1e},
                                                    {"wipe-tower", 0xa8d8a0}}};
 
-/// The number that a key of `each` means: itself, or the place of a name.
+/// The number of a key of `each`: itself, or the index of a name.
 int valueOf(const std::string& key, const MaterialOptions& options, const trace::AttributeSummary& summary) {
     int value = 0;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), value);
@@ -67,7 +67,7 @@ int valueOf(const std::string& key, const MaterialOptions& options, const trace:
     return static_cast<int>(found - summary.labels.begin());
 }
 
-/// Which colour a whole number has where nothing else is said: a feature its own, others one of a palette.
+/// The default color of a whole number: fixed colors for features, a palette for others.
 Color colorOfInteger(int value, const trace::AttributeSummary& summary) {
     const auto id = static_cast<std::size_t>(value);
     if (id < summary.labels.size())
@@ -76,7 +76,7 @@ Color colorOfInteger(int value, const trace::AttributeSummary& summary) {
     return categoryColor(id);
 }
 
-/// Whether each whole number has a colour of its own, and not a place on a ramp.
+/// Whether each whole number has a color of its own instead of a position on a ramp.
 bool isPalette(const MaterialOptions& options, const trace::AttributeSummary& summary) {
     return summary.kind == trace::AttributeSummary::Kind::integer && options.by != "layer" &&
            summary.most - summary.least < kMostCategories;
@@ -109,7 +109,7 @@ ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::sha
 }
 
 Color categoryColor(std::size_t n) {
-    // After Okabe and Ito's set for all kinds of colour vision, with three more.
+    // After Okabe and Ito's set for all kinds of color vision, with three more.
     constexpr std::array<std::uint32_t, 10> kColors = {0xe69f00, 0x0072b2, 0x009e73, 0xd55e00, 0xcc79a7,
                                                        0x56b4e9, 0xf0e442, 0x7a4a2a, 0x8a8a8a, 0x2f2f4f};
     return fromSrgb(kColors[n % kColors.size()]);
@@ -120,7 +120,7 @@ Color rampColor(double t) {
     const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
     const auto n = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
     const auto w = static_cast<float>(place - static_cast<double>(n));
-    // Between square roots: even to the eye, near enough.
+    // Interpolated between square roots, which is approximately perceptually uniform.
     const Color mixed = (1.0f - w) * glm::sqrt(fromSrgb(kStops[n])) + w * glm::sqrt(fromSrgb(kStops[n + 1]));
     return mixed * mixed;
 }

@@ -22,10 +22,10 @@ struct MaterialOptions {
     std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: for values that are not in `each`
     std::string by;    ///< name of the attribute that selects; empty: one material
     std::map<std::string, std::string>
-        each;  ///< value, or its name -> see makeBrdf; empty: `brdf` in a palette's colours
+        each;  ///< value, or its name -> see makeBrdf; empty: `brdf` in a palette's colors
 };
 
-/// A BRDF and its colour.
+/// A BRDF and its color.
 struct Material {
     std::shared_ptr<const Brdf> brdf;
     Color albedo{0.0f};  ///< its reflectanceFactor

@@ -41,8 +41,9 @@ double restingHeight(const trace::Intersector& print) {
     const trace::Box box = print.bounds();
     const glm::dvec3 size = box.max - box.min;
     const double below = std::max(size.z, print.voxelSize());
-    // No higher than it takes: what is looked at may not be there yet, and one that stands on the bed is met at once.
-    // In few steps, also of a print whose voxel is tiny or none (shapes by formula, triangles).
+    // Increases the height in at most five steps, also for a voxel size of 0 (analytic shapes, triangles), and no
+    // higher than necessary: leaves may be evaluated on demand, and a print that rests on the bed is hit in the first
+    // step.
     for (double reach = std::max(8 * print.voxelSize(), size.z / 256);; reach *= 4) {
         const bool whole = !(reach < size.z);
         std::array<double, kSide> lowest_of{};
@@ -106,17 +107,17 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
 
     const trace::Box subject = options.frame.value_or(box);
     const glm::dvec3 middle = 0.5 * (subject.min + subject.max);
-    bed.centre = {middle.x, middle.y};
+    bed.center = {middle.x, middle.y};
     if (placement.bed) {
-        // As far as the farthest corner of all that stands on it.
+        // Up to the farthest corner of everything on the bed.
         const double reach = glm::length(glm::max(box.max - middle, middle - box.min));
         bed.fade_begin = 1.0 * reach;
         bed.fade_end = 7.0 * reach;
         scene.bed = bed;
     }
-    // The paper's own colour a little darker, as the light of a real lamp falls off behind the subject.
+    // The paper's own color a little darker, as the light of a real lamp falls off behind the subject.
     if (options.backdrop && (scene.bed || !scene.environment->visible())) {
-        const Color paper = paperRadiance(scene, bed.texture.mean(), {bed.centre.x, bed.centre.y, bed.z});
+        const Color paper = paperRadiance(scene, bed.texture.mean(), {bed.center.x, bed.center.y, bed.z});
         scene.backdrop = Backdrop{paper * 0.72f, paper * 0.35f};
     }
     return scene;

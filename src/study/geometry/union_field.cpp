@@ -42,9 +42,9 @@ UnionField::UnionField(const gcode::Toolpath& toolpath, std::span<const std::uin
         solid.height = static_cast<double>(toolpath.runOf(bead).height);
         if (bead.arc >= 0) {
             const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-            solid.arc_centre = {arc.center_x, arc.center_y, solid.start.z};
-            const glm::dvec3 from = solid.start - solid.arc_centre;
-            const glm::dvec3 to = solid.end - solid.arc_centre;
+            solid.arc_center = {arc.center_x, arc.center_y, solid.start.z};
+            const glm::dvec3 from = solid.start - solid.arc_center;
+            const glm::dvec3 to = solid.end - solid.arc_center;
             // As gcode::Arc says: the mean, so that a file's rounding is shared by both ends.
             solid.arc_radius = 0.5 * (std::hypot(from.x, from.y) + std::hypot(to.x, to.y));
             solid.arc_from = std::atan2(from.y, from.x);
@@ -186,7 +186,7 @@ bool UnionField::tryPoint(Random& random, SurfacePoint& point) const {
             const double reach = 1 + out / solid.arc_radius;
             if (unit(random) * stretch > reach) return false;
             outwards = {std::cos(angle), std::sin(angle)};
-            base = glm::dvec2(solid.arc_centre) + solid.arc_radius * outwards;
+            base = glm::dvec2(solid.arc_center) + solid.arc_radius * outwards;
         } else {
             const glm::dvec2 direction = glm::dvec2(solid.end - solid.start) / std::max(solid.length, 1e-300);
             outwards = {direction.y, -direction.x};

@@ -55,7 +55,7 @@ private:
         voxelize::BeadField field;
         voxelize::Section section;
         glm::dvec3 start{0}, end{0};  // of the centre line
-        glm::dvec3 arc_centre{0};
+        glm::dvec3 arc_center{0};
         double arc_radius = 0, arc_from = 0, arc_sweep = 0;
         double length = 0;
         double height = 0;  // of its layer

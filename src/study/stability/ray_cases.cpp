@@ -45,9 +45,9 @@ openvdb::FloatGrid::Ptr plane(const openvdb::Vec3d& normal, double offset) {
     return grid;
 }
 
-openvdb::FloatGrid::Ptr ball(float radius = 2, const openvdb::Vec3f& centre = openvdb::Vec3f(0), float voxel = 0.1F) {
+openvdb::FloatGrid::Ptr ball(float radius = 2, const openvdb::Vec3f& center = openvdb::Vec3f(0), float voxel = 0.1F) {
     openvdb::initialize();
-    auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, centre, voxel);
+    auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, center, voxel);
     grid->setName("surface");
     return grid;
 }
@@ -165,14 +165,14 @@ double meetingsAgain(double away) {
     const auto grid = ball();
     grid->transform().postTranslate(openvdb::Vec3d(away, -away, away));
     const TracedField field(*grid);
-    const glm::dvec3 centre(away, -away, away);
+    const glm::dvec3 center(away, -away, away);
     std::mt19937 random(7);
     int met = 0;
     constexpr int kRays = 20000;
     for (int n = 0; n < kRays; ++n) {
         const glm::dvec3 out = randomDirection(random);
         trace::Hit hit;
-        if (!field->intersect({centre + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
+        if (!field->intersect({center + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
         // Between the normal and nearly along the surface.
         const glm::dvec3 leave = glm::normalize(hit.normal + 0.95 * randomDirection(random));
         met += field->occluded({hit.position + field.surfaceOffset() * hit.normal, leave}) ? 1 : 0;

@@ -24,7 +24,7 @@ struct Bounds {
         }
     }
     double extent(int axis) const { return max[axis] - min[axis]; }
-    double centre(int axis) const { return 0.5 * (min[axis] + max[axis]); }
+    double center(int axis) const { return 0.5 * (min[axis] + max[axis]); }
 };
 
 /// A bead's path in the plan: a line segment or a circular arc. Distances are closed form; arcs are not tessellated.
@@ -49,7 +49,7 @@ public:
     /// Length in the plane, mm.
     double length() const { return length_; }
 
-    /// Extent of the centre line in x and y, mm; the z members are not set.
+    /// Extent of the center line in x and y, mm; the z members are not set.
     void bounds(double (&min)[2], double (&max)[2]) const;
 
 private:
@@ -62,11 +62,11 @@ private:
     double length_;
     // Arc only; radius_ == 0 marks a straight path.
     double center_x_ = 0, center_y_ = 0, radius_ = 0, sweep_ = 0;
-    double start_x_ = 0, start_y_ = 0, end_x_ = 0, end_y_ = 0;  // unit directions from the centre
+    double start_x_ = 0, start_y_ = 0, end_x_ = 0, end_y_ = 0;  // unit directions from the center
 };
 
 /// Cross-section of a bead: the flats reach half_flat to each side of the path, the rounding has `radius`, and the
-/// centre line runs `drop` below the nozzle. All mm. half_flat is 0 for a round bead.
+/// center line runs `drop` below the nozzle. All mm. half_flat is 0 for a round bead.
 struct Section {
     double half_flat = 0;
     double radius = 0;
@@ -106,8 +106,8 @@ public:
 private:
     PlanPath path_;
     double half_flat_, radius_;
-    double x0_, y0_, dx_, dy_;  // mm, centre line in the plane
-    double zc0_, zc1_;          // mm, centre line at the start and the end
+    double x0_, y0_, dx_, dy_;  // mm, center line in the plane
+    double zc0_, zc1_;          // mm, center line at the start and the end
     double cosine_ = 1, reach_ = 0;
     bool level_ = true, rod_ = false;
 };

@@ -26,8 +26,8 @@ struct ColumnRange {
     }
 };
 
-/// Visits the square columns that beads reach. A column is reached if the centre of its samples is within limit() of
-/// the path: no sample is farther from that centre than half the diagonal they span.
+/// Visits the square columns that beads reach. A column is reached if the center of its samples is within limit() of
+/// the path: no sample is farther from that center than half the diagonal they span.
 class Footprints {
 public:
     /// All mm: columns are `edge` wide, from multiples of it; their samples span twice `half_span`; beads reach `band`
@@ -39,13 +39,13 @@ public:
           // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
 
-    /// How far from its path a bead reaches the centres of columns, mm.
+    /// How far from its path a bead reaches the centers of columns, mm.
     double limit(const gcode::Bead& bead) const {
         const Section section = sectionOf(toolpath_, bead);
         return section.half_flat + radiusOf(bead, section) + slack_;
     }
 
-    /// Columns whose centres lie in the box of the path, enlarged by `limit` on each side.
+    /// Columns whose centers lie in the box of the path, enlarged by `limit` on each side.
     ColumnRange range(const gcode::Bead& bead, double limit) const {
         double min[2] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1)};
         double max[2] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1)};

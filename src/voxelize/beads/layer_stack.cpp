@@ -10,7 +10,7 @@
 namespace stratum::voxelize {
 namespace {
 
-// Centre plane and radius in whole nanometres, so that accumulated rounding of relative moves doesn't split a layer.
+// Center plane and radius in whole nanometres, so that accumulated rounding of relative moves doesn't split a layer.
 using LayerKey = std::pair<std::int64_t, std::int64_t>;
 
 constexpr std::uint32_t kDirect = 0xffffffff;
@@ -47,13 +47,13 @@ void findWelds(LayerStack& stack) {
     std::vector<std::pair<double, std::uint32_t>> bottoms;
     double widest_gap = 0;
     for (std::uint32_t i = 0; i < stack.layers.size(); ++i) {
-        bottoms.emplace_back(stack.layers[i].centre_z - stack.layers[i].radius, i);
+        bottoms.emplace_back(stack.layers[i].center_z - stack.layers[i].radius, i);
         widest_gap = std::max(widest_gap, kWeldGap * 2 * stack.layers[i].radius);
     }
     std::sort(bottoms.begin(), bottoms.end());
     for (std::uint32_t lower = 0; lower < stack.layers.size(); ++lower) {
         const Layer& below = stack.layers[lower];
-        const double top = below.centre_z + below.radius;
+        const double top = below.center_z + below.radius;
         auto it = std::lower_bound(bottoms.begin(), bottoms.end(), std::pair{top - widest_gap, std::uint32_t{0}});
         for (; it != bottoms.end() && it->first <= top + widest_gap; ++it) {
             const Layer& above = stack.layers[it->second];

@@ -1,4 +1,4 @@
-// Toolpath -> LayerStack: level beads grouped by centre plane and half-height, and the pairs of layers to be welded.
+// Toolpath -> LayerStack: level beads grouped by center plane and half-height, and the pairs of layers to be welded.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -9,10 +9,10 @@
 
 namespace stratum::voxelize {
 
-/// Level beads of one centre plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
+/// Level beads of one center plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
 /// one plan field, expanded once per column.
 struct Layer {
-    double centre_z = 0;      ///< mm
+    double center_z = 0;      ///< mm
     double radius = 0;        ///< mm, half the layer height
     std::uint32_t first = 0;  ///< ranks [first, last) of LayerStack::beads, in print order
     std::uint32_t last = 0;
@@ -20,7 +20,7 @@ struct Layer {
 
 /// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave
 /// phi = 0 on the plane between them, a crack of no thickness inside the solid. The weld adds the body that both share,
-/// {max(D_lower, D_upper) <= 0} between the two centre planes, which lies inside the union and moves no surface.
+/// {max(D_lower, D_upper) <= 0} between the two center planes, which lies inside the union and moves no surface.
 struct Weld {
     std::uint32_t lower = 0;  ///< index into LayerStack::layers
     std::uint32_t upper = 0;
@@ -36,7 +36,7 @@ struct Extent {
 
 /// The selected beads, ordered by layer. A bead's rank is its index in this order; bins and columns refer to it.
 struct LayerStack {
-    std::vector<Layer> layers;         ///< ascending centre_z, then radius
+    std::vector<Layer> layers;         ///< ascending center_z, then radius
     std::vector<Weld> welds;           ///< ordered by (upper, lower)
     std::vector<std::uint32_t> beads;  ///< by rank: index into Toolpath::beads. Layers first, then direct beads
     std::vector<std::uint32_t> layer;  ///< by rank: index into layers; layers.size() for a direct bead

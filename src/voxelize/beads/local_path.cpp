@@ -56,8 +56,8 @@ LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_fl
     const double by = to_y / to;
     const auto world = [scale](double mm) { return static_cast<float>(mm * scale); };
     LocalArc local{};
-    local.near_centre = v < 4 * half_extent;
-    if (!local.near_centre) {
+    local.near_center = v < 4 * half_extent;
+    if (!local.near_center) {
         local.ex = static_cast<float>(vx / v);
         local.ey = static_cast<float>(vy / v);
         local.k = static_cast<float>(1 / (v * scale));

@@ -18,23 +18,23 @@ struct LocalLine {
     bool spans;  ///< the segment's ends lie beyond all samples of the column, so they can be ignored
 };
 
-/// A circular path of one column. |v0 + q| - radius, with v0 the middle of the column from the centre, is written so
+/// A circular path of one column. |v0 + q| - radius, with v0 the middle of the column from the center, is written so
 /// that a large radius cancels nothing: (2 e.q + k q^2) / (1 + sqrt(1 + k (2 e.q + k q^2))) + rho0, e = v0 / |v0|,
-/// k = 1 / |v0|. Near the centre, where e turns quickly, |v0 + q| - radius is small numbers anyway.
+/// k = 1 / |v0|. Near the center, where e turns quickly, |v0 + q| - radius is small numbers anyway.
 struct LocalArc {
     float ex, ey, k, rho0;
-    float vx, vy, radius;                  ///< used when `near_centre`
+    float vx, vy, radius;                  ///< used when `near_center`
     float start_x, start_y, end_x, end_y;  ///< ends relative to the middle of the column
     // Half planes of the sweep: past the start where sx qx + sy qy + s0 >= 0, before the end where tx qx + ty qy + t0
     // >= 0.
     float sx, sy, s0, tx, ty, t0;
     float half_flat;
-    bool near_centre;
+    bool near_center;
     bool wide;  ///< sweeps more than half a turn: the half planes' union, else their intersection
     bool full;  ///< a whole turn: no ends
 };
 
-/// Whether the bead's path is an arc; an arc that starts or ends at its own centre is treated as its chord.
+/// Whether the bead's path is an arc; an arc that starts or ends at its own center is treated as its chord.
 bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
 /// `x`, `y` (mm): the middle of the column's samples. `half_extent` (mm): its samples lie within that in x and y.

@@ -22,7 +22,7 @@ enum class Attribute : std::uint8_t {
     object,   ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
     width,    ///< float: mm
     speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
-    color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 grey where it has none
+    color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
 };
 
 /// Parses "surface,layer,tool". The surface is always written and may be named. Throws UsageError with the names.

@@ -16,7 +16,7 @@ struct Point {
     double x, y, z;
 };
 
-// The point halfway along a bead's centre line.
+// The point halfway along a bead's center line.
 Point middleOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     const double z = 0.5 * (bead.z0 + bead.z1) - sectionOf(toolpath, bead).drop;
     if (bead.arc < 0) return {0.5 * (bead.x0 + bead.x1), 0.5 * (bead.y0 + bead.y1), z};

@@ -68,7 +68,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
         return;
     }
     PlanField sides2;
-    PlanField centre_z;
+    PlanField center_z;
     if (!curved(toolpath_, bead)) {
         const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
         LocalLine line = localLine(bead, field.halfFlat(), middle_x_, middle_y_, half_extent, scale_);
@@ -78,7 +78,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
         const double climb = plan > 0 ? (bead.z1 - bead.z0) / plan : 0.0;
         const double along = plan > 0 ? (dx * (middle_x_ - bead.x0) + dy * (middle_y_ - bead.y0)) / plan : 0.0;
         const double z0 = bead.z0 - drop + along * climb - z_middle;
-        slopedLine(grid_, line, static_cast<float>(z0 * scale_), static_cast<float>(climb), sides2, centre_z);
+        slopedLine(grid_, line, static_cast<float>(z0 * scale_), static_cast<float>(climb), sides2, center_z);
     } else {
         // Helices of flat beads are rare, and the angle along one has no closed form.
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
@@ -87,12 +87,12 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
             const double side = std::max(field.path().distance(x, y) - field.halfFlat(), 0.0) * scale_;
             const double z = std::lerp(bead.z0, bead.z1, field.path().parameter(x, y)) - drop - z_middle;
             sides2.v[c] = static_cast<float>(side * side);
-            centre_z.v[c] = static_cast<float>(z * scale_);
+            center_z.v[c] = static_cast<float>(z * scale_);
         }
     }
     const SlopedTerm term{static_cast<float>(field.cosine()), static_cast<float>(field.reach() * scale_),
                           static_cast<float>(field.radius() * scale_)};
-    forEachPlane([&](float z, PlanField& phi) { expandSloped(sides2, centre_z, term, z, phi); });
+    forEachPlane([&](float z, PlanField& phi) { expandSloped(sides2, center_z, term, z, phi); });
 }
 
 }  // namespace stratum::voxelize

@@ -59,7 +59,7 @@ std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
         } else if (stack_.layer[rank] != previous) {
             previous = stack_.layer[rank];
             const Layer& l = stack_.layers[previous];
-            ranges_.push_back(leafRange(l.centre_z - l.radius, l.centre_z + l.radius));
+            ranges_.push_back(leafRange(l.center_z - l.radius, l.center_z + l.radius));
         }
     }
     mergeRanges();
@@ -116,9 +116,9 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
         }
         if (!any) continue;
         const Layer& l = stack_.layers[source.layer];
-        // A new bead can be welded to the layer below: up to its own centre plane, so within its own band.
+        // A new bead can be welded to the layer below: up to its own center plane, so within its own band.
         ranges_.push_back(
-            leafRange(l.centre_z - l.radius - weldGap(l.radius), l.centre_z + l.radius + weldGap(l.radius)));
+            leafRange(l.center_z - l.radius - weldGap(l.radius), l.center_z + l.radius + weldGap(l.radius)));
     }
     for (const DirectBead& direct : direct_)
         if (stack_.beads[direct.rank] >= begin)
@@ -158,7 +158,7 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     const std::uint32_t slot = free_.back();
     PlanLayer& plan = slots_[slot];
     plan.layer = source.layer;
-    plan.centre_z = layer.centre_z;
+    plan.center_z = layer.center_z;
     plan.radius = layer.radius;
     std::fill(std::begin(plan.d.v), std::end(plan.d.v), std::numeric_limits<float>::max());
     PlanOwners* owners = with_owners_ ? &plan.owners : nullptr;
@@ -180,12 +180,12 @@ void LeafColumn::addWelds(const PlanLayer& upper) {
                                         [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
         if (lower == window_.end()) continue;
         const PlanLayer& below = slots_[*lower];
-        const double top = below.centre_z + below.radius;
-        const double bottom = upper.centre_z - upper.radius;
+        const double top = below.center_z + below.radius;
+        const double bottom = upper.center_z - upper.radius;
         PlanWeld weld{std::min(top, bottom),
                       std::max(top, bottom),
-                      0.5 * (below.centre_z + upper.centre_z),
-                      0.5 * (upper.centre_z - below.centre_z),
+                      0.5 * (below.center_z + upper.center_z),
+                      0.5 * (upper.center_z - below.center_z),
                       {}};
         if (maximumOf(below.d, upper.d, weld.d) < 0) welds_.push_back(weld);
     }
@@ -196,7 +196,7 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
     const auto reach = [this](double radius) { return radius + band_ + weldGap(radius); };
     const auto passed = [&](std::uint32_t slot) {
         const PlanLayer& plan = slots_[slot];
-        return plan.centre_z + reach(plan.radius) < z_min;
+        return plan.center_z + reach(plan.radius) < z_min;
     };
     // In order, because the first of equally near beads is the owner.
     std::size_t kept = 0;
@@ -209,15 +209,15 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
                 radii_.push_back(slots_[slot].radius);
     }
     std::erase_if(welds_, [&](const PlanWeld& weld) { return weld.interface_high + band_ < z_min; });
-    // Layers ascend by centre, but a thick one can reach lower than a thin one before it.
+    // Layers ascend by center, but a thick one can reach lower than a thin one before it.
     for (std::size_t n = next_layer_; n < column_layers_.size(); ++n) {
         ColumnLayer& source = column_layers_[n];
         if (source.loaded) continue;
         const Layer& layer = stack_.layers[source.layer];
-        if (layer.centre_z - reach(thickest_) > z_max) break;
-        if (layer.centre_z - reach(layer.radius) > z_max) continue;
+        if (layer.center_z - reach(thickest_) > z_max) break;
+        if (layer.center_z - reach(layer.radius) > z_max) continue;
         source.loaded = true;
-        if (layer.centre_z + reach(layer.radius) >= z_min) loadLayer(source);
+        if (layer.center_z + reach(layer.radius) >= z_min) loadLayer(source);
     }
     while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
 }
@@ -231,7 +231,7 @@ void LeafColumn::gatherTerms(int k0) {
             const auto first = static_cast<std::uint32_t>(terms_.terms.size());
             for (const std::uint32_t slot : window_) {
                 const PlanLayer& plan = slots_[slot];
-                const double dz = height - plan.centre_z;
+                const double dz = height - plan.center_z;
                 if (plan.radius != radius || std::abs(dz) >= reach) continue;
                 const auto world = static_cast<float>(dz * scale_);
                 terms_.terms.push_back({&plan.sides2, world * world});

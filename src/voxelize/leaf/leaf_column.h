@@ -63,7 +63,7 @@ private:
     };
     struct PlanLayer {
         std::uint32_t layer;
-        double centre_z, radius;  // mm
+        double center_z, radius;  // mm
         PlanField d, sides2;
         PlanOwners owners;
     };

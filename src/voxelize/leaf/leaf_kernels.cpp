@@ -49,7 +49,7 @@ HWY_INLINE VF distance(const LocalLine& line, VF qx, VF qy) {
 HWY_INLINE VF distance(const LocalArc& arc, VF qx, VF qy) {
     const F f;
     VF on_circle;
-    if (arc.near_centre) {
+    if (arc.near_center) {
         const VF vx = hn::Add(qx, hn::Set(f, arc.vx));
         const VF vy = hn::Add(qy, hn::Set(f, arc.vy));
         on_circle = hn::Abs(hn::Sub(hn::Sqrt(dot(vx, vy, vx, vy)), hn::Set(f, arc.radius)));
@@ -163,7 +163,7 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
 }
 
 void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
-                PlanField& centre_z) {
+                PlanField& center_z) {
     const F f;
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF qx = hn::Load(f, grid.qx.v + c);
@@ -171,14 +171,14 @@ void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float c
         const VF side = hn::Max(hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat)), hn::Zero(f));
         hn::Store(hn::Mul(side, side), f, sides2.v + c);
         const VF s = hn::Min(hn::Max(along(line, qx, qy), hn::Set(f, line.lo)), hn::Set(f, line.hi));
-        hn::Store(hn::Add(hn::Set(f, z0), hn::Mul(s, hn::Set(f, climb_per_unit))), f, centre_z.v + c);
+        hn::Store(hn::Add(hn::Set(f, z0), hn::Mul(s, hn::Set(f, climb_per_unit))), f, center_z.v + c);
     });
 }
 
-void ExpandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
+void ExpandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
     const F f;
     forEachVector([&](std::size_t c) HWY_ATTR {
-        const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, centre_z.v + c)), hn::Set(f, term.cosine));
+        const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, center_z.v + c)), hn::Set(f, term.cosine));
         const VF below = hn::Min(hn::Add(up, hn::Set(f, term.reach)), hn::Zero(f));
         const VF height = hn::IfThenElse(hn::Lt(up, hn::Zero(f)), below, up);
         const VF value =
@@ -325,11 +325,11 @@ void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandLayers)(leaf, background, phi);
 }
 void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
-                PlanField& centre_z) {
-    HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, centre_z);
+                PlanField& center_z) {
+    HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, center_z);
 }
-void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi) {
-    HWY_DYNAMIC_DISPATCH(ExpandSloped)(sides2, centre_z, term, z, phi);
+void expandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandSloped)(sides2, center_z, term, z, phi);
 }
 void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandRod)(grid, rod, z, phi);

@@ -57,7 +57,7 @@ float maximumOf(const PlanField& a, const PlanField& b, PlanField& out);
 /// One layer's part in one plane of a leaf.
 struct PlaneTerm {
     const PlanField* sides2 = nullptr;
-    float dz2 = 0;  ///< squared height over the layer's centre plane
+    float dz2 = 0;  ///< squared height over the layer's center plane
 };
 /// Layers of one radius: terms first..last - 1 take one root together.
 struct PlaneTerms {
@@ -88,14 +88,14 @@ struct LeafTerms {
 /// phi = min over groups (sqrt(min over terms (sides2 + dz2)) - radius) and welds, or `background` without any terms.
 void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi);
 
-/// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its centre line.
+/// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its center line.
 void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
-                PlanField& centre_z);
-/// up = (z - centre_z) cosine, lowered by reach below; phi = min(phi, sqrt(sides2 + up^2) - radius).
+                PlanField& center_z);
+/// up = (z - center_z) cosine, lowered by reach below; phi = min(phi, sqrt(sides2 + up^2) - radius).
 struct SlopedTerm {
     float cosine, reach, radius;
 };
-void expandSloped(const PlanField& sides2, const PlanField& centre_z, const SlopedTerm& term, float z, PlanField& phi);
+void expandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi);
 
 /// A straight round bead in 3-D. Perpendicular distances a = n0 + n.q in the plan, b = b0 + bx qx + by qy + bz z, and
 /// s = ux qx + uy qy + uz z along it with the segment at lo <= s <= hi.

@@ -23,7 +23,7 @@ void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
         const PlanLayer& plan = slots_[slot];
         const auto radius = static_cast<float>(plan.radius * scale_);
         for (int z = 0; z < kLeafDim; ++z) {
-            const double dz = sampleZ(k0 + z) - plan.centre_z;
+            const double dz = sampleZ(k0 + z) - plan.center_z;
             if (std::abs(dz) >= plan.radius + band_) continue;
             const auto world = static_cast<float>(dz * scale_);
             for (std::size_t c = 0; c < kColumnSamples; ++c)

@@ -21,7 +21,7 @@ double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
 TEST(SmoothNormal, IsBetterThanTheCellsOnASphere) {
     for (const bool placed : {false, true}) {
         const auto grid = test::sphereGrid(2, openvdb::Vec3f(0), 0.1F);
-        const glm::dvec3 centre(placed ? 50 : 0, 0, 0);
+        const glm::dvec3 center(placed ? 50 : 0, 0, 0);
         if (placed) {
             grid->transform().postRotate(0.7, openvdb::math::Y_AXIS);
             grid->transform().postTranslate(openvdb::Vec3d(50, 0, 0));
@@ -34,10 +34,10 @@ TEST(SmoothNormal, IsBetterThanTheCellsOnASphere) {
         double smooth_sum = 0;
         double worst = 0;
         for (int n = 0; n < 5000; ++n) {
-            const glm::dvec3 from = centre + 9.0 * test::randomDirection(random);
+            const glm::dvec3 from = center + 9.0 * test::randomDirection(random);
             trace::Hit hit;
-            ASSERT_TRUE(tracer->intersect({from, glm::normalize(centre + test::randomDirection(random) - from)}, hit));
-            const glm::dvec3 truth = glm::normalize(hit.position - centre);
+            ASSERT_TRUE(tracer->intersect({from, glm::normalize(center + test::randomDirection(random) - from)}, hit));
+            const glm::dvec3 truth = glm::normalize(hit.position - center);
             const glm::dvec3 s = smooth.at(hit.position, hit.normal);
             EXPECT_NEAR(glm::length(s), 1, 1e-12);
             cell_sum += degreesBetween(hit.normal, truth);

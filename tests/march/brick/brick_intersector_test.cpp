@@ -162,12 +162,12 @@ TEST(BrickIntersector, FollowsTheTransform) {
     std::mt19937 random(6);
     for (int n = 0; n < 2000; ++n) {
         const glm::dvec3 direction = randomDirection(random);
-        const glm::dvec3 centre(1000, 2000, 3000);
+        const glm::dvec3 center(1000, 2000, 3000);
         trace::Hit hit;
-        ASSERT_TRUE(tracer->intersect({centre - 50.0 * direction, direction}, hit));
+        ASSERT_TRUE(tracer->intersect({center - 50.0 * direction, direction}, hit));
         EXPECT_NEAR(hit.t, 40, 2e-3);
         EXPECT_LT(glm::dot(hit.normal, direction), -0.999);
-        EXPECT_NEAR(glm::length(hit.position - centre), 10, 2e-3);
+        EXPECT_NEAR(glm::length(hit.position - center), 10, 2e-3);
     }
 }
 

@@ -138,13 +138,13 @@ TEST(Numerics, Rule5_SecondaryRaysLeaveTheirSurface) {
         EXPECT_GE(intersector->surfaceOffset(), 1e-3 * 0.1 * (1 - 1e-6));
         EXPECT_GE(intersector->surfaceOffset(), 4 * std::numeric_limits<double>::epsilon() * away);
         const auto tracer = intersector->makeTracer();
-        const glm::dvec3 centre(away, -away, away);
+        const glm::dvec3 center(away, -away, away);
         std::mt19937 random(5);
         int met = 0;
         for (int n = 0; n < 20000; ++n) {
             const glm::dvec3 out = test::randomDirection(random);
             trace::Hit hit;
-            ASSERT_TRUE(tracer->intersect({centre + 9.0 * out, -out}, hit));
+            ASSERT_TRUE(tracer->intersect({center + 9.0 * out, -out}, hit));
             const glm::dvec3 leave = glm::normalize(hit.normal + 0.95 * test::randomDirection(random));
             met += tracer->occluded({hit.position + intersector->surfaceOffset() * hit.normal, leave}) ? 1 : 0;
         }

@@ -73,7 +73,7 @@ TEST_F(VdbWalker, SeesWhatOpenVdbWrites) {
             cursor.moveTo(static_cast<std::int64_t>(head.tree));
             Seen seen;
             walkVdbTree(cursor, format, seen);
-            EXPECT_EQ(cursor.place(), static_cast<std::uint64_t>(head.leaves));
+            EXPECT_EQ(cursor.offset(), static_cast<std::uint64_t>(head.leaves));
             EXPECT_EQ(seen.outside.size(), 4U);
             EXPECT_EQ(seen.tiles, (std::map<openvdb::Coord, bool>{{openvdb::Coord(8192, 0, 0), true}}));
             ASSERT_EQ(seen.leaves.size(), grid->tree().leafCount());
@@ -82,7 +82,7 @@ TEST_F(VdbWalker, SeesWhatOpenVdbWrites) {
             EXPECT_EQ(seen.active_voxels, grid->tree().activeLeafVoxelCount());
             for (std::size_t n = 0; n < seen.leaves.size(); ++n)
                 (void)walkVdbValues(cursor, format, cursor.take(kLeafMaskBytes));
-            EXPECT_EQ(cursor.place(), static_cast<std::uint64_t>(head.end));
+            EXPECT_EQ(cursor.offset(), static_cast<std::uint64_t>(head.end));
         }
     }
 }

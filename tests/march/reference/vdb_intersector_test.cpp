@@ -15,7 +15,7 @@ namespace stratum::march {
 namespace {
 
 constexpr double kRadius = 10;
-const glm::dvec3 kCentre(3, -2, 5);
+const glm::dvec3 kCenter(3, -2, 5);
 
 openvdb::FloatGrid::Ptr ball(float voxel = 0.2f) {
     return test::sphereGrid(static_cast<float>(kRadius), openvdb::Vec3f(3, -2, 5), voxel);
@@ -33,11 +33,11 @@ TEST(VdbIntersector, HitsASphereWhereItIs) {
     int hits = 0;
     for (int n = 0; n < 5000; ++n) {
         trace::Ray ray;
-        ray.origin = kCentre + 40.0 * randomDirection(random);
-        ray.direction = glm::normalize(kCentre + 12.0 * randomDirection(random) - ray.origin);
-        const glm::dvec3 to_centre = kCentre - ray.origin;
-        const double along = glm::dot(to_centre, ray.direction);
-        const double miss = glm::length(to_centre - along * ray.direction);
+        ray.origin = kCenter + 40.0 * randomDirection(random);
+        ray.direction = glm::normalize(kCenter + 12.0 * randomDirection(random) - ray.origin);
+        const glm::dvec3 to_center = kCenter - ray.origin;
+        const double along = glm::dot(to_center, ray.direction);
+        const double miss = glm::length(to_center - along * ray.direction);
         if (std::abs(miss - kRadius) < 0.3) continue;  // near-tangent: the voxels decide
         trace::Hit hit;
         const bool found = tracer->intersect(ray, hit);
@@ -49,7 +49,7 @@ TEST(VdbIntersector, HitsASphereWhereItIs) {
         // The reference interpolates linearly between voxel faces: good to a fraction of the 0.2 mm voxel.
         EXPECT_NEAR(hit.t, expected, 0.04);
         EXPECT_NEAR(glm::length(hit.position - (ray.origin + hit.t * ray.direction)), 0, 1e-9);
-        EXPECT_GT(glm::dot(hit.normal, glm::normalize(hit.position - kCentre)), 0.999);
+        EXPECT_GT(glm::dot(hit.normal, glm::normalize(hit.position - kCenter)), 0.999);
         EXPECT_NEAR(glm::length(hit.normal), 1, 1e-12);
     }
     EXPECT_GT(hits, 1000);
@@ -105,8 +105,8 @@ TEST(VdbIntersector, RaysThatLeaveAConvexBodyMeetNothing) {
     int left = 0;
     for (int n = 0; n < 20000; ++n) {
         trace::Ray ray;
-        ray.origin = kCentre + 40.0 * randomDirection(random);
-        ray.direction = glm::normalize(kCentre + 6.0 * randomDirection(random) - ray.origin);
+        ray.origin = kCenter + 40.0 * randomDirection(random);
+        ray.direction = glm::normalize(kCenter + 6.0 * randomDirection(random) - ray.origin);
         trace::Hit hit;
         ASSERT_TRUE(tracer->intersect(ray, hit));
         trace::Ray out;
@@ -147,10 +147,10 @@ TEST(VdbIntersector, BoundsAndNormalsFollowTheTransform) {
     const trace::Box box = intersector->bounds();
     EXPECT_LT(box.max.x - box.min.x, 0.024);
     EXPECT_GT(box.max.x - box.min.x, 0.020);
-    const glm::dvec3 centre = 0.5 * (box.min + box.max);
+    const glm::dvec3 center = 0.5 * (box.min + box.max);
     const auto tracer = intersector->makeTracer();
     trace::Hit hit;
-    ASSERT_TRUE(tracer->intersect({centre + glm::dvec3(0, 0.1, 0), {0, -1, 0}}, hit));
+    ASSERT_TRUE(tracer->intersect({center + glm::dvec3(0, 0.1, 0), {0, -1, 0}}, hit));
     EXPECT_NEAR(hit.t, 0.09, 2e-4);
     EXPECT_NEAR(hit.normal.y, 1, 1e-3);
 }

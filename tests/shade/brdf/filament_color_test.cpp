@@ -61,7 +61,7 @@ std::array<double, 3> labOf(const glm::dvec3& srgb) {
 
 // The default picture of a ball of filament: the mean of what looks at the camera, or up, is near the colour that the
 // file states.
-TEST(FilamentColor, APictureShowsTheColourThatIsStated) {
+TEST(FilamentColor, APictureShowsTheColorThatIsStated) {
     const auto ball = test::sphere({0, 0, 10}, 10);
     // Stated colour, and how far the picture may be from it (CIE 1976 difference).
     struct Case {

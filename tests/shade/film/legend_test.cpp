@@ -32,7 +32,7 @@ int countOf(const std::vector<std::uint8_t>& rgb, const std::array<int, 3>& colo
     return count;
 }
 
-TEST(Legend, ShowsEachColourAndLeavesTheRestOfThePictureAlone) {
+TEST(Legend, ShowsEachColorAndLeavesTheRestOfThePictureAlone) {
     Legend legend;
     legend.title = "tool";
     legend.entries = {{"tool 0", *shade::parseNamedColor("#1F4E6B")}, {"tool 1", *shade::parseNamedColor("#F2B33D")}};

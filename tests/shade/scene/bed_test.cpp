@@ -26,7 +26,7 @@ TEST(Bed, IsMetFromAboveOnly) {
 
 TEST(Bed, FadesFromNoneToAll) {
     shade::Bed bed;
-    bed.centre = {10, 0};
+    bed.center = {10, 0};
     bed.fade_begin = 5;
     bed.fade_end = 9;
     EXPECT_EQ(bed.fade({10, 5, 0}), 0.0);

@@ -71,14 +71,14 @@ TEST(BedTexture, PeiHasTheNormalsOfASurface) {
     const BedTexture pei(BedSurface::pei, 2.0);  // in units of two millimetres
     constexpr int kSteps = 20000;
     for (int ring = 0; ring < 20; ++ring) {
-        const glm::dvec2 centre(7.3 * ring - 61.0, 3.1 * ring - 17.0);
+        const glm::dvec2 center(7.3 * ring - 61.0, 3.1 * ring - 17.0);
         const double radius = 0.05 + 0.04 * ring;
         double height = 0.0;
         double climbed = 0.0;
         for (int n = 0; n < kSteps; ++n) {
             const double phi = 2.0 * std::numbers::pi * (n + 0.5) / kSteps;
             const glm::dvec2 out(std::cos(phi), std::sin(phi));
-            const glm::dvec3 normal = pei.normal(centre + radius * out);
+            const glm::dvec3 normal = pei.normal(center + radius * out);
             const double rise = glm::dot(glm::dvec2(normal) / -normal.z, glm::dvec2(-out.y, out.x));
             height += rise;
             climbed += std::abs(rise);

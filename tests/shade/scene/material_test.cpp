@@ -83,7 +83,7 @@ TEST(Material, PalettesTellToolsApartAndRampsGrowLighter) {
               3.0f * shade::luminance(layers.of(glm::vec3(1, 0, 0)).albedo));
 }
 
-TEST(Material, ColoursOfTheFilament) {
+TEST(Material, ColorsOfTheFilament) {
     AttributeSummary colors;
     colors.kind = AttributeSummary::Kind::color;
     colors.colors = {{0.0f, 0.5f, 0.25f}, {1.0f, 0.0f, 0.0f}};
@@ -124,7 +124,7 @@ TEST(Material, ValuesThatAreNoNumbersAreGray) {
     EXPECT_NEAR(material.of(glm::vec3(kNan, 0, 0)).albedo.r, 0.5f, 1e-5f);  // the scene's, as without a value
 }
 
-TEST(Material, PlacesWithoutAStatedColourAreOfTheScenesMaterial) {
+TEST(Material, PlacesWithoutAStatedColorAreOfTheScenesMaterial) {
     AttributeSummary colors;
     colors.kind = AttributeSummary::Kind::color;
     colors.colors = {{0.0f, 0.5f, 0.25f}, trace::kNoColor};
@@ -170,7 +170,7 @@ TEST(Material, LegendsNameWhatIsThere) {
     EXPECT_NEAR(tools.entries[0].color.g, 1.0f, 1e-5f);
 }
 
-TEST(Material, TablesKeepTheirColour) {
+TEST(Material, TablesKeepTheirColor) {
     MaterialOptions options;
     options.by = "tool";
     EXPECT_THROW(makeObjectMaterial(options, "pla-blue", 0, integers(0, 1)), UsageError);

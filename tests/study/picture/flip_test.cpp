@@ -39,7 +39,7 @@ TEST(Flip, OfGreenAndBlueIsOne) {
 // difference of lightness. Black to white: 100^0.7 = 25.12; the largest is that of green (L* 87.735, a* -86.183,
 // b* 83.180) and blue (32.297, 79.188, -107.858), Hunt-adjusted: 55.438 + |(-101.188, 107.815)| = 203.30;
 // 203.30^0.7 = 41.28. Beyond the bend at 0.4 of that: 0.95 + 0.05 (25.12 - 16.51) / (41.28 - 16.51) = 0.9674.
-TEST(Flip, OfPlainColoursIsKnown) {
+TEST(Flip, OfPlainColorsIsKnown) {
     EXPECT_NEAR(meanFlip(filled(Color(0)), filled(Color(1))), 0.9674, 1e-4);
     // sRGB 0.5 is 0.2140 of white's light: L* = 53.389. Below the bend: 0.95 * 53.389^0.7 / 16.51 = 0.9312.
     EXPECT_NEAR(meanFlip(filled(Color(0)), filled(Color(0.5f))), 0.95 * std::pow(53.389, 0.7) / 16.511, 1e-3);

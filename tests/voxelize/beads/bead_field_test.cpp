@@ -96,10 +96,10 @@ TEST(BeadField, SlopedBeadFollowsItsSurface) {
     const BeadField field(toolpath, toolpath.beads[0]);
     const double cosine = 20 / std::hypot(20, 2);
     for (double x = 5; x < 15; x += 0.7) {
-        const double centre = 1 + x * 0.1 - 0.1;
-        EXPECT_NEAR(field.distance(x, 0, centre + 0.5 / cosine), 0.4, 1e-6);
+        const double center = 1 + x * 0.1 - 0.1;
+        EXPECT_NEAR(field.distance(x, 0, center + 0.5 / cosine), 0.4, 1e-6);
         // The underside reaches 0.02 of the height lower, to weld it to the turn below.
-        EXPECT_NEAR(field.distance(x, 0, centre - 0.5 / cosine), 0.4 - kSlopedReach * 0.2, 1e-6);
+        EXPECT_NEAR(field.distance(x, 0, center - 0.5 / cosine), 0.4 - kSlopedReach * 0.2, 1e-6);
     }
 }
 

@@ -26,7 +26,7 @@ TEST(LayerStack, GroupsByPlaneAndHeight) {
     const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
     ASSERT_EQ(stack.layers.size(), 3U);
     EXPECT_EQ(beadsOf(stack, 0), (std::vector<std::uint32_t>{0, 1}));
-    EXPECT_DOUBLE_EQ(stack.layers[0].centre_z, 0.1);
+    EXPECT_DOUBLE_EQ(stack.layers[0].center_z, 0.1);
     EXPECT_DOUBLE_EQ(stack.layers[0].radius, 0.1);
     EXPECT_EQ(beadsOf(stack, 1), (std::vector<std::uint32_t>{3}));  // centre 0.2
     EXPECT_EQ(beadsOf(stack, 2), (std::vector<std::uint32_t>{2}));  // centre 0.3

@@ -153,9 +153,9 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
             rod.hi = 0.2f, rod.radius = 0.05f;
             expandRod(grid, rod, dz, r.planes.plane[z]);
             PlanField sides;
-            PlanField centre;
-            slopedLine(grid, lines[0], 0.05f, 0.3f, sides, centre);
-            expandSloped(sides, centre, {0.9f, 0.004f, 0.1f}, dz, r.planes.plane[z]);
+            PlanField center;
+            slopedLine(grid, lines[0], 0.05f, 0.3f, sides, center);
+            expandSloped(sides, center, {0.9f, 0.004f, 0.1f}, dz, r.planes.plane[z]);
         }
         EXPECT_EQ(clampLeaf(r.planes, kLeafPlanes, 0.3f), LeafContent::surface);
         storeLeaf(r.planes, r.values);
