@@ -40,7 +40,7 @@ std::shared_ptr<const Intersector> sampled(double voxel) {
                 else if (d < 0)
                     accessor.setValueOff({i, j, k}, static_cast<float>(-3 * voxel));
             }
-    return makeBrickIntersector(*grid);
+    return march::makeBrickIntersector(*grid);
 }
 
 // Voxels of three sizes, and an eye from which the spheres between them cut the tube, once near its crest.
