@@ -58,7 +58,7 @@ public:
             wanted.back().up = o_.file_up;
         }
         const assemble::TracedObjects objects = assemble::readTracedObjects(wanted, reading_);
-        const std::shared_ptr<assemble::LatePrint> growing = assemble::growingPrint(objects);
+        const std::shared_ptr<assemble::LazyPrint> growing = assemble::growingPrint(objects);
         if (o_.prints.series > 1 && !growing)
             throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
         if (!o_.bricks.picture.empty() && objects.prints.empty())
@@ -97,7 +97,7 @@ private:
     }
 
     /// @param growing  print that has several moments; may be null
-    void frames(std::size_t n, const assemble::TracedObjects& objects, assemble::LatePrint* growing, Stopwatch& watch) {
+    void frames(std::size_t n, const assemble::TracedObjects& objects, assemble::LazyPrint* growing, Stopwatch& watch) {
         const std::size_t moments = growing != nullptr ? growing->moments() : 1;
         const auto turns = static_cast<std::size_t>(o_.turntable);
         const std::size_t count = o_.inputs.size() * moments * turns;

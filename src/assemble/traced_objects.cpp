@@ -136,6 +136,7 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     AttributeNeeds needs;
     planLabels(objects, options, needs, result);
     std::vector<MaterialPlan> plans;
+    plans.reserve(objects.size());
     for (const ObjectOptions& object : objects) plans.push_back(planMaterial(object, options, needs));
 
     ShapeReader reader(options, needs);
@@ -171,7 +172,7 @@ Json onDemandReport(const TracedObjects& objects) {
     return all;
 }
 
-std::shared_ptr<LatePrint> growingPrint(const TracedObjects& objects) {
+std::shared_ptr<LazyPrint> growingPrint(const TracedObjects& objects) {
     const auto found = std::find_if(objects.prints.rbegin(), objects.prints.rend(),
                                     [](const auto& print) { return print->moments() > 1; });
     return found == objects.prints.rend() ? nullptr : *found;

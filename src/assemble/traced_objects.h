@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assemble/object_file.h"
-#include "assemble/print/late_print.h"
+#include "assemble/print/lazy_print.h"
 #include "assemble/tracing_options.h"
 #include "shade/film/legend.h"
 #include "shade/scene/material.h"
@@ -31,7 +31,7 @@ struct TracedObjects {
     double mm_per_unit = 1.0;  ///< of world space, as the first object's file says
     /// Of each G-code file, in the order of their first objects: to bring it to another moment, and to ask what its
     /// bricks took.
-    std::vector<std::shared_ptr<LatePrint>> prints;
+    std::vector<std::shared_ptr<LazyPrint>> prints;
 
     std::vector<std::string> lines;          ///< of each file and shape, for people
     std::vector<Warning> warnings;           ///< in the order in which they came up
@@ -46,10 +46,10 @@ struct TracedObjects {
 /// Throws InputError for files that can't be traced, UsageError for options that do not fit them.
 TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const TracingOptions& options);
 
-/// LatePrint::report() of all prints: an array.
+/// LazyPrint::report() of all prints: an array.
 nlohmann::ordered_json onDemandReport(const TracedObjects& objects);
 
 /// The last print that has more than one moment; null if there is none.
-std::shared_ptr<LatePrint> growingPrint(const TracedObjects& objects);
+std::shared_ptr<LazyPrint> growingPrint(const TracedObjects& objects);
 
 }  // namespace stratum::assemble

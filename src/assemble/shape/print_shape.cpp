@@ -56,7 +56,7 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     // Each level has its share of what they may take together.
     std::size_t cache = options.brick_cache;
     if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size();
-    std::vector<LateLevel> late;
+    std::vector<LazyLevel> lazy;
     std::vector<trace::DetailLevel> shapes;
     for (const PrintLevel& level : print.levels) {
         march::TracedBricks traced =
@@ -64,14 +64,14 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
         shapes.push_back(
             {march::annotate(std::move(traced.intersector), annotationOf(object, level.field, options, needs)),
              level.from});
-        late.push_back({level.field, std::move(traced.bricks)});
+        lazy.push_back({level.field, std::move(traced.bricks)});
     }
     shape.intersector = trace::makeDetailIntersector(std::move(shapes), print.eye);
     const double seconds = watch.lap();
     shape.load_seconds = print.parse_seconds;
     shape.build_seconds = seconds - print.parse_seconds;
-    shape.print = std::make_shared<LatePrint>(std::move(late), std::move(print.moments),
-                                              LatePrint::Times{print.parse_seconds, seconds}, cache);
+    shape.print = std::make_shared<LazyPrint>(std::move(lazy), std::move(print.moments),
+                                              LazyPrint::Times{print.parse_seconds, seconds}, cache);
     return shape;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assemble/object_file.h"
-#include "assemble/print/late_print.h"
+#include "assemble/print/lazy_print.h"
 #include "assemble/print/print_colors.h"
 #include "assemble/shape/attribute_needs.h"
 #include "assemble/tracing_options.h"
@@ -30,7 +30,7 @@ struct Shape {
     std::string source;                                        ///< what tells the file from others, if asked for
     nlohmann::ordered_json report;
     std::string line;                  ///< for people
-    std::shared_ptr<LatePrint> print;  ///< of G-code; else null
+    std::shared_ptr<LazyPrint> print;  ///< of G-code; else null
     double load_seconds = 0.0, build_seconds = 0.0;
 };
 

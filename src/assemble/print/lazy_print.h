@@ -16,13 +16,13 @@
 namespace stratum::assemble {
 
 /// The print at one voxel size, and its bricks.
-struct LateLevel {
+struct LazyLevel {
     std::shared_ptr<ondemand::PrintField> field;
     std::shared_ptr<march::BrickGrid> bricks;
 };
 
 /// Nothing here may be called while rays are traced.
-class LatePrint {
+class LazyPrint {
 public:
     struct Times {
         double parse = 0;  ///< seconds, of reading the G-code
@@ -32,7 +32,7 @@ public:
     /// @param levels       from the finest; at least one
     /// @param moments      of a growing print: what lies before these beads is printed; ascending, the last one is all
     /// @param cache_bytes  of samples that each level may keep at once
-    LatePrint(std::vector<LateLevel> levels, std::vector<std::uint32_t> moments, Times times, std::size_t cache_bytes);
+    LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, Times times, std::size_t cache_bytes);
 
     /// How many pictures a growing print makes; 1 for others.
     std::size_t moments() const { return moments_.size(); }
@@ -47,7 +47,7 @@ public:
     void writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const;
 
 private:
-    std::vector<LateLevel> levels_;
+    std::vector<LazyLevel> levels_;
     std::vector<std::uint32_t> moments_;
     Times times_;
     std::size_t cache_bytes_;

@@ -1,4 +1,4 @@
-#include "assemble/print/late_print.h"
+#include "assemble/print/lazy_print.h"
 
 #include "base/error.h"
 #include "prints.h"
@@ -11,11 +11,11 @@
 namespace stratum::assemble {
 namespace {
 
-TEST(LatePrint, ShowsEarlierMoments) {
+TEST(LazyPrint, ShowsEarlierMoments) {
     TracingOptions options = test::coarseTracing();
     options.prints.series = 3;
     const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, options);
-    const std::shared_ptr<LatePrint> print = growingPrint(objects);
+    const std::shared_ptr<LazyPrint> print = growingPrint(objects);
     ASSERT_TRUE(print);
     ASSERT_EQ(print->moments(), 3U);
     const auto beads = [&] { return print->report()["printed_beads"].get<std::size_t>(); };
@@ -27,7 +27,7 @@ TEST(LatePrint, ShowsEarlierMoments) {
     EXPECT_EQ(beads(), all);
 }
 
-TEST(LatePrint, PicturesItsBricks) {
+TEST(LazyPrint, PicturesItsBricks) {
     const test::ScratchFolder scratch;
     const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, test::coarseTracing());
     ASSERT_EQ(objects.prints.size(), 1U);
@@ -36,7 +36,7 @@ TEST(LatePrint, PicturesItsBricks) {
     EXPECT_THROW(objects.prints[0]->writeBrickPicture((scratch / "bricks.exr").string(), {}), UsageError);
 }
 
-TEST(LatePrint, TellsOfABoundOnItsBricks) {
+TEST(LazyPrint, TellsOfABoundOnItsBricks) {
     TracingOptions options = test::coarseTracing();
     options.brick_cache = 100'000'000;
     const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, options);

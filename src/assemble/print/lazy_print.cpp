@@ -1,4 +1,4 @@
-#include "assemble/print/late_print.h"
+#include "assemble/print/lazy_print.h"
 
 #include "assemble/print/brick_picture.h"
 
@@ -25,7 +25,7 @@ Json reportOf(const march::BrickSlots& cache, const march::BrickGrid& bricks, st
     return report;
 }
 
-Json reportOf(const LateLevel& level, std::size_t cache_bytes) {
+Json reportOf(const LazyLevel& level, std::size_t cache_bytes) {
     const march::BrickGrid& bricks = *level.bricks;
     Json report{{"voxel_size_mm", level.field->layout().lattice.voxel_size},
                 {"bricks_listed", bricks.listedCount()},
@@ -47,19 +47,19 @@ std::string ofLevel(const std::string& path, std::size_t level) {
 
 }  // namespace
 
-LatePrint::LatePrint(std::vector<LateLevel> levels, std::vector<std::uint32_t> moments, Times times,
+LazyPrint::LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, Times times,
                      std::size_t cache_bytes)
     : levels_(std::move(levels)), moments_(std::move(moments)), times_(times), cache_bytes_(cache_bytes) {}
 
-void LatePrint::show(std::size_t moment) {
-    for (const LateLevel& level : levels_) level.bricks->update(level.field->printUntil(moments_[moment]));
+void LazyPrint::show(std::size_t moment) {
+    for (const LazyLevel& level : levels_) level.bricks->update(level.field->printUntil(moments_[moment]));
 }
 
-Json LatePrint::report() const {
+Json LazyPrint::report() const {
     ondemand::PrintFieldTimes times;
     double bricks_seconds = 0;
     Json reports = Json::array();
-    for (const LateLevel& level : levels_) {
+    for (const LazyLevel& level : levels_) {
         times.bins += level.field->times().bins;
         times.box += level.field->times().box;
         times.map += level.field->times().map;
@@ -93,7 +93,7 @@ Json LatePrint::report() const {
     return all;
 }
 
-void LatePrint::writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const {
+void LazyPrint::writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const {
     for (std::size_t n = 0; n < levels_.size(); ++n)
         assemble::writeBrickPicture(levels_.size() == 1 ? path : ofLevel(path, n), *levels_[n].bricks, metadata);
 }
