@@ -1,7 +1,5 @@
 #include "base/huge_array.h"
 
-#include "march/brick/brick_grid.h"
-
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -31,7 +29,7 @@ void* guardAt(std::uintptr_t address) {
 // The z-pair at a brick's last cell begins two samples before its end and is gathered as eight bytes. 663 bricks and
 // one sample fill their pages to the last byte.
 TEST(HugeArray, AGatherOfEightBytesAtTheLastSamplesStaysInTheMapping) {
-    constexpr std::size_t kSize = 663 * static_cast<std::size_t>(march::BrickGrid::kBrickSamples);
+    constexpr std::size_t kSize = 663 * std::size_t{9 * 9 * 9};  // samples of 663 bricks
     static_assert((kSize + 1) * sizeof(std::int16_t) % kPage == 0);
     // New mappings mostly lie right below the one before: that one makes room for the guard.
     std::vector<std::unique_ptr<Quanta>> arrays;

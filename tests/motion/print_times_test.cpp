@@ -4,6 +4,7 @@
 #include "gcode/container/input_bytes.h"
 #include "motions.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Corpus, StatedTime,
                                          Stated{"gcode/spot_1000cc_0.1mm_grid.gcode.gz", 73427, 0.002},
                                          Stated{"gcode/preprocess_cancellation-cura.gcode", 451, 0.02},
                                          Stated{"gcode/filaswitch-mc_testmodel1_Cura.gcode", 2656, 0.05}),
-                         [](const auto& chosen) { return "n" + std::to_string(chosen.index); });
+                         [](const auto& chosen) { return fmt::format("n{}", chosen.index); });
 
 TEST_P(StatedTime, IsWhatThePlanTakes) {
     STRATUM_NEEDS_CORPUS(path, GetParam().file);
