@@ -19,7 +19,7 @@ def includes_of(path):
     found = []
     with open(os.path.join(ROOT, path), encoding="utf-8") as file:
         for name in re.findall(r'^#include "([^"]+)"', file.read(), re.MULTILINE):
-            for folder in ("src", os.path.dirname(path)):
+            for folder in ("src", "tools", "tools/command_line", os.path.dirname(path)):
                 candidate = os.path.normpath(os.path.join(folder, name))
                 if os.path.exists(os.path.join(ROOT, candidate)):
                     found.append(candidate)

@@ -49,6 +49,10 @@ for room, allowed in MAY_INCLUDE.items():
                     problems.append(f"{place}/{name}:{number}: {room} must not include from {match.group(1)}")
                 if room in WITHOUT_OPENVDB and re.match(r"#include <openvdb", line):
                     problems.append(f"{place}/{name}:{number}: {room} knows no OpenVDB")
+for folder in ("tools", "tools/command_line"):
+    count = sum(name.endswith((".h", ".cpp")) for name in os.listdir(os.path.join(ROOT, folder)))
+    if count > MOST_FILES:
+        problems.append(f"{folder}: {count} files; divide them")
 for room in os.listdir(os.path.join(ROOT, "src")):
     if room not in MAY_INCLUDE:
         problems.append(f"src/{room}: is no room of this list")
