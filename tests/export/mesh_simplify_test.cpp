@@ -92,10 +92,10 @@ TEST(MeshSimplify, APrintHasATenthOfTheFacesWithinAQuarterVoxel) {
                     0.45, 0.2, number);
         addArc(toolpath, 5, 4.5, 2, 0.2, 2 * std::numbers::pi, z, z, 0.45, 0.2, number);
     }
-    Lattice lattice;
+    voxelize::Lattice lattice;
     lattice.voxel_size = 0.05;
     lattice.layer_height = 0.2;
-    const auto grid = voxelize(toolpath, allBeads(toolpath), lattice);
+    const auto grid = voxelize::voxelize(toolpath, allBeads(toolpath), lattice);
     const SurfaceMesh all = meshSurface(*grid);
     const SurfaceMesh mesh = meshSurface(*grid, {false, 0.25});
     expectClosed(mesh);

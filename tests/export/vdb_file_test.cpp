@@ -10,12 +10,12 @@
 namespace stratum::exporter {
 namespace {
 
-openvdb::FloatGrid::Ptr oneBead(Lattice& lattice) {
+openvdb::FloatGrid::Ptr oneBead(voxelize::Lattice& lattice) {
     static gcode::Toolpath toolpath;
     if (toolpath.empty()) test::addBead(toolpath, 0, 0, 0.2, 5, 0, 0.2, 0.5, 0.2);
     lattice.voxel_size = 0.05;
     lattice.layer_height = 0.2;
-    return voxelize(toolpath, test::allBeads(toolpath), lattice);
+    return voxelize::voxelize(toolpath, test::allBeads(toolpath), lattice);
 }
 
 openvdb::FloatGrid::Ptr readBack(const std::filesystem::path& path) {
@@ -32,7 +32,7 @@ protected:
 };
 
 TEST_F(VdbFile, KeepsEveryValueWithEveryCompression) {
-    Lattice lattice;
+    voxelize::Lattice lattice;
     const auto grid = oneBead(lattice);
     describe(*grid, lattice, {});
     for (const Compression compression : {Compression::blosc, Compression::zip, Compression::none}) {
@@ -45,7 +45,7 @@ TEST_F(VdbFile, KeepsEveryValueWithEveryCompression) {
 }
 
 TEST_F(VdbFile, SaysWhereItCameFrom) {
-    Lattice lattice;
+    voxelize::Lattice lattice;
     const auto grid = oneBead(lattice);
     Provenance provenance;
     provenance.source_file = "tile.gcode";
@@ -67,7 +67,7 @@ TEST_F(VdbFile, SaysWhereItCameFrom) {
 }
 
 TEST_F(VdbFile, HalfPrecisionIsGoodToAThousandthOfTheBand) {
-    Lattice lattice;
+    voxelize::Lattice lattice;
     const auto grid = oneBead(lattice);
     writeVdb({grid}, path_, {true, Compression::blosc});
     const auto back = readBack(path_);
@@ -77,7 +77,7 @@ TEST_F(VdbFile, HalfPrecisionIsGoodToAThousandthOfTheBand) {
 }
 
 TEST_F(VdbFile, AnUnwritablePlaceIsAnErrorThatLeavesNothing) {
-    Lattice lattice;
+    voxelize::Lattice lattice;
     const auto grid = oneBead(lattice);
     EXPECT_THROW(writeVdb({grid}, "/nonexistent/folder/out.vdb"), OutputError);
 }

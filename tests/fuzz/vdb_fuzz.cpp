@@ -23,6 +23,7 @@
 namespace {
 
 namespace march = stratum::march;
+namespace trace = stratum::trace;
 
 void require(bool good) {
     if (!good) __builtin_trap();
