@@ -31,7 +31,7 @@ void require(bool good) {
 
 constexpr std::size_t kRays = 27;
 
-std::array<trace::Hit, kRays> trace(const trace::Intersector& surface) {
+std::array<trace::Hit, kRays> hitsOf(const trace::Intersector& surface) {
     const trace::Box box = surface.bounds();
     const glm::dvec3 middle = 0.5 * (box.min + box.max);
     const glm::dvec3 size = box.max - box.min;
@@ -64,10 +64,10 @@ void read(const std::filesystem::path& path) {
     } catch (const stratum::InputError&) {
     }
     const auto grid = march::readLevelSet(path);
-    const auto hits = trace(*march::makeBrickIntersector(*grid, march::BrickValues::Float32));
+    const auto hits = hitsOf(*march::makeBrickIntersector(*grid, march::BrickValues::Float32));
     if (!file) return;
     require(file->leafCount() == grid->tree().leafCount() && file->activeBox() == grid->evalActiveVoxelBoundingBox());
-    const auto same = trace(*march::makeBrickIntersector(file, march::BrickValues::Float32));
+    const auto same = hitsOf(*march::makeBrickIntersector(file, march::BrickValues::Float32));
     for (std::size_t n = 0; n < kRays; ++n) require(hits[n].t == same[n].t);
 }
 
