@@ -9,15 +9,13 @@ install_packages "${BUILD_PACKAGES[@]}" git python3 clang-format clang-tidy
 mapfile -t sources < <(git ls-files '*.cpp' '*.h')
 printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 40 clang-format --dry-run --Werror
 echo "clang-format: ${#sources[@]} files are formatted"
-# Compiled by GCC, whose warnings clang does not all know. Without precompiled headers: a unit that forgot an include is found here. The tests are left to the compiler's
-# warnings: GoogleTest's macros are not written for these checks.
+# Without precompiled headers: a unit that forgot an include is found here. The tests are left to the compiler's warnings:
+# GoogleTest's macros are not written for these checks.
 cmake -S . -B build/lint -G Ninja -DSTRATUM_TESTS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
 base=$(cat scripts/lint_base)
 [[ "${1:-}" == --all ]] && base=none
 mapfile -t units < <(python3 scripts/changed_units.py "$base")
 [[ -z "${units[0]:-}" ]] && units=()
-if [[ ${#units[@]} -gt 0 ]]; then
-    printf '%s\n' "${units[@]}" | xargs -P "$(nproc)" -n 2 clang-tidy -p build/lint --quiet --extra-arg=-Wno-unknown-warning-option 2>/dev/null
-fi
+if [[ ${#units[@]} -gt 0 ]]; then printf '%s\n' "${units[@]}" | python3 scripts/tidy.py build/lint; fi
 echo "clang-tidy: ${#units[@]} files are clean"
 if [[ "${1:-}" == --all ]]; then git rev-parse HEAD >scripts/lint_base; fi

@@ -10,11 +10,13 @@
 #include <openvdb/openvdb.h>
 
 // EXTERN is `extern`, or empty in the one unit that holds the instances.
+// NOLINTBEGIN(bugprone-macro-parentheses): keywords and types, which can't be in parentheses
 #define STRATUM_TREE_INSTANCES(EXTERN, TREE)                                                                           \
     EXTERN template class openvdb::Grid<openvdb::TREE>;                                                                \
     EXTERN template class openvdb::tree::Tree<openvdb::TREE::RootNodeType>;                                            \
     EXTERN template class openvdb::tree::InternalNode<openvdb::tree::InternalNode<openvdb::TREE::LeafNodeType, 4>, 5>; \
     EXTERN template class openvdb::tree::InternalNode<openvdb::TREE::LeafNodeType, 4>
+// NOLINTEND(bugprone-macro-parentheses)
 
 STRATUM_TREE_INSTANCES(extern, FloatTree);  // level sets, attributes
 STRATUM_TREE_INSTANCES(extern, Int32Tree);  // layers, tools, features, objects
