@@ -11,56 +11,44 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# Several files of one input, into a folder.
-files() {
-    local name=$1
-    shift
-    mkdir "$name"
-    "$bin/gcode2vdb" "$@" -o "$name/" --quiet
-}
-file() {
-    local name=$1
-    shift
-    mkdir -p "$(dirname "$name")"
-    "$bin/gcode2vdb" "$@" -o "$name" --quiet
-}
-picture() {
-    local name=$1
-    shift
-    mkdir -p "$(dirname "$name")"
-    "$bin/vdbtrace" "$@" -o "$name" --quiet
+# run TOOL OUTPUT OPTION...: a file, or files in a folder
+run() {
+    local tool=$1 output=$2
+    shift 2
+    mkdir -p "$(dirname "$output")"
+    "$bin/$tool" "$@" -o "$output" --quiet
 }
 small=(--size 160x120 --spp 2)
 two=(--voxels-per-layer 2)
 
-file grids/hull.vdb "$prints/hull.gcode" "${two[@]}"
-file grids/hull_cull.vdb "$prints/hull.gcode" "${two[@]}" --interior cull
-file grids/gear_half.vdb "$prints/gear.gcode" "${two[@]}" --precision half --layers 1:20
-file grids/two_tone.vdb "$prints/two_tone_mmu.gcode" "${two[@]}" --grids layer,feature,tool,width,speed,time,color
-file grids/vase.vdb "$prints/vase.gcode" --voxel-size 0.13 --up y --unit m --origin center
-file grids/bridges_cura.vdb "$prints/bridges_cura.gcode" "${two[@]}" --features -support --interior-distance
-files series "$prints/tile.gcode" "${two[@]}" --snapshots 25%,layer:9,100%
-file grids/fwretract.vdb "$prints/tile_fwretract.gcode" "${two[@]}" --dump-toolpath grids/fwretract.csv
-file meshes/tile.stl "$prints/tile.gcode" "${two[@]}"
-file meshes/two_tone.ply "$prints/two_tone.gcode" "${two[@]}" --grids color
-file meshes/gear.obj "$prints/gear.gcode" "${two[@]}" --mesh-error 0
+run gcode2vdb grids/hull.vdb "$prints/hull.gcode" "${two[@]}"
+run gcode2vdb grids/hull_cull.vdb "$prints/hull.gcode" "${two[@]}" --interior cull
+run gcode2vdb grids/gear_half.vdb "$prints/gear.gcode" "${two[@]}" --precision half --layers 1:20
+run gcode2vdb grids/two_tone.vdb "$prints/two_tone_mmu.gcode" "${two[@]}" --grids layer,feature,tool,width,speed,time,color
+run gcode2vdb grids/vase.vdb "$prints/vase.gcode" --voxel-size 0.13 --up y --unit m --origin center
+run gcode2vdb grids/bridges_cura.vdb "$prints/bridges_cura.gcode" "${two[@]}" --features -support --interior-distance
+run gcode2vdb series/ "$prints/tile.gcode" "${two[@]}" --snapshots 25%,layer:9,100%
+run gcode2vdb grids/fwretract.vdb "$prints/tile_fwretract.gcode" "${two[@]}" --dump-toolpath grids/fwretract.csv
+run gcode2vdb meshes/tile.stl "$prints/tile.gcode" "${two[@]}"
+run gcode2vdb meshes/two_tone.ply "$prints/two_tone.gcode" "${two[@]}" --grids color
+run gcode2vdb meshes/gear.obj "$prints/gear.gcode" "${two[@]}" --mesh-error 0
 
-picture pictures/default.png "$prints/hull.gcode" --size 160x120
-picture pictures/series.png "$prints/tile.gcode" "${two[@]}" "${small[@]}" --progress-series 3
+run vdbtrace pictures/default.png "$prints/hull.gcode" --size 160x120
+run vdbtrace pictures/series.png "$prints/tile.gcode" "${two[@]}" "${small[@]}" --progress-series 3
 for integrator in path direct environment-sum phong ao normal depth position mask; do
-    picture "pictures/$integrator.exr" grids/hull.vdb "${small[@]}" --integrator "$integrator"
+    run vdbtrace "pictures/$integrator.exr" grids/hull.vdb "${small[@]}" --integrator "$integrator"
 done
 for march in brick sphere vdb; do
-    picture "pictures/march_$march.exr" grids/hull.vdb "${small[@]}" --march "$march"
+    run vdbtrace "pictures/march_$march.exr" grids/hull.vdb "${small[@]}" --march "$march"
 done
-picture pictures/floats.exr grids/hull_cull.vdb "${small[@]}" --brick-values float --normals smooth
-picture pictures/cache.exr "$prints/hull.gcode" "${two[@]}" "${small[@]}" --brick-cache 20MB
-picture pictures/auto.exr "$prints/hull.gcode" "${small[@]}" --voxel-size auto
-picture pictures/sky.png "$prints/knot.gcode" "${two[@]}" "${small[@]}" --env sky --brdf petg-black --bed-surface pei --f-number 4
-picture pictures/colors.png "$prints/two_tone_mmu.gcode" "${two[@]}" --size 160x120 --frame all --legend --color-by layer
-picture pictures/layers.exr "$prints/two_tone.gcode" "${two[@]}" "${small[@]}" --aov normal,albedo,layer,variance --noise 0.2
+run vdbtrace pictures/floats.exr grids/hull_cull.vdb "${small[@]}" --brick-values float --normals smooth
+run vdbtrace pictures/cache.exr "$prints/hull.gcode" "${two[@]}" "${small[@]}" --brick-cache 20MB
+run vdbtrace pictures/auto.exr "$prints/hull.gcode" "${small[@]}" --voxel-size auto
+run vdbtrace pictures/sky.png "$prints/knot.gcode" "${two[@]}" "${small[@]}" --env sky --brdf petg-black --bed-surface pei --f-number 4
+run vdbtrace pictures/colors.png "$prints/two_tone_mmu.gcode" "${two[@]}" --size 160x120 --frame all --legend --color-by layer
+run vdbtrace pictures/layers.exr "$prints/two_tone.gcode" "${two[@]}" "${small[@]}" --aov normal,albedo,layer,variance --noise 0.2
 for scene in "$scenes"/*.json; do
-    picture "pictures/$(basename "$scene" .json).exr" "$scene" "${small[@]}"
+    run vdbtrace "pictures/$(basename "$scene" .json).exr" "$scene" "${small[@]}"
 done
 # OpenVDB gives every file a random name in its header, 36 characters from byte 21 on.
 find . -type f | LC_ALL=C sort | while read -r name; do

@@ -12,6 +12,7 @@ import collections
 import os
 import re
 import sys
+import textwrap
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SHARED = {"base"}  # included by nearly all: named in the picture, not drawn as arrows
@@ -70,15 +71,6 @@ def implied(arrows):
     return {(a, b) for a, b in arrows if any(reaches(c, b) for c in below[a] - {b})}
 
 
-def wrapped(words, most=30):
-    lines = [""]
-    for word in words:
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > most:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return lines
-
-
 def draw(rooms, arrows):
     level = heights(rooms, arrows)
     rows = collections.defaultdict(list)
@@ -119,7 +111,7 @@ def draw(rooms, arrows):
                    f'{lines} lines</text>')
         if room in SHARED:
             folders = ["included", "by", "all"]
-        for n, line in enumerate(wrapped(folders)[:3]):
+        for n, line in enumerate(textwrap.wrap(" ".join(folders), 30)[:3]):
             out.append(f'<text x="{x + WIDTH / 2:.0f}" y="{y + 54 + 14 * n}" text-anchor="middle">{line}</text>')
     out.append("</svg>")
     return "\n".join(out) + "\n"
