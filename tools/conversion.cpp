@@ -18,6 +18,7 @@
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
 #include "gcode/toolpath/toolpath_csv.h"
+#include "gcode/toolpath/warning_log.h"
 #include "motion/print_times.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/selection.h"
@@ -29,6 +30,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -109,7 +111,9 @@ Json convert(const ConvertCommand& o, const std::string& input, const fs::path& 
                        : gcode::readToolpath(file.bytes(), name, read);
     }();
     const double parse_seconds = watch.lap();
-    if (!o.common.quiet) printWarnings("gcode2vdb", name, toolpath);
+    if (!o.common.quiet)
+        for (const gcode::Warning& warning : toolpath.warnings)
+            fmt::print(stderr, "gcode2vdb: {}\n", gcode::describe(warning, name));
     say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", name,
                               toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
                               toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,

@@ -100,10 +100,4 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
         ->group(reading);
 }
 
-void printWarnings(std::string_view tool, std::string_view name, const gcode::Toolpath& toolpath) {
-    for (const gcode::Warning& warning : toolpath.warnings)
-        fmt::print(stderr, "{}: {}:{}: {}{}\n", tool, name, warning.first_line, warning.text,
-                   warning.count > 1 ? fmt::format(" ({} times)", warning.count) : "");
-}
-
 }  // namespace stratum::tools

@@ -1,12 +1,9 @@
 // The command line of a print: which G-code, which of its beads, and what voxels. Shared by the tools that take prints.
 #pragma once
 
-#include "gcode/toolpath/toolpath.h"
 #include "voxelize/grid/print_options.h"
 
 #include <CLI/CLI.hpp>
-
-#include <string_view>
 
 namespace stratum::tools {
 
@@ -17,8 +14,5 @@ inline constexpr const char* kReading = "Reading";
 
 /// Adds them in those groups. With `pictures`, --voxel-size may be auto.
 void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures = false);
-
-/// What reading the file `name` warned of, on stderr.
-void printWarnings(std::string_view tool, std::string_view name, const gcode::Toolpath& toolpath);
 
 }  // namespace stratum::tools

@@ -1,4 +1,4 @@
-// A print whose samples are made when rays come to them.
+// A print whose samples are computed when rays reach them.
 #pragma once
 
 #include "march/brick/brick_grid.h"
@@ -26,24 +26,24 @@ class LazyPrint {
 public:
     struct Times {
         double parse = 0;  ///< seconds, of reading the G-code
-        double all = 0;    ///< seconds, of that and of all until rays may come
+        double all = 0;    ///< seconds, of that and of all until it can be traced
     };
 
     /// @param levels       from the finest; at least one
-    /// @param moments      of a growing print: what lies before these beads is printed; ascending, the last one is all
-    /// @param cache_bytes  of samples that each level may keep at once
+    /// @param moments      of a growing print: the beads before this index are printed; ascending, the last one is all
+    /// @param cache_bytes  bound on the samples of each level
     LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, Times times, std::size_t cache_bytes);
 
-    /// How many pictures a growing print makes; 1 for others.
+    /// The number of moments of a growing print; 1 for others.
     std::size_t moments() const { return moments_.size(); }
-    /// Brings the print to a moment, 0..moments() - 1. What was made before is kept where it stays the same.
+    /// Shows a moment, 0..moments() - 1. Bricks that don't change are kept.
     void show(std::size_t moment);
 
-    /// What it took so far: seconds, bricks, bytes.
+    /// Seconds, bricks and bytes so far.
     nlohmann::ordered_json report() const;
 
-    /// Which bricks rays came to, see assemble::writeBrickPicture(). Of several levels: a file each, numbered from the
-    /// finest. Throws UsageError, OutputError.
+    /// Writes which bricks rays reached, see assemble::writeBrickPicture(). Of several levels: a file each, numbered
+    /// from the finest. Throws UsageError, OutputError.
     void writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const;
 
 private:

@@ -1,4 +1,4 @@
-// Which colours a print's filament has, by its own file.
+// The colors of a print's filament, as its file states them.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -13,16 +13,16 @@
 
 namespace stratum::assemble {
 
-/// What a file says of the colours of what it shows.
+/// The colors that a file states for its print.
 struct PrintColors {
-    /// "#rrggbb", each once, in the order of first use. Empty: the file says nothing.
+    /// "#rrggbb", each once, in the order of first use. Empty: the file states none.
     std::vector<std::string> stated;
-    bool some_unstated = false;                                       ///< parts of it have no stated colour
-    bool by_place = false;                                            ///< which one it is must be asked at each place
+    bool some_unstated = false;                                       ///< parts of it have no stated color
+    bool by_place = false;                                            ///< the color depends on the position
     nlohmann::ordered_json report = nlohmann::ordered_json::array();  ///< color and where it was found, for --stats
 };
 
-/// Of the selected beads: their tools' colours by the file's settings, and changes by hand.
+/// Of the selected beads, see gcode::statedColors().
 PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
 /// Of a level set: a grid named "color" beside it, else the metadata "filament_color" of its own.

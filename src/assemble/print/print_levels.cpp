@@ -6,6 +6,7 @@
 #include "base/stopwatch.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/reader.h"
+#include "gcode/toolpath/warning_log.h"
 #include "motion/print_times.h"
 #include "ondemand/detail_levels.h"
 #include "voxelize/beads/part_bounds.h"
@@ -25,7 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Those of the selection that are printed by then.
+// Removes the beads that are printed later.
 void cut(std::vector<std::uint32_t>& selection, const std::string& printed, const gcode::Toolpath& toolpath) {
     const std::vector<voxelize::Snapshot> cuts = voxelize::parseSnapshots(printed, toolpath, "--printed");
     if (cuts.size() != 1)
@@ -59,8 +60,8 @@ struct Source {
     const std::string& path;
 };
 
-// Far from an eye that is close to the print it is seen small: what voxels it takes there. The first level has the
-// lattice that is given.
+// Lattices of the levels: far from an eye that is close to the print, pixels span more, and voxels may be larger. The
+// first level has the given lattice.
 std::vector<voxelize::Lattice> latticesOf(const Source& source, const voxelize::Lattice& finest,
                                           const std::vector<ondemand::VoxelLevel>& levels) {
     std::vector<voxelize::Lattice> lattices{finest};
@@ -72,8 +73,8 @@ std::vector<voxelize::Lattice> latticesOf(const Source& source, const voxelize::
     return lattices;
 }
 
-// Each of the beads that its lattice can show: those that reach its shell, with the band around it and what samples'
-// neighbours need. Levels that no bead comes to are left out.
+// A field a level, of the beads that reach its shell, including the narrow band and the neighbours of samples. Levels
+// without beads are left out.
 std::vector<PrintLevel> fieldsOf(const Source& source, const std::vector<voxelize::Lattice>& lattices,
                                  const std::vector<ondemand::VoxelLevel>& levels, const glm::dvec3& eye) {
     std::vector<PrintLevel> fields;
@@ -112,7 +113,7 @@ Json reportOf(const std::vector<PrintLevel>& levels, double per_distance) {
     return report;
 }
 
-// What people give as a level set and is none is G-code at best.
+// A file that is no .vdb is read as G-code; one named .vdb gets a message about both.
 gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
     if (file.bytes().starts_with(kVdbMagic))
         throw InputError(
@@ -164,9 +165,7 @@ private:
             toolpath_ = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed));
         }
         for (const gcode::Warning& warning : toolpath_->warnings)
-            warnings_.add(Warning::Kind::program,
-                          fmt::format("{}:{}: {}{}", name_, warning.first_line, warning.text,
-                                      warning.count > 1 ? fmt::format(" ({} times)", warning.count) : ""));
+            warnings_.add(Warning::Kind::program, gcode::describe(warning, name_));
     }
 
     void select() {
@@ -246,6 +245,11 @@ private:
 };
 
 }  // namespace
+
+trace::Box boxOf(const voxelize::Bounds& bounds) {
+    const auto& [min, max] = bounds;
+    return {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}};
+}
 
 PrintLevels readPrintLevels(const std::string& path, const PrintRequest& request, bool hash, const ReadEvents& events,
                             Warnings& warnings) {

@@ -1,9 +1,10 @@
-// G-code -> the fields that rays are traced through: no voxel is made before a ray comes to it.
+// G-code -> the fields that rays are traced through. Voxels are computed when a ray needs them.
 #pragma once
 
 #include "assemble/read_events.h"
 #include "ondemand/print_field.h"
 #include "shade/camera/pixel_size.h"
+#include "trace/intersector.h"
 #include "voxelize/grid/print_options.h"
 
 #include <glm/vec3.hpp>
@@ -17,29 +18,29 @@
 
 namespace stratum::assemble {
 
-/// How to take a print.
+/// How to read a print, and how much of it.
 struct PrintRequest {
     voxelize::PrintOptions print;
     std::string printed;          ///< one moment, as voxelize::parseSnapshots() reads it; empty: all of it
-    bool timed = false;           ///< something wants to know when beads are laid
-    int series = 1;               ///< of a growing print: as many moments, the last one the end
+    bool timed = false;           ///< print times of the beads are needed
+    int series = 1;               ///< of a growing print: the number of moments; the last one is the end
     bool series_by_time = false;  ///< equal times between them instead of equal volumes
-    /// What a pixel spans of what lies in a box, mm, for print.voxel_auto; also the part's box, see
-    /// voxelize::partBounds().
+    /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; the second box is that of the part,
+    /// see voxelize::partBounds().
     std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
 };
 
 /// The print at one voxel size.
 struct PrintLevel {
     std::shared_ptr<ondemand::PrintField> field;
-    double from = 0;  ///< mm from PrintLevels::eye, as far as the next level's
+    double from = 0;  ///< mm from PrintLevels::eye, up to the next level's
 };
 
 /// A print that has been read.
 struct PrintLevels {
     std::vector<PrintLevel> levels;        ///< from the nearest and finest outwards; the last one is of all beads
     glm::dvec3 eye{0.0};                   ///< mm; if there are several levels
-    std::vector<std::uint32_t> moments;    ///< of the series: what lies before these beads is printed; the last is all
+    std::vector<std::uint32_t> moments;    ///< of the series: the beads before this index are printed; the last is all
     std::vector<std::uint32_t> selection;  ///< indices of its beads, ascending
     std::shared_ptr<const gcode::Toolpath> toolpath;
     voxelize::Bounds part;          ///< mm, of its beads without what is printed beside the part
@@ -49,8 +50,11 @@ struct PrintLevels {
     double parse_seconds = 0;
 };
 
+/// The same box, mm, for the room that traces.
+trace::Box boxOf(const voxelize::Bounds& bounds);
+
 /// Reads G-code in any container; "-" is standard input. Throws InputError for what is no G-code, UsageError for
-/// options that do not fit the print.
+/// options that don't fit the print.
 /// @param hash  fill in PrintLevels::content
 PrintLevels readPrintLevels(const std::string& path, const PrintRequest& request, bool hash, const ReadEvents& events,
                             Warnings& warnings);

@@ -13,11 +13,24 @@
 
 namespace stratum::gcode {
 
+/// A color of filament, and where the file states it.
+struct StatedColor {
+    std::optional<Rgb> color;  ///< sRGB; nullopt if the file states none
+    std::uint8_t tool = 0;
+    bool changed = false;  ///< by a manual change of filament; else the tool's color in the settings
+};
+
+/// That of `toolpath.beads[bead]`.
+StatedColor statedColorOf(const Toolpath& toolpath, std::size_t bead);
+
+/// Those of the selected beads, each color once, with the statement of its first use, in that order. `selection` has
+/// indices into `toolpath.beads`.
+std::vector<StatedColor> statedColors(const Toolpath& toolpath, std::span<const std::uint32_t> selection);
+
 /// sRGB of the filament of `toolpath.beads[bead]`; nullopt where the file states no color for its tool.
 std::optional<Rgb> colorOf(const Toolpath& toolpath, std::size_t bead);
 
-/// The distinct colors of the selected beads, in the order of first use; nullopt for beads without a stated color.
-/// `selection` has indices into `toolpath.beads`.
+/// The colors alone.
 std::vector<std::optional<Rgb>> distinctColors(const Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
 }  // namespace stratum::gcode

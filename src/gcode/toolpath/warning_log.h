@@ -12,6 +12,10 @@
 
 namespace stratum::gcode {
 
+/// A warning in one line for people: "NAME:LINE: TEXT (3 times)".
+/// @param name  of the file
+std::string describe(const Warning& warning, std::string_view name);
+
 /// Collects warnings. Not thread-safe. The number of distinct texts is bounded, so that a damaged file can't fill
 /// memory.
 class WarningLog {

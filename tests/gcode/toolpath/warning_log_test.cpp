@@ -21,6 +21,11 @@ TEST(WarningLog, CountsEqualTexts) {
     EXPECT_TRUE(log.take().empty());
 }
 
+TEST(WarningLog, DescribesAWarningInALine) {
+    EXPECT_EQ(describe({"odd", 3, 1}, "a.gcode"), "a.gcode:3: odd");
+    EXPECT_EQ(describe({"odd", 3, 2}, "a.gcode"), "a.gcode:3: odd (2 times)");
+}
+
 TEST(WarningLog, NoiseCantFillTheMemory) {
     WarningLog log;
     for (std::uint32_t i = 0; i < 100000; ++i) log.add(std::to_string(i), i);
