@@ -72,13 +72,13 @@ void chooseDenoising(tools::TraceCommand& o) {
     if (!o.denoise) o.denoise = !o.linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
     if (!*o.denoise) return;
     if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) {
-        // Enough where a layer line takes some pixels. In a small picture many of them share one, and each pixel has
-        // more to average.
-        constexpr int kEnough = 8, kMost = 32;
-        constexpr std::int64_t kLarge = std::int64_t{1280} * 960;
+        // 8 are enough where a layer line is some pixels high. In a small picture several lines share a pixel, which
+        // needs more samples; the total stays near that of the default size.
+        constexpr int kLeast = 8, kMost = 32;
+        constexpr std::int64_t kTotal = std::int64_t{1280} * 960 * kLeast * 11 / 10;
         const std::int64_t pixels = std::int64_t{o.render.width} * o.render.height;
-        o.render.spp = kEnough;
-        while (o.render.spp < kMost && pixels * o.render.spp * 2 <= kLarge * kEnough * 11 / 10) o.render.spp *= 2;
+        o.render.spp = kLeast;
+        while (o.render.spp < kMost && pixels * o.render.spp * 2 <= kTotal) o.render.spp *= 2;
     }
     shade::addDenoisingGuides(o.render);
 }

@@ -1,4 +1,4 @@
-// What a caller may hear while files are read: which step goes on, how far it is, and warnings.
+// Progress and warnings while files are read.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace stratum::assemble {
 
-/// Something is odd about an input, and it is used all the same.
+/// A problem of an input that is used nevertheless.
 struct Warning {
     enum class Kind {
         program,      ///< of a line of the G-code
@@ -20,15 +20,16 @@ struct Warning {
     std::string text;  ///< one line, without the name of the program that reads
 };
 
-/// Functions that are called while files are read, one at a time, from the thread that called the library. Each may be
-/// empty. What they throw ends the reading and is passed on; end() must not throw.
+/// Callbacks, one at a time, on the thread that called the library. Each may be empty. Exceptions end the reading and
+/// are passed on; end() must not throw.
 struct ReadEvents {
     /// A step begins: "reading", "loading", "laying out", "preparing". Steps do not overlap.
-    /// @param measured  fraction() is called meanwhile
+    /// @param measured  fraction() is called during the step
     std::function<void(std::string_view step, bool measured)> begin;
     std::function<void(double done)> fraction;  ///< of the step, 0..1; now and then
     std::function<void()> end;                  ///< of the step, also if it failed
-    /// At once, so that a warning is heard even if a later step fails. The result holds the same warnings again.
+    /// Called immediately, so that a warning is reported even if a later step fails. The result holds all warnings,
+    /// too.
     std::function<void(const Warning&)> warning;
 };
 
@@ -48,7 +49,7 @@ private:
     const ReadEvents& events_;
 };
 
-/// Warnings of one reading: kept for the result, and told at once. Keeps a reference to `events`.
+/// Warnings of one reading: kept for the result, and reported immediately. Keeps a reference to `events`.
 class Warnings {
 public:
     explicit Warnings(const ReadEvents& events) : events_(events) {}

@@ -6,19 +6,13 @@
 #include <utility>
 
 namespace stratum::assemble {
-namespace {
-
-trace::Box boxOf(const voxelize::Bounds& b) { return {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}; }
-
-}  // namespace
-
 Stage makeStage(const TracedObjects& objects, const StageOptions& options, const ReadEvents& events) {
     const bool needs_light = shade::needsLight(options.render.integrator);
     shade::SceneOptions seen = options.scene;
     seen.mm_per_unit = objects.mm_per_unit;
     seen.brdf = objects.brdf;
     if (!options.frame_all) seen.frame = objects.part;
-    // What is not seen costs nothing.
+    // An integrator without light needs no environment.
     if (!needs_light && seen.env == "studio") seen.env = "constant:0,0,0";
     Stage stage = [&] {
         const Step step(events, "preparing");
@@ -47,13 +41,7 @@ shade::PixelSpread pixelSpreadOf(const StageOptions& options, const voxelize::Bo
 ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOptions& options) {
     options.render.validate();
     options.scene.camera.validate();
-    TracingOptions tracing = tracingFor(options.scene, options.render);
-    tracing.march = options.tracing.march;
-    tracing.values = options.tracing.values;
-    tracing.brick_cache = options.tracing.brick_cache;
-    tracing.prints = options.tracing.prints;
-    tracing.hash = options.tracing.hash;
-    tracing.events = options.tracing.events;
+    TracingOptions tracing = tracingFor(options.scene, options.render, options.tracing);
     if (!tracing.prints.pixel_spread)
         tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
             if (objects.size() != 1 || !objects.front().placement.isIdentity())

@@ -22,31 +22,31 @@
 namespace stratum::assemble {
 
 /// What a scene around objects depends on, besides the objects. The defaults make a product photo: studio light, a bed,
-/// a camera that sees the whole part, and the material that the file or nobody asks for.
+/// a camera that sees the whole part, and the material that the file states, or the default.
 struct StageOptions {
     shade::SceneOptions scene;    ///< mm_per_unit, brdf and frame are replaced by what the objects say
     shade::RenderOptions render;  ///< the size of the picture, and whether its integrator needs light
-    bool frame_all = false;       ///< a named view is fitted to all that is there, not to the part
+    bool frame_all = false;       ///< fit a named view to all that is printed, not to the part
     bool find_exposure = true;    ///< fill in Stage::exposure
 };
 
 struct Stage {
     shade::SceneDescription scene;
-    glm::dvec3 middle{0.0};          ///< world space, of what the camera is fitted to: turntables turn about it
-    std::optional<double> exposure;  ///< stops, see shade::automaticExposure(); nothing where the light needs none
+    glm::dvec3 middle{0.0};          ///< world space, of what the camera is fitted to: the axis of turntables
+    std::optional<double> exposure;  ///< stops, see shade::automaticExposure(); empty where the light needs none
 };
 
-/// Puts objects into light, on a bed and before a camera. Tells `events` of the step "preparing". Throws UsageError.
+/// Adds light, a bed and a camera to objects. Reports the step "preparing" to `events`. Throws UsageError.
 Stage makeStage(const TracedObjects& objects, const StageOptions& options, const ReadEvents& events = {});
 
-/// What a pixel will span of a print that has not been read to its end, for PrintRequest::pixel_spread. World space is
-/// that of the print, mm.
+/// The sizes of pixels on a print, for PrintRequest::pixel_spread, which is called while the print is read. World space
+/// is that of the print, mm.
 /// @param camera  of the picture, if it is known already; else null, and it follows from the boxes
 /// @param turns   pictures of a turntable
 shade::PixelSpread pixelSpreadOf(const StageOptions& options, const voxelize::Bounds& print,
                                  const voxelize::Bounds& part, const shade::Camera* camera = nullptr, int turns = 1);
 
-/// All that makes a picture but the files.
+/// All inputs of a picture except the files.
 struct PictureOptions : StageOptions {
     /// The method, bricks, prints and events of `tracing` are used; material, colours, normals and labels follow from
     /// `scene` and `render`.
@@ -60,8 +60,8 @@ struct ReadyScene {
     glm::dvec3 middle{0.0};         ///< see Stage::middle
 };
 
-/// Reads objects and puts them into a scene. Runs on the threads that TBB may use. Throws InputError for files that
-/// can't be traced, UsageError for options that make no sense, with the option of the command line in the text.
+/// Reads objects and makes a scene of them. Runs on the threads that TBB may use. Throws InputError for files that
+/// can't be traced, UsageError for invalid options, with the option of the command line in the text.
 ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOptions& options);
 /// The same of one file: G-code in any container, or a .vdb with a level set.
 ReadyScene readyScene(const std::string& path, const PictureOptions& options = {});

@@ -28,7 +28,7 @@ trace::Placement upright(const trace::Placement& placement) {
     return result;
 }
 
-// Makes the box of all parts larger by that of a shape where it stands: of all of it, if its file doesn't say more.
+// Expands the box of all parts by that of a placed shape: by all of it, if its file doesn't state the part's box.
 void include(std::optional<trace::Box>& parts, const Shape& shape, const trace::Placement& placement) {
     const trace::Box own = shape.part.value_or(shape.intersector->bounds());
     if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
@@ -45,7 +45,7 @@ void include(std::optional<trace::Box>& parts, const Shape& shape, const trace::
 /// What one object is made of.
 struct MaterialPlan {
     shade::MaterialOptions material;
-    bool stated_colors = false;  // those of its file, for nobody says more
+    bool stated_colors = false;  // those of its file, because no material is given
     std::string by;              // the attribute that colours it; empty: none
 };
 
@@ -56,7 +56,7 @@ void planLabels(const std::vector<ObjectOptions>& objects, const TracingOptions&
         const std::string name(shade::labelName(label));
         result.labels[static_cast<std::size_t>(label)] = needs.number(name);
         for (const ObjectOptions& object : objects)
-            if (!object.sdf) needs.want(object, name);
+            if (!object.sdf) needs.add(object, name);
     }
 }
 
@@ -70,9 +70,9 @@ MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& opt
     if (plan.by.empty()) return plan;
     (void)needs.number(plan.by);
     if (plan.stated_colors)
-        needs.wantStatedColors(object);
+        needs.addStatedColors(object);
     else
-        needs.want(object, plan.by);
+        needs.add(object, plan.by);
     return plan;
 }
 
@@ -119,7 +119,7 @@ void addMaterial(const MaterialPlan& plan, const Shape& shape, AttributeNeeds& n
         materials.add(plan.material, number, plan.by.empty() ? nullptr : known);
 }
 
-// What is told of a shape, once however often it stands there.
+// Reports of a shape; its line once, even if several objects use it.
 void addFacts(const Shape& shape, TracedObjects& result) {
     result.reports.push_back(shape.report);
     if (!shape.source.empty()) result.source += " " + shape.source;

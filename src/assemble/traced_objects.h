@@ -1,4 +1,4 @@
-// Level sets, prints and shapes -> one intersector with materials, and what is to be told of them.
+// Level sets, prints and shapes -> one intersector with materials, and reports about them.
 #pragma once
 
 #include "assemble/object_file.h"
@@ -26,24 +26,24 @@ struct TracedObjects {
     decltype(shade::SceneDescription::labels) labels;
     std::string brdf;  ///< the scene's material, see ObjectMaterials::brdf()
     std::vector<shade::Legend> legends;
-    /// World-space box of the parts without what is printed beside them, if a file knows it.
+    /// World-space box of the parts without what is printed beside them, if a file states it.
     std::optional<trace::Box> part;
-    double mm_per_unit = 1.0;  ///< of world space, as the first object's file says
-    /// Of each G-code file, in the order of their first objects: to bring it to another moment, and to ask what its
-    /// bricks took.
+    double mm_per_unit = 1.0;  ///< of world space, as the first object's file states
+    /// Of each G-code file, in the order of their first objects: to show another moment of it, and to report its
+    /// bricks.
     std::vector<std::shared_ptr<LazyPrint>> prints;
 
     std::vector<std::string> lines;          ///< of each file and shape, for people
-    std::vector<Warning> warnings;           ///< in the order in which they came up
+    std::vector<Warning> warnings;           ///< in the order in which they occurred
     nlohmann::ordered_json reports;          ///< an array: facts of each object
     nlohmann::ordered_json material_report;  ///< materials, colours and legends
-    std::string no_color_lookup;             ///< why hits don't look for a colour; empty if that is no matter
-    std::string source;                      ///< what tells the files from others, for checkpoints
+    std::string no_color_lookup;  ///< why hits need no color lookup; empty if they need one or have no colors
+    std::string source;           ///< identifies the files, for checkpoints
     double load_seconds = 0.0, build_seconds = 0.0;
 };
 
-/// Reads every file once, whatever the number of objects that stand for it. Runs on the threads that TBB may use.
-/// Throws InputError for files that can't be traced, UsageError for options that do not fit them.
+/// Reads every file once, even if several objects use it. Runs on the threads that TBB may use.
+/// Throws InputError for files that can't be traced, UsageError for options that don't fit them.
 TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const TracingOptions& options);
 
 /// LazyPrint::report() of all prints: an array.

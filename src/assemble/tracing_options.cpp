@@ -28,8 +28,8 @@ bool showsMaterial(const shade::RenderOptions& render) {
            std::find(render.aovs.begin(), render.aovs.end(), shade::Aov::albedo) != render.aovs.end();
 }
 
-TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render) {
-    TracingOptions options;
+TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render,
+                          TracingOptions options) {
     options.brdf = scene.brdf;
     options.file_colors = scene.brdf.empty() && scene.color_by.empty() && showsMaterial(render);
     options.color_by = scene.color_by;

@@ -29,24 +29,25 @@ std::string_view marchMethodName(MarchMethod method);
 struct TracingOptions {
     MarchMethod march = MarchMethod::automatic;
     march::BrickValues values = march::BrickValues::Int16;  ///< of bricks
-    /// Of objects that have no material of their own, see shade::makeBrdf(). Empty: their files' colours if
+    /// Of objects that have no material of their own, see shade::makeBrdf(). Empty: their files' colors if
     /// `file_colors`, else the default.
     std::string brdf;
-    bool file_colors = false;     ///< objects of which nobody says the material have the colours that their files state
-    std::string color_by;         ///< attribute that colours level sets and prints without a material of their own
+    bool file_colors = false;     ///< objects without a material of their own have the colors that their files state
+    std::string color_by;         ///< attribute that colors level sets and prints without a material of their own
     bool smooth_normals = false;  ///< answer Tracer::shadingNormal() without the facets of voxels
     /// Bytes of samples at once, of each print and of each large level set.
     std::size_t brick_cache = march::BrickGrid::kNoBound;
-    std::vector<shade::Label> labels;  ///< that hits are to know; every level set must have them
+    std::vector<shade::Label> labels;  ///< that hits have; every level set must provide them
     PrintRequest prints;               ///< of G-code
     bool hash = false;                 ///< fill in TracedObjects::source
     ReadEvents events;
 };
 
-/// Whether the picture or one of its layers shows what things are made of.
+/// Whether the picture or one of its layers depends on materials.
 bool showsMaterial(const shade::RenderOptions& render);
 
-/// The options that follow from a picture: material, colours, normals and labels. All others have their defaults.
-TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render);
+/// `options` with what follows from a picture: material, colors, normals and labels.
+TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render,
+                          TracingOptions options = {});
 
 }  // namespace stratum::assemble

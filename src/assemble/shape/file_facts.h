@@ -1,4 +1,4 @@
-// What a file says of itself, besides its shape.
+// Metadata of level sets, and the identity of files.
 #pragma once
 
 #include "trace/intersector.h"
@@ -18,19 +18,19 @@ inline constexpr std::string_view kVdbMagic = " BDV";
 /// that can't be read or is empty.
 bool isVdbFile(const std::string& path);
 
-/// "mm", "cm" or "m", if the file says what its world unit is; other programs' files don't.
+/// "mm", "cm" or "m", if the file states its world unit, else "world units"; other programs' files don't state it.
 std::string unitOf(const openvdb::FloatGrid& grid);
 
-/// Which axis the file says points up, "z" or "y"; "z" if it doesn't say.
+/// The axis that points up, "z" or "y", as the file states; "z" if it doesn't.
 std::string upOf(const openvdb::FloatGrid& grid);
 
-/// The part's box without what is printed beside it, in the file's world space; nothing if the file doesn't say.
+/// The part's box without what is printed beside it, in the file's world space; empty if the file doesn't state it.
 std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid);
 
 /// A warning if the narrow band is thinner than OpenVDB's tools expect; else empty.
 std::string thinBandWarning(const std::string& path, const openvdb::FloatGrid& grid);
 
-/// Tells a file from others without reading all of it: its size, the time of its last change, and a hash of how it
+/// Identifies a file without reading all of it: its size, the time of its last change, and a hash of how it
 /// begins and ends (a .vdb begins with an identifier of its own). Empty if there is no such file.
 std::string identityOf(const std::string& path);
 

@@ -22,7 +22,7 @@
 namespace stratum::assemble {
 namespace {
 
-/// A level set before it has rays: leaf by leaf in its file, or whole in memory.
+/// A level set before it is laid out: leaf by leaf in its file, or whole in memory.
 struct LevelSet {
     std::shared_ptr<const march::LeafFile> file;
     openvdb::FloatGrid::ConstPtr grid;  // null if there is `file`
@@ -31,7 +31,7 @@ struct LevelSet {
     std::uint64_t activeVoxelCount() const { return file ? file->activeVoxelCount() : grid->activeVoxelCount(); }
 };
 
-// Bricks are laid out from the file as rays come to them, unless something else wants the grid.
+// Bricks are laid out lazily from the file, unless the whole grid is needed.
 LevelSet open(const ObjectOptions& object, const TracingOptions& options) {
     const Step step(options.events, "loading");
     LevelSet level_set;
@@ -55,7 +55,7 @@ void describe(const ObjectOptions& object, const LevelSet& level_set, Shape& sha
     shape.part = partOf(head);
 }
 
-// The grid of colours that lies beside a level set, unless all of it is of one: then that is enough.
+// Attaches the grid "color" of the file, unless it has only one color: then the lookup is not needed.
 void addColorGrid(const ObjectOptions& object, const openvdb::FloatGrid& head, const AttributeNeeds& needs,
                   Shape& shape, march::Annotation& annotation) {
     shape.colors.by_place = false;
@@ -63,7 +63,7 @@ void addColorGrid(const ObjectOptions& object, const openvdb::FloatGrid& head, c
     try {
         grid = march::readAttributeGrid(object.vdb, "color", head);
     } catch (const InputError&) {
-        return;  // another program's, of another kind: nobody asked for it
+        return;  // another program's, of another type; it is optional
     }
     trace::AttributeSummary summary = march::summarize(*grid);
     if (summary.kind != trace::AttributeSummary::Kind::color) return;
@@ -84,13 +84,13 @@ march::Annotation readAttributes(const ObjectOptions& object, const openvdb::Flo
     march::Annotation annotation;
     for (const std::string& name : needs.names()) {
         openvdb::GridBase::ConstPtr attribute;
-        if (needs.wanted(object, name)) {
+        if (needs.contains(object, name)) {
             attribute = march::readAttributeGrid(object.vdb, name, head);
             shape.summaries[name] = march::summarize(*attribute);
         }
         annotation.attributes.push_back(march::makeAttributeSource(attribute));
     }
-    if (needs.statedColorsWanted(object)) {
+    if (needs.needsStatedColors(object)) {
         shape.colors = colorsOf(object.vdb, head);
         if (shape.colors.by_place) addColorGrid(object, head, needs, shape, annotation);
     }

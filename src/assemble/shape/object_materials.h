@@ -1,4 +1,4 @@
-// What the objects of a picture are made of: as a scene says, or else as the files of the prints do.
+// The materials of a picture's objects: from the scene, or else from the files of the prints.
 #pragma once
 
 #include "assemble/print/print_colors.h"
@@ -16,31 +16,31 @@
 
 namespace stratum::assemble {
 
-/// Takes one object after the other.
+/// Objects are added one after the other.
 class ObjectMaterials {
 public:
-    /// @param brdf  of objects that have none of their own, see shade::makeBrdf(); empty: nobody said
+    /// @param brdf  of objects that have none of their own, see shade::makeBrdf(); empty: not given
     explicit ObjectMaterials(const std::string& brdf) : brdf_(brdf) {}
 
-    /// One of a material that somebody asked for.
+    /// An object with a given material.
     /// @param attribute  number of `material.by`
     /// @param summary    of that attribute; null without `by`
     void add(const shade::MaterialOptions& material, std::size_t attribute, const trace::AttributeSummary* summary);
-    /// One of the colours that its file states; of the default material where it states none.
+    /// An object with the colors that its file states; with the default material where it states none.
     /// @param attribute  number of "color"
     /// @param summary    of it; null unless colors.by_place
     void add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary);
 
     /// By object; empty if all of them are of the scene's material.
     std::vector<shade::ObjectMaterial> materials() const;
-    /// Text of the scene's material: the one given, or the one colour that the only object's file states, or the
+    /// Text of the scene's material: the given one, or the single color that the only object's file states, or the
     /// default.
     std::string brdf() const;
-    /// Material, colours, legends, and how many values were no numbers.
+    /// Material, colors, legends, and the number of non-finite values.
     nlohmann::ordered_json report() const;
-    /// Of each attribute that colours something, as often as they differ.
+    /// Of each attribute that colors something, without duplicates.
     const std::vector<shade::Legend>& legends() const { return legends_; }
-    /// Why no hit has to look for its colour; empty if one has to, or if the files were not asked for colours.
+    /// Why hits need no color lookup; empty if they need one, or if the files' colors are not used.
     std::string noLookup() const { return lookup_ ? std::string() : no_lookup_; }
 
 private:

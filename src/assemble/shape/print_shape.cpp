@@ -14,15 +14,14 @@
 namespace stratum::assemble {
 namespace {
 
-trace::Box boxOf(const voxelize::Bounds& b) { return {{b.min[0], b.min[1], b.min[2]}, {b.max[0], b.max[1], b.max[2]}}; }
-
-// What the print shows at each attribute's number; null where the object does not want it.
+// The print's attributes by number; null where the object doesn't need it.
 march::Annotation annotationOf(const ObjectOptions& object, const std::shared_ptr<ondemand::PrintField>& field,
                                const TracingOptions& options, const AttributeNeeds& needs) {
     march::Annotation annotation;
     for (const std::string& name : needs.names())
-        annotation.attributes.push_back(
-            needs.wanted(object, name) ? ondemand::makePrintAttribute(field, ondemand::attributeNamed(name)) : nullptr);
+        annotation.attributes.push_back(needs.contains(object, name)
+                                            ? ondemand::makePrintAttribute(field, ondemand::attributeNamed(name))
+                                            : nullptr);
     if (options.smooth_normals) annotation.smooth_field = field;
     return annotation;
 }
@@ -38,22 +37,22 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     Stopwatch watch;
     PrintRequest request = options.prints;
     for (const std::string& name : needs.names())
-        if (needs.wanted(object, name)) request.timed = request.timed || name == "time" || name == "speed";
+        if (needs.contains(object, name)) request.timed = request.timed || name == "time" || name == "speed";
     PrintLevels print = readPrintLevels(object.vdb, request, options.hash, options.events, warnings);
     Shape shape;
     shape.report = std::move(print.report);
     shape.line = std::move(print.line);
     shape.part = boxOf(print.part);
     shape.source = std::move(print.content);
-    if (needs.statedColorsWanted(object)) {
+    if (needs.needsStatedColors(object)) {
         shape.colors = colorsOf(*print.toolpath, print.selection);
-        if (shape.colors.by_place) needs.want(object, "color");
+        if (shape.colors.by_place) needs.add(object, "color");
     }
     for (const std::string& name : needs.names())
-        if (needs.wanted(object, name))
+        if (needs.contains(object, name))
             shape.summaries[name] =
                 ondemand::summarize(*print.levels.back().field, ondemand::attributeNamed(name), print.selection);
-    // Each level has its share of what they may take together.
+    // All levels together keep to the bound.
     std::size_t cache = options.brick_cache;
     if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size();
     std::vector<LazyLevel> lazy;

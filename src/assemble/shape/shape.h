@@ -1,4 +1,4 @@
-// What is made of one grid of one file, of one print, or of one shape by formula.
+// One grid of a file, one print, or one shape by formula, ready for rays.
 #pragma once
 
 #include "assemble/object_file.h"
@@ -19,15 +19,15 @@
 
 namespace stratum::assemble {
 
-/// Ready for rays, in the space of its file.
+/// In the space of its file.
 struct Shape {
-    bool y_up = false;         ///< by the file's own word
-    double mm_per_unit = 1.0;  ///< by the file's own word
+    bool y_up = false;         ///< as the file states
+    double mm_per_unit = 1.0;  ///< as the file states
     std::shared_ptr<const trace::Intersector> intersector;
-    std::map<std::string, trace::AttributeSummary> summaries;  ///< of the attributes that are wanted of it
+    std::map<std::string, trace::AttributeSummary> summaries;  ///< of the attributes that it must provide
     std::optional<trace::Box> part;                            ///< without what is printed beside it, if that is known
-    PrintColors colors;                                        ///< that the file states, if somebody wants to know
-    std::string source;                                        ///< what tells the file from others, if asked for
+    PrintColors colors;                                        ///< that the file states, if they are used
+    std::string source;                                        ///< identifies the file, if asked for
     nlohmann::ordered_json report;
     std::string line;                  ///< for people
     std::shared_ptr<LazyPrint> print;  ///< of G-code; else null
@@ -38,14 +38,14 @@ struct Shape {
 Shape shapeOfSdf(const ObjectOptions& object, const TracingOptions& options);
 Shape shapeOfLevelSet(const ObjectOptions& object, const TracingOptions& options, const AttributeNeeds& needs,
                       Warnings& warnings);
-/// Adds the attribute "color" to what is wanted of the object if its file's colours depend on the place.
+/// Adds the attribute "color" to the needs of the object if its file's colors depend on the position.
 Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs,
                    Warnings& warnings);
 
 /// Whether the method lays level sets out in bricks.
 bool marchesBricks(MarchMethod method);
 
-/// A grid with the intersector that was asked for. Throws InputError for grids that can't be traced.
+/// The intersector of a grid, by options.march. Throws InputError for grids that can't be traced.
 std::shared_ptr<const trace::Intersector> intersectorOf(const openvdb::FloatGrid::ConstPtr& grid,
                                                         const TracingOptions& options);
 

@@ -44,8 +44,8 @@ inline glm::dvec3 gradient(const Corners& v, const glm::dvec3& p) {
 /// The field along the segment from `from` to `to` (both in [0, 1]^3), s from 0 to 1: c0 + c1 s + c2 s^2 + c3 s^3.
 struct SegmentCubic {
     double c0, c1, c2, c3;
-    double
-        end;  ///< the value at s = 1, interpolated there instead of summed up, so that neighbouring cells agree on it
+    /// The value at s = 1, interpolated there instead of summed up, so that neighbouring cells agree on it.
+    double end;
 
     SegmentCubic(const Corners& v, const glm::dvec3& from, const glm::dvec3& to)
         : c0(interpolate(v, from)), end(interpolate(v, to)) {

@@ -1,7 +1,7 @@
-// The grammar of .vdb files, formats 222 to 224, as one walk that believes nothing: for the check of a file before
-// OpenVDB reads it, and for leaves that are read one at a time.
+// A walk through .vdb files, formats 222 to 224, that checks every length and count: to check a file before OpenVDB
+// reads it, and to read leaves one at a time.
 //
-// What it follows: io::Archive, io::GridDescriptor, MetaMap, Transform; Tree, RootNode, InternalNode and
+// Follows io::Archive, io::GridDescriptor, MetaMap, Transform; Tree, RootNode, InternalNode and
 // LeafNode::readTopology() and readBuffers(), and io::readCompressedValues(), of OpenVDB 10.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace stratum::march {
 class VdbCursor : public ByteCursor<VdbCursor> {
 public:
     /// @param where  how messages begin
-    /// @param grid  if it is given, messages tell that this grid is damaged, whatever is wrong
+    /// @param grid  if given, messages say that this grid is damaged instead of the reason
     VdbCursor(std::string_view bytes, const std::string& where, const std::string* grid = nullptr)
         : ByteCursor(bytes), where_(where), grid_(grid) {}
 
@@ -46,16 +46,16 @@ private:
 /// Bits of VdbGrid::compression.
 inline constexpr std::uint32_t kVdbZip = 1, kVdbActiveOnly = 2, kVdbBlosc = 4;
 
-/// What a file says of a grid before its tree. Places are from the beginning of the file, bytes.
+/// A grid's description before its tree. Offsets are in bytes from the beginning of the file.
 struct VdbGrid {
-    std::string name;    ///< with the number that tells it from others of the same name
-    std::string type;    ///< without what is said of halves
+    std::string name;    ///< with the number that distinguishes grids of one name
+    std::string type;    ///< without the suffix of half floats
     std::string parent;  ///< the grid that it is an instance of; empty: none
     bool half = false;
     std::int64_t offset = 0, leaves = 0, end = 0;
     std::uint32_t compression = 0;
-    /// io::DelayedLoadMetadata: the sizes of the leaves, so that nobody has to look at every one. The bytes begin
-    /// with their own number.
+    /// io::DelayedLoadMetadata: the sizes of the leaves, so that their offsets follow without a scan. The bytes begin
+    /// with their number.
     std::optional<std::uint64_t> listed;
     std::string_view sizes;
     std::string_view transform;
@@ -82,7 +82,7 @@ struct VdbValueFormat {
 
 /// The values of a node, as they are stored.
 struct VdbValues {
-    /// What is said of the inactive values, in place of them.
+    /// How the inactive values are stored.
     enum Kind : std::uint8_t {
         kBackground,
         kMinusBackground,
@@ -101,14 +101,14 @@ struct VdbValues {
 
     int kind = kBackground;
     std::string_view inactive;  ///< inactiveOf(kind) values
-    std::string_view chosen;    ///< if hasMask(kind): a bit a value, which of two inactive ones it is
+    std::string_view chosen;    ///< if hasMask(kind): a bit a value: which of the two inactive values
     std::uint64_t stored = 0;   ///< values in `data`
     std::uint64_t length = 0;   ///< their bytes, unpacked
     std::string_view data;
     bool packed = false;
 };
 
-/// What is packed is not unpacked, but a Blosc buffer is known to unpack to `length` bytes.
+/// Packed values are not unpacked, but a Blosc buffer is checked to unpack to `length` bytes.
 /// @param active  a bit a value
 VdbValues walkVdbValues(VdbCursor& cursor, const VdbValueFormat& format, std::string_view active);
 
@@ -154,7 +154,7 @@ struct VdbNode {
     }
 };
 
-/// Is told what a tree is made of, in the file's order.
+/// Receives the parts of a tree, in the file's order.
 class VdbTreeVisitor {
 public:
     virtual ~VdbTreeVisitor() = default;

@@ -25,13 +25,13 @@ TEST(AttributeNeeds, NumbersNamesInTheirOrder) {
 
 TEST(AttributeNeeds, ObjectsOfOneFileAndGridShareThem) {
     AttributeNeeds needs;
-    needs.want(objectOf("a.vdb"), "tool");
-    needs.wantStatedColors(objectOf("b.gcode"));
-    EXPECT_TRUE(needs.wanted(objectOf("a.vdb"), "tool"));
-    EXPECT_FALSE(needs.wanted(objectOf("a.vdb"), "layer"));
-    EXPECT_FALSE(needs.wanted(objectOf("a.vdb", "other"), "tool"));
-    EXPECT_FALSE(needs.statedColorsWanted(objectOf("a.vdb")));
-    EXPECT_TRUE(needs.statedColorsWanted(objectOf("b.gcode")));
+    needs.add(objectOf("a.vdb"), "tool");
+    needs.addStatedColors(objectOf("b.gcode"));
+    EXPECT_TRUE(needs.contains(objectOf("a.vdb"), "tool"));
+    EXPECT_FALSE(needs.contains(objectOf("a.vdb"), "layer"));
+    EXPECT_FALSE(needs.contains(objectOf("a.vdb", "other"), "tool"));
+    EXPECT_FALSE(needs.needsStatedColors(objectOf("a.vdb")));
+    EXPECT_TRUE(needs.needsStatedColors(objectOf("b.gcode")));
 }
 
 }  // namespace

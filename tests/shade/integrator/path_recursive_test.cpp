@@ -23,13 +23,13 @@ namespace {
 
 using shade::Color;
 
-/// A lamp's rectangle, met by a ray of its own.
+/// A rectangular lamp with an intersection of its own.
 struct Panel {
     glm::dvec3 center, u, v;  // half edges, perpendicular
     Color radiance;
 
     /// World units along the ray; infinite if it misses.
-    double meets(const trace::Ray& ray) const {
+    double intersect(const trace::Ray& ray) const {
         const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
         const double t = glm::dot(center - ray.origin, normal) / glm::dot(ray.direction, normal);
         const glm::dvec3 p = ray.origin + t * ray.direction - center;
@@ -66,7 +66,7 @@ private:
         shade::SurfacePoint next;
         const bool meets = surfaces_.nearest(ray, *tracer_, next);
         // Lamps give light and stand in no one's way.
-        const double lamp = panel_ == nullptr ? std::numeric_limits<double>::infinity() : panel_->meets(ray);
+        const double lamp = panel_ == nullptr ? std::numeric_limits<double>::infinity() : panel_->intersect(ray);
         if (std::isfinite(lamp) && (!meets || lamp < next.t)) incoming += glm::dvec3(panel_->radiance);
         if (!meets)
             incoming += glm::dvec3(scene_.environment->radiance(glm::vec3(ray.direction)));
