@@ -88,213 +88,299 @@ bool needsTimes(const ConvertCommand& o) {
            std::any_of(grids.begin(), grids.end(), timed);
 }
 
-}  // namespace
+/// One input, step by step: each method needs what those before it found.
+class Conversion {
+public:
+    Conversion(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run)
+        : o_(command), input_(input), output_(output), files_of_run_(files_of_run), file_(input) {}
 
-fs::path usdaOf(fs::path vdb) { return vdb.replace_extension(".usda"); }
+    Json run(int threads) {
+        read();
+        tell();
+        choose();
+        describeSource();
+        voxelize::VoxelizeOptions options = voxelizeOptions();
+        placement_ = options.placement;
+        voxelize::Voxelizer voxelizer(toolpath_, selection_, lattice_, std::move(options));
+        seconds_.voxelize += watch_.lap();
+        const std::vector<Job> jobs = planJobs(o_, toolpath_, selection_, output_);
+        for (const Job& job : jobs)
+            if (!job.label.empty()) {
+                files_of_run_.writes(job.path.string(), "--snapshots");
+                if (o_.usda) files_of_run_.writes(usdaOf(job.path).string(), "--usda");
+            }
+        for (const Job& job : jobs) make(voxelizer, job);
+        return report(voxelizer, threads);
+    }
 
-Json convert(const ConvertCommand& o, const std::string& input, const fs::path& output, RunFiles& files_of_run,
-             int threads) {
-    Stopwatch total;
-    Stopwatch watch;
-    // Unwritable places are found before the work, not after it.
-    { const AtomicFile probe(output); }
+private:
+    struct Seconds {
+        double parse = 0, voxelize = 0, cull = 0, mesh = 0, write = 0, check = 0;
+    };
 
-    const gcode::InputBytes file(input);
-    const std::string& name = file.name();
-    motion::PrintTimes times;
-    const bool planned = needsTimes(o);
-    const gcode::Toolpath toolpath = [&] {
-        gcode::ReadOptions read = o.print.read;
-        ProgressBar bar("reading", o.common.quiet);
+    bool culls() const { return interior_ == voxelize::Interior::cull; }
+    bool settles() const { return toolpath_.deposit.beads == gcode::DepositModel::Beads::settled; }
+    void warn(const std::string& text) const {
+        if (!o_.common.quiet) fmt::print(stderr, "gcode2vdb: {}\n", text);
+    }
+
+    void read() {
+        gcode::ReadOptions read = o_.print.read;
+        ProgressBar bar("reading", o_.common.quiet);
         read.progress = bar.callback();
-        return planned ? motion::readTimedToolpath(file.bytes(), name, read, times)
-                       : gcode::readToolpath(file.bytes(), name, read);
-    }();
-    const double parse_seconds = watch.lap();
-    if (!o.common.quiet)
-        for (const gcode::Warning& warning : toolpath.warnings)
-            fmt::print(stderr, "gcode2vdb: {}\n", gcode::describe(warning, name));
-    say(o.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", name,
-                              toolpath.slicer.empty() ? "unknown slicer" : toolpath.slicer, toolpath.layer_count,
-                              toolpath.beads.size(), toolpath.arcs.size(), toolpath.filament_mm * 1e-3,
-                              gcode::beadVolume(toolpath) * 1e-3));
-    if (o.summary) say(o.common, gcode::summarize(toolpath) + timeLines(times, toolpath.stated));
-    if (!o.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath, o.dump_toolpath);
-
-    std::vector<std::uint32_t> selection = voxelize::selectBeads(toolpath, voxelize::selectionOf(o.print, toolpath));
-    const std::size_t kept = selection.size();
-    const voxelize::Bounds bounds = voxelize::boundsOf(toolpath, selection);
-    const bool as_mesh = exporter::isMeshPath(output);
-    const auto interior =
-        o.interior == "cull" || (o.interior.empty() && as_mesh) ? voxelize::Interior::cull : voxelize::Interior::keep;
-    std::vector<voxelize::Attribute> attributes = voxelize::parseGrids(o.grids);
-    const std::vector<std::optional<gcode::Rgb>> colors = gcode::distinctColors(toolpath, selection);
-    if (colors.size() > 1 && o.grids.empty() && !as_mesh) {
-        attributes.push_back(voxelize::Attribute::color);
-        say(o.common, fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors.size()));
+        planned_ = needsTimes(o_);
+        toolpath_ = planned_ ? motion::readTimedToolpath(file_.bytes(), file_.name(), read, times_)
+                             : gcode::readToolpath(file_.bytes(), file_.name(), read);
+        seconds_.parse = watch_.lap();
     }
-    const voxelize::Lattice lattice = voxelize::latticeFor(o.print, toolpath, selection, bounds, interior);
-    say(o.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes", lattice.voxel_size,
-                              lattice.reason, lattice.aligned_share * 100));
-    if (!lattice.warning.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, lattice.warning);
 
-    exporter::Provenance provenance;
-    provenance.source_file = fs::path(name).filename().string();
-    provenance.source_sha256 = sha256Hex(file.bytes());
-    provenance.slicer = toolpath.slicer;
-    provenance.unit = o.unit;
-    provenance.up = o.up;
-    provenance.selection = voxelize::describeSelection(o.print);
-    if (colors.size() == 1 && colors.front()) {
-        const auto [red, green, blue] = *colors.front();
-        provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
+    void tell() const {
+        for (const gcode::Warning& warning : toolpath_.warnings) warn(gcode::describe(warning, file_.name()));
+        say(o_.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3",
+                                   file_.name(), toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer,
+                                   toolpath_.layer_count, toolpath_.beads.size(), toolpath_.arcs.size(),
+                                   toolpath_.filament_mm * 1e-3, gcode::beadVolume(toolpath_) * 1e-3));
+        if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(times_, toolpath_.stated));
+        if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     }
-    provenance.culled = interior == voxelize::Interior::cull;
-    provenance.swept = o.interior_distance;
 
-    voxelize::VoxelizeOptions options;
-    options.placement = placementFor(o, bounds);
-    options.placement.up_y = o.up == "y";
-    options.interior = interior;
-    std::optional<ProgressBar> bar;
-    if (showsProgress(o.common.quiet))
-        options.progress = [&bar](double fraction) {
-            if (bar) bar->show(fraction);
-        };
-    voxelize::Voxelizer voxelizer(toolpath, selection, lattice, options);
-    double voxelize_seconds = watch.lap();
-    double cull_seconds = 0;
-    double mesh_seconds = 0;
-    double write_seconds = 0;
-    double check_seconds = 0;
-    Json files = Json::array();
-    Json grid_report;
-    const std::vector<Job> jobs = planJobs(o, toolpath, selection, output);
-    for (const Job& job : jobs)
-        if (!job.label.empty()) {
-            files_of_run.writes(job.path.string(), "--snapshots");
-            if (o.usda) files_of_run.writes(usdaOf(job.path).string(), "--usda");
+    // Beads, grids and the lattice.
+    void choose() {
+        selection_ = voxelize::selectBeads(toolpath_, voxelize::selectionOf(o_.print, toolpath_));
+        selected_beads_ = selection_.size();
+        bounds_ = voxelize::boundsOf(toolpath_, selection_);
+        as_mesh_ = exporter::isMeshPath(output_);
+        if (o_.interior == "cull" || (o_.interior.empty() && as_mesh_)) interior_ = voxelize::Interior::cull;
+        attributes_ = voxelize::parseGrids(o_.grids);
+        colors_ = gcode::distinctColors(toolpath_, selection_);
+        if (colors_.size() > 1 && o_.grids.empty() && !as_mesh_) {
+            attributes_.push_back(voxelize::Attribute::color);
+            say(o_.common,
+                fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors_.size()));
         }
-    for (const Job& job : jobs) {
-        watch.lap();
-        bar.emplace("voxelizing", o.common.quiet);
+        lattice_ = voxelize::latticeFor(o_.print, toolpath_, selection_, bounds_, interior_);
+        say(o_.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
+                                   lattice_.voxel_size, lattice_.reason, lattice_.aligned_share * 100));
+        if (!lattice_.warning.empty()) warn(fmt::format("{}: {}", file_.name(), lattice_.warning));
+    }
+
+    void describeSource() {
+        provenance_.source_file = fs::path(file_.name()).filename().string();
+        provenance_.source_sha256 = sha256Hex(file_.bytes());
+        provenance_.slicer = toolpath_.slicer;
+        provenance_.unit = o_.unit;
+        provenance_.up = o_.up;
+        provenance_.selection = voxelize::describeSelection(o_.print);
+        if (colors_.size() == 1 && colors_.front()) {
+            const auto [red, green, blue] = *colors_.front();
+            provenance_.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
+        }
+        provenance_.culled = culls();
+        provenance_.deposit = toolpath_.deposit;
+        provenance_.swept = o_.interior_distance;
+    }
+
+    voxelize::VoxelizeOptions voxelizeOptions() {
+        voxelize::VoxelizeOptions options;
+        options.placement = placementFor(o_, bounds_);
+        options.placement.up_y = o_.up == "y";
+        options.interior = interior_;
+        if (showsProgress(o_.common.quiet))
+            options.progress = [this](double fraction) {
+                if (bar_) bar_->show(fraction);
+            };
+        return options;
+    }
+
+    // One output, from its voxels to its lines of the report.
+    void make(voxelize::Voxelizer& voxelizer, const Job& job) {
+        watch_.lap();
+        bar_.emplace("voxelizing", o_.common.quiet);
         openvdb::FloatGrid::Ptr grid = voxelizer.printUntil(job.end);
-        if (!attributes.empty()) bar.emplace("grids", o.common.quiet);
-        openvdb::GridPtrVec grids = voxelizer.attributes(attributes);
-        bar.reset();
-        if (o.interior_distance) {
-            const ProgressNote note("distances", o.common.quiet);
+        if (!attributes_.empty()) bar_.emplace("grids", o_.common.quiet);
+        openvdb::GridPtrVec grids = voxelizer.attributes(attributes_);
+        bar_.reset();
+        if (o_.interior_distance) {
+            const ProgressNote note("distances", o_.common.quiet);
             // The voxelizer goes on from its own values at the next step.
             grid = grid->deepCopy();
             voxelize::sweepInterior(*grid);
         }
-        voxelize_seconds += watch.lap();
-        cull_seconds += voxelizer.report().exterior_seconds;
-        provenance.snapshot = job.label;
+        seconds_.voxelize += watch_.lap();
+        seconds_.cull += voxelizer.report().exterior_seconds;
+        provenance_.snapshot = job.label;
         std::optional<exporter::SurfaceMesh> mesh;
-        if (as_mesh) {
-            const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
-            {
-                const ProgressNote note("meshing", o.common.quiet);
-                mesh = exporter::meshSurface(*grid, {provenance.culled, o.mesh_error, color});
-            }
-            mesh_seconds += watch.lap();
-            const ProgressNote note("writing", o.common.quiet);
-            exporter::writeMesh(*mesh, job.path);
-        } else {
-            const auto printed = std::span<const std::uint32_t>(selection).first(job.beads);
-            provenance.part = voxelize::placed(voxelize::partBounds(toolpath, printed), options.placement);
-            const ProgressNote note("writing", o.common.quiet);
-            exporter::describe(*grid, lattice, provenance);
-            grids.insert(grids.begin(), grid);
-            exporter::writeVdb(grids, job.path, o.file);
-            if (o.usda) {
-                exporter::writeUsda(grids, job.path, usdaOf(job.path),
-                                    {0.001 * voxelize::millimetresIn(o.unit), o.up == "y"});
-            }
-        }
-        write_seconds += watch.lap();
-        const double deposited =
-            voxelize::depositedVolume(toolpath, std::span<const std::uint32_t>(selection).first(job.beads));
+        if (as_mesh_)
+            mesh = writeMesh(*grid, grids, job);
+        else
+            writeGrids(grid, grids, job);
+        seconds_.write += watch_.lap();
+        const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
+        const double deposited = voxelize::depositedVolume(toolpath_, printed);
         const double volume = [&] {
-            const ProgressNote note("measuring", o.common.quiet);
-            return enclosedMm3(*grid, lattice);
+            const ProgressNote note("measuring", o_.common.quiet);
+            return enclosedMm3(*grid, lattice_);
         }();
-        const std::string doubt = doubtOf(volume, deposited, provenance.culled);
-        if (!doubt.empty() && !o.common.quiet) fmt::print(stderr, "gcode2vdb: {}: {}\n", name, doubt);
-        check_seconds += watch.lap();
+        const std::string doubt = doubtOf(volume, deposited, provenance_.culled);
+        if (!doubt.empty()) warn(fmt::format("{}: {}", file_.name(), doubt));
+        seconds_.check += watch_.lap();
+        tellOutput(voxelizer, job, *grid, mesh);
+        if (job.label.empty()) describeWhole(voxelizer, *grid, volume, deposited);
+    }
+
+    exporter::SurfaceMesh writeMesh(const openvdb::FloatGrid& grid, const openvdb::GridPtrVec& grids, const Job& job) {
+        const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
+        exporter::SurfaceMesh mesh = [&] {
+            const ProgressNote note("meshing", o_.common.quiet);
+            return exporter::meshSurface(grid, {provenance_.culled, o_.mesh_error, color});
+        }();
+        seconds_.mesh += watch_.lap();
+        const ProgressNote note("writing", o_.common.quiet);
+        exporter::writeMesh(mesh, job.path);
+        return mesh;
+    }
+
+    void writeGrids(const openvdb::FloatGrid::Ptr& grid, openvdb::GridPtrVec& grids, const Job& job) {
+        const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
+        provenance_.part = voxelize::placed(voxelize::partBounds(toolpath_, printed), placement_);
+        const ProgressNote note("writing", o_.common.quiet);
+        exporter::describe(*grid, lattice_, provenance_);
+        grids.insert(grids.begin(), grid);
+        exporter::writeVdb(grids, job.path, o_.file);
+        if (o_.usda)
+            exporter::writeUsda(grids, job.path, usdaOf(job.path),
+                                {0.001 * voxelize::millimetresIn(o_.unit), o_.up == "y"});
+    }
+
+    void tellOutput(const voxelize::Voxelizer& voxelizer, const Job& job, const openvdb::FloatGrid& grid,
+                    const std::optional<exporter::SurfaceMesh>& mesh) {
         const auto bytes = isStandardOutput(job.path) ? 0 : fs::file_size(job.path);
-        files.push_back({{"path", job.path.string()},
-                         {"snapshot", job.label},
-                         {"bytes", bytes},
-                         {"beads", job.beads},
-                         {"active_voxels", grid->activeVoxelCount()},
-                         {"leaves_evaluated", voxelizer.report().leaves_evaluated},
-                         {"leaves_reused", voxelizer.report().leaves_reused}});
-        if (mesh) files.back()["mesh"] = describeMesh(*mesh, *grid, lattice);
-        say(o.common,
+        const auto active = grid.activeVoxelCount();
+        files_.push_back({{"path", job.path.string()},
+                          {"snapshot", job.label},
+                          {"bytes", bytes},
+                          {"beads", job.beads},
+                          {"active_voxels", active},
+                          {"leaves_evaluated", voxelizer.report().leaves_evaluated},
+                          {"leaves_reused", voxelizer.report().leaves_reused}});
+        if (mesh) files_.back()["mesh"] = describeMesh(*mesh, grid, lattice_);
+        say(o_.common,
             fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
-                        humanCount(static_cast<double>(grid->activeVoxelCount())),
-                        humanBytes(static_cast<double>(grid->memUsage())), humanBytes(static_cast<double>(bytes))));
-        if (mesh) say(o.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh->triangleCount()))));
-        if (!o.common.stats.empty() && job.label.empty()) {
-            grid_report = describeGrid(*grid, lattice, volume, deposited);
-            if (o.forecast && !provenance.culled) grid_report["cull_would_save"] = describeCull(voxelizer, *grid);
+                        humanCount(static_cast<double>(active)), humanBytes(static_cast<double>(grid.memUsage())),
+                        humanBytes(static_cast<double>(bytes))));
+        if (mesh) say(o_.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh->triangleCount()))));
+    }
+
+    // Reports that cost time: only of the whole print, and only if somebody reads them.
+    void describeWhole(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid, double volume,
+                       double deposited) {
+        const bool stats = !o_.common.stats.empty();
+        if (settles() && (stats || o_.summary)) {
+            const voxelize::DepositBalance balance = voxelizer.balance();
+            if (o_.summary) say(o_.common, depositLines(balance));
+            if (stats) deposit_ = describeDeposit(balance, enclosedMm3(grid, lattice_, true));
         }
+        if (!stats) return;
+        grid_ = describeGrid(grid, lattice_, volume, deposited);
+        if (o_.forecast && !culls()) grid_["cull_would_save"] = describeCull(voxelizer, grid);
     }
-    Json skipped = Json::array();
-    if (kept < toolpath.beads.size()) {
-        const std::string why =
-            provenance.selection.empty() ? "prime lines before layer 1 (--layers 0: keeps them)" : provenance.selection;
-        const std::string count = fmt::format("{} of {} beads", toolpath.beads.size() - kept, toolpath.beads.size());
-        skipped.push_back({{"what", "beads"}, {"why", why}, {"saved", count}});
-        say(o.common, fmt::format("  left out {}: {}", count, why));
+
+    Json skipped(const voxelize::VoxelizeReport& built) const {
+        Json skipped = Json::array();
+        const auto skip = [&skipped](const char* what, const std::string& why, const std::string& saved) {
+            skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
+        };
+        if (selected_beads_ < toolpath_.beads.size()) {
+            const std::string why = provenance_.selection.empty()
+                                        ? "prime lines before layer 1 (--layers 0: keeps them)"
+                                        : provenance_.selection;
+            const std::string count =
+                fmt::format("{} of {} beads", toolpath_.beads.size() - selected_beads_, toolpath_.beads.size());
+            skip("beads", why, count);
+            say(o_.common, fmt::format("  left out {}: {}", count, why));
+        }
+        if (!settles())
+            skip("settling", "beads are capsules (--beads settled)", "pairs of neighbouring beads in each plan field");
+        if (!o_.interior_distance)
+            skip("distances inside the solid", "the surface needs only their sign",
+                 "a fast-sweeping pass over the grid");
+        if (attributes_.empty())
+            skip("attribute grids", "none asked for (--grids)",
+                 "a nearest-bead search and four bytes a voxel for each");
+        if (!o_.forecast && !culls())
+            skip("what --interior cull would save", "not asked for (--forecast)",
+                 "a flood through all leaves, about a third of a build");
+        if (culls())
+            skip("leaves that the outside can't reach", "--interior cull",
+                 fmt::format("{} of {} leaf positions were never evaluated",
+                             built.leaf_positions - built.leaves_evaluated, built.leaf_positions));
+        return skipped;
     }
-    if (!o.interior_distance)
-        skipped.push_back({{"what", "distances inside the solid"},
-                           {"why", "the surface needs only their sign"},
-                           {"saved", "a fast-sweeping pass over the grid"}});
-    if (attributes.empty())
-        skipped.push_back({{"what", "attribute grids"},
-                           {"why", "none asked for (--grids)"},
-                           {"saved", "a nearest-bead search and four bytes a voxel for each"}});
-    if (!o.forecast && !provenance.culled)
-        skipped.push_back({{"what", "what --interior cull would save"},
-                           {"why", "not asked for (--forecast)"},
-                           {"saved", "a flood through all leaves, about a third of a build"}});
-    if (provenance.culled) {
-        const auto& report = voxelizer.report();
-        skipped.push_back(
-            {{"what", "leaves that the outside can't reach"},
-             {"why", "--interior cull"},
-             {"saved", fmt::format("{} of {} leaf positions were never evaluated",
-                                   report.leaf_positions - report.leaves_evaluated, report.leaf_positions)}});
+
+    Json report(const voxelize::Voxelizer& voxelizer, int threads) {
+        const Json left_out = skipped(voxelizer.report());
+        Json toolpath_report = describeToolpath(toolpath_);
+        toolpath_report["selected_bbox_mm"] = {bounds_.min, bounds_.max};
+        const double total = total_.lap();
+        say(o_.common, fmt::format("  done in {:.2f} s", total));
+        return {{"input",
+                 {{"path", input_},
+                  {"bytes", file_.bytes().size()},
+                  {"sha256", provenance_.source_sha256},
+                  {"slicer", toolpath_.slicer},
+                  {"format", toolpath_.format}}},
+                {"toolpath", toolpath_report},
+                {"time", planned_ ? describeTimes(times_, toolpath_.stated) : Json(nullptr)},
+                {"grid", grid_},
+                {"deposit", deposit_},
+                {"files", files_},
+                {"skipped", left_out},
+                {"seconds",
+                 {{"parse", seconds_.parse},
+                  {"cull", seconds_.cull},
+                  {"voxelize", seconds_.voxelize - seconds_.cull},
+                  {"mesh", seconds_.mesh},
+                  {"write", seconds_.write},
+                  {"volume", seconds_.check},
+                  {"total", total}}},
+                {"peak_rss_bytes", peakRssBytes()},
+                {"threads", threads}};
     }
-    Json toolpath_report = describeToolpath(toolpath);
-    toolpath_report["selected_bbox_mm"] = {bounds.min, bounds.max};
-    const double total_seconds = total.lap();
-    say(o.common, fmt::format("  done in {:.2f} s", total_seconds));
-    return {{"input",
-             {{"path", input},
-              {"bytes", file.bytes().size()},
-              {"sha256", provenance.source_sha256},
-              {"slicer", toolpath.slicer},
-              {"format", toolpath.format}}},
-            {"toolpath", toolpath_report},
-            {"time", planned ? describeTimes(times, toolpath.stated) : Json(nullptr)},
-            {"grid", grid_report},
-            {"files", files},
-            {"skipped", skipped},
-            {"seconds",
-             {{"parse", parse_seconds},
-              {"cull", cull_seconds},
-              {"voxelize", voxelize_seconds - cull_seconds},
-              {"mesh", mesh_seconds},
-              {"write", write_seconds},
-              {"volume", check_seconds},
-              {"total", total_seconds}}},
-            {"peak_rss_bytes", peakRssBytes()},
-            {"threads", threads}};
+
+    const ConvertCommand& o_;
+    const std::string& input_;
+    const fs::path& output_;
+    RunFiles& files_of_run_;
+    Stopwatch total_, watch_;
+    Seconds seconds_;
+    const gcode::InputBytes file_;
+    motion::PrintTimes times_;
+    bool planned_ = false;
+    gcode::Toolpath toolpath_;
+    std::vector<std::uint32_t> selection_;
+    std::size_t selected_beads_ = 0;
+    voxelize::Bounds bounds_;
+    bool as_mesh_ = false;
+    voxelize::Interior interior_ = voxelize::Interior::keep;
+    std::vector<voxelize::Attribute> attributes_;
+    std::vector<std::optional<gcode::Rgb>> colors_;
+    voxelize::Lattice lattice_;
+    exporter::Provenance provenance_;
+    voxelize::Placement placement_;
+    std::optional<ProgressBar> bar_;
+    Json files_ = Json::array();
+    Json grid_, deposit_;
+};
+
+}  // namespace
+
+fs::path usdaOf(fs::path vdb) { return vdb.replace_extension(".usda"); }
+
+Json convert(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run,
+             int threads) {
+    // Unwritable places are found before the work, not after it.
+    { const AtomicFile probe(output); }
+    return Conversion(command, input, output, files_of_run).run(threads);
 }
 
 }  // namespace stratum::tools

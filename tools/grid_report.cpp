@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace stratum::tools {
 
@@ -45,6 +46,35 @@ Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid
             {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
 }
 
+Json describeDeposit(const voxelize::DepositBalance& balance, double surface_mm3) {
+    Json features = Json::object();
+    for (std::size_t f = 0; f < balance.features.size(); ++f) {
+        const voxelize::DepositShare& share = balance.features[f];
+        if (share.fed > 0)
+            features[std::string(gcode::featureName(static_cast<gcode::Feature>(f)))] = {
+                {"fed_mm3", share.fed}, {"laid_mm3", share.laid}, {"surplus_mm3", share.surplus()}};
+    }
+    return {{"fed_mm3", balance.all.fed},
+            {"laid_mm3", balance.all.laid},
+            {"surface_mm3", surface_mm3},
+            {"surplus_mm3", balance.all.surplus()},
+            {"features", features}};
+}
+
+std::string depositLines(const voxelize::DepositBalance& balance) {
+    std::string lines =
+        fmt::format("settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} mm^3 ({:.2f} %) have no place\n", balance.all.laid,
+                    balance.all.fed, balance.all.surplus(), 100 * balance.all.surplus() / balance.all.fed);
+    for (std::size_t f = 0; f < balance.features.size(); ++f) {
+        const voxelize::DepositShare& share = balance.features[f];
+        if (share.fed > 0)
+            lines += fmt::format("  {:<20} {:>9.2f} mm^3 fed {:>8.2f} surplus ({:.1f} %)\n",
+                                 gcode::featureName(static_cast<gcode::Feature>(f)), share.fed, share.surplus(),
+                                 100 * share.surplus() / share.fed);
+    }
+    return lines;
+}
+
 Json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
     const double unit = grid.voxelSize()[0] / lattice.voxel_size;
     return {{"vertices", mesh.points.size()},
@@ -52,9 +82,11 @@ Json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& g
             {"volume_mm3", mesh.volume() / (unit * unit * unit)}};
 }
 
-double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice) {
+double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, bool exact) {
     const double unit = grid.voxelSize()[0] / lattice.voxel_size;
-    return voxelize::enclosedVolume(grid, voxelize::kVolumeSample) / (unit * unit * unit);
+    const double volume =
+        exact ? voxelize::enclosedVolume(grid) : voxelize::enclosedVolume(grid, voxelize::kVolumeSample);
+    return volume / (unit * unit * unit);
 }
 
 std::string doubtOf(double enclosed_mm3, double deposited_mm3, bool culled) {

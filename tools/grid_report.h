@@ -17,11 +17,16 @@ nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxeli
                                     double deposited_mm3);
 /// What --interior cull would save of it: floods it.
 nlohmann::ordered_json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid);
+/// What of the beads their layers have room for; `surface_mm3` is what the level set encloses.
+nlohmann::ordered_json describeDeposit(const voxelize::DepositBalance& balance, double surface_mm3);
+/// The same in lines of text, each with its line end.
+std::string depositLines(const voxelize::DepositBalance& balance);
 nlohmann::ordered_json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid,
                                     const voxelize::Lattice& lattice);
 
-/// The volume that the grid encloses, mm^3; of a sample of its leaves if they are many (see voxelize::kVolumeSample).
-double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice);
+/// The volume that the grid encloses, mm^3; of a sample of its leaves if they are many (see voxelize::kVolumeSample)
+/// and it need not be exact.
+double enclosedMm3(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, bool exact = false);
 
 /// A sentence if a level set holds clearly less or more than was extruded; empty if all is well. What culling fills is
 /// solid, so of a culled grid only too little can be told.

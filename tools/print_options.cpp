@@ -56,6 +56,24 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
         ->allow_extra_args(false)
         ->type_name("NAME|NUMBER")
         ->group(what);
+    const char* plastic = kPlastic;
+    const auto beads = [](gcode::DepositModel::Beads value) { return static_cast<int>(value); };
+    app.add_option(
+           "--beads", options.read.deposit.beads,
+           "What overlapping beads do: capsule: nothing, they are united (default); settled: what two neighbours "
+           "both claim fills the groove between them")
+        ->transform(enumeration({{"capsule", beads(gcode::DepositModel::Beads::capsule)},
+                                 {"settled", beads(gcode::DepositModel::Beads::settled)}}))
+        ->type_name("MODEL")
+        ->group(plastic);
+    completes(
+        app.add_option_function<std::string>(
+            "--section", [&options](const std::string& text) { voxelize::parseSection(text, options.read.deposit); },
+            "Corner radius of a bead's section, in mm or as a percentage of half its height (default stadium, "
+            "100%)"),
+        Completion::word, {"stadium"})
+        ->type_name("MM|PERCENT%")
+        ->group(plastic);
     const char* reading = kReading;
     app.add_option("--plate", options.read.plate, "Which plate of a .gcode.3mf that has several")
         ->check(CLI::PositiveNumber)

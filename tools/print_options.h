@@ -11,6 +11,7 @@ namespace stratum::tools {
 inline constexpr const char* kLattice = "Lattice";
 inline constexpr const char* kWhat = "What to convert";
 inline constexpr const char* kReading = "Reading";
+inline constexpr const char* kPlastic = "Plastic";
 
 /// Adds them in those groups. With `pictures`, --voxel-size may be auto.
 void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures = false);

@@ -41,7 +41,7 @@ void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, BrickC
 }
 
 std::vector<std::string> givenPrintOptions(const CLI::App& app) {
-    constexpr std::array<std::string_view, 3> kGroups = {kLattice, kWhat, kReading};
+    constexpr std::array<std::string_view, 4> kGroups = {kLattice, kWhat, kPlastic, kReading};
     std::vector<std::string> given;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_name();

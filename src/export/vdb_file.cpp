@@ -17,6 +17,20 @@ public:
     void writeTo(std::ostream& stream, const openvdb::GridPtrVec& grids) const { write(stream, grids, true); }
 };
 
+std::string beadModel(const gcode::DepositModel& deposit) {
+    const bool stadium = !deposit.corner_mm && deposit.corner_fraction == 1;
+    std::string text = stadium
+                           ? "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded"
+                           : "d = rho - c, v = |z - zc| - (h/2 - r): hypot(max(d, 0), max(v, 0)) + min(max(d, v), 0) "
+                             "- r; layers welded";
+    if (deposit.corner_mm)
+        text += fmt::format("; r = {:g} mm, at most h/2", *deposit.corner_mm);
+    else if (!stadium)
+        text += fmt::format("; r = {:g} h/2", deposit.corner_fraction);
+    if (deposit.beads == gcode::DepositModel::Beads::settled) text += "; settled: overlaps fill grooves";
+    return text;
+}
+
 }  // namespace
 
 void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const Provenance& provenance) {
@@ -36,7 +50,7 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
     text("snapshot", provenance.snapshot);
     text("selection", provenance.selection);
     text("filament_color", provenance.filament_color);
-    text("bead_model", "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded");
+    text("bead_model", beadModel(provenance.deposit));
     text("interior", provenance.swept ? "distance" : "negative bound, not a distance");
     text("enclosed", provenance.culled ? "filled: only what the outside can reach is there" : "kept");
     if (const auto& part = provenance.part) {

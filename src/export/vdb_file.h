@@ -1,6 +1,7 @@
 // FloatGrid -> .vdb with metadata about the grid and its origin; written whole or not at all.
 #pragma once
 
+#include "gcode/toolpath/deposit_model.h"
 #include "voxelize/beads/lattice.h"
 
 #include <openvdb/openvdb.h>
@@ -25,8 +26,9 @@ struct Provenance {
     /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without skirts and towers; see
     /// partBounds(). Left out if empty.
     std::optional<voxelize::Bounds> part;
-    bool culled = false;  ///< "enclosed": whether enclosed surfaces have been removed
-    bool swept = false;   ///< "interior": whether negative values are distances
+    gcode::DepositModel deposit;  ///< "bead_model": the formula of the field
+    bool culled = false;          ///< "enclosed": whether enclosed surfaces have been removed
+    bool swept = false;           ///< "interior": whether negative values are distances
 };
 
 enum class Compression : std::uint8_t { blosc, zip, none };

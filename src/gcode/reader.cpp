@@ -129,6 +129,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
 
     Toolpath toolpath = std::move(recorded);
     toolpath.warnings = warnings.take();
+    toolpath.deposit = options.deposit;
     toolpath.slicer = settings.slicer;
     toolpath.firmware = firmwareName(machine.firmware());
     toolpath.layer_height = nominal.value_or(0);

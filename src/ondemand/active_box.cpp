@@ -28,7 +28,7 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
     if (rank < layout.stack.first_direct) {
         // The widest sampled section need not be the widest section.
         const double center = 0.5 * (solid.min[2] + solid.max[2]);
-        const double off = std::abs(std::remainder(center - lattice.origin_z, h));
+        const double off = std::max(std::abs(std::remainder(center - lattice.origin_z, h)) - field.halfSide(), 0.0);
         const double far = field.radius() + lattice.background();
         around = std::sqrt(far * far - off * off) - field.radius();
     }

@@ -72,7 +72,8 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
     const voxelize::Lattice& lattice = layout_.lattice;
     const double h = lattice.voxel_size;
     constexpr int kDim = voxelize::kLeafDim;
-    const voxelize::Footprints footprints(*layout_.toolpath, kDim * h, 0.5 * (kDim - 1) * h, lattice.background());
+    const voxelize::Footprints footprints(*layout_.toolpath, kDim * h, 0.5 * (kDim - 1) * h, lattice.background(),
+                                          true);
     const auto leafOf = [&](double z) { return static_cast<int>(std::floor((z - lattice.origin_z) / (kDim * h))); };
     std::vector<openvdb::Coord> leaves;
     for (std::uint32_t rank = 0; rank < stack.beads.size(); ++rank) {
@@ -87,7 +88,7 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
         } else {
             // A bead can be welded to the layer below it: within LeafColumn::touched().
             const voxelize::Layer& layer = stack.layers[stack.layer[rank]];
-            const double reach = layer.radius * (1 + 2 * voxelize::kWeldGap) + lattice.background();
+            const double reach = layer.halfHeight() * (1 + 2 * voxelize::kWeldGap) + lattice.background();
             z_min = layer.center_z - reach;
             z_max = layer.center_z + reach;
         }

@@ -15,7 +15,7 @@ using voxelize::kLeafDim;
 
 double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& lattice) {
     double thickest = 0;
-    for (const voxelize::Layer& layer : stack.layers) thickest = std::max(thickest, layer.radius);
+    for (const voxelize::Layer& layer : stack.layers) thickest = std::max(thickest, layer.halfHeight());
     return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
 }
 

@@ -6,6 +6,7 @@
 
 #include "gcode/container/packed_double.h"
 #include "gcode/toolpath/color.h"
+#include "gcode/toolpath/deposit_model.h"
 #include "gcode/toolpath/stated.h"
 
 #include <cstdint>
@@ -111,6 +112,7 @@ struct Toolpath {
     std::string format = "ascii";     ///< the container
     double filament_diameter = 1.75;  ///< mm, of tool 0
     double layer_height = 0;          ///< mm, nominal, from the file's settings; 0 if unknown
+    DepositModel deposit;             ///< as asked for: ReadOptions::deposit
     std::uint32_t layer_count = 0;
     /// By tool, from the file's settings; empty for a tool without one; may be short. Use bead_colors.h.
     std::vector<std::optional<Rgb>> tool_colors;

@@ -75,6 +75,13 @@ void PlanPath::bounds(double (&min)[2], double (&max)[2]) const {
     if (withinSweep(0, -1)) min[1] = std::min(min[1], center_y_ - radius_);
 }
 
+double flatInset(double height, double radius) {
+    constexpr double kCorners = 4 - std::numbers::pi;  // what four corners of radius 1 take from a rectangle
+    // As written, a stadium would get rounding errors.
+    if (radius >= 0.5 * height) return radius;
+    return 0.5 * height * (0.25 * kCorners) - 0.5 * kCorners * radius * radius / height + radius;
+}
+
 Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     // Widths and heights are floats that print decimals (0.2f is 0.200000003): rounding to a nanometre gives layers
     // that agree on their planes, so that the lattice can meet them exactly.
@@ -86,8 +93,10 @@ Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     if (width < height) {
         section.radius = 0.5 * width;
     } else {
-        section.radius = 0.5 * height;
-        section.half_flat = 0.5 * (width - height);
+        section.radius = toolpath.deposit.cornerRadius(height);
+        section.half_side = 0.5 * height - section.radius;
+        section.half_flat =
+            section.half_side > 0 ? 0.5 * width - flatInset(height, section.radius) : 0.5 * (width - height);
     }
     return section;
 }
@@ -97,6 +106,7 @@ BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
     const Section section = sectionOf(toolpath, bead);
     half_flat_ = section.half_flat;
     radius_ = section.radius;
+    half_side_ = section.half_side;
     zc0_ = bead.z0 - section.drop;
     zc1_ = bead.z1 - section.drop;
     const double climb = bead.z1 - bead.z0;
@@ -107,9 +117,9 @@ BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
         if (half_flat_ > 0 && std::abs(climb) > plan_length) {
             const double area = gcode::sectionArea(bead.width, toolpath.runOf(bead).height);
             radius_ = std::sqrt(area / std::numbers::pi);
-            half_flat_ = 0;
+            half_flat_ = half_side_ = 0;
         }
-        if (half_flat_ > 0) reach_ = kSlopedReach * 2 * radius_;
+        if (half_flat_ > 0) reach_ = kSlopedReach * 2 * (radius_ + half_side_);
     }
     rod_ = half_flat_ == 0 && bead.arc < 0;
 }
@@ -127,7 +137,8 @@ double BeadField::distance(double x, double y, double z) const {
         const double qz = pz - t * dz;
         return std::sqrt(qx * qx + qy * qy + qz * qz) - radius_;
     }
-    const double side = std::max(path_.distance(x, y) - half_flat_, 0.0);
+    const double offset = path_.distance(x, y) - half_flat_;
+    const double side = std::max(offset, 0.0);
     double up = 0;
     if (level_) {
         up = z - zc0_;
@@ -135,7 +146,9 @@ double BeadField::distance(double x, double y, double z) const {
         up = (z - std::lerp(zc0_, zc1_, path_.parameter(x, y))) * cosine_;
         if (up < 0) up = std::min(up + reach_, 0.0);
     }
-    return std::sqrt(side * side + up * up) - radius_;
+    if (half_side_ == 0) return std::sqrt(side * side + up * up) - radius_;
+    const double over = std::abs(up) - half_side_;
+    return std::hypot(side, std::max(over, 0.0)) + std::min(std::max(offset, over), 0.0) - radius_;
 }
 
 Bounds BeadField::bounds() const {
@@ -143,8 +156,9 @@ Bounds BeadField::bounds() const {
     double plan_max[2];
     path_.bounds(plan_min, plan_max);
     const double side = half_flat_ + radius_;
-    const double above = rod_ ? radius_ : radius_ / cosine_;
-    const double below = rod_ ? radius_ : (radius_ + reach_) / cosine_;
+    const double half_height = radius_ + half_side_;
+    const double above = rod_ ? radius_ : half_height / cosine_;
+    const double below = rod_ ? radius_ : (half_height + reach_) / cosine_;
     Bounds box;
     for (int axis = 0; axis < 2; ++axis) {
         box.min[axis] = plan_min[axis] - side;

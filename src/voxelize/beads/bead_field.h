@@ -2,7 +2,9 @@
 //
 // With rho the plan distance to the path and c = (width - height) / 2, a level bead is a plan capsule swept by a ball
 //     phi(p) = hypot(max(rho - c, 0), z - z_c) - height / 2        (mm, negative inside)
-// which is the exact signed distance outside. It is column-separable: rho does not depend on z.
+// which is the exact signed distance outside. It is column-separable: rho does not depend on z. A section with corners
+// of radius r < height / 2 has straight sides of height 2 a, a = height / 2 - r:
+//     phi(p) = hypot(max(d, 0), max(|z - z_c| - a, 0)) + min(max(d, |z - z_c| - a), 0) - r,     d = rho - c
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -65,13 +67,23 @@ private:
     double start_x_ = 0, start_y_ = 0, end_x_ = 0, end_y_ = 0;  // unit directions from the center
 };
 
-/// Cross-section of a bead: the flats reach half_flat to each side of the path, the rounding has `radius`, and the
-/// center line runs `drop` below the nozzle. All mm. half_flat is 0 for a round bead.
+/// Cross-section of a bead: the flats reach half_flat to each side of the path, the corners have `radius`, the straight
+/// sides between them the height 2 half_side, and the center line runs `drop` below the nozzle. All mm. half_flat is 0
+/// for a round bead; half_side is 0 for it and for a stadium.
 struct Section {
     double half_flat = 0;
     double radius = 0;
+    double half_side = 0;
     double drop = 0;
+
+    double halfHeight() const { return radius + half_side; }
+    double halfWidth() const { return half_flat + radius; }
 };
+
+/// Half the width of a stadium less half the flat of a section of the same area and height, mm: the radius for the
+/// stadium itself. With corners of radius r: w = (area + (4 - pi) r^2) / height, and the flat is w - 2 r.
+double flatInset(double height, double radius);
+
 Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
 /// How far a sloped bead is extended below its underside, as a fraction of its height, to weld it to the layer below.
@@ -95,6 +107,8 @@ public:
     const PlanPath& path() const { return path_; }
     double halfFlat() const { return half_flat_; }
     double radius() const { return radius_; }
+    /// Half the height of the straight sides, mm; see Section.
+    double halfSide() const { return half_side_; }
     bool level() const { return level_; }
     /// A straight round bead: a capsule in 3-D.
     bool rod() const { return rod_; }
@@ -105,7 +119,7 @@ public:
 
 private:
     PlanPath path_;
-    double half_flat_, radius_;
+    double half_flat_, radius_, half_side_;
     double x0_, y0_, dx_, dy_;  // mm, center line in the plane
     double zc0_, zc1_;          // mm, center line at the start and the end
     double cosine_ = 1, reach_ = 0;

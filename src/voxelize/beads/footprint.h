@@ -31,18 +31,22 @@ struct ColumnRange {
 class Footprints {
 public:
     /// All mm: columns are `edge` wide, from multiples of it; their samples span twice `half_span`; beads reach `band`
-    /// beyond their solid.
-    Footprints(const gcode::Toolpath& toolpath, double edge, double half_span, double band)
+    /// beyond their solid. With `in_pairs` a bead that settles reaches as far as it may fill a groove: two radii from
+    /// its flat.
+    Footprints(const gcode::Toolpath& toolpath, double edge, double half_span, double band, bool in_pairs = false)
         : toolpath_(toolpath),
           edge_(edge),
           half_(half_span),
+          pair_band_(in_pairs && toolpath.deposit.beads == gcode::DepositModel::Beads::settled ? band : -1),
           // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
 
     /// How far from its path a bead reaches the centers of columns, mm.
     double limit(const gcode::Bead& bead) const {
         const Section section = sectionOf(toolpath_, bead);
-        return section.half_flat + radiusOf(bead, section) + slack_;
+        const double radius = radiusOf(bead, section);
+        const double more = pair_band_ >= 0 ? std::max(radius - pair_band_, 0.0) : 0;
+        return section.half_flat + radius + more + slack_;
     }
 
     /// Columns whose centers lie in the box of the path, enlarged by `limit` on each side.
@@ -137,7 +141,7 @@ private:
     int last(double mm) const { return static_cast<int>(std::floor((mm - half_) / edge_ + 1e-9)); }
 
     const gcode::Toolpath& toolpath_;
-    const double edge_, half_, slack_;  // mm
+    const double edge_, half_, pair_band_, slack_;  // mm; pair_band_ < 0: beads are taken one by one
 };
 
 }  // namespace stratum::voxelize

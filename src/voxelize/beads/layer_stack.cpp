@@ -17,11 +17,17 @@ constexpr std::uint32_t kDirect = 0xffffffff;
 
 // Ascending layers with their beads' ranks, from the group of each selected bead.
 void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::uint32_t>& group_of,
-               const std::map<LayerKey, std::uint32_t>& groups, LayerStack& stack) {
+               const std::map<LayerKey, std::uint32_t>& groups, const gcode::DepositModel& deposit, LayerStack& stack) {
     std::vector<std::uint32_t> layer_of_group(groups.size());
     for (const auto& [key, group] : groups) {
         layer_of_group[group] = static_cast<std::uint32_t>(stack.layers.size());
-        stack.layers.push_back({static_cast<double>(key.first) * 1e-6, static_cast<double>(key.second) * 1e-6});
+        Layer layer;
+        layer.center_z = static_cast<double>(key.first) * 1e-6;
+        const double half_height = static_cast<double>(key.second) * 1e-6;
+        layer.radius = deposit.cornerRadius(2 * half_height);
+        layer.half_side = half_height - layer.radius;
+        layer.inset = flatInset(2 * half_height, layer.radius);
+        stack.layers.push_back(layer);
     }
     const auto layers = static_cast<std::uint32_t>(stack.layers.size());
     std::vector<std::uint32_t> next(stack.layers.size() + 2, 0);
@@ -42,22 +48,35 @@ void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::
     }
 }
 
+// Layers of one ratio of height and corner radius share a curve.
+void addSettling(LayerStack& stack) {
+    for (Layer& layer : stack.layers) {
+        if (!(layer.radius > 0)) continue;  // sharp corners leave no groove
+        const double ratio = 2 * layer.halfHeight() / layer.radius;
+        const auto same = [ratio](const auto& curve) { return std::abs(curve->ratio() - ratio) <= 1e-9 * ratio; };
+        auto known = std::find_if(stack.curves.begin(), stack.curves.end(), same);
+        if (known == stack.curves.end())
+            known = stack.curves.insert(known, std::make_shared<const SettlingCurve>(ratio, kWeldGap));
+        layer.settling = known->get();
+    }
+}
+
 void findWelds(LayerStack& stack) {
     // Bottom planes in order, so that each top plane finds its partners by bisection.
     std::vector<std::pair<double, std::uint32_t>> bottoms;
     double widest_gap = 0;
     for (std::uint32_t i = 0; i < stack.layers.size(); ++i) {
-        bottoms.emplace_back(stack.layers[i].center_z - stack.layers[i].radius, i);
-        widest_gap = std::max(widest_gap, kWeldGap * 2 * stack.layers[i].radius);
+        bottoms.emplace_back(stack.layers[i].center_z - stack.layers[i].halfHeight(), i);
+        widest_gap = std::max(widest_gap, kWeldGap * 2 * stack.layers[i].halfHeight());
     }
     std::sort(bottoms.begin(), bottoms.end());
     for (std::uint32_t lower = 0; lower < stack.layers.size(); ++lower) {
         const Layer& below = stack.layers[lower];
-        const double top = below.center_z + below.radius;
+        const double top = below.center_z + below.halfHeight();
         auto it = std::lower_bound(bottoms.begin(), bottoms.end(), std::pair{top - widest_gap, std::uint32_t{0}});
         for (; it != bottoms.end() && it->first <= top + widest_gap; ++it) {
             const Layer& above = stack.layers[it->second];
-            const double limit = kWeldGap * 2 * std::min(below.radius, above.radius);
+            const double limit = kWeldGap * 2 * std::min(below.halfHeight(), above.halfHeight());
             if (it->second != lower && std::abs(it->first - top) <= limit) stack.welds.push_back({lower, it->second});
         }
     }
@@ -84,14 +103,15 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
             group_of.push_back(kDirect);
             continue;
         }
-        const LayerKey key{std::llround((bead.z0 - section.drop) * 1e6), std::llround(section.radius * 1e6)};
+        const LayerKey key{std::llround((bead.z0 - section.drop) * 1e6), std::llround(section.halfHeight() * 1e6)};
         if (last_group == kDirect || key != last_key) {
             last_group = groups.try_emplace(key, static_cast<std::uint32_t>(groups.size())).first->second;
             last_key = key;
         }
         group_of.push_back(last_group);
     }
-    rankBeads(selection, group_of, groups, stack);
+    rankBeads(selection, group_of, groups, toolpath.deposit, stack);
+    if (toolpath.deposit.beads == gcode::DepositModel::Beads::settled) addSettling(stack);
     stack.extents.reserve(stack.direct().size());
     for (const std::uint32_t bead : stack.direct()) {
         const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();

@@ -2,20 +2,27 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/settling.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace stratum::voxelize {
 
-/// Level beads of one center plane and one half-height. Their 3-D union is the 2-D minimum of rho - c, so a layer is
-/// one plan field, expanded once per column.
+/// Level beads of one center plane and one height, hence of one section but for their width. Their 3-D union is the 2-D
+/// minimum of rho - c, so a layer is one plan field, expanded once per column.
 struct Layer {
     double center_z = 0;      ///< mm
-    double radius = 0;        ///< mm, half the layer height
+    double radius = 0;        ///< mm, of the corners; see Section
+    double half_side = 0;     ///< mm
+    double inset = 0;         ///< mm, flatInset(): half the flat of a bead is half of Bead::width less this
     std::uint32_t first = 0;  ///< ranks [first, last) of LayerStack::beads, in print order
     std::uint32_t last = 0;
+    const SettlingCurve* settling = nullptr;  ///< of LayerStack::curves; null: beads don't settle
+
+    double halfHeight() const { return radius + half_side; }
 };
 
 /// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave
@@ -42,6 +49,7 @@ struct LayerStack {
     std::vector<std::uint32_t> layer;  ///< by rank: index into layers; layers.size() for a direct bead
     std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
     std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
+    std::vector<std::shared_ptr<const SettlingCurve>> curves;  ///< one for each shape of section; empty for capsules
 
     std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
     /// Of a direct bead.

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "gcode/slicer/bead_colors.h"
+#include "voxelize/beads/bead_field.h"
 
 #include <fmt/format.h>
 
@@ -115,7 +116,8 @@ std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) co
 
 float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
     if (attribute == Attribute::time) return start_[bead];
-    if (attribute == Attribute::width) return toolpath_.beads[bead].width;
+    if (attribute == Attribute::width)
+        return static_cast<float>(2 * sectionOf(toolpath_, toolpath_.beads[bead]).halfWidth());
     const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
     if (!(seconds > 0)) return toolpath_.runOf(toolpath_.beads[bead]).speed;
     return static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;

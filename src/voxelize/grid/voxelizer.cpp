@@ -266,6 +266,11 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     return grids;
 }
 
+DepositBalance Voxelizer::balance() const {
+    State& s = *state_;
+    return balanceDeposit(s.toolpath, s.stack, s.bins, s.lattice, s.columnSource(), s.printed);
+}
+
 const VoxelizeReport& Voxelizer::report() const { return state_->report; }
 
 openvdb::FloatGrid::Ptr voxelize(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,

@@ -5,6 +5,7 @@
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
+#include "voxelize/grid/deposit_balance.h"
 
 #include <openvdb/openvdb.h>
 
@@ -80,6 +81,10 @@ public:
     /// Counts what Interior::cull would keep of the current grid, which Interior::keep built. Reads existing leaves
     /// instead of evaluating distances; takes about a third of the time of a build.
     CullForecast forecastCull() const;
+
+    /// How much of the beads printed so far their layers have room for. Takes about as long as the plan fields of a
+    /// build.
+    DepositBalance balance() const;
 
     const VoxelizeReport& report() const;
 

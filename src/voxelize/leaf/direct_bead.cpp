@@ -67,6 +67,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
         forEachPlane([&](float z, PlanField& phi) { expandRod(grid_, rod, z, phi); });
         return;
     }
+    PlanField d;
     PlanField sides2;
     PlanField center_z;
     if (!curved(toolpath_, bead)) {
@@ -78,21 +79,28 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
         const double climb = plan > 0 ? (bead.z1 - bead.z0) / plan : 0.0;
         const double along = plan > 0 ? (dx * (middle_x_ - bead.x0) + dy * (middle_y_ - bead.y0)) / plan : 0.0;
         const double z0 = bead.z0 - drop + along * climb - z_middle;
-        slopedLine(grid_, line, static_cast<float>(z0 * scale_), static_cast<float>(climb), sides2, center_z);
+        slopedLine(grid_, line, static_cast<float>(z0 * scale_), static_cast<float>(climb), d, center_z);
+        if (field.halfSide() == 0) squaredSides(d, sides2);
     } else {
         // Helices of flat beads are rare, and the angle along one has no closed form.
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (i_ + static_cast<int>(c / 8)) * lattice_.voxel_size;
             const double y = (j_ + static_cast<int>(c % 8)) * lattice_.voxel_size;
-            const double side = std::max(field.path().distance(x, y) - field.halfFlat(), 0.0) * scale_;
+            const double offset = field.path().distance(x, y) - field.halfFlat();
             const double z = std::lerp(bead.z0, bead.z1, field.path().parameter(x, y)) - drop - z_middle;
+            d.v[c] = static_cast<float>(offset * scale_);
+            const double side = std::max(offset, 0.0) * scale_;
             sides2.v[c] = static_cast<float>(side * side);
             center_z.v[c] = static_cast<float>(z * scale_);
         }
     }
     const SlopedTerm term{static_cast<float>(field.cosine()), static_cast<float>(field.reach() * scale_),
-                          static_cast<float>(field.radius() * scale_)};
-    forEachPlane([&](float z, PlanField& phi) { expandSloped(sides2, center_z, term, z, phi); });
+                          static_cast<float>(field.radius() * scale_), static_cast<float>(field.halfSide() * scale_)};
+    if (field.halfSide() > 0) {
+        forEachPlane([&](float z, PlanField& phi) { expandSlopedSides(d, center_z, term, z, phi); });
+    } else {
+        forEachPlane([&](float z, PlanField& phi) { expandSloped(sides2, center_z, term, z, phi); });
+    }
 }
 
 }  // namespace stratum::voxelize

@@ -7,8 +7,8 @@
 namespace stratum::voxelize {
 namespace {
 
-// How far planes that count as touching may be apart, for a layer of this radius (mm).
-double weldGap(double radius) { return kWeldGap * 2 * radius; }
+// How far planes that count as touching may be apart, for a layer of this half height (mm).
+double weldGap(double half_height) { return kWeldGap * 2 * half_height; }
 
 }  // namespace
 
@@ -21,7 +21,7 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
       band_(lattice.background()),
       with_owners_(owners),
       grid_(static_cast<float>(lattice.voxel_size * scale)) {
-    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.radius);
+    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight());
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
     for (std::size_t i = 1; i < weld_offsets_.size(); ++i) weld_offsets_[i] += weld_offsets_[i - 1];
@@ -59,7 +59,7 @@ std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
         } else if (stack_.layer[rank] != previous) {
             previous = stack_.layer[rank];
             const Layer& l = stack_.layers[previous];
-            ranges_.push_back(leafRange(l.center_z - l.radius, l.center_z + l.radius));
+            ranges_.push_back(leafRange(l.center_z - l.halfHeight(), l.center_z + l.halfHeight()));
         }
     }
     mergeRanges();
@@ -83,7 +83,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     free_.insert(free_.end(), window_.begin(), window_.end());
     window_.clear();
     welds_.clear();
-    radii_.clear();
+    half_heights_.clear();
     // Prefetch: the next beads are scattered in memory.
     constexpr std::size_t kFew = 128;
     const bool few = ranks.size() <= kFew;
@@ -117,8 +117,8 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
         if (!any) continue;
         const Layer& l = stack_.layers[source.layer];
         // A new bead can be welded to the layer below: up to its own center plane, so within its own band.
-        ranges_.push_back(
-            leafRange(l.center_z - l.radius - weldGap(l.radius), l.center_z + l.radius + weldGap(l.radius)));
+        const double reach = l.halfHeight() + weldGap(l.halfHeight());
+        ranges_.push_back(leafRange(l.center_z - reach, l.center_z + reach));
     }
     for (const DirectBead& direct : direct_)
         if (stack_.beads[direct.rank] >= begin)
@@ -127,7 +127,7 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
     return ranges_;
 }
 
-void LeafColumn::loadLayer(const ColumnLayer& source) {
+void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
     const Layer& layer = stack_.layers[source.layer];
     lines_.clear();
     arcs_.clear();
@@ -141,16 +141,21 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
         if (e + kAhead < ranks_.size()) __builtin_prefetch(&toolpath_.beads[stack_.beads[ranks_[e + kAhead]]]);
         if (stack_.beads[rank] >= end_) continue;
         const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
-        const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.radius;
+        const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.inset;
         if (!curved(toolpath_, bead)) {
             lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent, scale_));
-            if (with_owners_) line_ids_.push_back(rank);
+            if (with_ranks) line_ids_.push_back(rank);
         } else {
             const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
             arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent, scale_));
-            if (with_owners_) arc_ids_.push_back(rank);
+            if (with_ranks) arc_ids_.push_back(rank);
         }
     }
+}
+
+void LeafColumn::loadLayer(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    gatherPaths(source, with_owners_);
     if (free_.empty()) {
         free_.push_back(static_cast<std::uint32_t>(slots_.size()));
         slots_.emplace_back();
@@ -159,18 +164,57 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     PlanLayer& plan = slots_[slot];
     plan.layer = source.layer;
     plan.center_z = layer.center_z;
+    plan.half_height = layer.halfHeight();
     plan.radius = layer.radius;
+    plan.half_side = layer.half_side;
     std::fill(std::begin(plan.d.v), std::end(plan.d.v), std::numeric_limits<float>::max());
     PlanOwners* owners = with_owners_ ? &plan.owners : nullptr;
     if (!lines_.empty()) minimumOfLines(grid_, lines_, plan.d, line_ids_.data(), owners);
     if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, plan.d, arc_ids_.data(), owners);
     // Nothing of the column within the band: neither a surface nor a weld.
     const double reach = (layer.radius + band_) * scale_;
-    if (static_cast<double>(squaredSides(plan.d, plan.sides2)) >= reach * reach) return;
+    const bool settles = layer.settling != nullptr && lines_.size() + arcs_.size() > 1;
+    const float least =
+        settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
+    if (static_cast<double>(least) >= reach * reach) return;
     free_.pop_back();
     window_.push_back(slot);
-    if (std::find(radii_.begin(), radii_.end(), layer.radius) == radii_.end()) radii_.push_back(layer.radius);
+    if (std::find(half_heights_.begin(), half_heights_.end(), plan.half_height) == half_heights_.end())
+        half_heights_.push_back(plan.half_height);
     addWelds(plan);
+}
+
+LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    gatherPaths(source, true);
+    all_ranks_.assign(line_ids_.begin(), line_ids_.end());
+    all_ranks_.insert(all_ranks_.end(), arc_ids_.begin(), arc_ids_.end());
+    all_.clear();
+    for (const LocalLine& line : lines_) planOfLine(grid_, line, all_.emplace_back());
+    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, all_.emplace_back());
+    std::fill(std::begin(d_.v), std::end(d_.v), std::numeric_limits<float>::max());
+    minimumOfLines(grid_, lines_, d_, nullptr, nullptr);
+    minimumOfArcs(grid_, arcs_, d_, nullptr, nullptr);
+    if (layer.settling != nullptr)
+        settle(*layer.settling, layer.radius, d_, sides2_);
+    else
+        squaredSides(d_, sides2_);
+    return {&layer, all_ranks_, all_, &sides2_};
+}
+
+float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
+    const GrooveRule rule(curve, radius * scale_);
+    const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size * scale_;
+    near_.clear();
+    for (const LocalLine& line : lines_)
+        if (mayFill(line, rule, half_extent)) planOfLine(grid_, line, near_.emplace_back());
+    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
+    PlanField cap;
+    std::fill(std::begin(cap.v), std::end(cap.v), kNoGroove);
+    for (std::size_t a = 0; a < near_.size(); ++a)
+        for (std::size_t b = a + 1; b < near_.size(); ++b)
+            if (near_[a].least + near_[b].least < 2 * rule.radius) lowerCap(near_[a], near_[b], d, rule, cap);
+    return fillGrooves(cap, rule, d, sides2);
 }
 
 void LeafColumn::addWelds(const PlanLayer& upper) {
@@ -180,8 +224,8 @@ void LeafColumn::addWelds(const PlanLayer& upper) {
                                         [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
         if (lower == window_.end()) continue;
         const PlanLayer& below = slots_[*lower];
-        const double top = below.center_z + below.radius;
-        const double bottom = upper.center_z - upper.radius;
+        const double top = below.center_z + below.half_height;
+        const double bottom = upper.center_z - upper.half_height;
         PlanWeld weld{std::min(top, bottom),
                       std::max(top, bottom),
                       0.5 * (below.center_z + upper.center_z),
@@ -193,20 +237,20 @@ void LeafColumn::addWelds(const PlanLayer& upper) {
 
 void LeafColumn::moveWindow(double z_min, double z_max) {
     // A layer stays while its band reaches the leaf, and slightly longer, for welds to layers that rest on it.
-    const auto reach = [this](double radius) { return radius + band_ + weldGap(radius); };
+    const auto reach = [this](double half_height) { return half_height + band_ + weldGap(half_height); };
     const auto passed = [&](std::uint32_t slot) {
         const PlanLayer& plan = slots_[slot];
-        return plan.center_z + reach(plan.radius) < z_min;
+        return plan.center_z + reach(plan.half_height) < z_min;
     };
     // In order, because the first of equally near beads is the owner.
     std::size_t kept = 0;
     for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
     if (kept != window_.size()) {
         window_.resize(kept);
-        radii_.clear();
+        half_heights_.clear();
         for (const std::uint32_t slot : window_)
-            if (std::find(radii_.begin(), radii_.end(), slots_[slot].radius) == radii_.end())
-                radii_.push_back(slots_[slot].radius);
+            if (std::find(half_heights_.begin(), half_heights_.end(), slots_[slot].half_height) == half_heights_.end())
+                half_heights_.push_back(slots_[slot].half_height);
     }
     std::erase_if(welds_, [&](const PlanWeld& weld) { return weld.interface_high + band_ < z_min; });
     // Layers ascend by center, but a thick one can reach lower than a thin one before it.
@@ -215,9 +259,9 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
         if (source.loaded) continue;
         const Layer& layer = stack_.layers[source.layer];
         if (layer.center_z - reach(thickest_) > z_max) break;
-        if (layer.center_z - reach(layer.radius) > z_max) continue;
+        if (layer.center_z - reach(layer.halfHeight()) > z_max) continue;
         source.loaded = true;
-        if (layer.center_z + reach(layer.radius) >= z_min) loadLayer(source);
+        if (layer.center_z + reach(layer.halfHeight()) >= z_min) loadLayer(source);
     }
     while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
 }
@@ -226,18 +270,30 @@ void LeafColumn::gatherTerms(int k0) {
     terms_.clear();
     for (std::size_t z = 0; z < terms_.planes; ++z) {
         const double height = sampleZ(k0 + static_cast<int>(z));
-        for (const double radius : radii_) {
-            const double reach = radius + band_;
+        for (const double half_height : half_heights_) {
+            const double reach = half_height + band_;
             const auto first = static_cast<std::uint32_t>(terms_.terms.size());
+            double radius = 0;
+            bool straight_sides = false;
             for (const std::uint32_t slot : window_) {
                 const PlanLayer& plan = slots_[slot];
                 const double dz = height - plan.center_z;
-                if (plan.radius != radius || std::abs(dz) >= reach) continue;
-                const auto world = static_cast<float>(dz * scale_);
-                terms_.terms.push_back({&plan.sides2, world * world});
+                if (plan.half_height != half_height || std::abs(dz) >= reach) continue;
+                radius = plan.radius;
+                straight_sides = plan.half_side > 0;
+                if (!straight_sides) {
+                    const auto world = static_cast<float>(dz * scale_);
+                    terms_.terms.push_back({&plan.sides2, world * world});
+                    continue;
+                }
+                // Written so that it is the radius, to the bit, on the planes of the flats.
+                const auto over = static_cast<float>((radius - (half_height - std::abs(dz))) * scale_);
+                const float above = std::max(over, 0.0F);
+                terms_.terms.push_back({&plan.sides2, above * above, &plan.d, over});
             }
             const auto last = static_cast<std::uint32_t>(terms_.terms.size());
-            if (first != last) terms_.groups.push_back({first, last, static_cast<float>(radius * scale_)});
+            if (first != last)
+                terms_.groups.push_back({first, last, static_cast<float>(radius * scale_), straight_sides});
         }
         for (const PlanWeld& weld : welds_) {
             // Farther than the band from the interface the layer itself is deeper than the band.

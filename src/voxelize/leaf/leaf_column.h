@@ -6,6 +6,7 @@
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_kernels.h"
+#include "voxelize/leaf/settling_kernels.h"
 
 #include <openvdb/openvdb.h>
 
@@ -55,6 +56,23 @@ public:
     /// equally near beads the earlier one. Only with `owners`, and only where a bead is within the band.
     void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
 
+    /// World units a mm.
+    double scale() const { return scale_; }
+
+    /// One layer over the open column, by plan: for measurements.
+    struct LayerPlan {
+        const Layer* layer = nullptr;
+        std::span<const std::uint32_t> ranks;  ///< of the beads
+        std::span<const BeadPlan> beads;       ///< in the same order
+        const PlanField* sides2 = nullptr;     ///< squared plan distance beyond the flats, after settling
+    };
+    /// Calls visit() for each layer of the open column, from the lowest. Only of a column of which no leaf is
+    /// evaluated.
+    template <typename Visit>
+    void forEachLayer(Visit visit) {
+        for (const ColumnLayer& source : column_layers_) visit(planLayer(source));
+    }
+
 private:
     struct ColumnLayer {
         std::uint32_t layer;
@@ -63,8 +81,8 @@ private:
     };
     struct PlanLayer {
         std::uint32_t layer;
-        double center_z, radius;  // mm
-        PlanField d, sides2;
+        double center_z, half_height, radius, half_side;  // mm
+        PlanField d, sides2;                              // d: where beads settle, closed by what welds close
         PlanOwners owners;
     };
     struct PlanWeld {
@@ -81,7 +99,12 @@ private:
     LeafRange leafRange(double z_min, double z_max) const;
     void mergeRanges();
     void moveWindow(double z_min, double z_max);
+    /// Fills lines_ and arcs_, and the ranks of both.
+    void gatherPaths(const ColumnLayer& source, bool with_ranks);
     void loadLayer(const ColumnLayer& source);
+    LayerPlan planLayer(const ColumnLayer& source);
+    /// Fills the grooves of a layer whose d is the minimum over lines_ and arcs_; returns the least of sides2.
+    float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -93,7 +116,7 @@ private:
     const double scale_, band_;  // world units a mm; mm
     const bool with_owners_;
     const ColumnGrid grid_;
-    double thickest_ = 0;                    // mm, the largest radius of a layer
+    double thickest_ = 0;                    // mm, the largest half height of a layer
     std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by upper layer
 
     // The open column.
@@ -111,10 +134,14 @@ private:
     std::vector<PlanLayer> slots_;
     std::vector<std::uint32_t> window_, free_;
     std::vector<PlanWeld> welds_;
-    std::vector<double> radii_;  // distinct, of the window
+    std::vector<double> half_heights_;  // distinct, of the window
     std::vector<LocalLine> lines_;
     std::vector<LocalArc> arcs_;
     std::vector<std::uint32_t> line_ids_, arc_ids_;
+    std::vector<BeadPlan> near_;  // beads that may fill a groove
+    std::vector<BeadPlan> all_;   // for forEachLayer()
+    std::vector<std::uint32_t> all_ranks_;
+    PlanField d_, sides2_;
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

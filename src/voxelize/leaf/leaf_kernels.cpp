@@ -7,71 +7,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "voxelize/leaf/path_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace stratum::voxelize {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-// At most 16 lanes, so that a column is whole vectors on every target.
-using F = hn::CappedTag<float, 16>;
-using U = hn::RebindToUnsigned<F>;
-using VF = hn::Vec<F>;
-
-template <typename Body>
-HWY_INLINE void forEachVector(const Body& body) {
-    const F f;
-    for (std::size_t c = 0; c < kColumnSamples; c += hn::Lanes(f)) body(c);
-}
-
-HWY_INLINE VF dot(VF ax, VF ay, VF bx, VF by) { return hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)); }
-
-// Distance to a line segment, its square, or to the line where the segment passes all samples.
-HWY_INLINE VF across(const LocalLine& line, VF qx, VF qy) {
-    const F f;
-    return hn::Add(hn::Set(f, line.n0), dot(hn::Set(f, line.nx), hn::Set(f, line.ny), qx, qy));
-}
-HWY_INLINE VF along(const LocalLine& line, VF qx, VF qy) {
-    const F f;
-    return dot(hn::Set(f, line.ux), hn::Set(f, line.uy), qx, qy);
-}
-HWY_INLINE VF beyond(VF s, float lo, float hi) {
-    const F f;
-    return hn::Max(hn::Max(hn::Sub(hn::Set(f, lo), s), hn::Sub(s, hn::Set(f, hi))), hn::Zero(f));
-}
-HWY_INLINE VF distance(const LocalLine& line, VF qx, VF qy) {
-    const VF n = across(line, qx, qy);
-    if (line.spans) return hn::Abs(n);
-    const VF e = beyond(along(line, qx, qy), line.lo, line.hi);
-    return hn::Sqrt(dot(n, e, n, e));
-}
-
-HWY_INLINE VF distance(const LocalArc& arc, VF qx, VF qy) {
-    const F f;
-    VF on_circle;
-    if (arc.near_center) {
-        const VF vx = hn::Add(qx, hn::Set(f, arc.vx));
-        const VF vy = hn::Add(qy, hn::Set(f, arc.vy));
-        on_circle = hn::Abs(hn::Sub(hn::Sqrt(dot(vx, vy, vx, vy)), hn::Set(f, arc.radius)));
-    } else {
-        const VF eq = dot(hn::Set(f, arc.ex), hn::Set(f, arc.ey), qx, qy);
-        const VF k = hn::Set(f, arc.k);
-        const VF t = hn::Add(hn::Add(eq, eq), hn::Mul(k, dot(qx, qy, qx, qy)));
-        const VF one = hn::Set(f, 1.0f);
-        const VF root = hn::Sqrt(hn::Add(one, hn::Mul(k, t)));
-        on_circle = hn::Abs(hn::Add(hn::Set(f, arc.rho0), hn::Div(t, hn::Add(one, root))));
-    }
-    if (arc.full) return on_circle;
-    const VF past_start = hn::Add(hn::Set(f, arc.s0), dot(hn::Set(f, arc.sx), hn::Set(f, arc.sy), qx, qy));
-    const VF before_end = hn::Add(hn::Set(f, arc.t0), dot(hn::Set(f, arc.tx), hn::Set(f, arc.ty), qx, qy));
-    const VF wedge = arc.wide ? hn::Max(past_start, before_end) : hn::Min(past_start, before_end);
-    const VF ax = hn::Sub(qx, hn::Set(f, arc.start_x));
-    const VF ay = hn::Sub(qy, hn::Set(f, arc.start_y));
-    const VF bx = hn::Sub(qx, hn::Set(f, arc.end_x));
-    const VF by = hn::Sub(qy, hn::Set(f, arc.end_y));
-    const VF to_ends = hn::Sqrt(hn::Min(dot(ax, ay, ax, ay), dot(bx, by, bx, by)));
-    return hn::IfThenElse(hn::Ge(wedge, hn::Zero(f)), on_circle, to_ends);
-}
 
 template <typename Path>
 HWY_INLINE void minimumOf(const ColumnGrid& grid, std::span<const Path> paths, PlanField& d, const std::uint32_t* ids,
@@ -147,7 +87,15 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
                 VF least = hn::Add(hn::Load(f, terms[of.first].sides2->v + c), hn::Set(f, terms[of.first].dz2));
                 for (std::uint32_t t = of.first + 1; t != of.last; ++t)
                     least = hn::Min(least, hn::Add(hn::Load(f, terms[t].sides2->v + c), hn::Set(f, terms[t].dz2)));
-                value = hn::Min(value, hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius)));
+                VF layers = hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius));
+                if (of.straight_sides) {
+                    // Inside the rectangle of flats and sides the root is 0, and the depth in it counts.
+                    VF deepest = hn::Zero(f);
+                    for (std::uint32_t t = of.first; t != of.last; ++t)
+                        deepest = hn::Min(deepest, hn::Max(hn::Load(f, terms[t].d->v + c), hn::Set(f, terms[t].over)));
+                    layers = hn::Add(layers, deepest);
+                }
+                value = hn::Min(value, layers);
             }
             for (std::uint32_t w = weld; w != weld_end; ++w) {
                 // A bound, not a distance: used only where it is negative, because outside it can be below the
@@ -162,27 +110,51 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     }
 }
 
-void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& d,
                 PlanField& center_z) {
     const F f;
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF qx = hn::Load(f, grid.qx.v + c);
         const VF qy = hn::Load(f, grid.qy.v + c);
-        const VF side = hn::Max(hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat)), hn::Zero(f));
-        hn::Store(hn::Mul(side, side), f, sides2.v + c);
+        hn::Store(hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat)), f, d.v + c);
         const VF s = hn::Min(hn::Max(along(line, qx, qy), hn::Set(f, line.lo)), hn::Set(f, line.hi));
         hn::Store(hn::Add(hn::Set(f, z0), hn::Mul(s, hn::Set(f, climb_per_unit))), f, center_z.v + c);
     });
 }
 
+// The height over the center line of a sloped bead, its underside lowered.
+HWY_INLINE VF slopedHeight(const PlanField& center_z, std::size_t c, const SlopedTerm& term, float z) {
+    const F f;
+    const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, center_z.v + c)), hn::Set(f, term.cosine));
+    const VF below = hn::Min(hn::Add(up, hn::Set(f, term.reach)), hn::Zero(f));
+    return hn::IfThenElse(hn::Lt(up, hn::Zero(f)), below, up);
+}
+
 void ExpandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
     const F f;
     forEachVector([&](std::size_t c) HWY_ATTR {
-        const VF up = hn::Mul(hn::Sub(hn::Set(f, z), hn::Load(f, center_z.v + c)), hn::Set(f, term.cosine));
-        const VF below = hn::Min(hn::Add(up, hn::Set(f, term.reach)), hn::Zero(f));
-        const VF height = hn::IfThenElse(hn::Lt(up, hn::Zero(f)), below, up);
+        const VF height = slopedHeight(center_z, c, term, z);
         const VF value =
             hn::Sub(hn::Sqrt(hn::Add(hn::Load(f, sides2.v + c), hn::Mul(height, height))), hn::Set(f, term.radius));
+        hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
+    });
+}
+
+// Of a section with straight sides: the distance to its rectangle of flats and sides, negative inside, less the radius.
+HWY_INLINE VF cornered(VF d, VF over, float radius) {
+    const F f;
+    const VF zero = hn::Zero(f);
+    const VF side = hn::Max(d, zero);
+    const VF above = hn::Max(over, zero);
+    const VF outside = hn::Sqrt(dot(side, above, side, above));
+    return hn::Sub(hn::Add(outside, hn::Min(hn::Max(d, over), zero)), hn::Set(f, radius));
+}
+
+void ExpandSlopedSides(const PlanField& d, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF over = hn::Sub(hn::Abs(slopedHeight(center_z, c, term, z)), hn::Set(f, term.half_side));
+        const VF value = cornered(hn::Load(f, d.v + c), over, term.radius);
         hn::Store(hn::Min(hn::Load(f, phi.v + c), value), f, phi.v + c);
     });
 }
@@ -293,6 +265,7 @@ HWY_EXPORT(MaximumOf);
 HWY_EXPORT(ExpandLayers);
 HWY_EXPORT(SlopedLine);
 HWY_EXPORT(ExpandSloped);
+HWY_EXPORT(ExpandSlopedSides);
 HWY_EXPORT(ExpandRod);
 HWY_EXPORT(ClampLeaf);
 HWY_EXPORT(StoreLeaf);
@@ -324,12 +297,15 @@ float maximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
 void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandLayers)(leaf, background, phi);
 }
-void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& d,
                 PlanField& center_z) {
-    HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, sides2, center_z);
+    HWY_DYNAMIC_DISPATCH(SlopedLine)(grid, line, z0, climb_per_unit, d, center_z);
 }
 void expandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandSloped)(sides2, center_z, term, z, phi);
+}
+void expandSlopedSides(const PlanField& d, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi) {
+    HWY_DYNAMIC_DISPATCH(ExpandSlopedSides)(d, center_z, term, z, phi);
 }
 void expandRod(const ColumnGrid& grid, const LocalRod& rod, float z, PlanField& phi) {
     HWY_DYNAMIC_DISPATCH(ExpandRod)(grid, rod, z, phi);

@@ -57,12 +57,15 @@ float maximumOf(const PlanField& a, const PlanField& b, PlanField& out);
 /// One layer's part in one plane of a leaf.
 struct PlaneTerm {
     const PlanField* sides2 = nullptr;
-    float dz2 = 0;  ///< squared height over the layer's center plane
+    float dz2 = 0;                 ///< squared height over the layer's center plane, or over its straight sides
+    const PlanField* d = nullptr;  ///< only with straight sides
+    float over = 0;                ///< height over the straight sides, negative beside them
 };
-/// Layers of one radius: terms first..last - 1 take one root together.
+/// Layers of one section: terms first..last - 1 take one root together.
 struct PlaneTerms {
     std::uint32_t first, last;
     float radius;
+    bool straight_sides = false;
 };
 /// The body that closes the plane between two touching layers: max(d, bound), used where it is negative. `bound` must
 /// be negative.
@@ -86,16 +89,20 @@ struct LeafTerms {
     }
 };
 /// phi = min over groups (sqrt(min over terms (sides2 + dz2)) - radius) and welds, or `background` without any terms.
+/// Groups with straight sides add min over terms (max(d, over)) where that is negative.
 void expandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi);
 
-/// A sloped bead over a column: sides = max(rho - half_flat, 0)^2 and the height of its center line.
-void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& sides2,
+/// A sloped bead over a column: d = rho - half_flat, and the height of its center line.
+void slopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float climb_per_unit, PlanField& d,
                 PlanField& center_z);
-/// up = (z - center_z) cosine, lowered by reach below; phi = min(phi, sqrt(sides2 + up^2) - radius).
+/// up = (z - center_z) cosine, lowered by reach below; phi = min(phi, sqrt(sides2 + up^2) - radius), sides2 as of
+/// squaredSides().
 struct SlopedTerm {
-    float cosine, reach, radius;
+    float cosine, reach, radius, half_side;
 };
 void expandSloped(const PlanField& sides2, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi);
+/// The same with straight sides, by d itself.
+void expandSlopedSides(const PlanField& d, const PlanField& center_z, const SlopedTerm& term, float z, PlanField& phi);
 
 /// A straight round bead in 3-D. Perpendicular distances a = n0 + n.q in the plan, b = b0 + bx qx + by qy + bz z, and
 /// s = ux qx + uy qy + uz z along it with the segment at lo <= s <= hi.

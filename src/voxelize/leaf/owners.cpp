@@ -22,13 +22,17 @@ void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
     for (const std::uint32_t slot : window_) {
         const PlanLayer& plan = slots_[slot];
         const auto radius = static_cast<float>(plan.radius * scale_);
+        const bool straight_sides = plan.half_side > 0;
         for (int z = 0; z < kLeafDim; ++z) {
             const double dz = sampleZ(k0 + z) - plan.center_z;
-            if (std::abs(dz) >= plan.radius + band_) continue;
-            const auto world = static_cast<float>(dz * scale_);
-            for (std::size_t c = 0; c < kColumnSamples; ++c)
-                claim(c * kLeafPlanes + static_cast<std::size_t>(z),
-                      std::sqrt(plan.sides2.v[c] + world * world) - radius, plan.owners.v[c]);
+            if (std::abs(dz) >= plan.half_height + band_) continue;
+            const auto over = static_cast<float>((std::abs(dz) - plan.half_side) * scale_);
+            const float above = std::max(over, 0.0F);
+            for (std::size_t c = 0; c < kColumnSamples; ++c) {
+                float distance = std::sqrt(plan.sides2.v[c] + above * above) - radius;
+                if (straight_sides) distance += std::min(std::max(plan.d.v[c], over), 0.0F);
+                claim(c * kLeafPlanes + static_cast<std::size_t>(z), distance, plan.owners.v[c]);
+            }
         }
     }
     const double z_min = sampleZ(k0);

@@ -139,6 +139,9 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
                 leaf.terms.push_back({&r.sides2, 0.04f});
                 leaf.groups.push_back({first, first + 2, 0.1f});
                 leaf.groups.push_back({first + 2, first + 3, 0.12f});
+                leaf.terms.push_back({&r.sides2, 0.0009f, &r.d, 0.03f});
+                leaf.terms.push_back({&r.sides2, 0, &r.d, -0.02f});
+                leaf.groups.push_back({first + 3, first + 5, 0.04f, true});
                 leaf.welds.push_back({&r.weld, -0.01f * static_cast<float>(z + 1)});
             }
             leaf.group_end[z] = static_cast<std::uint32_t>(leaf.groups.size());
@@ -152,10 +155,13 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
             rod.nx = 0.6f, rod.ny = 0.8f, rod.n0 = 0.1f, rod.bz = 1, rod.ux = 0.8f, rod.uy = -0.6f, rod.lo = -0.1f,
             rod.hi = 0.2f, rod.radius = 0.05f;
             expandRod(grid, rod, dz, r.planes.plane[z]);
+            PlanField d;
             PlanField sides;
             PlanField center;
-            slopedLine(grid, lines[0], 0.05f, 0.3f, sides, center);
-            expandSloped(sides, center, {0.9f, 0.004f, 0.1f}, dz, r.planes.plane[z]);
+            slopedLine(grid, lines[0], 0.05f, 0.3f, d, center);
+            squaredSides(d, sides);
+            expandSloped(sides, center, {0.9f, 0.004f, 0.1f, 0}, dz, r.planes.plane[z]);
+            expandSlopedSides(d, center, {0.9f, 0.004f, 0.03f, 0.05f}, dz, r.planes.plane[z]);
         }
         EXPECT_EQ(clampLeaf(r.planes, kLeafPlanes, 0.3f), LeafContent::surface);
         storeLeaf(r.planes, r.values);

@@ -1,0 +1,28 @@
+// How beads become plastic: the shape of their section, and whether overlapping beads fill the groove between them.
+// docs/deposit.md has the mathematics and its sources.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+namespace stratum::gcode {
+
+struct DepositModel {
+    enum class Beads : std::uint8_t {
+        capsule,  ///< the union of the beads
+        settled,  ///< what two neighbours of a layer both claim fills the groove between them; keeps the volume
+    };
+    Beads beads = Beads::capsule;
+    /// Corner radius of the section as a fraction of half its height, 0..1. 1 is a stadium. `corner_mm` precedes.
+    double corner_fraction = 1;
+    std::optional<double> corner_mm;  ///< the same in mm; half the height where that is less
+
+    /// Corner radius (mm) of a section of this height (mm).
+    double cornerRadius(double height) const {
+        return std::min(corner_mm.value_or(corner_fraction * 0.5 * height), 0.5 * height);
+    }
+    bool operator==(const DepositModel&) const = default;
+};
+
+}  // namespace stratum::gcode

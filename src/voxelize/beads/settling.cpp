@@ -1,0 +1,56 @@
+#include "voxelize/beads/settling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace stratum::voxelize {
+namespace {
+
+// All in radii, for 0 <= d <= 1.
+double root(double d) { return std::sqrt(std::max(1 - d * d, 0.0)); }
+double depth(double d) { return 2 - 2 * root(d); }
+// int_0^d sqrt(1 - t^2) dt
+double quarterDisc(double d) { return 0.5 * (d * root(d) + std::asin(d)); }
+// int_0^d V
+double depthIntegral(double d) { return 2 * d - 2 * quarterDisc(d); }
+
+}  // namespace
+
+SettlingCurve::SettlingCurve(double ratio, double weld_gap)
+    : ratio_(ratio),
+      // E = C, solved for m: the integrals of the root cancel.
+      closing_(1 - (2 - 0.5 * std::numbers::pi) / ratio),
+      weld_cap_(std::min(1.0, std::sqrt(1 - std::pow(std::max(1 - 0.5 * weld_gap * ratio, 0.0), 2)))) {
+    table_.reserve(kSteps + 1);
+    for (int n = 0; n <= kSteps; ++n) {
+        const double from_one = 1 - static_cast<double>(n) / kSteps;
+        const double root_q = 1 - from_one * from_one;
+        table_.push_back(static_cast<float>(cap(closing_ + (1 - closing_) * root_q * root_q)));
+    }
+}
+
+double SettlingCurve::thickness(double d) const {
+    if (d <= 0) return ratio_;
+    return d < 1 ? ratio_ - depth(d) : 0;
+}
+
+double SettlingCurve::cap(double m) const {
+    if (m <= closing_) return 0;
+    if (m >= 1) return 1;
+    const double quarter = 0.25 * std::numbers::pi;
+    const double claimed = (ratio_ - 2) * (1 - m) + 2 * (quarter - quarterDisc(m));
+    const double whole = depthIntegral(m);
+    double low = 0;
+    double high = m;
+    // The filled area falls monotonically with the level. Bisection: the slope is 0 at both ends.
+    constexpr int kBisections = 52;
+    for (int n = 0; n < kBisections; ++n) {
+        const double middle = 0.5 * (low + high);
+        const double filled = whole - depthIntegral(middle) - (m - middle) * depth(middle);
+        (filled > claimed ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+}  // namespace stratum::voxelize

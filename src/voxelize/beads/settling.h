@@ -1,0 +1,57 @@
+// Settling: the plastic that two neighbouring beads of a layer both claim fills the groove between them.
+//
+// Two parallel beads with corners of radius r, whose flats are a gap g = 2 m apart, m < r, claim the same area
+// E = 2 int_m^r T and leave open C = 2 int_0^m V beneath and above, with T(d) the thickness of a bead at the distance d
+// from its flat, and V = height - T the depth of the groove, both sides together:
+//     T(d) = height - 2 r + 2 sqrt(r^2 - d^2),  V(d) = 2 r - 2 sqrt(r^2 - d^2)        0 < d < r
+// As a viscous liquid would, the claimed area fills the groove from its bottom, in the middle, up to a level: where
+// d > cap, the thickness is T(cap), with
+//     2 int_cap^m (V(d) - V(cap)) dd = min(E, C).
+// So the sum of both areas is kept, for every gap with E <= C, and at the spacing of the slicers, width - height
+// (1 - pi / 4) for a stadium, the layer closes to a slab. Where more is claimed (E > C) there is no room for it.
+//
+// In the plan field a filled groove is min(d, cap). cap is constant between parallel beads, so the slope stays 1 there;
+// where the gap narrows, the depth changes by height / (2 m) times the change of m; see docs/deposit.md.
+// Source of the section: Comminal et al. 2018, doi 10.1016/j.addma.2017.12.013.
+#pragma once
+
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// cap for one shape of section, in units of the corner radius. Immutable.
+class SettlingCurve {
+public:
+    /// Steps of table(): the error of interpolated volumes is below 1e-6 of a bead's.
+    static constexpr int kSteps = 512;
+
+    /// `ratio`: height over corner radius, at least 2. `weld_gap`: the part of the height that welds close.
+    SettlingCurve(double ratio, double weld_gap);
+
+    double ratio() const { return ratio_; }
+    /// Half the gap, in radii, at which the groove is just filled.
+    double closing() const { return closing_; }
+    /// cap / r for half a gap of `m` radii: 0 up to closing(), 1 from 1 on. Solves the equation; slow.
+    double cap(double m) const;
+    /// cap / r at equal steps of z = 1 - sqrt(1 - sqrt(q)), q = (m - closing) / (1 - closing): kSteps + 1 values. Both
+    /// roots remove a vertical tangent, so that linear interpolation suffices.
+    const std::vector<float>& table() const { return table_; }
+
+    /// T(d), in radii, of a bead of this shape; `height` over the flat, 0 from d = 1 on.
+    double thickness(double d) const;
+    /// In radii: V(weldCap()) is the gap that welds close. The faces of two such grooves, one over the other, are as
+    /// near as two planes that count as touching.
+    double weldCap() const { return weld_cap_; }
+
+private:
+    double ratio_, closing_, weld_cap_;
+    std::vector<float> table_;
+};
+
+/// How far from opposite two beads may be seen and still fill their groove: the gap is counted larger by
+/// kTurnPenalty r ((cosine - kOpposite) / -kOpposite)^2 where the cosine between the directions from both paths is
+/// above kOpposite. Neighbours along one path, seen in the same direction, don't fill each other.
+constexpr double kOpposite = -0.9;
+constexpr double kTurnPenalty = 2;
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,185 @@
+#include "voxelize/leaf/settling_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxelize/leaf/settling_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "voxelize/leaf/path_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace stratum::voxelize {
+namespace HWY_NAMESPACE {
+
+using I = hn::RebindToSigned<F>;
+
+// Stores d and the direction of (x, y), which points from the path to the sample. On the path itself it is none.
+HWY_INLINE void storePlan(VF distance, VF x, VF y, VF length, float half_flat, std::size_t c, BeadPlan& out) {
+    const F f;
+    const VF inverse = hn::Div(hn::Set(f, 1.0F), hn::Max(length, hn::Set(f, 1e-30F)));
+    hn::Store(hn::Sub(distance, hn::Set(f, half_flat)), f, out.d.v + c);
+    hn::Store(hn::Mul(x, inverse), f, out.nx.v + c);
+    hn::Store(hn::Mul(y, inverse), f, out.ny.v + c);
+}
+
+void PlanOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
+    const F f;
+    VF least = hn::Set(f, 3e38F);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        const VF n = across(line, qx, qy);
+        VF x = hn::Mul(n, hn::Set(f, line.nx));
+        VF y = hn::Mul(n, hn::Set(f, line.ny));
+        if (!line.spans) {
+            const VF s = along(line, qx, qy);
+            const VF past = hn::Sub(s, hn::Min(hn::Max(s, hn::Set(f, line.lo)), hn::Set(f, line.hi)));
+            x = hn::Add(x, hn::Mul(past, hn::Set(f, line.ux)));
+            y = hn::Add(y, hn::Mul(past, hn::Set(f, line.uy)));
+        }
+        const VF rho = distance(line, qx, qy);
+        storePlan(rho, x, y, rho, line.half_flat, c, out);
+        least = hn::Min(least, rho);
+    });
+    out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)) - line.half_flat, 0.0F);
+}
+
+void PlanOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
+    const F f;
+    const VF zero = hn::Zero(f);
+    VF least = hn::Set(f, 3e38F);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        // Along the radius, inwards inside the circle.
+        const VF vx = hn::Add(qx, hn::Set(f, arc.vx));
+        const VF vy = hn::Add(qy, hn::Set(f, arc.vy));
+        const VF v = hn::Sqrt(dot(vx, vy, vx, vy));
+        const auto inside = hn::Lt(v, hn::Set(f, arc.radius));
+        VF x = hn::IfThenElse(inside, hn::Sub(zero, vx), vx);
+        VF y = hn::IfThenElse(inside, hn::Sub(zero, vy), vy);
+        VF length = v;
+        if (!arc.full) {
+            const VF ax = hn::Sub(qx, hn::Set(f, arc.start_x));
+            const VF ay = hn::Sub(qy, hn::Set(f, arc.start_y));
+            const VF bx = hn::Sub(qx, hn::Set(f, arc.end_x));
+            const VF by = hn::Sub(qy, hn::Set(f, arc.end_y));
+            const VF a2 = dot(ax, ay, ax, ay);
+            const VF b2 = dot(bx, by, bx, by);
+            const auto at_start = hn::Lt(a2, b2);
+            const auto on_arc = withinSweep(arc, qx, qy);
+            x = hn::IfThenElse(on_arc, x, hn::IfThenElse(at_start, ax, bx));
+            y = hn::IfThenElse(on_arc, y, hn::IfThenElse(at_start, ay, by));
+            length = hn::IfThenElse(on_arc, v, hn::Sqrt(hn::Min(a2, b2)));
+        }
+        const VF rho = distance(arc, qx, qy);
+        storePlan(rho, x, y, length, arc.half_flat, c, out);
+        least = hn::Min(least, rho);
+    });
+    out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)) - arc.half_flat, 0.0F);
+}
+
+// Linear interpolation in the table, at z in [0, 1].
+HWY_INLINE VF lookUp(const float* table, VF z) {
+    const F f;
+    const I i;
+    constexpr int kSteps = SettlingCurve::kSteps;
+    const VF at = hn::Mul(z, hn::Set(f, static_cast<float>(kSteps)));
+    const auto step = hn::Min(hn::ConvertTo(i, at), hn::Set(i, kSteps - 1));
+    const VF low = hn::GatherIndex(f, table, step);
+    const VF high = hn::GatherIndex(f, table + 1, step);
+    return hn::Add(low, hn::Mul(hn::Sub(at, hn::ConvertTo(f, step)), hn::Sub(high, low)));
+}
+
+void LowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap) {
+    const F f;
+    const VF zero = hn::Zero(f);
+    const VF one = hn::Set(f, 1.0F);
+    const VF two_radii = hn::Set(f, 2 * rule.radius);
+    const VF per_two_radii = hn::Set(f, 1 / (2 * rule.radius));
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF least = hn::Load(f, d.v + c);
+        const VF gap = hn::Add(hn::Max(hn::Load(f, a.d.v + c), zero), hn::Max(hn::Load(f, b.d.v + c), zero));
+        // Deep in a flat nothing changes.
+        const auto near = hn::And(hn::Lt(gap, two_radii), hn::Gt(least, hn::Set(f, -rule.weld_cap)));
+        if (hn::AllFalse(f, near)) return;
+        const VF cosine =
+            dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
+        const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
+                               hn::Set(f, static_cast<float>(-1 / kOpposite)));
+        const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
+        const VF half_gap = hn::Add(hn::Mul(gap, per_two_radii), penalty);  // radii
+        const VF open = hn::Mul(hn::Sub(half_gap, hn::Set(f, rule.closing)), hn::Set(f, rule.per_open));
+        const auto fills = hn::And(near, hn::Lt(open, one));
+        if (hn::AllFalse(f, fills)) return;
+        const VF q = hn::Min(hn::Max(open, zero), one);
+        const VF z = hn::Sub(one, hn::Sqrt(hn::Sub(one, hn::Sqrt(q))));
+        const VF level = hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
+        const VF before = hn::Load(f, cap.v + c);
+        hn::Store(hn::IfThenElse(fills, hn::Min(before, level), before), f, cap.v + c);
+    });
+}
+
+float FillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
+    const F f;
+    const VF weld_cap = hn::Set(f, rule.weld_cap);
+    const VF per_radius = hn::Set(f, rule.weld_cap / rule.radius);
+    VF least = hn::Set(f, 3e38F);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF nearest = hn::Load(f, d.v + c);
+        const VF level = hn::Load(f, cap.v + c);
+        const VF side = hn::Max(hn::Min(nearest, level), hn::Zero(f));
+        const VF squared = hn::Mul(side, side);
+        hn::Store(squared, f, sides2.v + c);
+        least = hn::Min(least, squared);
+        // weld_cap (1 - level / radius) below the level: nothing where the groove is as deep as without filling.
+        const VF welded = hn::Sub(hn::Add(level, hn::Mul(level, per_radius)), weld_cap);
+        hn::Store(hn::Min(nearest, welded), f, d.v + c);
+    });
+    return hn::GetLane(hn::MinOfLanes(f, least));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace stratum::voxelize
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace stratum::voxelize {
+
+HWY_EXPORT(PlanOfLine);
+HWY_EXPORT(PlanOfArc);
+HWY_EXPORT(LowerCap);
+HWY_EXPORT(FillGrooves);
+
+GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
+    : table(curve.table().data()),
+      radius(static_cast<float>(the_radius)),
+      closing(static_cast<float>(curve.closing())),
+      per_open(static_cast<float>(1 / (1 - curve.closing()))),
+      weld_cap(static_cast<float>(curve.weldCap() * the_radius)) {}
+
+bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent) {
+    const double past = std::max({static_cast<double>(line.lo), -static_cast<double>(line.hi), 0.0});
+    const double from_middle = std::hypot(static_cast<double>(line.n0), past) - static_cast<double>(line.half_flat);
+    constexpr double kSlack = 1e-5;  // of floats
+    return from_middle * (1 - kSlack) < 2 * static_cast<double>(rule.radius) + half_extent * std::sqrt(2.0);
+}
+
+void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
+    HWY_DYNAMIC_DISPATCH(PlanOfLine)(grid, line, out);
+}
+void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
+    HWY_DYNAMIC_DISPATCH(PlanOfArc)(grid, arc, out);
+}
+void lowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap) {
+    HWY_DYNAMIC_DISPATCH(LowerCap)(a, b, d, rule, cap);
+}
+float fillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
+    return HWY_DYNAMIC_DISPATCH(FillGrooves)(cap, rule, d, sides2);
+}
+
+}  // namespace stratum::voxelize
+#endif  // HWY_ONCE

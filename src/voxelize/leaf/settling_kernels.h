@@ -1,0 +1,44 @@
+// Settling in SIMD: the beads of a layer over a column in pairs, and the level to which they fill their groove. See
+// settling.h for the rule, leaf_kernels.h for what a column is and why all instruction sets give the same bytes.
+#pragma once
+
+#include "voxelize/beads/local_path.h"
+#include "voxelize/beads/settling.h"
+#include "voxelize/leaf/leaf_kernels.h"
+
+namespace stratum::voxelize {
+
+/// One bead over a column: d = rho - half_flat, and the direction away from its path.
+struct alignas(64) BeadPlan {
+    PlanField d, nx, ny;
+    float least = 0;  ///< of max(d, 0)
+};
+
+void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out);
+void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out);
+
+/// The constants of a layer, world units.
+struct GrooveRule {
+    const float* table;  ///< SettlingCurve::table()
+    float radius;
+    float closing, per_open;  ///< in radii: q = (m - closing) per_open
+    float weld_cap;           ///< world units
+
+    GrooveRule(const SettlingCurve& curve, double radius);
+};
+
+/// False if the line's bead is too far from all samples of a column to fill a groove there. `half_extent` as of
+/// localLine(), in world units.
+bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent);
+
+/// Above every level.
+constexpr float kNoGroove = 1e30F;
+
+/// cap = min(cap, level of the groove between the two beads), where they have one. `d`: the minimum over all beads.
+void lowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap);
+
+/// sides2 = max(min(d, cap), 0)^2; returns the least of it. Afterwards d is min(d, cap), less where the groove is so
+/// shallow that the layers above and below count as touching: negative there, so that they are welded.
+float fillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2);
+
+}  // namespace stratum::voxelize
