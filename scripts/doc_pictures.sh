@@ -51,6 +51,8 @@ picture hull data/gcode/hull.gcode --size 900x675
 for percent in 25 50 75 100; do
     picture "benchy_$percent" "$boat" --printed "$percent%" --frame all --size 720x540
 done
+near=(--voxels-per-layer 8 --zoom 4 --size 700x525)
+tiles settled 2 data/gcode/tile.gcode "${near[*]}" "${near[*]} --beads settled"
 shown=(--size 640x480)
 picture gallery_gear data/gcode/gear.gcode "${shown[@]}" --brdf pla-yellow
 picture gallery_vase data/gcode/vase.gcode "${shown[@]}" --brdf silk-pink

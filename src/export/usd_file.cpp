@@ -49,7 +49,10 @@ void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vd
         "    float3[] extent = [({}, {}, {}), ({}, {}, {})]\n",
         options.meters_per_unit, options.up_y ? "Y" : "Z", low[0], low[1], low[2], high[0], high[1], high[2]);
     for (const auto& grid : grids) text += fmt::format("    rel field:{0} = </print/{0}>\n", grid->getName());
-    for (const auto& grid : grids) text += "\n" + field(*grid, name);
+    for (const auto& grid : grids) {
+        text += '\n';
+        text += field(*grid, name);
+    }
     text += "}\n";
 
     AtomicFile file(usda);

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "voxelize/beads/settling.h"
 
 #include <fmt/format.h>
 
@@ -60,6 +61,8 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
     number("voxel_size_mm", lattice.voxel_size);
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);
+    if (provenance.deposit.beads == gcode::DepositModel::Beads::settled)
+        number("largest_slope", voxelize::kSettledSlope);
     // The file_* statistics that production loaders look for, e.g. file_mem_bytes.
     grid.addStatsMetadata();
 }

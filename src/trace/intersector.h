@@ -17,12 +17,14 @@
 
 namespace stratum::trace {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// A ray in world space. `direction` must be of unit length; t counts world units.
 struct Ray {
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0, 0.0, 1.0};
     double t_min = 0.0;
-    double t_max = std::numeric_limits<double>::infinity();
+    double t_max = kInfinity;
 };
 
 /// An intersection of a ray with the surface, from outside or inside.
@@ -55,7 +57,7 @@ public:
     /// `hits` is as long as `rays`.
     virtual void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) {
         for (std::size_t n = 0; n < rays.size(); ++n)
-            if (!intersect(rays[n], hits[n])) hits[n].t = std::numeric_limits<double>::infinity();
+            if (!intersect(rays[n], hits[n])) hits[n].t = kInfinity;
     }
     /// blocked[i] is 1 if rays[i] hits anything, else 0. `blocked` is as long as `rays`.
     virtual void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) {

@@ -10,8 +10,6 @@
 namespace stratum::trace {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Whether the ray leaves the solid at this hit.
 bool leaves(const Ray& ray, const Hit& hit) { return glm::dot(hit.normal, ray.direction) > 0; }
 

@@ -18,8 +18,6 @@
 namespace stratum::trace {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 Box boxOf(const SceneObject& object) {
     const Box own = object.shape->bounds();
     if (!hasEnd(own)) return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};

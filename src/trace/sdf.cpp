@@ -15,7 +15,6 @@
 namespace stratum::trace {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Box kEndless{glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
 
 // Limits of sizes: squares within them neither overflow nor underflow.

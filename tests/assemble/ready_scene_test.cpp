@@ -21,11 +21,11 @@ PictureOptions smallPicture() {
     return options;
 }
 
-const std::string kTile = (test::sourceDir() / "data/gcode/tile.gcode").string();
+const std::string kTilePrint = (test::sourceDir() / "data/gcode/tile.gcode").string();
 
 TEST(ReadyScene, APrintIsAPicture) {
     const PictureOptions options = smallPicture();
-    const ReadyScene ready = readyScene(kTile, options);
+    const ReadyScene ready = readyScene(kTilePrint, options);
     EXPECT_TRUE(ready.scene.bed);
     EXPECT_EQ(ready.tone.exposure, 0.0);  // the studio is bright enough
     ASSERT_TRUE(ready.objects.part);
@@ -46,11 +46,11 @@ TEST(ReadyScene, VoxelsAreAsFineAsPixelsAsk) {
     PictureOptions options = smallPicture();
     options.tracing.prints.print.lattice.voxel_size.reset();
     options.tracing.prints.print.voxel_auto = true;
-    const ReadyScene ready = readyScene(kTile, options);
+    const ReadyScene ready = readyScene(kTilePrint, options);
     const auto& report = ready.objects.reports[0];
     ASSERT_TRUE(report.contains("voxel_auto"));
     EXPECT_GT(report["voxel_auto"]["smallest_pixel_mm"], 0.1);
-    ObjectOptions moved = test::objectOf(kTile);
+    ObjectOptions moved = test::objectOf(kTilePrint);
     moved.placement.offset.x = 1;
     EXPECT_THROW((void)readyScene({moved}, options), UsageError);
 }
@@ -68,10 +68,10 @@ TEST(ReadyScene, DarkLightIsShownBrighter) {
 TEST(ReadyScene, RefusesBadOptions) {
     PictureOptions options = smallPicture();
     options.render.width = 0;
-    EXPECT_THROW((void)readyScene(kTile, options), UsageError);
+    EXPECT_THROW((void)readyScene(kTilePrint, options), UsageError);
     options = smallPicture();
     options.scene.env = "moon";
-    EXPECT_ANY_THROW((void)readyScene(kTile, options));
+    EXPECT_ANY_THROW((void)readyScene(kTilePrint, options));
     EXPECT_THROW((void)readyScene("no such file.gcode"), InputError);
 }
 

@@ -1,5 +1,6 @@
 #include "export/mesh_simplify.h"
 
+#include "closed_mesh.h"
 #include "toolpaths.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -20,20 +21,6 @@ namespace {
 using test::addArc;
 using test::addBead;
 using test::allBeads;
-
-void expectClosed(const SurfaceMesh& mesh) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    mesh.forEachTriangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        ASSERT_TRUE(a != b && b != c && c != a);
-        ++edges[{a, b}];
-        ++edges[{b, c}];
-        ++edges[{c, a}];
-    });
-    for (const auto& [edge, count] : edges) {
-        const auto back = edges.find({edge.second, edge.first});
-        ASSERT_TRUE(back != edges.end() && back->second == count);
-    }
-}
 
 // Largest and mean |distance| of points spread over the faces.
 template <typename Distance>
@@ -70,7 +57,7 @@ TEST(MeshSimplify, ASphereStaysWithinTheError) {
     std::size_t last = all.triangleCount();
     for (const double error : {0.1, 0.25, 0.5}) {
         const SurfaceMesh mesh = meshSurface(*grid, {false, error});
-        expectClosed(mesh);
+        test::expectClosed(mesh);
         EXPECT_LT(distances(mesh, off).first, (1.2 * error + 0.05) * kVoxel) << error;
         EXPECT_LT(mesh.triangleCount(), 2 * last / 3) << error;
         EXPECT_NEAR(mesh.volume(), 4.0 / 3.0 * std::numbers::pi * 64, 4 * std::numbers::pi * 16 * error * kVoxel);
@@ -98,7 +85,7 @@ TEST(MeshSimplify, APrintHasATenthOfTheFacesWithinAQuarterVoxel) {
     const auto grid = voxelize::voxelize(toolpath, allBeads(toolpath), lattice);
     const SurfaceMesh all = meshSurface(*grid);
     const SurfaceMesh mesh = meshSurface(*grid, {false, 0.25});
-    expectClosed(mesh);
+    test::expectClosed(mesh);
     EXPECT_LT(mesh.triangleCount(), all.triangleCount() / 10);
     EXPECT_NEAR(mesh.volume(), all.volume(), 0.01 * all.volume());
     // Beside the full mesh's own distance from the level set.
@@ -124,7 +111,7 @@ TEST(MeshSimplify, ColorsKeepTheirBorder) {
     for (auto voxel = color->beginValueOn(); voxel; ++voxel)
         voxel.setValue(voxel.getCoord().z() < 3 ? openvdb::Vec3f(1, 0, 0) : openvdb::Vec3f(0, 0, 1));
     const SurfaceMesh mesh = meshSurface(*grid, {false, 0.5, color.get()});
-    expectClosed(mesh);
+    test::expectClosed(mesh);
     ASSERT_EQ(mesh.colors.size(), mesh.points.size());
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
         const bool red = mesh.colors[n] == std::array<std::uint8_t, 3>{255, 0, 0};

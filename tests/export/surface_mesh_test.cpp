@@ -1,5 +1,7 @@
 #include "export/surface_mesh.h"
 
+#include "closed_mesh.h"
+
 #include <gtest/gtest.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -46,22 +48,6 @@ double torus(const openvdb::Vec3d& p, double radius, double tube) {
     return std::hypot(std::hypot(p[0], p[1]) - radius, p[2]) - tube;
 }
 
-// Every edge is there as often one way as the other, no face has a point twice, no two points of a face are one.
-void expectClosed(const SurfaceMesh& mesh) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    mesh.forEachTriangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        ASSERT_TRUE(a != b && b != c && c != a);
-        ++edges[{a, b}];
-        ++edges[{b, c}];
-        ++edges[{c, a}];
-    });
-    for (const auto& [edge, count] : edges) {
-        const auto back = edges.find({edge.second, edge.first});
-        ASSERT_TRUE(back != edges.end() && back->second == count);
-        ASSERT_NE(mesh.points[edge.first], mesh.points[edge.second]);
-    }
-}
-
 // V - E + F: 2 - 2 * genus for a connected surface.
 int eulerCharacteristic(const SurfaceMesh& mesh) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -81,7 +67,7 @@ TEST(SurfaceMesh, VolumeOfASphereConvergesWithTheSecondOrder) {
         const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
             1.0F, openvdb::Vec3f(0.013F, 0.021F, 0.037F), static_cast<float>(voxel));
         const SurfaceMesh mesh = meshSurface(*grid);
-        expectClosed(mesh);
+        test::expectClosed(mesh);
         EXPECT_EQ(eulerCharacteristic(mesh), 2);
         const double error = std::abs(mesh.volume() / (4.0 / 3.0 * kPi) - 1.0);
         EXPECT_LT(error, 1.25 * voxel * voxel);
@@ -97,7 +83,7 @@ TEST(SurfaceMesh, KeepsTheGenus) {
     for (const double error : {0.0, 0.25, 0.5}) {
         const auto ring = levelSet(16, voxel, [](const auto& p) { return torus(p, 1.0, 0.35); });
         const SurfaceMesh one = meshSurface(*ring, {false, error});
-        expectClosed(one);
+        test::expectClosed(one);
         EXPECT_EQ(eulerCharacteristic(one), 0);
         // Points lie inside of what they approximate: the tube is only 7 voxels thick.
         const double exact = 2 * kPi * kPi * 1.0 * 0.35 * 0.35;
@@ -107,7 +93,7 @@ TEST(SurfaceMesh, KeepsTheGenus) {
                             torus(p + openvdb::Vec3d(0.95, 0, 0), 1.0, 0.3));
         });
         const SurfaceMesh two = meshSurface(*rings, {false, error});
-        expectClosed(two);
+        test::expectClosed(two);
         // Where the rings overlap they fill the lens between them; the two other holes stay.
         EXPECT_EQ(eulerCharacteristic(two), 2 - 2 * 2);
     }
@@ -118,7 +104,7 @@ TEST(SurfaceMesh, FacesOnSamplesGiveNoFlatFaces) {
     const auto grid = levelSet(12, 0.5, [](const auto& p) { return box(p, {4, 3, 2}); });
     for (const double error : {0.0, 0.25}) {
         const SurfaceMesh mesh = meshSurface(*grid, {false, error});
-        expectClosed(mesh);
+        test::expectClosed(mesh);
         EXPECT_EQ(eulerCharacteristic(mesh), 2);
         EXPECT_NEAR(mesh.volume(), 8 * 6 * 4, 3);
     }
@@ -130,7 +116,7 @@ TEST(SurfaceMesh, ASheetOfZerosInsideASolidIsNoSurface) {
         return std::min(box(p - openvdb::Vec3d(0, 0, 2), {3, 3, 2}), box(p + openvdb::Vec3d(0, 0, 2), {3, 3, 2}));
     });
     const SurfaceMesh mesh = meshSurface(*grid);
-    expectClosed(mesh);
+    test::expectClosed(mesh);
     EXPECT_EQ(eulerCharacteristic(mesh), 2);
     EXPECT_NEAR(mesh.volume(), 6 * 6 * 8, 4);
 }
@@ -138,11 +124,11 @@ TEST(SurfaceMesh, ASheetOfZerosInsideASolidIsNoSurface) {
 TEST(SurfaceMesh, CavitiesGoOnRequest) {
     const auto grid = levelSet(25, 0.1, [](const auto& p) { return std::max(p.length() - 2.0, 1.0 - p.length()); });
     const SurfaceMesh both = meshSurface(*grid);
-    expectClosed(both);
+    test::expectClosed(both);
     EXPECT_EQ(eulerCharacteristic(both), 4);
     EXPECT_NEAR(both.volume(), 4.0 / 3.0 * kPi * 7.0, 0.1);
     const SurfaceMesh outside = meshSurface(*grid, {true, 0.0});
-    expectClosed(outside);
+    test::expectClosed(outside);
     EXPECT_EQ(eulerCharacteristic(outside), 2);
     EXPECT_NEAR(outside.volume(), 4.0 / 3.0 * kPi * 8.0, 0.1);
 }

@@ -42,6 +42,9 @@ struct Dialect {
 
 inline std::ostream& operator<<(std::ostream& out, const Dialect& dialect) { return out << dialect.name; }
 
+/// For INSTANTIATE_TEST_SUITE_P.
+inline std::string nameOf(const testing::TestParamInfo<Dialect>& info) { return std::string(info.param.name); }
+
 inline void expectPlace(const Point& expected, double x, double y, double z) {
     EXPECT_NEAR(x, expected.x, 1e-9);
     EXPECT_NEAR(y, expected.y, 1e-9);

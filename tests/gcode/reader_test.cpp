@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(Files, CorpusRefused,
                                          Refusal{"gcode-metadata-fdn_all_empty.gcode", "empty"}));
 
 // Sum of the millimetres in "; filament used [mm] = a, b"; 0 if there is none.
-double footerOf(std::string_view bytes) {
+double statedLength(std::string_view bytes) {
     constexpr std::string_view kKey = "; filament used [mm] = ";
     const auto at = bytes.rfind(kKey);
     if (at == std::string_view::npos) return 0;
@@ -294,7 +294,7 @@ TEST(OwnFiles, AreReadAndAddUp) {
         EXPECT_GT(toolpath.layer_count, 1U);
         // Two footers count what is not laid. In a spiral with relative E, PrusaSlicer 2.5 thins the first turn out
         // after it has counted it; its multi-material footer counts the wipe tower's own, differently defined purge.
-        const double footer = footerOf(file.bytes());
+        const double footer = statedLength(file.bytes());
         if (footer == 0 || name == "vase.gcode" || name == "two_tone_mmu.gcode") continue;
         EXPECT_NEAR(filamentWithoutCustom(toolpath), footer, 1e-3 * footer);
     }

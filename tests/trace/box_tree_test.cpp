@@ -12,8 +12,6 @@
 namespace stratum::trace {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Of all sizes, on a lattice of 1/4, so that many share faces and rays run along them; some flat, one endless.
 std::vector<Box> boxes(int count, std::uint32_t seed) {
     std::mt19937 random(seed);

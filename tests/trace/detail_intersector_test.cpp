@@ -15,8 +15,6 @@
 namespace stratum::trace {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // A torus about z with a wave along it: closed, bent everywhere, with a hole.
 double solid(const glm::dvec3& p) {
     const double around = std::atan2(p.y, p.x);

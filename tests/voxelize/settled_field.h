@@ -121,13 +121,15 @@ public:
         double widest = 0;
         for (const gcode::Bead& bead : toolpath.beads) widest = std::max(widest, static_cast<double>(bead.width));
         reach_ = 2 * widest;
-        cells_.resize(stack_.layers.size());
+        cells_.resize(stack_.layers.size() + 1);
         for (const voxelize::Layer& layer : stack_.layers)
             grooves_.push_back(settles_ && layer.radius > 0
                                    ? &grooveOracle(2 * (layer.radius + layer.half_side), layer.radius)
                                    : nullptr);
         for (std::size_t l = 0; l < stack_.layers.size(); ++l)
             for (std::uint32_t rank = stack_.layers[l].first; rank < stack_.layers[l].last; ++rank) list(l, rank);
+        for (std::uint32_t rank = stack_.first_direct; rank < stack_.beads.size(); ++rank)
+            list(stack_.layers.size(), rank);
     }
 
     /// Points farther than the beads' width from the solid have at least that value.
@@ -144,6 +146,10 @@ public:
             const double inside = layer.half_side > 0 ? std::min(std::max(closed, over), 0.0) : 0.0;
             phi = std::min(phi, std::hypot(std::max(d, 0.0), std::max(over, 0.0)) + inside - layer.radius);
         }
+        // Level round beads, thinner than their layer.
+        if (const auto found = cells_.back().find(cellOf(x, y)); found != cells_.back().end())
+            for (const std::uint32_t rank : found->second)
+                phi = std::min(phi, levelBeadDistance(toolpath_, toolpath_.beads[stack_.beads[rank]], x, y, z));
         for (const voxelize::Weld& pair : stack_.welds) {
             const voxelize::Layer& lower = stack_.layers[pair.lower];
             const voxelize::Layer& upper = stack_.layers[pair.upper];
@@ -158,6 +164,10 @@ public:
 private:
     using Cell = std::pair<int, int>;
     static constexpr double kCell = 1;  // mm
+
+    static Cell cellOf(double x, double y) {
+        return {static_cast<int>(std::floor(x / kCell)), static_cast<int>(std::floor(y / kCell))};
+    }
 
     void list(std::size_t l, std::uint32_t rank) {
         const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
@@ -217,8 +227,7 @@ private:
     std::pair<double, double> plan(std::size_t l, double x, double y) const {
         const voxelize::Layer& layer = stack_.layers[l];
         const double radius = layer.radius;
-        const auto found =
-            cells_[l].find({static_cast<int>(std::floor(x / kCell)), static_cast<int>(std::floor(y / kCell))});
+        const auto found = cells_[l].find(cellOf(x, y));
         if (found == cells_[l].end()) return {1e9, 1e9};
         std::vector<SeenBead> beads;
         double d = std::numeric_limits<double>::max();

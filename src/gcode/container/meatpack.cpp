@@ -8,7 +8,7 @@ namespace {
 
 // Two signal bytes and one of these change the state.
 constexpr unsigned char kSignal = 0xff;
-enum Command : unsigned char {
+enum PackCommand : unsigned char {
     kSpacesStay = 246,
     kSpacesGone = 247,
     kQuery = 248,

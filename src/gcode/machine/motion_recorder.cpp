@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kDefaultSpeed = 25;         // mm/s before the first F: Marlin's and Klipper's
 constexpr double kSlowest = 0.01;            // mm/s; no firmware goes slower
-constexpr double kNoMotion = 1e-12;          // mm
+constexpr double kStandstill = 1e-12;        // mm
 constexpr double kLongestRetraction = 1000;  // mm
 constexpr std::array<char, kMotionAxes> kLetters{'X', 'Y', 'Z', 'E'};
 
@@ -210,7 +210,7 @@ void MotionRecorder::move(const Point& from, const Point& to, const std::optiona
         move.sweep = arc->sweep;
         move.center = {arc->center_x - from.x, arc->center_y - from.y};
     }
-    const auto moves = [](double delta) { return std::abs(delta) > kNoMotion; };
+    const auto moves = [](double delta) { return std::abs(delta) > kStandstill; };
     if (!arc && std::none_of(move.delta.begin(), move.delta.end(), moves)) return;
     move.speed = speed > 0 ? std::max(speed, kSlowest) : kDefaultSpeed;
     move.bead = bead;

@@ -20,6 +20,13 @@ constexpr double kArrived = 1e-3;  // voxels
 constexpr int kMostSteps = 2000;   // in the narrow band
 constexpr double kNudge = 1e-6;    // voxels, out of an empty node: no hit lies there
 
+// As the grid's metadata state it, within reason; 1 otherwise.
+double largestSlope(const openvdb::FloatGrid& grid) {
+    const auto stated = grid.getMetadata<openvdb::DoubleMetadata>("largest_slope");
+    constexpr double kMost = 100;
+    return stated && stated->value() >= 1 ? std::min(stated->value(), kMost) : 1.0;
+}
+
 class SphereTracer final : public trace::Tracer {
 public:
     SphereTracer(const openvdb::FloatGrid& grid, const GridAxes& axes, const openvdb::math::MapBase& map,
@@ -28,7 +35,7 @@ public:
           box_(box),
           accessor_(grid.getConstAccessor()),
           voxel_(axes.shortest()),
-          tame_(axes.shortest() / axes.longest()),
+          tame_(axes.shortest() / axes.longest() / largestSlope(grid)),
           relaxation_(relaxation) {}
 
     bool intersect(const trace::Ray& ray, trace::Hit& hit) override {

@@ -15,7 +15,8 @@ namespace stratum::march {
 /// At hits the field is below a thousandth of a voxel; along grazing rays the error is larger. Steps along a surface
 /// shrink with the distance: a ray that has not arrived after 2000 steps counts as a miss. Thin features between two
 /// steps can be missed, since the trilinear field may change faster than distance. If voxels are not cubes, steps are
-/// shortened by the ratio of their edges, because the grid may have been scaled after its distances were computed.
+/// shortened by the ratio of their edges, because the grid may have been scaled after its distances were computed. The
+/// same holds for a grid whose values change faster than distance, and says so: metadata "largest_slope", a double.
 /// @param relaxation  factor of the steps, 1 (plain) to below 2
 /// Throws InputError for grids that requireTraceable() refuses. Keeps the grid.
 std::unique_ptr<trace::Intersector> makeSphereIntersector(openvdb::FloatGrid::ConstPtr grid, double relaxation = 1.4);

@@ -1,5 +1,6 @@
 #include "shade/brdf/brdf_scan.h"
 
+#include "base/angles.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -11,9 +12,6 @@
 
 namespace stratum::shade {
 namespace {
-
-constexpr double kPiD = std::numbers::pi;
-constexpr double kDegrees = 180.0 / kPiD;
 
 void checkAscending(const std::vector<double>& angles, double low, double high, std::string_view what,
                     std::string_view name) {
@@ -28,8 +26,8 @@ void checkAscending(const std::vector<double>& angles, double low, double high, 
 }
 
 double wrapped(double azimuth) {
-    const double turn = azimuth - 2.0 * kPiD * std::floor(azimuth / (2.0 * kPiD));
-    return turn < 2.0 * kPiD ? turn : 0.0;
+    const double turn = azimuth - 2.0 * std::numbers::pi * std::floor(azimuth / (2.0 * std::numbers::pi));
+    return turn < 2.0 * std::numbers::pi ? turn : 0.0;
 }
 
 /// Integral weights of piecewise linear nodes.
@@ -52,8 +50,8 @@ void BrdfScan::check(std::string_view name) const {
         throw InputError(fmt::format("{}: {} angles of incidence; at most {} can be read", name, incidences.size(),
                                      kMostIncidences));
     checkAscending(incidences, 0.0, 89.0 / kDegrees, "angle of incidence", name);
-    checkAscending(azimuths, 0.0, 2.0 * kPiD, "azimuth", name);
-    checkAscending(polars, 0.0, 0.5 * kPiD, "polar angle", name);
+    checkAscending(azimuths, 0.0, 2.0 * std::numbers::pi, "azimuth", name);
+    checkAscending(polars, 0.0, 0.5 * std::numbers::pi, "polar angle", name);
     bool black = true;
     for (std::size_t n = 0; n < values.size(); ++n) {
         if (!isFinite(values[n]))
@@ -84,11 +82,11 @@ glm::dvec3 scanAt(const BrdfScan& scan, std::size_t incidence, double azimuth, d
     const std::vector<double>& nodes = scan.azimuths;
     // A half scan is mirrored; a full one is periodic.
     double phi = wrapped(azimuth);
-    if (nodes.back() <= kPiD + 1e-4 && nodes.front() < 0.5 * kPiD) {
-        phi = std::min(phi, 2.0 * kPiD - phi);
+    if (nodes.back() <= std::numbers::pi + 1e-4 && nodes.front() < 0.5 * std::numbers::pi) {
+        phi = std::min(phi, 2.0 * std::numbers::pi - phi);
     } else if (phi < nodes.front() || phi > nodes.back()) {
-        const double gap = nodes.front() + 2.0 * kPiD - nodes.back();
-        const double into = phi > nodes.back() ? phi - nodes.back() : phi + 2.0 * kPiD - nodes.back();
+        const double gap = nodes.front() + 2.0 * std::numbers::pi - nodes.back();
+        const double into = phi > nodes.back() ? phi - nodes.back() : phi + 2.0 * std::numbers::pi - nodes.back();
         const double w = gap > 0.0 ? into / gap : 0.0;
         return (1.0 - w) * ring(nodes.size() - 1) + w * ring(0);
     }
@@ -98,7 +96,8 @@ glm::dvec3 scanAt(const BrdfScan& scan, std::size_t incidence, double azimuth, d
 
 BrdfScan foldScan(const BrdfScan& scan) {
     BrdfScan folded{scan.incidences, {}, scan.polars, {}, scan.notes};
-    for (const double a : scan.azimuths) folded.azimuths.push_back(std::min(wrapped(a), 2.0 * kPiD - wrapped(a)));
+    for (const double a : scan.azimuths)
+        folded.azimuths.push_back(std::min(wrapped(a), 2.0 * std::numbers::pi - wrapped(a)));
     std::sort(folded.azimuths.begin(), folded.azimuths.end());
     folded.azimuths.erase(
         std::unique(folded.azimuths.begin(), folded.azimuths.end(), [](double a, double b) { return b - a < 1e-6; }),
@@ -108,7 +107,7 @@ BrdfScan foldScan(const BrdfScan& scan) {
         for (const double azimuth : folded.azimuths) {
             for (const double polar : folded.polars) {
                 const glm::dvec3 mean =
-                    0.5 * (scanAt(scan, i, azimuth, polar) + scanAt(scan, i, 2.0 * kPiD - azimuth, polar));
+                    0.5 * (scanAt(scan, i, azimuth, polar) + scanAt(scan, i, 2.0 * std::numbers::pi - azimuth, polar));
                 negative += std::min({mean.x, mean.y, mean.z}) < 0.0;
                 folded.values.emplace_back(glm::max(mean, glm::dvec3(0.0)));
             }
@@ -119,10 +118,10 @@ BrdfScan foldScan(const BrdfScan& scan) {
 }
 
 double findMirrorAzimuth(const BrdfScan& scan) {
-    double best = kPiD;
+    double best = std::numbers::pi;
     double brightest = -1.0;
     for (int quarter = 0; quarter < 4; ++quarter) {
-        const double azimuth = 0.5 * kPiD * quarter;
+        const double azimuth = 0.5 * std::numbers::pi * quarter;
         double sum = 0.0;
         for (std::size_t i = 0; i < scan.incidences.size(); ++i) {
             if (scan.incidences[i] < 5.0 / kDegrees) continue;
@@ -135,15 +134,15 @@ double findMirrorAzimuth(const BrdfScan& scan) {
             best = azimuth;
         }
     }
-    return brightest > 0.0 ? best : kPiD;
+    return brightest > 0.0 ? best : std::numbers::pi;
 }
 
 BrdfScan turnScan(const BrdfScan& scan, double mirror) {
-    if (std::abs(mirror - kPiD) < 1e-9) return scan;
+    if (std::abs(mirror - std::numbers::pi) < 1e-9) return scan;
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t a = 0; a < scan.azimuths.size(); ++a) {
-        double turned = wrapped(scan.azimuths[a] - mirror + kPiD);
-        if (turned > 2.0 * kPiD - 1e-9) turned = 0.0;
+        double turned = wrapped(scan.azimuths[a] - mirror + std::numbers::pi);
+        if (turned > 2.0 * std::numbers::pi - 1e-9) turned = 0.0;
         order.emplace_back(turned, a);
     }
     std::sort(order.begin(), order.end());

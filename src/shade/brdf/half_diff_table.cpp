@@ -9,17 +9,13 @@
 #include <numbers>
 
 namespace stratum::shade {
-namespace {
-
-constexpr double kPiD = std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 void HalfDiffTable::directionsOf(int half, int diff, int turn, glm::dvec3& wo, glm::dvec3& wi) {
     const double warped = (half + 0.5) / kHalf;
-    const double th = 0.5 * kPiD * warped * warped;
-    const double td = 0.5 * kPiD * (diff + 0.5) / kDiff;
-    const double pd = kPiD * (turn + 0.5) / kTurn;
+    const double th = 0.5 * std::numbers::pi * warped * warped;
+    const double td = 0.5 * std::numbers::pi * (diff + 0.5) / kDiff;
+    const double pd = std::numbers::pi * (turn + 0.5) / kTurn;
     // About the half vector: h, the tangent that points down from the normal, and the binormal.
     const glm::dvec3 h(std::sin(th), 0.0, std::cos(th));
     const glm::dvec3 t(std::cos(th), 0.0, -std::sin(th));
@@ -66,9 +62,9 @@ Color HalfDiffTable::at(const glm::vec3& wo, const glm::vec3& wi) const {
         }
         pd = std::atan2(across, along);
     }
-    const float x = std::sqrt(th * static_cast<float>(2.0 / kPiD)) * kHalf - 0.5f;
-    const float y = td * static_cast<float>(2.0 / kPiD) * kDiff - 0.5f;
-    float z = pd * static_cast<float>(1.0 / kPiD) * kTurn - 0.5f;
+    const float x = std::sqrt(th * static_cast<float>(2.0 / std::numbers::pi)) * kHalf - 0.5f;
+    const float y = td * static_cast<float>(2.0 / std::numbers::pi) * kDiff - 0.5f;
+    float z = pd * static_cast<float>(1.0 / std::numbers::pi) * kTurn - 0.5f;
     const auto split = [](float v, int count, int& low) {
         const float clamped = std::clamp(v, 0.0f, static_cast<float>(count - 1));
         low = std::min(static_cast<int>(clamped), count - 2);

@@ -10,7 +10,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kEta = 1.5;
 constexpr double kF0 = 0.04;
 constexpr double kLeastAlpha = 0.005;
@@ -35,15 +34,15 @@ Fit fitAt(const std::vector<Reading>& readings, double alpha) {
         diffuse = std::min(diffuse, r.value);
     }
     Fit fit;
-    fit.kd = std::max(diffuse * kPiD, 1e-6);
+    fit.kd = std::max(diffuse * std::numbers::pi, 1e-6);
     fit.ks = 0.04;
     for (int step = 0; step < 16; ++step) {
         double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0, error = 0.0;
         for (std::size_t n = 0; n < readings.size(); ++n) {
-            const double f = fit.kd / kPiD + fit.ks * gloss[n];
+            const double f = fit.kd / std::numbers::pi + fit.ks * gloss[n];
             const double r = std::log(readings[n].value / f);
             // In log kd and log ks, so that neither can change its sign.
-            const double a = fit.kd / kPiD / f;
+            const double a = fit.kd / std::numbers::pi / f;
             const double b = fit.ks * gloss[n] / f;
             aa += a * a;
             ab += a * b;
@@ -109,18 +108,18 @@ double Lobes::gloss(double alpha, const glm::dvec3& light, const glm::dvec3& det
     const double perpendicular = (c - kEta * t) / (c + kEta * t);
     const double fresnel = 0.5 * (parallel * parallel + perpendicular * perpendicular) / kF0;
     const double visibility = 0.5 / std::max(stretch(detector) * light.z + stretch(light) * detector.z, 1e-12);
-    return fresnel * a2 / (kPiD * k * k) * visibility;
+    return fresnel * a2 / (std::numbers::pi * k * k) * visibility;
 }
 
 double Lobes::eval(const glm::dvec3& light, const glm::dvec3& detector) const {
-    return kd / kPiD + ks * gloss(alpha, light, detector);
+    return kd / std::numbers::pi + ks * gloss(alpha, light, detector);
 }
 
 std::array<Lobes, 3> fitLobes(const BrdfScan& scan) {
     // A subset of the readings of a fine scan is sufficient.
     const std::size_t step_a = std::max<std::size_t>(1, scan.azimuths.size() / 18);
     const std::size_t step_p = std::max<std::size_t>(1, scan.polars.size() / 45);
-    constexpr double kGrazing = 85.0 * kPiD / 180.0;  // beyond, measurements are unreliable
+    constexpr double kGrazing = 85.0 * std::numbers::pi / 180.0;  // beyond, measurements are unreliable
     std::array<Lobes, 3> lobes;
     for (int c = 0; c < 3; ++c) {
         float peak = 0.0f;

@@ -10,8 +10,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 constexpr int kBlocksAcross = 32;
 
 /// The interval of a running sum that contains u times its last value, never an empty one, and the offset in it.
@@ -67,8 +65,8 @@ BilinearDistribution::BilinearDistribution(std::vector<float> weights, int colum
 /// Sums of the rows and cells in each block.
 void BilinearDistribution::sumCells() {
     for (int row = 0; row <= rows_; ++row) {
-        const double above = kPiD * std::max(0.0, (row - 0.5) / rows_);
-        const double below = kPiD * std::min(1.0, (row + 0.5) / rows_);
+        const double above = std::numbers::pi * std::max(0.0, (row - 0.5) / rows_);
+        const double below = std::numbers::pi * std::min(1.0, (row + 0.5) / rows_);
         sines_.push_back((std::cos(above) - std::cos(below)) / (below - above));
     }
     const std::size_t blocks = block_columns_ * block_rows_;

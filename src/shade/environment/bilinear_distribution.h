@@ -10,6 +10,9 @@
 
 namespace stratum::shade {
 
+/// The largest double below 1.
+inline constexpr double kBelowOne = 0x1.fffffffffffffp-1;
+
 /// A density on the latitude-longitude square [0, 1)^2 that is the bilinear interpolation of weights at texel centers
 /// (periodic in u, constant beyond the first and last row) times, per row of cells, the mean sine of the polar angle.
 /// The ratio of the interpolated weight to the density, per steradian, is thus nearly constant: samples have hardly any

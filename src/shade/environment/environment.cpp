@@ -1,5 +1,6 @@
 #include "shade/environment/environment.h"
 
+#include "base/angles.h"
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "shade/brdf/preset.h"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr std::string_view kOption = "--env";
 constexpr std::array<std::string_view, 3> kPresets = {"studio", "sky", "constant"};
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 std::string nameOf(std::string_view text) { return std::string(text.substr(0, text.find(':'))); }
 

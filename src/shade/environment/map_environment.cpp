@@ -10,15 +10,13 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-
 LightMap scaled(LightMap map, float scale) {
     if (scale != 1.0f)
         for (Color& c : map.texels) c *= scale;
     return map;
 }
 
-double sineOf(int row, int height) { return std::sin(kPiD * (row + 0.5) / height); }
+double sineOf(int row, int height) { return std::sin(std::numbers::pi * (row + 0.5) / height); }
 
 /// Luminance of the texels.
 std::vector<float> luminances(const LightMap& map) {
@@ -83,8 +81,8 @@ std::vector<BilinearDistribution> tablesOf(Split split, int width, int height,
 
 /// The direction of a position on the map. `sine` is that of the polar angle.
 glm::vec3 directionOf(const glm::dvec2& uv, double rotation, double& sine) {
-    const double theta = kPiD * uv.y;
-    const double phi = 2.0 * kPiD * (0.5 - uv.x) + rotation;
+    const double theta = std::numbers::pi * uv.y;
+    const double phi = 2.0 * std::numbers::pi * (0.5 - uv.x) + rotation;
     sine = std::sin(theta);
     return {sine * std::cos(phi), sine * std::sin(phi), std::cos(theta)};
 }
@@ -104,7 +102,7 @@ std::vector<BilinearDistribution> cosineTables(const LightMap& map) {
     std::vector<float> weights = luminances(map);
     for (int y = 0; y < map.height; ++y) {
         // The largest cosine of the row, so that every direction above the horizon has a weight.
-        const auto cosine = static_cast<float>(std::max(0.0, std::cos(kPiD * y / map.height)));
+        const auto cosine = static_cast<float>(std::max(0.0, std::cos(std::numbers::pi * y / map.height)));
         const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width);
         for (std::size_t x = 0; x < static_cast<std::size_t>(map.width); ++x) weights[row + x] *= cosine;
     }
@@ -150,9 +148,9 @@ glm::dvec2 MapEnvironment::uvOf(const glm::vec3& direction, double& sine) const 
     const double x = direction.x;
     const double y = direction.y;
     sine = std::sqrt(x * x + y * y);
-    double u = 0.5 - (std::atan2(y, x) - rotation_) / (2.0 * kPiD);
+    double u = 0.5 - (std::atan2(y, x) - rotation_) / (2.0 * std::numbers::pi);
     u -= std::floor(u);
-    const double v = std::atan2(sine, static_cast<double>(direction.z)) / kPiD;
+    const double v = std::atan2(sine, static_cast<double>(direction.z)) / std::numbers::pi;
     return {u < 1.0 ? u : 0.0, v};
 }
 
@@ -187,7 +185,7 @@ EnvironmentSample MapEnvironment::sampleTables(const Tables& tables, int strateg
     if (!(sine > 0.0)) return result;
     for (std::size_t k = 0; k < tables.size(); ++k)
         if (k != chosen) density += tables[k].pdf(tables[k].bin(normal), uv);
-    result.pdf = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
+    result.pdf = static_cast<float>(density / (2.0 * std::numbers::pi * std::numbers::pi * sine));
     if (!std::isfinite(result.pdf)) result.pdf = 0.0f;
     result.radiance = lookUp(uv);
     return result;
@@ -201,7 +199,7 @@ float MapEnvironment::density(const Tables& tables, const glm::dvec2& uv, double
     if (!(sine > 0.0)) return 0.0f;
     double density = 0.0;
     for (const BilinearDistribution& table : tables) density += table.pdf(table.bin(normal), uv);
-    const auto result = static_cast<float>(density / (2.0 * kPiD * kPiD * sine));
+    const auto result = static_cast<float>(density / (2.0 * std::numbers::pi * std::numbers::pi * sine));
     return std::isfinite(result) ? result : 0.0f;
 }
 

@@ -21,7 +21,6 @@ namespace {
 // the first-level cache.
 constexpr std::size_t kBatch = 64;
 constexpr double kTurn = 2.0 * std::numbers::pi;  // radians
-constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 template <typename T>
 using Batch = std::array<T, kBatch>;
 

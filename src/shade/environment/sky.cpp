@@ -14,8 +14,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-
 /// Perez' five-parameter shape of a sky, for one of Y, x, y.
 struct Perez {
     double a, b, c, d, e;
@@ -41,8 +39,8 @@ struct Model {
                    -0.0033 * t + 0.0452},
                   {-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102, -0.0441 * t - 1.6537,
                    -0.0109 * t + 0.0529}}};
-        const double s = 0.5 * kPiD - o.elevation;
-        const double chi = (4.0 / 9.0 - t / 120.0) * (kPiD - 2.0 * s);
+        const double s = 0.5 * std::numbers::pi - o.elevation;
+        const double chi = (4.0 / 9.0 - t / 120.0) * (std::numbers::pi - 2.0 * s);
         const auto cubic = [s](double a, double b, double c, double d) { return ((a * s + b) * s + c) * s + d; };
         zenith = {(4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192,
                   t * t * cubic(0.00166, -0.00375, 0.00209, 0.0) + t * cubic(-0.02903, 0.06377, -0.03202, 0.00394) +
@@ -68,7 +66,7 @@ struct Model {
 
     /// Irradiance on a surface that faces the sun, in units of pi kcd/m2 like radiance() integrates to: klx.
     glm::dvec3 sunlight(double turbidity) const {
-        const double elevation = std::asin(sun.z) * 180.0 / kPiD;
+        const double elevation = std::asin(sun.z) * 180.0 / std::numbers::pi;
         const double mass = 1.0 / (sun.z + 0.15 * std::pow(elevation + 3.885, -1.253));
         const double beta = 0.04608365822050 * turbidity - 0.04586025928522;
         glm::dvec3 color;
@@ -91,19 +89,20 @@ std::shared_ptr<const Environment> makeSky(const SkyOptions& options) {
     LightMap map{2 * kHeight, kHeight, std::vector<Color>(std::size_t{2} * kHeight * kHeight)};
     glm::dvec3 irradiance(0.0);
     for (int y = 0; y < kHeight / 2; ++y) {
-        const double theta = kPiD * (y + 0.5) / kHeight;
+        const double theta = std::numbers::pi * (y + 0.5) / kHeight;
         for (int x = 0; x < map.width; ++x) {
-            const double phi = kPiD - 2.0 * kPiD * (x + 0.5) / map.width;
+            const double phi = std::numbers::pi - 2.0 * std::numbers::pi * (x + 0.5) / map.width;
             const glm::dvec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
             const glm::dvec3 c = model.radiance(d);
-            irradiance += c * (std::sin(theta) * std::cos(theta) * kPiD / kHeight * 2.0 * kPiD / map.width);
+            irradiance += c * (std::sin(theta) * std::cos(theta) * std::numbers::pi / kHeight * 2.0 * std::numbers::pi /
+                               map.width);
             map.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
                        static_cast<std::size_t>(x)] = Color(c);
         }
     }
     const glm::dvec3 sun = model.sunlight(options.turbidity);
     const glm::dvec3 total = irradiance + sun * model.sun.z;
-    const Color ground(total * kGround / kPiD);
+    const Color ground(total * kGround / std::numbers::pi);
     for (std::size_t i = map.texels.size() / 2; i < map.texels.size(); ++i) map.texels[i] = ground;
     const float scale = kStudioLevel * kPi / luminance(Color(total));
     return std::make_shared<MapEnvironment>(

@@ -74,19 +74,18 @@ constexpr int kHeight = 128;
 }  // namespace
 
 std::shared_ptr<const Environment> makeStudio(const EnvironmentPlacement& placement) {
-    constexpr double kPiD = std::numbers::pi;
     LightMap map{2 * kHeight, kHeight, {}};
     map.texels.reserve(std::size_t{2} * kHeight * kHeight);
     glm::dvec3 irradiance(0.0);
     for (int y = 0; y < map.height; ++y) {
-        const double theta = kPiD * (y + 0.5) / map.height;
+        const double theta = std::numbers::pi * (y + 0.5) / map.height;
         for (int x = 0; x < map.width; ++x) {
-            const double phi = kPiD - 2.0 * kPiD * (x + 0.5) / map.width;
+            const double phi = std::numbers::pi - 2.0 * std::numbers::pi * (x + 0.5) / map.width;
             const glm::vec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
             map.texels.push_back(unscaled(d, placement.bed));
             if (d.z > 0.0f)
-                irradiance += glm::dvec3(map.texels.back()) *
-                              (std::sin(theta) * std::cos(theta) * kPiD / map.height * 2.0 * kPiD / map.width);
+                irradiance += glm::dvec3(map.texels.back()) * (std::sin(theta) * std::cos(theta) * std::numbers::pi /
+                                                               map.height * 2.0 * std::numbers::pi / map.width);
         }
     }
     const float scale = kStudioLevel * kPi / luminance(Color(irradiance));

@@ -10,22 +10,23 @@ namespace stratum::shade {
 
 EnvironmentSum::EnvironmentSum(const SceneDescription& scene, const trace::Intersector& print, int rows)
     : Integrator(scene, print), scene_(scene) {
-    constexpr double kPiD = std::numbers::pi;
     // Sampled more finely than any likely map, so that the mean includes a sun of one texel.
     const int cuts = std::max(4, 2048 / rows);
     const auto directionAt = [&](double row, double column) {
-        const double theta = kPiD * row / rows;
-        const double phi = kPiD * column / rows;
+        const double theta = std::numbers::pi * row / rows;
+        const double phi = std::numbers::pi * column / rows;
         return glm::dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     };
     for (int row = 0; row < rows; ++row) {
-        const double solid_angle = (std::cos(kPiD * row / rows) - std::cos(kPiD * (row + 1) / rows)) * kPiD / rows;
+        const double solid_angle =
+            (std::cos(std::numbers::pi * row / rows) - std::cos(std::numbers::pi * (row + 1) / rows)) *
+            std::numbers::pi / rows;
         for (int column = 0; column < 2 * rows; ++column) {
             glm::dvec3 sum(0.0);
             double weight = 0.0;
             for (int a = 0; a < cuts; ++a) {
                 const double r = row + (a + 0.5) / cuts;
-                const double sine = std::sin(kPiD * r / rows);
+                const double sine = std::sin(std::numbers::pi * r / rows);
                 for (int b = 0; b < cuts; ++b) {
                     const glm::vec3 d(directionAt(r, column + (b + 0.5) / cuts));
                     sum += sine * glm::dvec3(scene.environment->radiance(d));

@@ -28,7 +28,6 @@ RectangleLight::RectangleLight(const glm::dvec3& center, const glm::dvec3& half_
 }
 
 RectangleLight::View RectangleLight::viewFrom(const glm::dvec3& point) const {
-    constexpr double kPiD = std::numbers::pi;
     const glm::dvec3 d = center_ - point;
     View v{};
     v.x0 = glm::dot(d, x_) - half_x_;
@@ -52,7 +51,7 @@ RectangleLight::View RectangleLight::viewFrom(const glm::dvec3& point) const {
     const double g3 = angle(n3, n0);
     v.b0 = n0;
     v.b1 = n2;
-    v.k = 2.0 * kPiD - g2 - g3;
+    v.k = 2.0 * std::numbers::pi - g2 - g3;
     v.solid_angle = g0 + g1 - v.k;
     return v;
 }

@@ -16,7 +16,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr std::size_t kMostReadings = std::size_t{1} << 23;
 constexpr double kSame = 1e-5;  // radians: angles closer than this are one
 
@@ -77,30 +76,31 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
         if (rows.back().size() != 4 + channels.count)
             text.fail(fmt::format("{} numbers; VARS names {}", rows.back().size(), 4 + channels.count));
         if (rows.size() > kMostReadings) text.fail(fmt::format("more than {} readings", kMostReadings));
-        for (std::size_t n = 0; n < 4; ++n) degrees = degrees || std::abs(rows.back()[n]) > 2.0 * kPiD + 1e-3;
+        for (std::size_t n = 0; n < 4; ++n)
+            degrees = degrees || std::abs(rows.back()[n]) > 2.0 * std::numbers::pi + 1e-3;
     }
     if (rows.empty()) text.fail("no readings");
 
-    const double unit = degrees ? kPiD / 180.0 : 1.0;
+    const double unit = degrees ? std::numbers::pi / 180.0 : 1.0;
     std::map<std::tuple<long, long, long>, Color> readings;
     std::map<long, Color> at_pole;  // by incidence: there one reading serves all azimuths
     std::map<long, double> incidences, azimuths, polars;
-    const long turn = keyOf(2.0 * kPiD);
+    const long turn = keyOf(2.0 * std::numbers::pi);
     for (const std::vector<double>& row : rows) {
         double azimuth = (row[3] - row[1]) * unit;
-        azimuth -= 2.0 * kPiD * std::floor(azimuth / (2.0 * kPiD) + 1e-9);
+        azimuth -= 2.0 * std::numbers::pi * std::floor(azimuth / (2.0 * std::numbers::pi) + 1e-9);
         azimuth = std::max(azimuth, 0.0);
         if (keyOf(azimuth) >= turn) azimuth = 0.0;
         const double incidence = row[0] * unit;
         const double polar = row[2] * unit;
-        if (polar > 0.5 * kPiD + kSame) continue;  // transmission
+        if (polar > 0.5 * std::numbers::pi + kSame) continue;  // transmission
         const auto value = [&](std::size_t c) { return row[4 + c]; };
         const ChannelChoice& ch = channels.choice;
         const Color color = channels.xyz ? fromXyz(value(0), value(1), value(2))
                                          : Color(glm::dvec3(value(ch.red), value(ch.green), value(ch.blue)));
         incidences.emplace(keyOf(incidence), incidence);
         azimuths.emplace(keyOf(azimuth), azimuth);
-        polars.emplace(keyOf(polar), std::min(polar, 0.5 * kPiD));
+        polars.emplace(keyOf(polar), std::min(polar, 0.5 * std::numbers::pi));
         readings.insert_or_assign({keyOf(incidence), keyOf(azimuth), keyOf(polar)}, color);
         if (keyOf(polar) == 0) at_pole.emplace(keyOf(incidence), color);
     }
@@ -121,7 +121,8 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
                 text.fail(
                     fmt::format("no reading at theta_i {:g}, phi_s - phi_i {:g}, theta_s {:g} degrees; they must form "
                                 "a grid",
-                                i.second * 180.0 / kPiD, a.second * 180.0 / kPiD, p.second * 180.0 / kPiD));
+                                i.second * 180.0 / std::numbers::pi, a.second * 180.0 / std::numbers::pi,
+                                p.second * 180.0 / std::numbers::pi));
             }
         }
     }

@@ -1,5 +1,6 @@
 #include "shade/measured/brdf_exr.h"
 
+#include "base/angles.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/measured/scan_text.h"
@@ -21,8 +22,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-constexpr double kRadians = kPiD / 180.0;
 constexpr std::size_t kMostTexels = std::size_t{1} << 26;
 
 struct Layout {
@@ -134,7 +133,11 @@ bool highlightAtTop(const BrdfScan& scan) {
 
 /// From angles of the half vector to angles of the detector.
 BrdfScan fromHalf(const BrdfScan& half) {
-    BrdfScan scan{half.incidences, evenAngles(0.0, kPiD, 73), evenAngles(0.0, 0.5 * kPiD, 91), {}, half.notes};
+    BrdfScan scan{half.incidences,
+                  evenAngles(0.0, std::numbers::pi, 73),
+                  evenAngles(0.0, 0.5 * std::numbers::pi, 91),
+                  {},
+                  half.notes};
     for (std::size_t i = 0; i < scan.incidences.size(); ++i) {
         const glm::dvec3 light(std::sin(scan.incidences[i]), 0.0, std::cos(scan.incidences[i]));
         for (const double a : scan.azimuths) {
@@ -169,8 +172,8 @@ BrdfScan readBrdfExr(const std::filesystem::path& path) {
     const int tile_h = image.height / layout.rows;
     const auto sampling = words.find({"sampling"});
     const auto nodes = [&](int count) { return sampling ? *sampling == "nodes" : count % 2 == 1; };
-    scan.azimuths = axis(tile_w, 2.0 * kPiD, nodes(tile_w));
-    scan.polars = axis(tile_h, 0.5 * kPiD, nodes(tile_h));
+    scan.azimuths = axis(tile_w, 2.0 * std::numbers::pi, nodes(tile_w));
+    scan.polars = axis(tile_h, 0.5 * std::numbers::pi, nodes(tile_h));
     for (int tile = 0; tile < layout.columns * layout.rows; ++tile) {
         const int x0 = tile % layout.columns * tile_w;
         const int y0 = tile / layout.columns * tile_h;
@@ -203,7 +206,8 @@ void writeBrdfExr(const std::filesystem::path& path, const BrdfScan& scan) {
         degrees.push_back(std::round(scan.incidences[i] / kRadians * 1e6) * 1e-6);
         for (int y = 0; y < tile_h; ++y)
             for (int x = 0; x < kWidth; ++x)
-                texels.emplace_back(scanAt(scan, i, 2.0 * kPiD * x / (kWidth - 1), 0.5 * kPiD * y / (tile_h - 1)));
+                texels.emplace_back(scanAt(scan, i, 2.0 * std::numbers::pi * x / (kWidth - 1),
+                                           0.5 * std::numbers::pi * y / (tile_h - 1)));
     }
     Imf::Header header(kWidth, height, 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
     header.insert("layout", Imf::StringAttribute(fmt::format("1x{}", tiles)));

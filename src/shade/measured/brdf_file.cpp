@@ -1,5 +1,6 @@
 #include "shade/measured/brdf_file.h"
 
+#include "base/angles.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "shade/measured/astm_reader.h"
@@ -19,7 +20,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr std::size_t kMostText = std::size_t{1} << 28;  // a scan of every degree everywhere is not larger
 
 /// Unpacks a gzip file through zlib's own reader, which checks its CRC.

@@ -1,5 +1,6 @@
 #include "shade/measured/minidiff_reader.h"
 
+#include "base/angles.h"
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
 
@@ -14,10 +15,9 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr std::size_t kMostAngles = 2000;
 constexpr std::size_t kMostBlocks = 4096;
-constexpr std::size_t kMostReadings = std::size_t{1} << 26;
+constexpr std::size_t kMostValues = std::size_t{1} << 26;
 
 struct Block {
     double aoi = 0.0, wavelength = 0.0;
@@ -70,9 +70,9 @@ File readBlocks(ScanText& text) {
             block.readings = text.parse(line, "a reading");
             const std::size_t count = file.azimuths.size() * file.radials.size();
             readings += count;
-            if (file.blocks.size() >= kMostBlocks || readings > kMostReadings)
+            if (file.blocks.size() >= kMostBlocks || readings > kMostValues)
                 text.fail(fmt::format("more than {} blocks or {} readings; this is no scan of a surface", kMostBlocks,
-                                      kMostReadings));
+                                      kMostValues));
             if (block.readings.size() > count)
                 text.fail(fmt::format("{} readings; expected {}", block.readings.size(), count));
             const std::string what =

@@ -12,8 +12,7 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-constexpr double kHighest = 89.9 * kPiD / 180.0;
+constexpr double kHighest = 89.9 * std::numbers::pi / 180.0;
 
 glm::dvec3 directionOf(double polar, double azimuth) {
     return {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)};
@@ -68,7 +67,7 @@ ScanInterpolant::ScanInterpolant(const BrdfScan& scan) : scan_(scan), lobes_(fit
 }
 
 glm::dvec3 ScanInterpolant::residual(std::size_t incidence, double polar, double azimuth) const {
-    const double folded = std::abs(std::remainder(azimuth, 2.0 * kPiD));
+    const double folded = std::abs(std::remainder(azimuth, 2.0 * std::numbers::pi));
     const NodePlace a = placeAmong(scan_.azimuths, folded);
     const NodePlace p = placeAmong(scan_.polars, polar);
     const auto ring = [&](std::size_t i) {

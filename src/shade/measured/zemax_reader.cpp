@@ -1,5 +1,6 @@
 #include "shade/measured/zemax_reader.h"
 
+#include "base/angles.h"
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
 
@@ -13,8 +14,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-constexpr double kRadians = kPiD / 180.0;
 constexpr std::size_t kMostAngles = 2000;
 constexpr std::size_t kMostReadings = std::size_t{1} << 26;
 
@@ -108,8 +107,8 @@ BrdfScan readZemax(std::string_view bytes, std::string_view name) {
 
     BrdfScan scan;
     scan.incidences = about.incidences;
-    scan.azimuths = evenAngles(0.0, kPiD, 73);
-    scan.polars = evenAngles(0.0, 0.5 * kPiD, 91);
+    scan.azimuths = evenAngles(0.0, std::numbers::pi, 73);
+    scan.polars = evenAngles(0.0, 0.5 * std::numbers::pi, 91);
     for (const std::string& comment : text.comments()) scan.notes.push_back(comment);
     scan.notes.emplace_back("resampled from angles about the mirror direction");
     if (file.rotations.size() > 1) scan.notes.emplace_back("only the first rotation of the sample was taken");

@@ -19,12 +19,14 @@ namespace {
 
 constexpr double kCell = 1;         // mm
 constexpr double kTouching = 1e-9;  // mm: a thousand roundings of a coordinate of a metre
-constexpr double kPi = std::numbers::pi;
 
 // Area of a straight bead's sides, and of its two ends, which together are a disc with half a torus around it.
-double sideArea(double length, double flat, double radius) { return length * (4 * flat + 2 * kPi * radius); }
+double sideArea(double length, double flat, double radius) {
+    return length * (4 * flat + 2 * std::numbers::pi * radius);
+}
 double endArea(double flat, double radius) {
-    return 2 * kPi * flat * flat + 2 * kPi * kPi * flat * radius + 4 * kPi * radius * radius;
+    return 2 * std::numbers::pi * flat * flat + 2 * std::numbers::pi * std::numbers::pi * flat * radius +
+           4 * std::numbers::pi * radius * radius;
 }
 
 }  // namespace
@@ -169,7 +171,7 @@ bool UnionField::tryPoint(Random& random, SurfacePoint& point) const {
     glm::dvec2 outwards(0);
     if (unit(random) * (sides + endArea(flat, radius)) < sides) {
         const double along = unit(random);
-        double around = unit(random) * (4 * flat + 2 * kPi * radius);
+        double around = unit(random) * (4 * flat + 2 * std::numbers::pi * radius);
         on_flat = around < 4 * flat;
         if (on_flat) {
             out = std::fmod(around, 2 * flat) - flat;
@@ -193,14 +195,14 @@ bool UnionField::tryPoint(Random& random, SurfacePoint& point) const {
             base = glm::mix(glm::dvec2(solid.start), glm::dvec2(solid.end), along);
         }
     } else {
-        const double turn = 2 * kPi * unit(random);
+        const double turn = 2 * std::numbers::pi * unit(random);
         outwards = {std::cos(turn), std::sin(turn)};
-        on_flat = unit(random) * endArea(flat, radius) < 2 * kPi * flat * flat;
+        on_flat = unit(random) * endArea(flat, radius) < 2 * std::numbers::pi * flat * flat;
         if (on_flat) {
             out = flat * std::sqrt(unit(random));
             up = unit(random) < 0.5 ? 1 : -1;
         } else {
-            const double angle = kPi * (unit(random) - 0.5);
+            const double angle = std::numbers::pi * (unit(random) - 0.5);
             up = std::sin(angle);
             facing_out = std::cos(angle);
             out = flat + radius * facing_out;

@@ -20,7 +20,6 @@ const double kFlipPixelsPerDegree = 0.7 * (3840 / 0.7) * std::numbers::pi / 180;
 namespace {
 
 using Plane = std::vector<double>;
-constexpr double kPi = std::numbers::pi;
 
 // Colour spaces. sRGB's primaries and white by their chromaticities (IEC 61966-2-1).
 glm::dvec3 fromChromaticity(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
@@ -121,16 +120,18 @@ constexpr std::array<Sensitivity, 3> kSensitivity{
 
 Plane filtered(const Plane& channel, int width, int height, const Sensitivity& s, double pixels_per_degree) {
     // As far as three standard deviations of the widest of all.
-    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixels_per_degree));
+    const int radius = static_cast<int>(
+        std::ceil(3 * std::sqrt(0.04 / (2 * std::numbers::pi * std::numbers::pi)) * pixels_per_degree));
     Plane sum(channel.size(), 0.0);
     std::array<double, 2> share{};  // of each Gaussian in the kernel's sum over the grid
     std::array<Kernel, 2> kernels;
     double whole = 0;
     for (std::size_t i = 0; i < 2; ++i) {
-        const double variance = s.b[i] / (2 * kPi * kPi) * pixels_per_degree * pixels_per_degree;
+        const double variance =
+            s.b[i] / (2 * std::numbers::pi * std::numbers::pi) * pixels_per_degree * pixels_per_degree;
         double line = 0;
         for (int k = -radius; k <= radius; ++k) line += std::exp(-0.5 * k * k / variance);
-        share[i] = s.a[i] * std::sqrt(kPi / s.b[i]) * line * line;
+        share[i] = s.a[i] * std::sqrt(std::numbers::pi / s.b[i]) * line * line;
         whole += share[i];
         kernels[i] = gaussian(variance, radius);
     }

@@ -13,8 +13,6 @@
 namespace stratum::study {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 std::uint32_t number(int n) { return static_cast<std::uint32_t>(n); }
 
 glm::dvec3 vectorOf(const nlohmann::json& json) {
@@ -35,8 +33,8 @@ TriangleMesh sphereMesh(const glm::dvec3& center, double radius, int rings) {
     mesh.corners.push_back(center + glm::dvec3(0, 0, radius));
     for (int ring = 1; ring < rings; ++ring)
         for (int k = 0; k < rings; ++k) {
-            const double down = kPi * ring / rings;
-            const double turn = 2 * kPi * k / rings;
+            const double down = std::numbers::pi * ring / rings;
+            const double turn = 2 * std::numbers::pi * k / rings;
             mesh.corners.push_back(center + radius * glm::dvec3(std::sin(down) * std::cos(turn),
                                                                 std::sin(down) * std::sin(turn), std::cos(down)));
         }
@@ -85,7 +83,8 @@ TriangleMesh cylinderMesh(const glm::dvec3& center, double radius, double half_h
     place(0, 0, half_height);
     for (int k = 0; k < points; ++k)
         for (const double z : {-half_height, half_height})
-            place(radius * std::cos(2 * kPi * k / points), radius * std::sin(2 * kPi * k / points), z);
+            place(radius * std::cos(2 * std::numbers::pi * k / points),
+                  radius * std::sin(2 * std::numbers::pi * k / points), z);
     for (int k = 0; k < points; ++k) {
         const std::uint32_t low = number(2 + 2 * k);
         const std::uint32_t next = number(2 + 2 * ((k + 1) % points));

@@ -16,12 +16,10 @@
 namespace stratum::study {
 namespace {
 
-constexpr const char* kRoundings = "8 float roundings of the longest local length (leaf, band or half width)";
-constexpr double kWidth = 0.45, kHeight = 0.2;  // mm
 constexpr const char* kError = "largest error of the distance, mm";
 
 StabilityCase field(std::string name, const voxelize::Lattice& lattice, const voxelize::VoxelizeOptions& options = {}) {
-    const gcode::Toolpath toolpath = crossedLines(kWidth, kHeight);
+    const gcode::Toolpath toolpath = crossedLines(kBeadWidth, kBeadHeight);
     return {"grid",     std::move(name),
             kError,     fieldTolerance(toolpath, lattice),
             kRoundings, [=] { return largestFieldError(toolpath, lattice, options); }};
@@ -48,12 +46,12 @@ double sidesOfAGap(double gap) {
     openvdb::initialize();
     constexpr double kVoxel = 0.05;
     gcode::Toolpath toolpath;
-    const double shift = 0.5 * (kWidth + gap * kVoxel);
+    const double shift = 0.5 * (kBeadWidth + gap * kVoxel);
     for (int layer = 1; layer <= 5; ++layer)
         for (const double side : {-1.0, 1.0})
-            addBead(toolpath, -2, side * shift, kHeight * layer, 2, side * shift, kHeight * layer, kWidth, kHeight,
-                    static_cast<std::uint32_t>(layer));
-    const auto grid = voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(kVoxel, kHeight));
+            addBead(toolpath, -2, side * shift, kBeadHeight * layer, 2, side * shift, kBeadHeight * layer, kBeadWidth,
+                    kBeadHeight, static_cast<std::uint32_t>(layer));
+    const auto grid = voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(kVoxel, kBeadHeight));
     const auto intersector = march::makeBrickIntersector(*grid);
     const auto tracer = intersector->makeTracer();
     double largest = 0;
@@ -61,7 +59,7 @@ double sidesOfAGap(double gap) {
         for (const double side : {-1.0, 1.0}) {
             trace::Hit hit;
             // From the middle of the gap towards a wall, at the height of a bead's widest place.
-            const trace::Ray ray{{n * 0.0713, 0, 2.5 * kHeight}, {0, side, 0}};
+            const trace::Ray ray{{n * 0.0713, 0, 2.5 * kBeadHeight}, {0, side, 0}};
             if (!tracer->intersect(ray, hit)) return std::numeric_limits<double>::infinity();
             largest = std::max(largest, std::abs(hit.t - 0.5 * gap * kVoxel));
         }
@@ -101,25 +99,25 @@ double cullingChanges() {
     gcode::Toolpath toolpath;
     for (int layer = 1; layer <= 10; ++layer)
         for (const double side : {-1.0, 1.0}) {
-            const double z = kHeight * layer;
+            const double z = kBeadHeight * layer;
             const auto number = static_cast<std::uint32_t>(layer);
-            addBead(toolpath, -2, side * 2, z, 2, side * 2, z, kWidth, kHeight, number);
-            addBead(toolpath, side * 2, -2, z, side * 2, 2, z, kWidth, kHeight, number);
+            addBead(toolpath, -2, side * 2, z, 2, side * 2, z, kBeadWidth, kBeadHeight, number);
+            addBead(toolpath, side * 2, -2, z, side * 2, 2, z, kBeadWidth, kBeadHeight, number);
         }
     const auto beads = allBeads(toolpath);
     voxelize::VoxelizeOptions options;
-    const auto kept = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kHeight), options);
+    const auto kept = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kBeadHeight), options);
     options.interior = voxelize::Interior::cull;
-    const auto culled = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kHeight), options);
+    const auto culled = voxelize::voxelize(toolpath, beads, plainLattice(0.05, kBeadHeight), options);
     return largestDifferenceOutside(*culled, *kept);
 }
 
 // A series of partial prints ends with the bytes of the whole.
 double seriesEndsAsTheWhole() {
     openvdb::initialize();
-    const gcode::Toolpath toolpath = crossedLines(kWidth, kHeight);
+    const gcode::Toolpath toolpath = crossedLines(kBeadWidth, kBeadHeight);
     const auto beads = allBeads(toolpath);
-    const voxelize::Lattice lattice = plainLattice(0.05, kHeight);
+    const voxelize::Lattice lattice = plainLattice(0.05, kBeadHeight);
     voxelize::Voxelizer voxelizer(toolpath, beads, lattice);
     for (std::uint32_t end = 1; end <= toolpath.beads.size(); ++end) voxelizer.printUntil(end);
     return largestDifference(*voxelizer.printAll(), *voxelize::voxelize(toolpath, beads, lattice));
@@ -128,8 +126,8 @@ double seriesEndsAsTheWhole() {
 // The sweep replaces what is inside only. Largest change outside, mm.
 double sweepChangesOutside() {
     openvdb::initialize();
-    const gcode::Toolpath toolpath = crossedLines(kWidth, kHeight);
-    const auto before = voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.05, kHeight));
+    const gcode::Toolpath toolpath = crossedLines(kBeadWidth, kBeadHeight);
+    const auto before = voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.05, kBeadHeight));
     const auto after = before->deepCopy();
     voxelize::sweepInterior(*after);
     return largestDifferenceOutside(*before, *after);
@@ -137,11 +135,12 @@ double sweepChangesOutside() {
 
 void addLattices(std::vector<StabilityCase>& cases) {
     for (const double count : {0.6, 0.9, 1.0, 1.7, 16.0, 64.0})
-        cases.push_back(field(fmt::format("{:g} voxels a layer", count), plainLattice(kHeight / count, kHeight)));
+        cases.push_back(
+            field(fmt::format("{:g} voxels a layer", count), plainLattice(kBeadHeight / count, kBeadHeight)));
     for (const double half_width : {1.0, 1.5, 7.3, 10.0})
         cases.push_back(
-            field(fmt::format("half-width of {:g} voxels", half_width), plainLattice(0.04, kHeight, half_width)));
-    voxelize::Lattice shifted = plainLattice(0.05, kHeight);
+            field(fmt::format("half-width of {:g} voxels", half_width), plainLattice(0.04, kBeadHeight, half_width)));
+    voxelize::Lattice shifted = plainLattice(0.05, kBeadHeight);
     shifted.origin_z = 0.025;
     cases.push_back(field("lattice half a voxel off the layers", shifted));
     shifted.origin_z = 1e-9;
@@ -151,18 +150,18 @@ void addLattices(std::vector<StabilityCase>& cases) {
 void addTransforms(std::vector<StabilityCase>& cases) {
     voxelize::VoxelizeOptions options;
     options.placement.unit = 0.001;
-    cases.push_back(field("in metres", plainLattice(0.05, kHeight), options));
+    cases.push_back(field("in metres", plainLattice(0.05, kBeadHeight), options));
     cases.push_back(refusal<UsageError>("in metres, voxels of 0.01 mm", [options] {
         gcode::Toolpath toolpath;
-        addBead(toolpath, 0, 0, kHeight, 1, 0, kHeight, kWidth, kHeight);
-        voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.01, kHeight), options);
+        addBead(toolpath, 0, 0, kBeadHeight, 1, 0, kBeadHeight, kBeadWidth, kBeadHeight);
+        voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(0.01, kBeadHeight), options);
     }));
     options.placement.unit = 1e6;
-    cases.push_back(field("in nanometres", plainLattice(0.05, kHeight), options));
+    cases.push_back(field("in nanometres", plainLattice(0.05, kBeadHeight), options));
     options.placement = {1, {1e6, -1e6, 1e6}, false};
-    cases.push_back(field("moved by a kilometre", plainLattice(0.05, kHeight), options));
+    cases.push_back(field("moved by a kilometre", plainLattice(0.05, kBeadHeight), options));
     options.placement = {0.1, {3, -2, 1}, true};
-    cases.push_back(field("y up, in centimetres, moved", plainLattice(0.05, kHeight), options));
+    cases.push_back(field("y up, in centimetres, moved", plainLattice(0.05, kBeadHeight), options));
     cases.push_back(refusal<InputError>("voxels that are sheared", [] {
         const auto grid = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1, openvdb::Vec3f(0), 0.1F);
         grid->transform().preShear(0.2, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
@@ -175,8 +174,8 @@ void addTransforms(std::vector<StabilityCase>& cases) {
     }));
     cases.push_back(refusal<UsageError>("more voxels than memory", [] {
         gcode::Toolpath toolpath;
-        addBead(toolpath, 0, 0, kHeight, 1000, 1000, kHeight, kWidth, kHeight);
-        voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(1e-4, kHeight));
+        addBead(toolpath, 0, 0, kBeadHeight, 1000, 1000, kBeadHeight, kBeadWidth, kBeadHeight);
+        voxelize::voxelize(toolpath, allBeads(toolpath), plainLattice(1e-4, kBeadHeight));
     }));
 }
 

@@ -31,7 +31,7 @@ using shade::Color;
 
 constexpr int kSide = 96;  // pixels of the frame
 
-std::unique_ptr<trace::Intersector> ball() {
+std::unique_ptr<trace::Intersector> ballShape() {
     openvdb::initialize();
     return march::makeBrickIntersector(
         *openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5, openvdb::Vec3f(0), 0.1F));
@@ -195,9 +195,9 @@ double sampleDisagrees(const shade::Brdf& brdf) {
     return largest;
 }
 
-// A matt ball of albedo 1 lit from behind the camera with irradiance pi: its middle shines with radiance 1.
+// A matt ballShape of albedo 1 lit from behind the camera with irradiance pi: its middle shines with radiance 1.
 double middleOfALitBall(double irradiance) {
-    const auto print = ball();
+    const auto print = ballShape();
     Picture picture{bare("lambert:1,1,1", "constant:0,0,0"), 4, 1, "direct"};
     picture.scene.camera.eye = glm::dvec3(0, -100, 0);
     picture.scene.camera.look_at = glm::dvec3(0);
@@ -229,12 +229,12 @@ double sunLosesLight(float degrees) {
 void addFurnaces(std::vector<StabilityCase>& cases) {
     const auto furnace = [&cases](std::string name, const std::string& brdf, int bounces, bool convex, double exact) {
         cases.push_back(light(std::move(name), "|mean - 1| in standard errors", 5, kErrors, [=] {
-            const auto print = convex ? ball() : grooves();
+            const auto print = convex ? ballShape() : grooves();
             const Picture picture{bare(brdf, "constant:1,1,1"), 64, bounces, "path"};
             return offByErrors(render(*print, picture), 1, exact);
         }));
     };
-    furnace("white furnace, matt ball", "lambert:1,1,1", 1, true, 1e-6);
+    furnace("white furnace, matt ballShape", "lambert:1,1,1", 1, true, 1e-6);
     furnace("white furnace, matt grooves, 64 bounces", "lambert:1,1,1", 64, false, 1e-6);
     // The coat's table holds energy to 1e-4 an event.
     for (const double alpha : {1.0, 0.3, 0.05, 0.005, 0.001})
@@ -245,7 +245,7 @@ void addFurnaces(std::vector<StabilityCase>& cases) {
             return brightest(render(*grooves(), {bare(brdf, "constant:0,0,0"), 16, 16, "path"}));
         }));
     cases.push_back(light("black body in a bright room", "brightest pixel", 0, "an albedo of 0 returns nothing", [] {
-        return brightest(render(*ball(), {bare("lambert:0,0,0", "constant:1e6,1e6,1e6"), 16, 8, "path"}));
+        return brightest(render(*ballShape(), {bare("lambert:0,0,0", "constant:1e6,1e6,1e6"), 16, 8, "path"}));
     }));
 }
 
@@ -262,7 +262,7 @@ void addSuns(std::vector<StabilityCase>& cases) {
                 }));
     for (const double irradiance : {1e-6, 1.0, 1e6})
         cases.push_back(
-            light(fmt::format("matt ball lit with {:g}", irradiance), "relative error of its middle", 3e-4,
+            light(fmt::format("matt ballShape lit with {:g}", irradiance), "relative error of its middle", 3e-4,
                   "a pixel sees normals within 0.014 and the trilinear one is off by voxel / 2R = 0.01: 1 - cos(0.024)",
                   [=] { return middleOfALitBall(irradiance); }));
     for (const float degrees : {0.001F, 0.53F, 90.0F})

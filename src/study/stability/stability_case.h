@@ -7,6 +7,12 @@
 
 namespace stratum::study {
 
+/// Of beads in cases that don't depend on it, mm.
+inline constexpr double kBeadWidth = 0.45, kBeadHeight = 0.2;
+
+/// The bound of fields that are exact but for rounding, in words.
+inline constexpr const char* kRoundings = "8 float roundings of the longest local length (leaf, band or half width)";
+
 struct StabilityCase {
     std::string family;    ///< toolpath, grid, rays or light
     std::string name;      ///< unique in its family

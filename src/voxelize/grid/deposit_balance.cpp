@@ -11,7 +11,7 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::size_t kColumnGrain = 16;
+constexpr std::size_t kBalanceGrain = 16;
 // Integers, because their sum does not depend on the order of threads; mm^3.
 constexpr double kUnit = 1e-9;
 
@@ -59,7 +59,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
                               const Lattice& lattice, const ColumnSource& columns, std::uint32_t end) {
     const std::size_t layers = toolpath.layer_count + std::size_t{1};
     tbb::enumerable_thread_specific<Sums> threads([layers] { return Sums(layers); });
-    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = columns();
         Sums& laid = threads.local();
         std::vector<double> scratch;

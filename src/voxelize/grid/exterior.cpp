@@ -45,7 +45,7 @@ struct Cell {
 };
 
 constexpr std::uint32_t kUnvisited = 0xffffffff;
-constexpr std::size_t kColumnGrain = 8;
+constexpr std::size_t kFloodGrain = 8;
 
 constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
 
@@ -274,7 +274,7 @@ private:
 
     // One round: the flood enters every queued leaf from its neighbours.
     void spread() {
-        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        parallelFor(bins_.size(), kFloodGrain, [&](std::size_t first, std::size_t last) {
             const auto start = Clock::now();
             double evaluating = 0;
             LeafColumn& column = columns_();
@@ -321,7 +321,7 @@ private:
     // Visits every leaf position beside one that was reached, on all threads.
     template <typename Body>
     void forEachNear(const Body& body) {
-        parallelFor(bins_.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
+        parallelFor(bins_.size(), kFloodGrain, [&](std::size_t first, std::size_t last) {
             const auto start = Clock::now();
             double evaluating = 0;
             LeafColumn& column = columns_();

@@ -19,7 +19,7 @@ using sample::little;
 
 const std::string kIni = little(0, 2);
 
-std::string errorOf(const std::string& bytes, const ContainerLimits& limits = {}) {
+std::string bgcodeError(const std::string& bytes, const ContainerLimits& limits = {}) {
     try {
         openBgcode(bytes, "a.bgcode", limits);
     } catch (const InputError& error) {
@@ -81,7 +81,7 @@ TEST(Bgcode, ThumbnailsAreNotLookedInto) {
 
 TEST(Bgcode, DamageNamesTheBlock) {
     const auto expect = [](const std::string& file, std::string_view part) {
-        const std::string message = errorOf(file);
+        const std::string message = bgcodeError(file);
         EXPECT_NE(message.find(part), std::string::npos) << message;
         EXPECT_TRUE(message.starts_with("a.bgcode: ")) << message;
     };
@@ -118,10 +118,10 @@ TEST(Bgcode, DamageNamesTheBlock) {
 TEST(Bgcode, ABombIsStopped) {
     ContainerLimits limits;
     limits.most_bytes = 10000;
-    EXPECT_NE(errorOf(sample::bgcode(sample::program(100), 1, 0), limits).find("unpacks to more than 10000 bytes"),
+    EXPECT_NE(bgcodeError(sample::bgcode(sample::program(100), 1, 0), limits).find("unpacks to more than 10000 bytes"),
               std::string::npos);
     const std::string metadata(std::size_t{5} << 20, 'x');
-    EXPECT_NE(errorOf(sample::bgcodeHeader() + block(2, 1, kIni, metadata)).find("of metadata"), std::string::npos);
+    EXPECT_NE(bgcodeError(sample::bgcodeHeader() + block(2, 1, kIni, metadata)).find("of metadata"), std::string::npos);
 }
 
 TEST(Bgcode, TheCorpusFileIsItsAsciiTwin) {

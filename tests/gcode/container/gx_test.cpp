@@ -13,7 +13,7 @@ namespace {
 
 using sample::little;
 
-std::string errorOf(const std::string& bytes) {
+std::string gxError(const std::string& bytes) {
     try {
         openGx(bytes, "a.gx");
     } catch (const InputError& error) {
@@ -48,18 +48,18 @@ TEST(Gx, ASecondThumbnailAsPng) {
 TEST(Gx, OffsetsThatCantBe) {
     const std::string text = sample::program(5);
     const std::string file = sample::gx(text);
-    EXPECT_NE(errorOf(file.substr(0, 40)).find("ends after 40"), std::string::npos);
+    EXPECT_NE(gxError(file.substr(0, 40)).find("ends after 40"), std::string::npos);
     for (const std::size_t offset : {std::size_t{0}, std::size_t{57}, file.size(), std::size_t{0xffffffff}}) {
         std::string bad = file;
         bad.replace(0x18, 4, little(offset, 4));
-        EXPECT_NE(errorOf(bad).find("byte 24"), std::string::npos) << offset;
+        EXPECT_NE(gxError(bad).find("byte 24"), std::string::npos) << offset;
     }
     // In the midst of the text a part of the print would be lost.
     for (const std::size_t more : {1U, 64U, 256U, 1024U}) {
         std::string bad = file;
         bad.replace(0x18, 4, little(file.size() - text.size() + more, 4));
         if (more >= 64) {
-            EXPECT_NE(errorOf(bad).find("in the midst"), std::string::npos) << more;
+            EXPECT_NE(gxError(bad).find("in the midst"), std::string::npos) << more;
         }
     }
 }

@@ -10,7 +10,7 @@
 namespace stratum::gcode {
 namespace {
 
-std::string errorOf(std::string_view bytes, const ContainerLimits& limits = {}) {
+std::string gzipError(std::string_view bytes, const ContainerLimits& limits = {}) {
     try {
         openGzip(bytes, "a.gz", limits);
     } catch (const InputError& error) {
@@ -36,24 +36,24 @@ TEST(Gzip, LargerThanAnyChunk) {
 TEST(Gzip, DamageIsNamed) {
     const std::string text = sample::program(50);
     const std::string packed = sample::gzip(text);
-    EXPECT_NE(errorOf(packed.substr(0, packed.size() / 2)).find("member 1 at byte"), std::string::npos);
-    EXPECT_NE(errorOf(packed + "garbage").find("another gzip member"), std::string::npos);
-    const std::string second = errorOf(packed + packed.substr(0, 100));
+    EXPECT_NE(gzipError(packed.substr(0, packed.size() / 2)).find("member 1 at byte"), std::string::npos);
+    EXPECT_NE(gzipError(packed + "garbage").find("another gzip member"), std::string::npos);
+    const std::string second = gzipError(packed + packed.substr(0, 100));
     EXPECT_NE(second.find("a.gz: gzip member 2 at byte"), std::string::npos) << second;
     std::string flipped = packed;
     flipped[flipped.size() - 6] ^= 1;
-    EXPECT_NE(errorOf(flipped).find("damaged"), std::string::npos);
+    EXPECT_NE(gzipError(flipped).find("damaged"), std::string::npos);
 }
 
 TEST(Gzip, ABombIsStopped) {
     const std::string bomb = sample::gzip(std::string(std::size_t{9} << 20, 'G'));
     ContainerLimits limits;
     limits.any_ratio_bytes = 1 << 20;
-    EXPECT_NE(errorOf(bomb, limits).find("unpacks to more than"), std::string::npos);
+    EXPECT_NE(gzipError(bomb, limits).find("unpacks to more than"), std::string::npos);
     limits.any_ratio_bytes = std::size_t{64} << 20;
-    EXPECT_EQ(errorOf(bomb, limits), "");
+    EXPECT_EQ(gzipError(bomb, limits), "");
     limits.most_bytes = 1 << 20;
-    EXPECT_NE(errorOf(bomb, limits).find("unpacks to more than"), std::string::npos);
+    EXPECT_NE(gzipError(bomb, limits).find("unpacks to more than"), std::string::npos);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::string_literals;
 
-struct Case {
+struct SniffCase {
     std::string bytes;
     std::string_view message;
 };
@@ -19,7 +19,7 @@ struct Case {
 TEST(Sniff, SaysWhatItIs) {
     std::string stl(80, ' ');
     stl += "\x02\0\0\0"s + std::string(100, 'x');
-    const Case cases[] = {
+    const SniffCase cases[] = {
         {"", "empty"},
         {"\x1f\x8b\x08\0\0"s, "gzip"},
         {"PK\x03\x04rest"s, "zip"},
@@ -29,7 +29,7 @@ TEST(Sniff, SaysWhatItIs) {
         {"\xff\xfeG\0\x31\0"s, "UTF-16"},
         {"G1 X1\n\0\0\0"s, "offset 6"},
     };
-    for (const Case& c : cases) {
+    for (const SniffCase& c : cases) {
         try {
             refuseOtherFormats(c.bytes, "a.gcode");
             ADD_FAILURE() << c.message;

@@ -15,7 +15,7 @@ namespace stratum::gcode {
 namespace {
 
 template <typename Error>
-std::string errorOf(const std::string& bytes, std::optional<int> plate = {}, const ContainerLimits& limits = {}) {
+std::string zipError(const std::string& bytes, std::optional<int> plate = {}, const ContainerLimits& limits = {}) {
     try {
         openZip(bytes, "a.zip", plate, limits);
     } catch (const Error& error) {
@@ -34,7 +34,7 @@ TEST(ZipContainer, TheOnlyPlate) {
     EXPECT_EQ(program.format, "3mf");
     EXPECT_EQ(program.text, text);
     EXPECT_EQ(openZip(file, "a", 7, {}).text, text);
-    EXPECT_NE(errorOf<UsageError>(file, 1).find("--plate 1: there is no such plate; it has 7"), std::string::npos);
+    EXPECT_NE(zipError<UsageError>(file, 1).find("--plate 1: there is no such plate; it has 7"), std::string::npos);
     EXPECT_TRUE(sample::samePrint(readProgram(file), readProgram(text)));
 }
 
@@ -43,7 +43,7 @@ TEST(ZipContainer, OneOfSeveralPlates) {
     const std::string file = sample::zip({{"Metadata/plate_10.gcode", "G1 X10\n"},
                                           {"Metadata/plate_2.gcode", text},
                                           {"Metadata/plate_x.gcode", "no plate"}});
-    EXPECT_NE(errorOf<UsageError>(file).find("a.zip: has 2 plates (2, 10); choose one, e.g. --plate 2"),
+    EXPECT_NE(zipError<UsageError>(file).find("a.zip: has 2 plates (2, 10); choose one, e.g. --plate 2"),
               std::string::npos);
     EXPECT_EQ(openZip(file, "a", 10, {}).text, "G1 X10\n");
     ReadOptions options;
@@ -60,17 +60,17 @@ TEST(ZipContainer, Ufp) {
 }
 
 TEST(ZipContainer, WithoutAProgram) {
-    EXPECT_NE(errorOf<InputError>(sample::zip({{"3D/3dmodel.model", "<model/>"}})).find("3MF model without G-code"),
+    EXPECT_NE(zipError<InputError>(sample::zip({{"3D/3dmodel.model", "<model/>"}})).find("3MF model without G-code"),
               std::string::npos);
-    EXPECT_NE(errorOf<InputError>(sample::zip({{"a.txt", "a"}})).find("1 entries, none of them"), std::string::npos);
-    EXPECT_NE(errorOf<InputError>("PK\x03\x04 and nothing").find("can't be read"), std::string::npos);
+    EXPECT_NE(zipError<InputError>(sample::zip({{"a.txt", "a"}})).find("1 entries, none of them"), std::string::npos);
+    EXPECT_NE(zipError<InputError>("PK\x03\x04 and nothing").find("can't be read"), std::string::npos);
 }
 
 TEST(ZipContainer, ABombIsStopped) {
     const std::string bomb = sample::ufp(std::string(std::size_t{9} << 20, 'G'));
     ContainerLimits limits;
     limits.any_ratio_bytes = 1 << 20;
-    EXPECT_NE(errorOf<InputError>(bomb, {}, limits).find("would unpack to 9437184"), std::string::npos);
+    EXPECT_NE(zipError<InputError>(bomb, {}, limits).find("would unpack to 9437184"), std::string::npos);
 }
 
 TEST(ZipContainer, TheCorpusUfp) {

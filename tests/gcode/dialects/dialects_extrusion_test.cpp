@@ -6,7 +6,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr Firmware kKlipper = Firmware::klipper;
 constexpr Firmware kReprap = Firmware::reprap;
 
@@ -230,7 +229,7 @@ const Dialect kExtrusion[] = {
      .rule = "the extruder runs between M101 and M103; beads of nominal section",
      .document = "reprap.org/wiki/G-code M101, M103 (BFB)",
      .beads = 2,
-     .filament = 2 * 10 * .25 * (.4 - .25 * (1 - kPi / 4)) / kFilamentArea,
+     .filament = 2 * 10 * .25 * (.4 - .25 * (1 - std::numbers::pi / 4)) / kFilamentArea,
      .warning = "M101 without E"},
     {.name = "bfb_with_skeinforge_widths",
      .program =
@@ -238,7 +237,7 @@ const Dialect kExtrusion[] = {
      .rule = "width and height from Skeinforge's header",
      .document = "Skeinforge export",
      .beads = 1,
-     .filament = 10 * .3 * (.5 - .3 * (1 - kPi / 4)) / kFilamentArea,
+     .filament = 10 * .3 * (.5 - .3 * (1 - std::numbers::pi / 4)) / kFilamentArea,
      .height = .3,
      .warning = "0.5 x 0.3"},
     {.name = "m101_beside_e",
@@ -288,7 +287,7 @@ const Dialect kTools[] = {
      .document = "PrusaSlicer PrintConfig.cpp",
      .beads = 1,
      .filament = 1,
-     .volume = kPi / 4 * 9},
+     .volume = std::numbers::pi / 4 * 9},
     {.name = "set_pressure_advance",
      .program = "M83\nSET_PRESSURE_ADVANCE ADVANCE=0.045\nG1 Z.2\nG1 X10 E1\n",
      .rule = "changes no volume",
@@ -337,8 +336,6 @@ const Dialect kTools[] = {
      .filament = 1,
      .warning = "PURGE_LINE"},
 };
-
-std::string nameOf(const testing::TestParamInfo<Dialect>& info) { return std::string(info.param.name); }
 
 INSTANTIATE_TEST_SUITE_P(Extrusion, ExtrusionDialect, testing::ValuesIn(kExtrusion), nameOf);
 INSTANTIATE_TEST_SUITE_P(Tools, ExtrusionDialect, testing::ValuesIn(kTools), nameOf);

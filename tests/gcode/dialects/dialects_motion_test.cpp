@@ -6,7 +6,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr Firmware kKlipper = Firmware::klipper;
 constexpr Firmware kReprap = Firmware::reprap;
 
@@ -285,28 +284,28 @@ const Dialect kCurves[] = {
      .beads = 1,
      .filament = 1,
      .end = Point{0, -1, .2},
-     .sweep = -kPi / 2},
+     .sweep = -std::numbers::pi / 2},
     {.name = "g3_with_r",
      .program = "M83\nG1 X1 Z.2\nG3 X0 Y1 R1 E1\n",
      .rule = "counter-clockwise, R > 0: the shorter way",
      .document = "marlinfw.org G002",
      .beads = 1,
      .filament = 1,
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "g3_with_negative_r",
      .program = "M83\nG1 X1 Z.2\nG3 X0 Y1 R-1 E1\n",
      .rule = "R < 0: the longer way",
      .document = "Marlin G2_G3.cpp",
      .beads = 1,
      .filament = 1,
-     .sweep = 3 * kPi / 2},
+     .sweep = 3 * std::numbers::pi / 2},
     {.name = "r_and_i",
      .program = "M83\nG1 X1 Z.2\nG3 X0 Y1 R1 I9 J9 E1\n",
      .rule = "where both are given, R counts",
      .document = "Marlin G2_G3.cpp",
      .beads = 1,
      .filament = 1,
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "arc_without_a_centre",
      .program = "M83\nG1 X1 Z.2\nG3 X0 Y1 E1\n",
      .rule = "neither I, J nor R: no arc; remarked, and drawn straight",
@@ -322,7 +321,7 @@ const Dialect kCurves[] = {
      .beads = 1,
      .filament = 25.4,
      .end = Point{0, 25.4, .254},
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "full_circle",
      .program = "M83\nG1 X1 Z.2\nG3 I-1 E1\n",
      .rule = "without an end it comes back",
@@ -330,7 +329,7 @@ const Dialect kCurves[] = {
      .beads = 1,
      .filament = 1,
      .end = Point{1, 0, .2},
-     .sweep = 2 * kPi},
+     .sweep = 2 * std::numbers::pi},
     {.name = "helix",
      .program = "; layer_height = 0.2\nM83\nG1 X1 Z.2\nG3 X1 Y0 Z1 I-1 E1\n",
      .rule = "z rises with the angle",
@@ -338,7 +337,7 @@ const Dialect kCurves[] = {
      .beads = 1,
      .filament = 1,
      .end = Point{1, 0, 1},
-     .sweep = 2 * kPi},
+     .sweep = 2 * std::numbers::pi},
     {.name = "p_turns",
      .program = "; layer_height = 0.2\nM83\nG1 X1 Z.2\nG3 X0 Y1 Z1.1 I-1 P2 E9\n",
      .rule = "P adds whole turns: one bead each, E and z by the angle",
@@ -347,7 +346,7 @@ const Dialect kCurves[] = {
      .filament = 9,
      .start = Point{1, 0, 1},
      .end = Point{0, 1, 1.1},
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "arc_ends_in_g91",
      .program = "M83\nG1 X10 Y10 Z.2\nG91\nM83\nG3 X-1 Y1 I-1 E1\n",
      .rule = "I and J are relative anyway, X and Y too",
@@ -355,14 +354,14 @@ const Dialect kCurves[] = {
      .beads = 1,
      .filament = 1,
      .end = Point{9, 11, .2},
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "g17_ignores_k",
      .program = "M83\nG17\nG1 X1 Z.2\nG3 X0 Y1 I-1 K7 E1\n",
      .rule = "K is no offset in the bed plane",
      .document = "NIST RS274/NGC 3.5.3",
      .beads = 1,
      .filament = 1,
-     .sweep = kPi / 2},
+     .sweep = std::numbers::pi / 2},
     {.name = "g18_upright_arc",
      .program = "; layer_height = 0.2\nM83\nG18\nG1 X0 Z1\nG3 X1 Z2 I1 K0 E1\n",
      .rule = "from z to x about (I, K); straight pieces within 5 um",
@@ -392,8 +391,6 @@ const Dialect kCurves[] = {
      .filament = 1,
      .end = Point{8, 0, .2}},
 };
-
-std::string nameOf(const testing::TestParamInfo<Dialect>& info) { return std::string(info.param.name); }
 
 INSTANTIATE_TEST_SUITE_P(Frames, MotionDialect, testing::ValuesIn(kFrames), nameOf);
 INSTANTIATE_TEST_SUITE_P(Curves, MotionDialect, testing::ValuesIn(kCurves), nameOf);

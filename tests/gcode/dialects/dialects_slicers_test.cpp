@@ -360,8 +360,6 @@ const Dialect kHeights[] = {
      .quiet = true},
 };
 
-std::string nameOf(const testing::TestParamInfo<Dialect>& info) { return std::string(info.param.name); }
-
 INSTANTIATE_TEST_SUITE_P(Lines, SlicerDialect, testing::ValuesIn(kLines), nameOf);
 INSTANTIATE_TEST_SUITE_P(Tags, SlicerDialect, testing::ValuesIn(kTags), nameOf);
 INSTANTIATE_TEST_SUITE_P(Heights, SlicerDialect, testing::ValuesIn(kHeights), nameOf);

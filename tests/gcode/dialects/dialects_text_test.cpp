@@ -160,8 +160,6 @@ const Dialect kTexts[] = {
      .quiet = true},
 };
 
-std::string nameOf(const testing::TestParamInfo<Dialect>& info) { return std::string(info.param.name); }
-
 INSTANTIATE_TEST_SUITE_P(Texts, TextDialect, testing::ValuesIn(kTexts), nameOf);
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 void expectStart(const Bead& bead, double x, double y, double z) {
     EXPECT_NEAR(bead.x0, x, 1e-12);
     EXPECT_NEAR(bead.y0, y, 1e-12);
@@ -147,7 +145,7 @@ TEST(Machine, Volumetric) {
 TEST(Machine, VolumetricBySettings) {
     const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG1 X9 E3\n; use_volumetric_e = 1\n; filament_diameter = 3\n");
     EXPECT_NEAR(toolpath.extruded_mm3, 3, 1e-12);
-    EXPECT_NEAR(toolpath.filament_mm, 3 / (kPi / 4 * 9), 1e-12);
+    EXPECT_NEAR(toolpath.filament_mm, 3 / (std::numbers::pi / 4 * 9), 1e-12);
     EXPECT_DOUBLE_EQ(toolpath.filament_diameter, 3);
 }
 
@@ -160,10 +158,10 @@ TEST(Machine, TheLostLineEndAfterM200) {
 
 TEST(Machine, FilamentDiameter) {
     const std::string program = "M83\nG1 Z.2\nG1 X9 E1\nT1\nG1 X0 E1\n; filament_diameter = 1.75,3\n";
-    EXPECT_NEAR(readProgram(program).extruded_mm3, kPi / 4 * (1.75 * 1.75 + 9), 1e-12);
+    EXPECT_NEAR(readProgram(program).extruded_mm3, std::numbers::pi / 4 * (1.75 * 1.75 + 9), 1e-12);
     ReadOptions options;
     options.filament_diameters = {2};
-    EXPECT_NEAR(readProgram(program, options).extruded_mm3, 2 * kPi, 1e-12);
+    EXPECT_NEAR(readProgram(program, options).extruded_mm3, 2 * std::numbers::pi, 1e-12);
 }
 
 TEST(Machine, FlowScalesVolumeNotFilament) {
@@ -182,10 +180,10 @@ TEST(Machine, FirmwareRetractionIsNoBead) {
 TEST(Machine, ArcsStayArcs) {
     const Toolpath toolpath = readProgram("M83\nG1 X1 Z.2\nG3 X0 Y1 I-1 J0 E.1\nG2 X1 Y0 R1 E.1\nG2 X1 Y0 I-1 E.1\n");
     ASSERT_EQ(toolpath.arcs.size(), 3U);
-    EXPECT_NEAR(toolpath.arcs[0].sweep, kPi / 2, 1e-12);
-    EXPECT_NEAR(toolpath.arcs[1].sweep, -kPi / 2, 1e-12);
+    EXPECT_NEAR(toolpath.arcs[0].sweep, std::numbers::pi / 2, 1e-12);
+    EXPECT_NEAR(toolpath.arcs[1].sweep, -std::numbers::pi / 2, 1e-12);
     EXPECT_NEAR(toolpath.arcs[1].center_x, 0 + 1 - 1, 1e-12);
-    EXPECT_NEAR(toolpath.arcs[2].sweep, -2 * kPi, 1e-12);
+    EXPECT_NEAR(toolpath.arcs[2].sweep, -2 * std::numbers::pi, 1e-12);
     for (std::int32_t i = 0; i < 3; ++i) EXPECT_EQ(toolpath.beads[static_cast<std::size_t>(i)].arc, i);
     EXPECT_NEAR(beadVolume(toolpath), 0.3 * kFilamentArea, 1e-5);
 }
@@ -194,13 +192,13 @@ TEST(Machine, ArcEndsInRelativeMode) {
     const Toolpath toolpath = readProgram("M83\nG1 X10 Y10 Z.2\nG91\nM83\nG3 X-1 Y1 I-1 E1\n");
     expectEnd(toolpath.beads[0], 9, 11, 0.2);
     EXPECT_NEAR(toolpath.arcs[0].center_x, 9, 1e-12);
-    EXPECT_NEAR(toolpath.arcs[0].sweep, kPi / 2, 1e-12);
+    EXPECT_NEAR(toolpath.arcs[0].sweep, std::numbers::pi / 2, 1e-12);
 }
 
 TEST(Machine, Helix) {
     const Toolpath toolpath = readProgram("; layer_height = 0.2\nM83\nG1 X3 Z.2\nG3 X3 Y0 Z4.2 I-3 E5\n");
     ASSERT_EQ(toolpath.beads.size(), 1U);
-    EXPECT_NEAR(beadLength(toolpath, toolpath.beads[0]), std::hypot(6 * kPi, 4), 1e-9);
+    EXPECT_NEAR(beadLength(toolpath, toolpath.beads[0]), std::hypot(6 * std::numbers::pi, 4), 1e-9);
     EXPECT_NEAR(beadVolume(toolpath), 5 * kFilamentArea, 1e-5);
     EXPECT_FLOAT_EQ(toolpath.runs[0].height, 0.2F);
 }

@@ -47,12 +47,12 @@ std::vector<std::string> lex(std::string_view bytes) {
     return lines;
 }
 
-struct Case {
+struct LexedLine {
     std::string_view source;
     std::string_view expected;
 };
 
-class LexerLine : public testing::TestWithParam<Case> {};
+class LexerLine : public testing::TestWithParam<LexedLine> {};
 
 TEST_P(LexerLine, ReadsAs) {
     const auto lines = lex(GetParam().source);
@@ -62,47 +62,51 @@ TEST_P(LexerLine, ReadsAs) {
 
 INSTANTIATE_TEST_SUITE_P(
     Table, LexerLine,
-    testing::Values(Case{"G1 X1.5 Y-2 E.3 F1800", "<G1 E0.3 F1800 X1.5 Y-2>"}, Case{"G1X1Y2E.3", "<G1 E0.3 X1 Y2>"},
-                    Case{"g1 x1 y2", "<G1 X1 Y2>"}, Case{"G01 X1", "<G1 X1>"}, Case{"G 1 X 10 Y 20", "<G1 X10 Y20>"},
-                    Case{"\tG1\tX1 \t", "<G1 X1>"}, Case{"G1 X1E5", "<G1 E5 X1>"}, Case{"G92.1", "<G92.1>"},
-                    Case{"N12 G1 X3*85", "<G1 X3>"}, Case{"N12G1X3 *85", "<G1 X3>"}, Case{"n7 M82", "<M82>"},
-                    Case{"N5", ""}, Case{"N3 T0*57", "<T0>"}, Case{"T1", "<T1>"}, Case{"T-1", "<T-1>"},
-                    Case{"T?", "<T-1>"}, Case{"Tx ; t", "<T-1>| t"}, Case{"T12 ; tool", "<T12>| tool"},
-                    Case{"M104 T1 S200", "<M104 S200 T1>"}, Case{"M84 X Y E", "<M84 E? X? Y?>"},
-                    Case{"G28 X", "<G28 X?>"}, Case{"X1 Y2", "< X1 Y2>"}, Case{"F1200", "< F1200>"},
-                    Case{"G21 G90", "<G21><G90>"}, Case{"G53 G0 X1", "<G53><G0 X1>"}, Case{"M11P1", "<M11 P1>"},
-                    Case{"M200 D1.75nG28", "<M200 D1.75 N?><G28>"},  // a slicer's literal n for a line end
-                    Case{"; only this", "| only this"}, Case{";", ""}, Case{"(a) G1 X1 (b)", "<G1 X1>|a"},
-                    Case{"G1 (mid) X1", "<G1 X1>|mid"}, Case{"G1 X1 (open", "<G1 X1>|open"},
-                    Case{"G0 X1;(Go)", "<G0 X1>|(Go)"}, Case{"G1 X1 ; a ; b", "<G1 X1>| a ; b"}, Case{"%", ""},
-                    Case{"M117 G1 X5 (no)", "<M117>"}, Case{"M117 Hi ; c", "<M117>| c"}, Case{"M23 file.gco", "<M23>"},
-                    Case{"M862.3 P \"MK3S\"", "<M862.3 P?>"}, Case{"M862.6 P\"Input shaper\" ; x", "<M862.6 P?>| x"},
-                    Case{"M551 P\"a;b", "<M551>|b"}, Case{"PRINT_START BED=110", "<PRINT_START>"},
-                    Case{"print_end ; bye", "<print_end>| bye"}, Case{"SET_PIN PIN=a VALUE=1", "<SET_PIN>"},
-                    Case{"G1 Xnan", "<G1 A? N? X?>"}, Case{"G1 X--5", "<G1 X?>!"}, Case{"G1 X1.2.3", "<G1 X1.2>!"},
-                    Case{"G1 X1 \xC3\xA9", "<G1 X1>!"}, Case{"123", "!"}, Case{"@pause", "<pause>!"},
-                    Case{"M109 S[temp] T0", "<M109 E? M? P? S? T0>!"}, Case{"\xEF\xBB\xBFG1 X1", "<G1 X1>"},
-                    Case{"G99999999999999999999", "<G9999999>"}));
+    testing::Values(
+        LexedLine{"G1 X1.5 Y-2 E.3 F1800", "<G1 E0.3 F1800 X1.5 Y-2>"}, LexedLine{"G1X1Y2E.3", "<G1 E0.3 X1 Y2>"},
+        LexedLine{"g1 x1 y2", "<G1 X1 Y2>"}, LexedLine{"G01 X1", "<G1 X1>"}, LexedLine{"G 1 X 10 Y 20", "<G1 X10 Y20>"},
+        LexedLine{"\tG1\tX1 \t", "<G1 X1>"}, LexedLine{"G1 X1E5", "<G1 E5 X1>"}, LexedLine{"G92.1", "<G92.1>"},
+        LexedLine{"N12 G1 X3*85", "<G1 X3>"}, LexedLine{"N12G1X3 *85", "<G1 X3>"}, LexedLine{"n7 M82", "<M82>"},
+        LexedLine{"N5", ""}, LexedLine{"N3 T0*57", "<T0>"}, LexedLine{"T1", "<T1>"}, LexedLine{"T-1", "<T-1>"},
+        LexedLine{"T?", "<T-1>"}, LexedLine{"Tx ; t", "<T-1>| t"}, LexedLine{"T12 ; tool", "<T12>| tool"},
+        LexedLine{"M104 T1 S200", "<M104 S200 T1>"}, LexedLine{"M84 X Y E", "<M84 E? X? Y?>"},
+        LexedLine{"G28 X", "<G28 X?>"}, LexedLine{"X1 Y2", "< X1 Y2>"}, LexedLine{"F1200", "< F1200>"},
+        LexedLine{"G21 G90", "<G21><G90>"}, LexedLine{"G53 G0 X1", "<G53><G0 X1>"}, LexedLine{"M11P1", "<M11 P1>"},
+        LexedLine{"M200 D1.75nG28", "<M200 D1.75 N?><G28>"},  // a slicer's literal n for a line end
+        LexedLine{"; only this", "| only this"}, LexedLine{";", ""}, LexedLine{"(a) G1 X1 (b)", "<G1 X1>|a"},
+        LexedLine{"G1 (mid) X1", "<G1 X1>|mid"}, LexedLine{"G1 X1 (open", "<G1 X1>|open"},
+        LexedLine{"G0 X1;(Go)", "<G0 X1>|(Go)"}, LexedLine{"G1 X1 ; a ; b", "<G1 X1>| a ; b"}, LexedLine{"%", ""},
+        LexedLine{"M117 G1 X5 (no)", "<M117>"}, LexedLine{"M117 Hi ; c", "<M117>| c"},
+        LexedLine{"M23 file.gco", "<M23>"}, LexedLine{"M862.3 P \"MK3S\"", "<M862.3 P?>"},
+        LexedLine{"M862.6 P\"Input shaper\" ; x", "<M862.6 P?>| x"}, LexedLine{"M551 P\"a;b", "<M551>|b"},
+        LexedLine{"PRINT_START BED=110", "<PRINT_START>"}, LexedLine{"print_end ; bye", "<print_end>| bye"},
+        LexedLine{"SET_PIN PIN=a VALUE=1", "<SET_PIN>"}, LexedLine{"G1 Xnan", "<G1 A? N? X?>"},
+        LexedLine{"G1 X--5", "<G1 X?>!"}, LexedLine{"G1 X1.2.3", "<G1 X1.2>!"}, LexedLine{"G1 X1 \xC3\xA9", "<G1 X1>!"},
+        LexedLine{"123", "!"}, LexedLine{"@pause", "<pause>!"}, LexedLine{"M109 S[temp] T0", "<M109 E? M? P? S? T0>!"},
+        LexedLine{"\xEF\xBB\xBFG1 X1", "<G1 X1>"}, LexedLine{"G99999999999999999999", "<G9999999>"}));
 
-INSTANTIATE_TEST_SUITE_P(
-    TextIsNoCommand, LexerLine,
-    testing::Values(Case{"M486 AGlock g19 mag.stl", "<M486>"}, Case{"M486 A\"gear; G28.stl\" ; c", "<M486>| c"},
-                    Case{"M486 S1 Abox_G1_X99.stl", "<M486 S1>"}, Case{"M486 T2", "<M486 T2>"},
-                    Case{"M1 use g92 X5", "<M1>"}, Case{"M0 click", "<M0>"}, Case{"M98 P/macros/g28.g", "<M98>"},
-                    Case{"M810 G1 X5 E5", "<M810>"}, Case{"M1002 judge_flag g29_before_print_flag", "<M1002>"},
-                    Case{"M1006 A0 B10 L100 C37 D10 M60 E37 F10 N60", "<M1006>"}, Case{"M820 G1 X5", "<M820><G1 X5>"}));
+INSTANTIATE_TEST_SUITE_P(TextIsNoCommand, LexerLine,
+                         testing::Values(LexedLine{"M486 AGlock g19 mag.stl", "<M486>"},
+                                         LexedLine{"M486 A\"gear; G28.stl\" ; c", "<M486>| c"},
+                                         LexedLine{"M486 S1 Abox_G1_X99.stl", "<M486 S1>"},
+                                         LexedLine{"M486 T2", "<M486 T2>"}, LexedLine{"M1 use g92 X5", "<M1>"},
+                                         LexedLine{"M0 click", "<M0>"}, LexedLine{"M98 P/macros/g28.g", "<M98>"},
+                                         LexedLine{"M810 G1 X5 E5", "<M810>"},
+                                         LexedLine{"M1002 judge_flag g29_before_print_flag", "<M1002>"},
+                                         LexedLine{"M1006 A0 B10 L100 C37 D10 M60 E37 F10 N60", "<M1006>"},
+                                         LexedLine{"M820 G1 X5", "<M820><G1 X5>"}));
 
 INSTANTIATE_TEST_SUITE_P(Foreign, LexerLine,
-                         testing::Values(Case{"Q603 MINX-37.50 MAXY5", "<~Q603 A? I? M? N? Q603 X? Y5>"},
-                                         Case{"S1000 X5", "<~S1000 S1000 X5>"}, Case{"G X5", "<~G G? X5>"},
-                                         Case{"Y5 E1", "< E1 Y5>"}, Case{"I1 J2 X3", "< I1 J2 X3>"},
-                                         Case{"/ G1 X50", "/"}, Case{"// G1 X50", ""}, Case{"N4 /G1 X50", "/"},
-                                         Case{"G1 X5 / 2", "<G1 X5>!"}));
+                         testing::Values(LexedLine{"Q603 MINX-37.50 MAXY5", "<~Q603 A? I? M? N? Q603 X? Y5>"},
+                                         LexedLine{"S1000 X5", "<~S1000 S1000 X5>"}, LexedLine{"G X5", "<~G G? X5>"},
+                                         LexedLine{"Y5 E1", "< E1 Y5>"}, LexedLine{"I1 J2 X3", "< I1 J2 X3>"},
+                                         LexedLine{"/ G1 X50", "/"}, LexedLine{"// G1 X50", ""},
+                                         LexedLine{"N4 /G1 X50", "/"}, LexedLine{"G1 X5 / 2", "<G1 X5>!"}));
 
 INSTANTIATE_TEST_SUITE_P(Expressions, LexerLine,
-                         testing::Values(Case{"G1 F{60*var.x2}", "<G1 F{}>"},
-                                         Case{"G1 X{move.axes[0].max - 5} Y3 E{a{1}}", "<G1 E{} X{} Y3>"},
-                                         Case{"G1 X{open Y5", "<G1 X{}>"}, Case{"G1 X{1} X2", "<G1 X2>"}));
+                         testing::Values(LexedLine{"G1 F{60*var.x2}", "<G1 F{}>"},
+                                         LexedLine{"G1 X{move.axes[0].max - 5} Y3 E{a{1}}", "<G1 E{} X{} Y3>"},
+                                         LexedLine{"G1 X{open Y5", "<G1 X{}>"}, LexedLine{"G1 X{1} X2", "<G1 X2>"}));
 
 TEST(Lexer, LineEndsOfEveryKind) {
     EXPECT_EQ(lex("G1\nG2\r\nG3\rG4"), (std::vector<std::string>{"<G1>", "<G2>", "<G3>", "<G4>"}));

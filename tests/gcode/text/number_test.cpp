@@ -9,14 +9,14 @@
 namespace stratum::gcode {
 namespace {
 
-struct Case {
+struct NumberCase {
     std::string_view text;
     double value;
     std::string_view rest;  // what is left unread
 };
 
 TEST(Number, GrammarOfGcode) {
-    constexpr Case kCases[] = {
+    constexpr NumberCase kCases[] = {
         {"1", 1, ""},
         {"-1", -1, ""},
         {"+1.5", 1.5, ""},
@@ -38,7 +38,7 @@ TEST(Number, GrammarOfGcode) {
         {"00000000000000000000000000000000001.5", 1.5, ""},  // more digits than a 64-bit mantissa
         {"-123456789012345678901234567890", -1.2345678901234568e29, ""},
     };
-    for (const Case& c : kCases) {
+    for (const NumberCase& c : kCases) {
         const char* p = c.text.data();
         const char* const end = p + c.text.size();
         double value = -77;

@@ -8,7 +8,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr bool kClockwise = true;
 constexpr bool kCounterClockwise = false;
 
@@ -21,33 +20,33 @@ void expectArc(const std::optional<Arc>& arc, double x, double y, double sweep) 
 
 TEST(Arc, FromOffset) {
     // From (1,0) to (0,1) about the origin: a quarter one way, three quarters the other.
-    expectArc(arcFromOffset({1, 0}, {0, 1}, {-1, 0}, kCounterClockwise), 0, 0, kPi / 2);
-    expectArc(arcFromOffset({1, 0}, {0, 1}, {-1, 0}, kClockwise), 0, 0, -1.5 * kPi);
-    expectArc(arcFromOffset({10, 5}, {14, 5}, {2, 0}, kClockwise), 12, 5, -kPi);
-    expectArc(arcFromOffset({10, 5}, {14, 5}, {2, 0}, kCounterClockwise), 12, 5, kPi);
+    expectArc(arcFromOffset({1, 0}, {0, 1}, {-1, 0}, kCounterClockwise), 0, 0, std::numbers::pi / 2);
+    expectArc(arcFromOffset({1, 0}, {0, 1}, {-1, 0}, kClockwise), 0, 0, -1.5 * std::numbers::pi);
+    expectArc(arcFromOffset({10, 5}, {14, 5}, {2, 0}, kClockwise), 12, 5, -std::numbers::pi);
+    expectArc(arcFromOffset({10, 5}, {14, 5}, {2, 0}, kCounterClockwise), 12, 5, std::numbers::pi);
 }
 
 TEST(Arc, FullCircle) {
-    expectArc(arcFromOffset({3, 3}, {3, 3}, {0, -2}, kCounterClockwise), 3, 1, 2 * kPi);
-    expectArc(arcFromOffset({3, 3}, {3, 3}, {0, -2}, kClockwise), 3, 1, -2 * kPi);
+    expectArc(arcFromOffset({3, 3}, {3, 3}, {0, -2}, kCounterClockwise), 3, 1, 2 * std::numbers::pi);
+    expectArc(arcFromOffset({3, 3}, {3, 3}, {0, -2}, kClockwise), 3, 1, -2 * std::numbers::pi);
 }
 
 TEST(Arc, FromRadiusOfEitherSign) {
     // NIST: a positive radius turns through less than 180 degrees, a negative one through more.
-    expectArc(arcFromRadius({1, 0}, {0, 1}, 1, kCounterClockwise), 0, 0, kPi / 2);
-    expectArc(arcFromRadius({1, 0}, {0, 1}, -1, kCounterClockwise), 1, 1, 1.5 * kPi);
-    expectArc(arcFromRadius({1, 0}, {0, 1}, 1, kClockwise), 1, 1, -kPi / 2);
-    expectArc(arcFromRadius({1, 0}, {0, 1}, -1, kClockwise), 0, 0, -1.5 * kPi);
-    expectArc(arcFromRadius({0, 0}, {4, 0}, 2, kClockwise), 2, 0, -kPi);
+    expectArc(arcFromRadius({1, 0}, {0, 1}, 1, kCounterClockwise), 0, 0, std::numbers::pi / 2);
+    expectArc(arcFromRadius({1, 0}, {0, 1}, -1, kCounterClockwise), 1, 1, 1.5 * std::numbers::pi);
+    expectArc(arcFromRadius({1, 0}, {0, 1}, 1, kClockwise), 1, 1, -std::numbers::pi / 2);
+    expectArc(arcFromRadius({1, 0}, {0, 1}, -1, kClockwise), 0, 0, -1.5 * std::numbers::pi);
+    expectArc(arcFromRadius({0, 0}, {4, 0}, 2, kClockwise), 2, 0, -std::numbers::pi);
 }
 
 TEST(Arc, ARadiusRoundedDownStillReaches) {
     const auto arc = arcFromRadius({0, 0}, {4, 0}, 1.9996, kCounterClockwise);
-    expectArc(arc, 2, 0, kPi);
+    expectArc(arc, 2, 0, std::numbers::pi);
 }
 
 TEST(Arc, RoundedEndsAreForgiven) {
-    expectArc(arcFromOffset({1, 0}, {0, 1.02}, {-1, 0}, kCounterClockwise), 0, 0, kPi / 2);
+    expectArc(arcFromOffset({1, 0}, {0, 1.02}, {-1, 0}, kCounterClockwise), 0, 0, std::numbers::pi / 2);
 }
 
 TEST(Arc, WhatIsNone) {

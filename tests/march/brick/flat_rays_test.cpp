@@ -14,14 +14,14 @@
 namespace stratum::march {
 namespace {
 
-constexpr float kVoxel = 0.1F;  // mm
-constexpr int kEdge = 64;       // voxels
+constexpr float kFlatVoxel = 0.1F;  // mm
+constexpr int kEdge = 64;           // voxels
 
 // A plate whose top lies on the voxel plane z = 0. As in prints, the samples there are zeros but for the rounding of
 // floats: some are inside.
 openvdb::FloatGrid::Ptr plate() {
-    auto grid = openvdb::FloatGrid::create(3 * kVoxel);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(static_cast<double>(kVoxel)));
+    auto grid = openvdb::FloatGrid::create(3 * kFlatVoxel);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(static_cast<double>(kFlatVoxel)));
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     grid->setName("surface");
     std::mt19937 random(3);
@@ -30,16 +30,16 @@ openvdb::FloatGrid::Ptr plate() {
     for (int x = 0; x < kEdge; ++x)
         for (int y = 0; y < kEdge; ++y)
             for (int z = -3; z <= 3; ++z)
-                accessor.setValue({x, y, z}, z == 0 ? rounding(random) : kVoxel * static_cast<float>(z));
+                accessor.setValue({x, y, z}, z == 0 ? rounding(random) : kFlatVoxel * static_cast<float>(z));
     return grid;
 }
 
-struct Compared {
+struct ComparedRays {
     int hits = 0, extra = 0, missed = 0;
     double farthest = 0;  // mm between the hits of both
 };
 
-Compared compare(const std::vector<trace::Ray>& rays) {
+ComparedRays compare(const std::vector<trace::Ray>& rays) {
     openvdb::initialize();
     const auto grid = plate();
     const auto floats = makeBrickIntersector(*grid, BrickValues::Float32);
@@ -48,7 +48,7 @@ Compared compare(const std::vector<trace::Ray>& rays) {
     std::vector<trace::Hit> found(rays.size());
     floats->makeTracer()->intersectStream(rays, expected);
     quanta->makeTracer()->intersectStream(rays, found);
-    Compared result;
+    ComparedRays result;
     for (std::size_t n = 0; n < rays.size(); ++n) {
         const bool hit = std::isfinite(expected[n].t);
         result.hits += hit ? 1 : 0;
@@ -78,10 +78,10 @@ TEST(FlatRays, SixteenBitsAnswerAsFloatsDoAlongFlats) {
         ray.direction = glm::normalize(glm::dvec3(1, 0, -slope));
         falling.push_back(ray);
     }
-    const Compared past = compare(passing);
+    const ComparedRays past = compare(passing);
     EXPECT_EQ(past.hits, 0);
     EXPECT_EQ(past.extra, 0);
-    const Compared down = compare(falling);
+    const ComparedRays down = compare(falling);
     EXPECT_EQ(down.hits, 4096);
     EXPECT_EQ(down.missed, 0);
     // 3e-8 mm of height at a slope of 1e-5.

@@ -6,6 +6,7 @@
 #include "rubble.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/tools/ChangeBackground.h>
 
 #include <cmath>
 
@@ -44,6 +45,27 @@ TEST_P(Relaxation, FindsAlmostAllThatIsThere) {
     EXPECT_GT(hits, 5000);
     EXPECT_LT(wrong, hits / 100);
     EXPECT_LT(sum / hits, 2e-3);
+}
+
+TEST(SphereIntersector, StepsByTheLargestSlopeThatTheGridStates) {
+    const auto grid = test::rubble(0.1F, false);
+    const auto steep = grid->deepCopy();
+    for (auto voxel = steep->beginValueAll(); voxel; ++voxel) voxel.setValue(10 * *voxel);
+    openvdb::tools::changeBackground(steep->tree(), 10 * grid->background());
+    const auto misses = [&](const openvdb::FloatGrid::ConstPtr& traced) {
+        const auto exact = makeBrickIntersector(*grid);
+        const auto oracle = exact->makeTracer();
+        const auto intersector = makeSphereIntersector(traced, 1);
+        const auto tracer = intersector->makeTracer();
+        int wrong = 0;
+        for (const trace::Ray& ray : test::randomRays(5000, 4, 0.1, 31))
+            if (glm::length(ray.origin) < 1e5 && oracle->occluded(ray) != tracer->occluded(ray)) ++wrong;
+        return wrong;
+    };
+    const int plain = misses(grid);
+    EXPECT_GT(misses(steep), 10 * (plain + 1));
+    steep->insertMeta("largest_slope", openvdb::DoubleMetadata(10));
+    EXPECT_LE(misses(steep), 2 * plain + 5);
 }
 
 TEST(SphereIntersector, FarAndDegenerateRaysEnd) {

@@ -15,7 +15,7 @@ namespace {
 
 using shade::Aov;
 
-shade::RenderResult rendered(const shade::RenderOptions& options) {
+shade::RenderResult renderedLayers(const shade::RenderOptions& options) {
     static const auto ball = test::sphere({0, 0, 0}, 1.0);
     shade::SceneOptions scene_options;
     scene_options.brdf = "lambert:0.5,0.25,0.125";
@@ -36,7 +36,7 @@ TEST(Aov, LayersHoldWhatTheCameraSees) {
     options.width = options.height = 33;
     options.spp = 16;
     options.aovs = shade::parseAovs("normal,depth,position,albedo,mask,variance,samples");
-    const auto result = rendered(options);
+    const auto result = renderedLayers(options);
     const auto& layers = result.film.layers();
     ASSERT_EQ(layers.size(), 7u);
     const std::size_t middle = result.film.index(16, 16);
@@ -64,15 +64,15 @@ TEST(Aov, ChangeNothingOfThePicture) {
     shade::RenderOptions options;
     options.width = options.height = 24;
     options.spp = 4;
-    const auto plain = rendered(options);
+    const auto plain = renderedLayers(options);
     options.aovs = shade::parseAovs("normal,variance");
-    const auto layered = rendered(options);
+    const auto layered = renderedLayers(options);
     for (std::size_t n = 0; n < plain.film.pixels().size(); ++n)
         ASSERT_EQ(plain.film.pixels()[n].rgb, layered.film.pixels()[n].rgb);
     EXPECT_TRUE(plain.film.layers().empty());
     EXPECT_EQ(plain.rays, layered.rays);  // what a camera ray meets is looked up once
     options.spp = 1;
-    EXPECT_THROW(rendered(options), UsageError);
+    EXPECT_THROW(renderedLayers(options), UsageError);
 }
 
 TEST(Aov, NoiseStopsWhereItIsAskedTo) {
@@ -90,16 +90,16 @@ TEST(Aov, NoiseStopsWhereItIsAskedTo) {
     };
     options.aovs = {Aov::variance};
     options.noise = 0.04;
-    const auto coarse = rendered(options);
+    const auto coarse = renderedLayers(options);
     options.noise = 0.02;
-    const auto fine = rendered(options);
+    const auto fine = renderedLayers(options);
     EXPECT_LE(error(coarse), 0.04);
     EXPECT_LE(error(fine), 0.02);
     EXPECT_LT(coarse.mean_spp, fine.mean_spp);
     EXPECT_GE(coarse.mean_spp, 16.0);
     EXPECT_LE(fine.mean_spp, 512.0);
     options.noise = 2.0;
-    EXPECT_THROW(rendered(options), UsageError);
+    EXPECT_THROW(renderedLayers(options), UsageError);
 }
 
 }  // namespace

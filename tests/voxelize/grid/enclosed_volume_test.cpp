@@ -16,7 +16,7 @@ namespace {
 using test::addBead;
 using test::allBeads;
 
-Lattice latticeOf(double voxel) {
+Lattice latticeOfVoxel(double voxel) {
     Lattice lattice;
     lattice.voxel_size = voxel;
     return lattice;
@@ -25,7 +25,7 @@ Lattice latticeOf(double voxel) {
 TEST(EnclosedVolume, OfOneBead) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 0, 0, 2, 40, 0, 2, 3, 2);
-    const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOf(0.1));
+    const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOfVoxel(0.1));
     // The straight part and the two round ends, which together are half a flattened torus: a disc of radius c, swept by
     // the half circle, by Pappus.
     const double c = 0.5;
@@ -72,7 +72,7 @@ TEST(EnclosedVolume, OfWeldedLayersGoesToThatOfTheUnion) {
     // finds: h^(3/2) of area a cusp, counted as solid.
     double off[2] = {};
     for (int n = 0; n < 2; ++n) {
-        Lattice lattice = latticeOf(n == 0 ? 0.05 : 0.0125);
+        Lattice lattice = latticeOfVoxel(n == 0 ? 0.05 : 0.0125);
         lattice.layer_height = 0.2;
         off[n] = enclosedVolume(*voxelize(toolpath, allBeads(toolpath), lattice)) / (share * box) - 1;
     }

@@ -43,7 +43,7 @@ void expectRight(const gcode::Toolpath& toolpath, const Lattice& lattice, std::s
     }
 }
 
-Lattice latticeOf(double voxel, double height, double half_width = 3) {
+Lattice latticeOfHeight(double voxel, double height, double half_width = 3) {
     Lattice lattice;
     lattice.voxel_size = voxel;
     lattice.layer_height = height;
@@ -54,32 +54,32 @@ Lattice latticeOf(double voxel, double height, double half_width = 3) {
 TEST(Extremes, WidthsOfUpToAHundredHeights) {
     for (const double ratio : {1.0, 1.001, 2.0, 20.0, 100.0}) {
         SCOPED_TRACE(ratio);
-        expectRight(study::crossedLines(0.2 * ratio, 0.2), latticeOf(0.05, 0.2), 40);
+        expectRight(study::crossedLines(0.2 * ratio, 0.2), latticeOfHeight(0.05, 0.2), 40);
     }
 }
 
 TEST(Extremes, LayersFromAHundredthOfAMillimetreToFive) {
     for (const double height : {0.01, 0.05, 1.0, 5.0}) {
         SCOPED_TRACE(height);
-        expectRight(study::crossedLines(2 * height, height), latticeOf(height / 3, height));
+        expectRight(study::crossedLines(2 * height, height), latticeOfHeight(height / 3, height));
     }
 }
 
 TEST(Extremes, FromLessThanOneVoxelALayerToSixtyFour) {
     for (const double count : {0.6, 0.9, 1.0, 1.7, 16.0, 64.0}) {
         SCOPED_TRACE(count);
-        expectRight(study::crossedLines(0.4, 0.2), latticeOf(0.2 / count, 0.2), 40);
+        expectRight(study::crossedLines(0.4, 0.2), latticeOfHeight(0.2 / count, 0.2), 40);
     }
 }
 
 TEST(Extremes, HalfWidthsFromOneToTen) {
     for (const double half_width : {1.0, 1.5, 3.0, 7.3, 10.0}) {
         SCOPED_TRACE(half_width);
-        expectRight(study::crossedLines(0.45, 0.2), latticeOf(0.04, 0.2, half_width), 40);
+        expectRight(study::crossedLines(0.45, 0.2), latticeOfHeight(0.04, 0.2, half_width), 40);
         VoxelizeOptions options;
         options.interior = Interior::cull;
         const gcode::Toolpath toolpath = study::crossedLines(0.45, 0.2);
-        const auto culled = voxelize(toolpath, allBeads(toolpath), latticeOf(0.04, 0.2, half_width), options);
+        const auto culled = voxelize(toolpath, allBeads(toolpath), latticeOfHeight(0.04, 0.2, half_width), options);
         if (half_width >= 3) {
             EXPECT_EQ(openvdb::tools::checkLevelSet(*culled, 6), "");
         }
@@ -87,20 +87,20 @@ TEST(Extremes, HalfWidthsFromOneToTen) {
 }
 
 TEST(Extremes, AMetreFromTheOrigin) {
-    expectRight(study::crossedLines(0.45, 0.2, 1000, -1000, 1000), latticeOf(0.05, 0.2));
+    expectRight(study::crossedLines(0.45, 0.2, 1000, -1000, 1000), latticeOfHeight(0.05, 0.2));
 }
 
 TEST(Extremes, AThinAndAThickLayerSideBySide) {
     gcode::Toolpath toolpath = study::crossedLines(0.5, 0.2);
     addBead(toolpath, 0.2, 0, 1.5, 1, 0.1, 1.5, 2.0, 1.5, 9);
     addBead(toolpath, -1, 0, 0.05, 1, 0, 0.05, 0.3, 0.05, 9);
-    expectRight(toolpath, latticeOf(0.03, 0.2));
+    expectRight(toolpath, latticeOfHeight(0.03, 0.2));
 }
 
 TEST(Extremes, OneBeadOfAMetre) {
     gcode::Toolpath toolpath;
     addBead(toolpath, -300, -400, 0.2, 300, 400, 0.2, 0.45, 0.2);
-    expectRight(toolpath, latticeOf(0.1, 0.2), 200);
+    expectRight(toolpath, latticeOfHeight(0.1, 0.2), 200);
 }
 
 TEST(Extremes, DuplicatesAndPointsAndHairpins) {
@@ -109,7 +109,7 @@ TEST(Extremes, DuplicatesAndPointsAndHairpins) {
     addBead(toolpath, 1, 2, 0.2, 1, 2, 0.2, 0.45, 0.2);
     addBead(toolpath, 0, 2, 0.2, 3, 2.001, 0.2, 0.45, 0.2);
     addBead(toolpath, 3, 2.001, 0.2, 0, 2.002, 0.2, 0.45, 0.2);
-    expectRight(toolpath, latticeOf(0.05, 0.2), 20);
+    expectRight(toolpath, latticeOfHeight(0.05, 0.2), 20);
 }
 
 // Too many beads for the plain loops: the shape that they make together is known.
@@ -118,8 +118,8 @@ TEST(Extremes, AMillionBeadsOfAMicrometreAreOneLine) {
     for (int n = 0; n < 1000000; ++n) addBead(many, n * 1e-3 * 1e-3, 0, 0.2, (n + 1) * 1e-3 * 1e-3, 0, 0.2, 0.45, 0.2);
     gcode::Toolpath one;
     addBead(one, 0, 0, 0.2, 1, 0, 0.2, 0.45, 0.2);
-    const auto a = voxelize(many, allBeads(many), latticeOf(0.05, 0.2));
-    const auto b = voxelize(one, allBeads(one), latticeOf(0.05, 0.2));
+    const auto a = voxelize(many, allBeads(many), latticeOfHeight(0.05, 0.2));
+    const auto b = voxelize(one, allBeads(one), latticeOfHeight(0.05, 0.2));
     EXPECT_EQ(a->activeVoxelCount(), b->activeVoxelCount());
     const auto accessor = b->getConstAccessor();
     for (auto voxel = a->cbeginValueOn(); voxel; ++voxel)
@@ -132,7 +132,7 @@ TEST(Extremes, AMillionBeadsInOneLayerAreASheet) {
     for (int row = 0; row < 1000; ++row)
         for (int n = 0; n < 1000; ++n)
             addBead(toolpath, 0.1 * n, 0.1 * row, 0.2, 0.1 * (n + 1), 0.1 * row, 0.2, 0.45, 0.2);
-    const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOf(0.1, 0.2));
+    const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOfHeight(0.1, 0.2));
     const auto accessor = grid->getConstAccessor();
     for (int k = -2; k <= 4; ++k)
         for (int i = 10; i < 990; i += 97)
@@ -153,7 +153,7 @@ TEST(Extremes, WhatCannotBeIsRefused) {
         request.half_width = bad;
         EXPECT_THROW(chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request), UsageError) << bad;
     }
-    EXPECT_THROW(voxelize(toolpath, beads, latticeOf(1e-4, 0.2)), UsageError);
+    EXPECT_THROW(voxelize(toolpath, beads, latticeOfHeight(1e-4, 0.2)), UsageError);
 }
 
 }  // namespace

@@ -1,0 +1,146 @@
+// Settled beads on real prints: values against brute force, slopes, and volumes.
+#include "base/mapped_file.h"
+#include "corpus.h"
+#include "gcode/reader.h"
+#include "settled_field.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/voxelizer.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <random>
+
+namespace stratum::voxelize {
+namespace {
+
+struct SettledFile {
+    const char* name;
+    const char* path;  // below data/gcode or the corpus's gcode
+    bool corpus;
+    double corner_fraction;
+};
+
+class SettledPrint : public testing::TestWithParam<SettledFile> {
+protected:
+    // False if the corpus is not there.
+    bool read(gcode::Toolpath& toolpath) const {
+        const SettledFile& print = GetParam();
+        const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
+        if (!std::filesystem::exists(path)) return false;
+        const MappedFile file(path);
+        gcode::ReadOptions options;
+        options.deposit = {gcode::DepositModel::Beads::settled, print.corner_fraction, std::nullopt};
+        toolpath = gcode::readToolpath(file.bytes(), print.path, options);
+        return true;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Prints, SettledPrint,
+                         testing::Values(SettledFile{"hull", "hull.gcode", false, 1}, SettledFile{"gear", "gear.gcode", false, 0.5},
+                                         SettledFile{"bridges", "bridges.gcode", false, 1},
+                                         SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
+                                         SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
+                                         SettledFile{"cura", "preprocess_cancellation-cura.gcode", true, 0.5}),
+                         [](const auto& print) { return std::string(print.param.name); });
+
+// The level beads of some layers alone.
+gcode::Toolpath levelPart(const gcode::Toolpath& toolpath, const char* layers) {
+    Selection selection;
+    parseLayers(layers, selection);
+    gcode::Toolpath part;
+    part.runs = toolpath.runs;
+    part.arcs = toolpath.arcs;
+    part.deposit = toolpath.deposit;
+    part.layer_count = toolpath.layer_count;
+    for (const std::uint32_t index : selectBeads(toolpath, selection))
+        if (toolpath.beads[index].z0 == toolpath.beads[index].z1) part.beads.push_back(toolpath.beads[index]);
+    return part;
+}
+
+TEST_P(SettledPrint, AgreesWithBruteForce) {
+    gcode::Toolpath whole;
+    if (!read(whole)) GTEST_SKIP() << "corpus file " << GetParam().path << " is not there";
+    const gcode::Toolpath toolpath = levelPart(whole, "2:6");
+    const auto beads = test::allBeads(toolpath);
+    const test::SettledField brute(toolpath);
+    LatticeRequest request;
+    request.voxels_per_layer = 4;
+    const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
+    const auto grid = voxelize(toolpath, beads, lattice);
+    constexpr std::size_t kPoints = 100000;
+    std::vector<openvdb::Coord> points;
+    std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
+    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(leaf.getLeaf());
+    std::mt19937_64 random(11);
+    while (points.size() < kPoints) {
+        const auto* leaf = leaves[random() % leaves.size()];
+        const auto offset = static_cast<openvdb::Index>(random() % 512);
+        if (leaf->isValueOn(offset)) points.push_back(leaf->offsetToGlobalCoord(offset));
+    }
+    std::atomic<std::size_t> outside{0};
+    std::atomic<std::size_t> inside{0};
+    std::atomic<std::size_t> wrong{0};
+    std::atomic<std::size_t> wrong_sign{0};
+    std::vector<float> slopes(points.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()), [&](const auto& range) {
+        const auto accessor = grid->getConstAccessor();
+        for (std::size_t n = range.begin(); n != range.end(); ++n) {
+            const openvdb::Vec3d p = grid->indexToWorld(points[n]);
+            const double expected = brute(p[0], p[1], p[2]);
+            const auto value = static_cast<double>(accessor.getValue(points[n]));
+            ++(expected > 0 ? outside : inside);
+            // Flats lie on the lattice's planes: there both are rounded zeros.
+            if (std::abs(expected) > 1e-6 && (value < 0) != (expected < 0)) ++wrong_sign;
+            if (expected <= 1e-6) continue;
+            if (std::abs(value - expected) > 2e-5) ++wrong;
+            constexpr double kStep = 1e-5;
+            openvdb::Vec3d slope;
+            for (int axis = 0; axis < 3; ++axis) {
+                openvdb::Vec3d a = p;
+                openvdb::Vec3d b = p;
+                a[axis] -= kStep;
+                b[axis] += kStep;
+                slope[axis] = (brute(b[0], b[1], b[2]) - brute(a[0], a[1], a[2])) / (2 * kStep);
+            }
+            slopes[n] = static_cast<float>(slope.length());
+        }
+    });
+    EXPECT_EQ(wrong, 0U) << "of " << outside << " outside";
+    EXPECT_EQ(wrong_sign, 0U) << "of " << inside << " inside and " << outside << " outside";
+    EXPECT_GT(outside, 10000U);
+    EXPECT_GT(inside, 10000U);
+    std::sort(slopes.begin(), slopes.end());
+    const auto above = [&](float limit) {
+        return 100.0 * static_cast<double>(slopes.end() - std::upper_bound(slopes.begin(), slopes.end(), limit)) /
+               static_cast<double>(outside);
+    };
+    std::printf("  %s: slope above 1.05 at %.3f %%, above 2 at %.4f %% of %zu points outside, largest %.2f\n",
+                GetParam().name, above(1.05F), above(2.0F), outside.load(), static_cast<double>(slopes.back()));
+    EXPECT_LT(above(1.05F), 1);
+    EXPECT_LT(slopes.back(), kSettledSlope);
+}
+
+TEST_P(SettledPrint, SolidLayersKeepTheirVolume) {
+    gcode::Toolpath whole;
+    if (!read(whole)) GTEST_SKIP() << "corpus file " << GetParam().path << " is not there";
+    const gcode::Toolpath toolpath = levelPart(whole, "2:3");
+    const auto beads = test::allBeads(toolpath);
+    for (const int per_layer : {4, 8}) {
+        LatticeRequest request;
+        request.voxels_per_layer = per_layer;
+        const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
+        Voxelizer voxelizer(toolpath, beads, lattice);
+        const double surface = enclosedVolume(*voxelizer.printAll());
+        const DepositShare all = voxelizer.balance().all;
+        std::printf("  %s, %d voxels a layer: fed %.2f mm3, surface %.2f, surplus %.2f, rest %.3f %%\n",
+                    GetParam().name, per_layer, all.fed, surface, all.surplus(),
+                    100 * (all.fed - surface - all.surplus()) / all.fed);
+        EXPECT_NEAR(surface + all.surplus(), all.fed, 5e-3 * all.fed);
+    }
+}
+
+}  // namespace
+}  // namespace stratum::voxelize
