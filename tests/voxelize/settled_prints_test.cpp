@@ -39,7 +39,8 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Prints, SettledPrint,
-                         testing::Values(SettledFile{"hull", "hull.gcode", false, 1}, SettledFile{"gear", "gear.gcode", false, 0.5},
+                         testing::Values(SettledFile{"hull", "hull.gcode", false, 1},
+                                         SettledFile{"gear", "gear.gcode", false, 0.5},
                                          SettledFile{"bridges", "bridges.gcode", false, 1},
                                          SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
                                          SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
