@@ -1,4 +1,4 @@
-"""The house keeps its order: arrows between rooms run one way, folders and files stay small."""
+"""The house keeps its order: arrows between rooms run one way; folders, files and functions stay small."""
 
 import os
 import re
@@ -24,9 +24,37 @@ MAY_INCLUDE = {
 WITHOUT_OPENVDB = {"base", "gcode", "motion", "trace", "shade"}
 MOST_LINES = 450
 MOST_FILES = 30  # of code, in one folder
+MOST_FUNCTION_LINES = 80
 
 problems = []
 files = 0
+
+
+def indent(line):
+    return len(line) - len(line.lstrip())
+
+
+def functions(lines):
+    """(line number, lines, first line) of functions and methods, by the indents that clang-format gives them."""
+    for end, line in enumerate(lines):
+        if line.strip() != "}" or indent(line) not in (0, 4):
+            continue
+        begin = end - 1
+        while begin >= 0 and (not lines[begin].strip() or indent(lines[begin]) > indent(line)):
+            begin -= 1
+        first = lines[begin].strip()
+        if begin < 0 or "(" not in first or indent(lines[begin]) != indent(line):
+            continue
+        if not re.match(r"namespace|class|struct|enum|union|extern|public|private|#|//|}", first):
+            yield begin + 1, end - begin + 1, first
+
+
+def check_functions(place, lines):
+    for number, length, first in functions(lines):
+        if length > MOST_FUNCTION_LINES:
+            problems.append(f"{place}:{number}: {length} lines in one function, {first}")
+
+
 for room, allowed in MAY_INCLUDE.items():
     for folder, _, names in os.walk(os.path.join(ROOT, "src", room)):
         place = os.path.relpath(folder, ROOT)
@@ -39,6 +67,7 @@ for room, allowed in MAY_INCLUDE.items():
                 lines = file.read().splitlines()
             if len(lines) > MOST_LINES:
                 problems.append(f"{place}/{name}: {len(lines)} lines; split it by idea")
+            check_functions(f"{place}/{name}", lines)
             # Headers that Highway includes once a target have guards that toggle.
             guard = any("HWY_TARGET_TOGGLE" in line for line in lines) if name.endswith("-inl.h") else "#pragma once" in lines
             if name.endswith(".h") and not guard:
@@ -50,9 +79,12 @@ for room, allowed in MAY_INCLUDE.items():
                 if room in WITHOUT_OPENVDB and re.match(r"#include <openvdb", line):
                     problems.append(f"{place}/{name}:{number}: {room} knows no OpenVDB")
 for folder in ("tools", "tools/command_line"):
-    count = sum(name.endswith((".h", ".cpp")) for name in os.listdir(os.path.join(ROOT, folder)))
-    if count > MOST_FILES:
-        problems.append(f"{folder}: {count} files; divide them")
+    names = [name for name in os.listdir(os.path.join(ROOT, folder)) if name.endswith((".h", ".cpp"))]
+    if len(names) > MOST_FILES:
+        problems.append(f"{folder}: {len(names)} files; divide them")
+    for name in names:
+        with open(os.path.join(ROOT, folder, name), encoding="utf-8") as file:
+            check_functions(f"{folder}/{name}", file.read().splitlines())
 for room in os.listdir(os.path.join(ROOT, "src")):
     if room not in MAY_INCLUDE:
         problems.append(f"src/{room}: is no room of this list")

@@ -42,6 +42,33 @@ Examples:
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
 
+void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
+    const char* writing = "Writing";
+    app.add_option_function<std::string>(
+           "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
+           "float or half (default float)")
+        ->check(tools::oneOf({"float", "half"}))
+        ->type_name("KIND")
+        ->group(writing);
+    const auto compression = [](exporter::Compression value) { return static_cast<int>(value); };
+    app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
+        ->transform(tools::enumeration({{"blosc", compression(exporter::Compression::blosc)},
+                                        {"zip", compression(exporter::Compression::zip)},
+                                        {"none", compression(exporter::Compression::none)}}))
+        ->type_name("KIND")
+        ->group(writing);
+    app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
+        ->group(writing);
+    app.add_option("--mesh-error", o.mesh_error, "Meshes: how far faces may be merged; 0 keeps all (default 0.25)")
+        ->check(CLI::Range(0.0, 2.0))
+        ->type_name("VOXELS")
+        ->group(writing);
+    app.add_flag("--forecast", o.forecast, "With --stats: what --interior cull would save")->group(writing);
+    app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
+    app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
+        ->group(writing);
+}
+
 void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_option("IN", o.inputs,
                    "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
@@ -85,30 +112,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
         ->type_name("LIST")
         ->group(what);
-    const char* writing = "Writing";
-    app.add_option_function<std::string>(
-           "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
-           "float or half (default float)")
-        ->check(tools::oneOf({"float", "half"}))
-        ->type_name("KIND")
-        ->group(writing);
-    const auto compression = [](exporter::Compression value) { return static_cast<int>(value); };
-    app.add_option("--compression", o.file.compression, "blosc, zip or none (default blosc)")
-        ->transform(tools::enumeration({{"blosc", compression(exporter::Compression::blosc)},
-                                        {"zip", compression(exporter::Compression::zip)},
-                                        {"none", compression(exporter::Compression::none)}}))
-        ->type_name("KIND")
-        ->group(writing);
-    app.add_flag("--usda", o.usda, "Also a .usda beside each .vdb, with units, axes and its grids as fields")
-        ->group(writing);
-    app.add_option("--mesh-error", o.mesh_error, "Meshes: how far faces may be merged; 0 keeps all (default 0.25)")
-        ->check(CLI::Range(0.0, 2.0))
-        ->type_name("VOXELS")
-        ->group(writing);
-    app.add_flag("--forecast", o.forecast, "With --stats: what --interior cull would save")->group(writing);
-    app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
-    app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
-        ->group(writing);
+    addWritingOptions(app, o);
     tools::addCommonOptions(app, o.common,
                             {"--output",
                              "--voxel-size",

@@ -6,7 +6,9 @@
 
 namespace stratum::tools {
 
-void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
+namespace {
+
+void addLatticeOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
     const char* lattice = kLattice;
     const auto take_size = [&options, pictures](const std::string& text) {
         options.voxel_auto = pictures && text == "auto";
@@ -41,6 +43,9 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
     app.add_option("--half-width", options.lattice.half_width, "Narrow band to each side (default 3)")
         ->type_name("VOXELS")
         ->group(lattice);
+}
+
+void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* what = kWhat;
     app.add_option("--layers", options.layers, "Only layers A to B, counted from 1; 0 is prime lines (default 1:)")
         ->type_name("A:B")
@@ -56,6 +61,9 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
         ->allow_extra_args(false)
         ->type_name("NAME|NUMBER")
         ->group(what);
+}
+
+void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* plastic = kPlastic;
     const auto beads = [](gcode::DepositModel::Beads value) { return static_cast<int>(value); };
     app.add_option(
@@ -74,6 +82,9 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
         Completion::word, {"stadium"})
         ->type_name("MM|PERCENT%")
         ->group(plastic);
+}
+
+void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* reading = kReading;
     app.add_option("--plate", options.read.plate, "Which plate of a .gcode.3mf that has several")
         ->check(CLI::PositiveNumber)
@@ -116,6 +127,15 @@ void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictur
                                  {"reprap", firmware(gcode::Firmware::reprap)}}))
         ->type_name("NAME")
         ->group(reading);
+}
+
+}  // namespace
+
+void addPrintOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
+    addLatticeOptions(app, options, pictures);
+    addSelectionOptions(app, options);
+    addPlasticOptions(app, options);
+    addReadingOptions(app, options);
 }
 
 }  // namespace stratum::tools

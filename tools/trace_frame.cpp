@@ -24,6 +24,41 @@ shade::Progress progressOf(ProgressBar& bar) {
         [show](std::uint64_t done, std::uint64_t all) { show(static_cast<double>(done) / static_cast<double>(all)); };
 }
 
+shade::Metadata metadataOf(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
+                           const shade::SceneDescription& scene, const shade::RenderResult& result, bool denoised) {
+    shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
+                             {"Source", frame.source},
+                             {"Integrator", o.render.integrator.name},
+                             {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
+                             {"Seed", std::to_string(o.render.seed)},
+                             {"Brdf", objects.brdf},
+                             {"Environment", o.scene.env}};
+    if (!scene.material->notes().empty())
+        metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
+    if (denoised) metadata.insert({"Denoised", shade::kDenoiserLabel});
+    if (o.render.seconds > 0.0)
+        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
+    return metadata;
+}
+
+// What this picture did not need.
+Json skippedBy(const TraceCommand& o, const assemble::TracedObjects& objects, const shade::SceneDescription& scene,
+               const shade::Film& film) {
+    Json skipped = Json::array();
+    const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
+        skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
+    };
+    if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
+    if (!objects.no_color_lookup.empty())
+        skip("colour of each place", objects.no_color_lookup.c_str(), "an attribute lookup a hit");
+    if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
+    if (film.content() != shade::FilmContent::radiance)
+        skip("light and material", "the integrator does not shade", "shadow and bounce rays");
+    if (!scene.smooth_normals)
+        skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
+    return skipped;
+}
+
 }  // namespace
 
 std::string numbered(const std::string& output, std::size_t number, std::size_t count) {
@@ -53,18 +88,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
     }
     const double denoise_seconds = watch.lap();
 
-    shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
-                             {"Source", frame.source},
-                             {"Integrator", o.render.integrator.name},
-                             {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
-                             {"Seed", std::to_string(o.render.seed)},
-                             {"Brdf", objects.brdf},
-                             {"Environment", o.scene.env}};
-    if (!scene.material->notes().empty())
-        metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
-    if (denoised) metadata.insert({"Denoised", shade::kDenoiserLabel});
-    if (o.render.seconds > 0.0)
-        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
+    shade::Metadata metadata = metadataOf(o, frame, objects, scene, result, denoised);
     const bool shown = !picture.linear() && result.film.content() == shade::FilmContent::radiance;
     if (shown) metadata.insert({"Exposure", fmt::format("{:.3f} stops", o.tone.exposure)});
     {
@@ -87,18 +111,6 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
             fmt::format("  exposure {:+.2f} stops, found from the light; --exposure sets it", o.tone.exposure));
     Json material = objects.material_report;
     material["notes"] = scene.material->notes();
-    Json skipped = Json::array();
-    const auto skip = [&skipped](const char* what, const char* why, const char* saved) {
-        skipped.push_back({{"what", what}, {"why", why}, {"saved", saved}});
-    };
-    if (!scene.bed) skip("bed", o.scene.bed ? "the camera is below it" : "--no-bed", "its shading and bounces");
-    if (!objects.no_color_lookup.empty())
-        skip("colour of each place", objects.no_color_lookup.c_str(), "an attribute lookup a hit");
-    if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
-    if (result.film.content() != shade::FilmContent::radiance)
-        skip("light and material", "the integrator does not shade", "shadow and bounce rays");
-    if (!scene.smooth_normals)
-        skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
     return {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
             {"output", frame.output},
             {"image",
@@ -126,7 +138,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
             {"mrays_per_second", mrays},
             {"peak_rss_bytes", peakRssBytes()},
             {"threads", threads},
-            {"skipped", skipped}};
+            {"skipped", skippedBy(o, objects, scene, result.film)}};
 }
 
 }  // namespace stratum::tools

@@ -87,9 +87,9 @@ bool isScene(const fs::path& path, bool alone) {
     }
 }
 
-}  // namespace
+constexpr const char* kLight = "Light and material";
 
-void addTraceOptions(CLI::App& app, TraceCommand& o) {
+void addInputOptions(CLI::App& app, TraceCommand& o) {
     app.add_option(
            "IN", o.inputs,
            "A level set, a print (G-code in any container), or a scene that names some; options override the scene. "
@@ -107,7 +107,9 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
                    "Which axis of the level set points up: z or y (default: what the file says, or z)")
         ->check(oneOf({"z", "y"}))
         ->type_name("AXIS");
+}
 
+void addPictureOptions(CLI::App& app, TraceCommand& o) {
     const char* picture = "Picture";
     app.add_option("--size", o.size, "Pixels (default 1280x960)")->type_name("WxH")->group(picture);
     app.add_option("--spp", o.render.spp, "Samples a pixel (default 16; if denoised 8, small pictures up to 32)")
@@ -146,7 +148,9 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
         ->each([&o](const std::string&) { o.exposure_given = true; })
         ->type_name("EV")
         ->group(picture);
+}
 
+void addCameraOptions(CLI::App& app, TraceCommand& o) {
     const char* camera = "Camera";
     completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
               Completion::word, {"iso", "front", "back", "left", "right", "top", "bottom"})
@@ -181,8 +185,9 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--zoom", o.scene.camera.zoom, "All F times larger, from the same place (default 1)")
         ->type_name("F")
         ->group(camera);
+}
 
-    const char* light = "Light and material";
+void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--integrator", o.render.integrator.name,
                              "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, "
                              "feature (default path)"),
@@ -190,20 +195,20 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
               {"path", "direct", "environment-sum", "phong", "ao", "normal", "depth", "position", "mask", "layer",
                "tool", "feature"})
         ->type_name("NAME")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
         ->type_name("N")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
         ->type_name("KA,KD,KS,SHININESS,KR")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--environment-rows", o.render.integrator.environment_rows,
                    "environment-sum: rows of its map, twice as many columns (default 32)")
         ->type_name("N")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
-        ->group(light);
+        ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
     materials.insert(materials.end(), {"lambert:", "plastic:"});
     completes(
@@ -214,35 +219,38 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
             "the file states them)"),
         Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--color", o.color, "Plastic of this colour: '#ff6600', or a name as in CSS, e.g. teal")
         ->excludes("--brdf")
         ->type_name("COLOR")
-        ->group(light);
+        ->group(kLight);
     completes(app.add_option("--color-by", o.scene.color_by,
                              "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
                              "time, color"),
               Completion::word, {"tool", "feature", "layer", "object", "speed", "width", "time", "color"})
         ->type_name("NAME")
-        ->group(light);
-    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(light);
+        ->group(kLight);
+    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(kLight);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
         ->check(oneOf({"geometric", "smooth"}))
         ->type_name("NAME")
-        ->group(light);
+        ->group(kLight);
+}
+
+void addLightOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--env", o.scene.env,
                              "studio, sky, sky:ELEVATION,AZIMUTH,TURBIDITY, constant:R,G,B, or a .hdr or .exr map "
                              "(default studio)"),
               Completion::preset, {"studio", "sky", "sky:", "constant:"})
         ->type_name("SPEC|FILE")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--env-rotation", o.scene.env_rotation, "Turns it counter-clockwise as seen from above")
         ->type_name("DEG")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--env-exposure", o.scene.env_exposure, "Stops, for maps; then --exposure is 0 by default")
         ->each([&o](const std::string&) { o.exposure_given = true; })
         ->type_name("EV")
-        ->group(light);
+        ->group(kLight);
     completes(app.add_option("--light", o.scene.lights,
                              "directional:X,Y,Z,R,G,B (the way it travels, irradiance), sun: the same and its DEGREES, "
                              "point:X,Y,Z,R,G,B (place, intensity), rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B (centre, "
@@ -250,16 +258,18 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
               Completion::word, {"directional:", "sun:", "point:", "rectangle:", "ambient:"})
         ->allow_extra_args(false)
         ->type_name("SPEC")
-        ->group(light);
+        ->group(kLight);
     app.add_option("--write-brdf", o.write_brdf, "Also write the material as a MERL .binary or an .exr texture")
         ->type_name("FILE")
-        ->group(light);
-    app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(light);
+        ->group(kLight);
+    app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(kLight);
     app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
         ->check(oneOf({"paper", "pei", "grid"}))
         ->type_name("NAME")
-        ->group(light);
+        ->group(kLight);
+}
 
+void addTracingOptions(CLI::App& app, TraceCommand& o) {
     const char* tracing = "Tracing";
     app.add_option(
            "--march", o.march,
@@ -274,6 +284,17 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
                                  {"int16", static_cast<int>(march::BrickValues::Int16)}}))
         ->type_name("float|int16")
         ->group(tracing);
+}
+
+}  // namespace
+
+void addTraceOptions(CLI::App& app, TraceCommand& o) {
+    addInputOptions(app, o);
+    addPictureOptions(app, o);
+    addCameraOptions(app, o);
+    addMaterialOptions(app, o);
+    addLightOptions(app, o);
+    addTracingOptions(app, o);
     addTracePrintOptions(app, o.prints, o.bricks);
     addCommonOptions(app, o.common,
                      {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",

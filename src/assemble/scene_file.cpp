@@ -67,29 +67,21 @@ void readCamera(JsonSection section, shade::CameraOptions& camera, std::vector<s
     section.finish();
 }
 
-}  // namespace
-
-bool isSceneFile(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && text[first] == '{';
-}
-
-SceneFile readSceneFile(const std::filesystem::path& path) {
+// The text of a scene; `name` is used in messages.
+Json parseScene(const MappedFile& mapped, const std::string& name) {
     constexpr std::size_t kMost = std::size_t{1} << 24;
-    const MappedFile mapped(path);
-    const std::string name = path.string();
     if (mapped.bytes().size() > kMost)
         throw InputError(fmt::format("{}: has {} bytes; a scene has at most {}", name, mapped.bytes().size(), kMost));
-    Json json;
     try {
         // Comments are allowed: people explain their scenes.
-        json = Json::parse(mapped.bytes(), nullptr, true, true);
+        return Json::parse(mapped.bytes(), nullptr, true, true);
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: {}", name, error.what()));
     }
-    const std::filesystem::path folder = path.parent_path();
-    SceneFile file;
-    JsonSection top(json, "", name);
+}
+
+// What is traced.
+void readShapes(JsonSection& top, const std::filesystem::path& folder, const std::string& name, SceneFile& file) {
     top.read("print", file.print);
     top.read("grid", file.grid);
     if (const Json* objects = top.find("objects")) {
@@ -107,11 +99,9 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     file.file_up = readUp(top);
     if (!file.objects.empty() && !file.file_up.empty())
         top.fail("file_up", "to stand with the objects: each has its own");
-    top.read("color_by", file.scene.color_by);
-    std::string normals = "geometric";
-    top.read("normals", normals);
-    if (normals != "geometric" && normals != "smooth") top.fail("normals", "geometric or smooth");
-    file.scene.smooth_normals = normals == "smooth";
+}
+
+void readPicture(JsonSection& top, SceneFile& file) {
     top.read("output", file.output);
     if (const auto size = top.numbers("size", 2); !size.empty()) {
         file.render.width = static_cast<int>(std::clamp(size[0], -1.0, 1e9));
@@ -138,13 +128,10 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     std::string aov;
     top.read("aov", aov);
     file.render.aovs = shade::parseAovs(aov);
-    top.read("material", file.scene.brdf);
-    file.scene.brdf = materialBeside(folder, file.scene.brdf);
-    top.read("bed", file.scene.bed);
-    std::string surface;
-    top.read("bed_surface", surface);
-    if (!surface.empty()) file.scene.bed_surface = shade::parseBedSurface(surface);
-    if (auto camera = top.section("camera")) readCamera(std::move(*camera), file.scene.camera, file.notes);
+}
+
+// Environment and lamps.
+void readLight(JsonSection& top, const std::filesystem::path& folder, const std::string& name, SceneFile& file) {
     if (const Json* environment = top.find("environment")) {
         JsonSection section(*environment, "environment", name);
         section.read("map", file.scene.env);
@@ -161,18 +148,51 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
             file.scene.lights.push_back(light.get<std::string>());
         }
     }
-    if (const Json* integrator = top.find("integrator")) {
-        JsonSection section(*integrator, "integrator", name);
-        section.read("name", file.render.integrator.name);
-        section.readInteger("bounces", file.render.integrator.bounces);
-        section.read("ao_distance", file.render.integrator.ao_distance);
-        section.readInteger("environment_rows", file.render.integrator.environment_rows);
-        if (const auto p = section.numbers("phong", 5); !p.empty()) {
-            const auto at = [&](std::size_t i) { return static_cast<float>(p[i]); };
-            file.render.integrator.phong = {at(0), at(1), at(2), at(3), at(4)};
-        }
-        section.finish();
+}
+
+void readIntegrator(const Json& integrator, const std::string& name, shade::IntegratorOptions& options) {
+    JsonSection section(integrator, "integrator", name);
+    section.read("name", options.name);
+    section.readInteger("bounces", options.bounces);
+    section.readInteger("environment_rows", options.environment_rows);
+    section.read("ao_distance", options.ao_distance);
+    if (const auto p = section.numbers("phong", 5); !p.empty()) {
+        const auto at = [&](std::size_t i) { return static_cast<float>(p[i]); };
+        options.phong = {at(0), at(1), at(2), at(3), at(4)};
     }
+    section.finish();
+}
+
+}  // namespace
+
+bool isSceneFile(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && text[first] == '{';
+}
+
+SceneFile readSceneFile(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    const std::string name = path.string();
+    const Json json = parseScene(mapped, name);
+    const std::filesystem::path folder = path.parent_path();
+    SceneFile file;
+    JsonSection top(json, "", name);
+    readShapes(top, folder, name, file);
+    top.read("color_by", file.scene.color_by);
+    std::string normals = "geometric";
+    top.read("normals", normals);
+    if (normals != "geometric" && normals != "smooth") top.fail("normals", "geometric or smooth");
+    file.scene.smooth_normals = normals == "smooth";
+    readPicture(top, file);
+    top.read("material", file.scene.brdf);
+    file.scene.brdf = materialBeside(folder, file.scene.brdf);
+    top.read("bed", file.scene.bed);
+    std::string surface;
+    top.read("bed_surface", surface);
+    if (!surface.empty()) file.scene.bed_surface = shade::parseBedSurface(surface);
+    if (auto camera = top.section("camera")) readCamera(std::move(*camera), file.scene.camera, file.notes);
+    readLight(top, folder, name, file);
+    if (const Json* integrator = top.find("integrator")) readIntegrator(*integrator, name, file.render.integrator);
     top.finish();
     return file;
 }

@@ -108,6 +108,68 @@ private:
         head_ += std::popcount(idle);
     }
 
+    // Rays in cells: origin, direction and its inverse; a direction too small to invert is 0, its inverse infinite.
+    struct LaneRays {
+        V o[3], dir[3], inverse[3];
+    };
+
+    HWY_INLINE void toCells(const V in[8], LaneRays& lanes) const {
+        const V infinity = constant(std::numeric_limits<double>::infinity());
+        const V largest = constant(std::numeric_limits<double>::max());
+        for (int axis = 0; axis < 3; ++axis) {
+            const V mx = constant(map_.to_cells[0][axis]);
+            const V my = constant(map_.to_cells[1][axis]);
+            const V mz = constant(map_.to_cells[2][axis]);
+            lanes.o[axis] = mx * in[0] + my * in[1] + mz * in[2] + constant(map_.origin[axis]);
+            lanes.dir[axis] = mx * in[3] + my * in[4] + mz * in[5];
+            lanes.inverse[axis] = constant(1) / lanes.dir[axis];
+            const M finite = hn::Le(hn::Abs(lanes.inverse[axis]), largest);
+            lanes.dir[axis] = hn::IfThenElseZero(finite, lanes.dir[axis]);
+            lanes.inverse[axis] = hn::IfThenElse(finite, lanes.inverse[axis], infinity);
+        }
+    }
+
+    // The part of the rays in the grid's box, and which rays have one.
+    HWY_INLINE void clip(const LaneRays& lanes, V& start, V& end, M& good) const {
+        const V zero = hn::Zero(D());
+        for (int axis = 0; axis < 3; ++axis) {
+            const V extent = constant(size_[axis]);
+            const M still = hn::Eq(lanes.dir[axis], zero);
+            const M between = hn::And(hn::Ge(lanes.o[axis], zero), hn::Le(lanes.o[axis], extent));
+            const V a = hn::Neg(lanes.o[axis]) * lanes.inverse[axis];
+            const V b = (extent - lanes.o[axis]) * lanes.inverse[axis];
+            const M swap = hn::Gt(a, b);
+            const V near = hn::IfThenElse(swap, b, a);
+            const V far = hn::IfThenElse(swap, a, b);
+            good = hn::And(good, hn::Or(hn::And(still, between), hn::AndNot(still, hn::Le(near, far))));
+            // std::max and std::min keep their first argument unless the second is beyond it.
+            start = hn::IfThenElse(hn::AndNot(still, hn::Lt(start, near)), near, start);
+            end = hn::IfThenElse(hn::AndNot(still, hn::Lt(far, end)), far, end);
+        }
+    }
+
+    // Position, direction and cell at the start, mirrored so that every direction ascends.
+    HWY_INLINE void placeInCells(const LaneRays& lanes, V start, V out[kQueued]) const {
+        const D d;
+        const V zero = hn::Zero(d);
+        for (int axis = 0; axis < 3; ++axis) {
+            const M still = hn::Eq(lanes.dir[axis], zero);
+            const V at = lanes.o[axis] + start * lanes.dir[axis];
+            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
+            const V sign = hn::And(lanes.dir[axis], constant(-0.0));
+            const VI flip = hn::BroadcastSignBit(hn::BitCast(DI(), hn::IfThenZeroElse(still, sign)));
+            const V back = hn::And(hn::BitCast(d, flip), constant(-0.0));
+            out[kO + axis] = hn::Xor(within, back);
+            out[kD + axis] = hn::Abs(lanes.dir[axis]);
+            out[kInverse + axis] = hn::Abs(lanes.inverse[axis]);
+            out[kFlip + axis] = hn::BitCast(d, flip);
+            const VI size = whole(whole_size_[axis]);
+            const VI least = hn::Neg(hn::And(flip, size));
+            const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
+            out[kCell + axis] = hn::BitCast(d, hn::Min(hn::Max(cell, least), least + size - whole(1)));
+        }
+    }
+
     // Walk's constructor and Walk::enter() for the next rays, as many as there are lanes.
     void enqueue() {
         const D d;
@@ -139,38 +201,12 @@ private:
         for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, base, row + whole(n));
         const V zero = hn::Zero(d);
         const V infinity = constant(std::numeric_limits<double>::infinity());
-        const V largest = constant(std::numeric_limits<double>::max());
-        V o[3];
-        V dir[3];
-        V inverse[3];
-        for (int axis = 0; axis < 3; ++axis) {
-            const V mx = constant(map_.to_cells[0][axis]);
-            const V my = constant(map_.to_cells[1][axis]);
-            const V mz = constant(map_.to_cells[2][axis]);
-            o[axis] = mx * in[0] + my * in[1] + mz * in[2] + constant(map_.origin[axis]);
-            dir[axis] = mx * in[3] + my * in[4] + mz * in[5];
-            inverse[axis] = constant(1) / dir[axis];
-            const M finite = hn::Le(hn::Abs(inverse[axis]), largest);
-            dir[axis] = hn::IfThenElseZero(finite, dir[axis]);
-            inverse[axis] = hn::IfThenElse(finite, inverse[axis], infinity);
-        }
+        LaneRays lanes;
+        toCells(in, lanes);
         V start = in[6];
         V end = in[7];
         M good = hn::Not(toDouble(hn::Gt(lane, last)));
-        for (int axis = 0; axis < 3; ++axis) {
-            const V extent = constant(size_[axis]);
-            const M still = hn::Eq(dir[axis], zero);
-            const M between = hn::And(hn::Ge(o[axis], zero), hn::Le(o[axis], extent));
-            const V a = hn::Neg(o[axis]) * inverse[axis];
-            const V b = (extent - o[axis]) * inverse[axis];
-            const M swap = hn::Gt(a, b);
-            const V near = hn::IfThenElse(swap, b, a);
-            const V far = hn::IfThenElse(swap, a, b);
-            good = hn::And(good, hn::Or(hn::And(still, between), hn::AndNot(still, hn::Le(near, far))));
-            // std::max and std::min keep their first argument unless the second is beyond it.
-            start = hn::IfThenElse(hn::AndNot(still, hn::Lt(start, near)), near, start);
-            end = hn::IfThenElse(hn::AndNot(still, hn::Lt(far, end)), far, end);
-        }
+        clip(lanes, start, end, good);
         good = hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
         V out[kQueued];
         out[kEnd] = end - start;
@@ -182,22 +218,7 @@ private:
             out[kT] = hn::Max(hn::Load(d, from) - start, zero);
             good = hn::And(good, hn::Lt(out[kT], out[kEnd]));
         }
-        for (int axis = 0; axis < 3; ++axis) {
-            const M still = hn::Eq(dir[axis], zero);
-            const V at = o[axis] + start * dir[axis];
-            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
-            const V sign = hn::And(dir[axis], constant(-0.0));
-            const VI flip = hn::BroadcastSignBit(hn::BitCast(DI(), hn::IfThenZeroElse(still, sign)));
-            const V back = hn::And(hn::BitCast(d, flip), constant(-0.0));
-            out[kO + axis] = hn::Xor(within, back);
-            out[kD + axis] = hn::Abs(dir[axis]);
-            out[kInverse + axis] = hn::Abs(inverse[axis]);
-            out[kFlip + axis] = hn::BitCast(d, flip);
-            const VI size = whole(whole_size_[axis]);
-            const VI least = hn::Neg(hn::And(flip, size));
-            const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
-            out[kCell + axis] = hn::BitCast(d, hn::Min(hn::Max(cell, least), least + size - whole(1)));
-        }
+        placeInCells(lanes, start, out);
         out[kStart] = start;
         out[kIndex] = toReal(lane + whole(static_cast<std::int64_t>(next_)));
         const unsigned kept = bitsOf(good);

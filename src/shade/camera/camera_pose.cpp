@@ -179,41 +179,13 @@ Pinhole refined(Pinhole camera, const std::vector<PointPair>& pairs, double size
     return camera;
 }
 
-}  // namespace
+[[noreturn]] void refuse(std::string_view why) { throw InputError(fmt::format("the camera's pose: {}", why)); }
 
-CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, double height) {
-    const auto refuse = [](std::string_view why) { throw InputError(fmt::format("the camera's pose: {}", why)); };
-    if (!(width > 0 && height > 0 && std::isfinite(width) && std::isfinite(height)))
-        refuse("the photograph's size must be two numbers above 0");
-    if (pairs.size() < kFewest)
-        refuse(fmt::format("{} matched points; at least {} are needed, not all in a plane", pairs.size(), kFewest));
-    // Normalization against rounding errors: points relative to their mean and of unit spread, pixels relative to the
-    // picture's middle.
-    glm::dvec3 middle(0.0);
-    std::vector<PointPair> centered;
-    for (const PointPair& pair : pairs) {
-        const double sum = pair.pixel.x + pair.pixel.y + pair.point.x + pair.point.y + pair.point.z;
-        if (!std::isfinite(sum)) refuse(fmt::format("pair {} has a value that is no finite number", centered.size()));
-        centered.push_back({pair.pixel - 0.5 * glm::dvec2(width, height), pair.point});
-        middle += pair.point / static_cast<double>(pairs.size());
-    }
-    Matrix<3> spread{};
-    for (PointPair& pair : centered) {
-        pair.point -= middle;
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c)
-                spread[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] += pair.point[r] * pair.point[c];
-    }
-    const auto axes = eigen(spread).first;
-    const double size = std::sqrt(std::max(axes[2], 0.0) / static_cast<double>(pairs.size()));
-    if (!(size > 0)) refuse("all points are the same");
-    if (!(std::sqrt(std::max(axes[1], 0.0)) > kFlat * std::sqrt(axes[2]))) refuse("the points lie on a line");
-    if (!(std::sqrt(std::max(axes[0], 0.0)) > kFlat * std::sqrt(axes[2])))
-        refuse("the points lie in a plane, which says too little of the focal length; add some that stand out of it");
-    const double scale = 0.5 * std::max(width, height);
+// The camera by the direct linear transform: the least singular vector of the pairs' equations, made a pinhole camera.
+// `scale`: pixels, half the photograph.
+Pinhole directSolution(std::span<const PointPair> centered, double scale) {
     Matrix<12> products{};
-    for (PointPair& pair : centered) {
-        pair.point /= size;
+    for (const PointPair& pair : centered) {
         const glm::dvec3& p = pair.point;
         const glm::dvec2 q = pair.pixel / scale;
         const std::array<double, 12> x{p.x, p.y, p.z, 1, 0, 0, 0, 0, -q.x * p.x, -q.x * p.y, -q.x * p.z, -q.x};
@@ -250,8 +222,42 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
     const glm::dmat3 rows = glm::transpose(glm::dmat3(m[0], m[1], m[2]));
     if (!(std::abs(glm::determinant(rows)) > 0)) refuse("no camera sees these points there; are the pairs in order?");
     camera.eye = -(glm::inverse(rows) * last);
-    camera = refined(camera, centered, 1.0);
+    return camera;
+}
 
+}  // namespace
+
+CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, double height) {
+    if (!(width > 0 && height > 0 && std::isfinite(width) && std::isfinite(height)))
+        refuse("the photograph's size must be two numbers above 0");
+    if (pairs.size() < kFewest)
+        refuse(fmt::format("{} matched points; at least {} are needed, not all in a plane", pairs.size(), kFewest));
+    // Normalization against rounding errors: points relative to their mean and of unit spread, pixels relative to the
+    // picture's middle.
+    glm::dvec3 middle(0.0);
+    std::vector<PointPair> centered;
+    for (const PointPair& pair : pairs) {
+        const double sum = pair.pixel.x + pair.pixel.y + pair.point.x + pair.point.y + pair.point.z;
+        if (!std::isfinite(sum)) refuse(fmt::format("pair {} has a value that is no finite number", centered.size()));
+        centered.push_back({pair.pixel - 0.5 * glm::dvec2(width, height), pair.point});
+        middle += pair.point / static_cast<double>(pairs.size());
+    }
+    Matrix<3> spread{};
+    for (PointPair& pair : centered) {
+        pair.point -= middle;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                spread[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] += pair.point[r] * pair.point[c];
+    }
+    const auto axes = eigen(spread).first;
+    const double size = std::sqrt(std::max(axes[2], 0.0) / static_cast<double>(pairs.size()));
+    if (!(size > 0)) refuse("all points are the same");
+    if (!(std::sqrt(std::max(axes[1], 0.0)) > kFlat * std::sqrt(axes[2]))) refuse("the points lie on a line");
+    if (!(std::sqrt(std::max(axes[0], 0.0)) > kFlat * std::sqrt(axes[2])))
+        refuse("the points lie in a plane, which says too little of the focal length; add some that stand out of it");
+    const double scale = 0.5 * std::max(width, height);
+    for (PointPair& pair : centered) pair.point /= size;
+    const Pinhole camera = refined(directSolution(centered, scale), centered, 1.0);
     CameraPose pose;
     double squares = 0;
     for (std::size_t n = 0; n < centered.size(); ++n) {

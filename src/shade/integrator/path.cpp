@@ -165,16 +165,18 @@ void PathIntegrator::addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer&
         if (blocked[k] == 0) sums[shadow_rays.pixel[k]] += shadow_rays.light[k];
 }
 
+float PathIntegrator::fadeAt(const SurfacePoint& point) const {
+    return std::isfinite(point.t) ? surfaces_.fade(point) : 1.0f;
+}
+
 void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
                                 std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
                                 std::span<Pixel> pixels) const {
-    // Share of the backdrop in what a camera ray sees.
-    const auto fadeOf = [this](const SurfacePoint& p) { return std::isfinite(p.t) ? surfaces_.fade(p) : 1.0f; };
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Path> paths;
     paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeOf(points[n]) < 1.0f) paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
+        if (fadeAt(points[n]) < 1.0f) paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
 
     ShadowRays shadow_rays;
     // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
@@ -237,28 +239,38 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
         surfaces_.nearest(bounce_rays, tracer, hits);
-        next_paths.clear();
-        for (std::size_t k = 0; k < bounces.size(); ++k) {
-            const Path& path = *bounces[k].from->path;
-            Color& sum = sums[path.pixel];
-            if (!std::isfinite(hits[k].t)) {
-                sum += path.throughput * bounces[k].escaped;
-                continue;
-            }
-            // Lights occlude nothing, so one may lie in front of the surface.
-            sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
-            if (!last) next_paths.push_back({hits[k], bounces[k].ray.direction, path.throughput, path.pixel});
-        }
+        continuePaths(bounces, hits, last, sums, next_paths);
         paths.swap(next_paths);
     }
 
+    blendBackdrop(rays, points, sums, pixels);
+}
+
+void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, bool last,
+                                   std::span<Color> sums, std::vector<Path>& next_paths) const {
+    next_paths.clear();
+    for (std::size_t k = 0; k < bounces.size(); ++k) {
+        const Path& path = *bounces[k].from->path;
+        Color& sum = sums[path.pixel];
+        if (!std::isfinite(hits[k].t)) {
+            sum += path.throughput * bounces[k].escaped;
+            continue;
+        }
+        // Lights occlude nothing, so one may lie in front of the surface.
+        sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
+        if (!last) next_paths.push_back({hits[k], bounces[k].ray.direction, path.throughput, path.pixel});
+    }
+}
+
+void PathIntegrator::blendBackdrop(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                                   std::span<const Color> sums, std::span<Pixel> pixels) const {
     std::vector<trace::Ray> backdrop_rays;
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeOf(points[n]) > 0.0f) backdrop_rays.push_back(rays[n]);
+        if (fadeAt(points[n]) > 0.0f) backdrop_rays.push_back(rays[n]);
     std::vector<Color> behind(backdrop_rays.size(), Color(0.0f));
     const bool backdrop = surfaces_.backdrop(backdrop_rays, behind);
     for (std::size_t n = 0, faded = 0; n < rays.size(); ++n) {
-        const float fade = fadeOf(points[n]);
+        const float fade = fadeAt(points[n]);
         Color color = (1.0f - fade) * sums[n];
         if (fade > 0.0f) color += fade * behind[faded++];
         pixels[n] = std::isfinite(points[n].t) || backdrop ? Pixel{color, 1.0f} : Pixel{};

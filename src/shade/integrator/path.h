@@ -86,6 +86,14 @@ private:
     Color hitLights(const trace::Ray& ray, double t, float pdf) const;
     /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels.
     void addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
+    /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits, unless they
+    /// are the last.
+    void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, bool last,
+                       std::span<Color> sums, std::vector<Path>& next_paths) const;
+    /// Share of the backdrop in what a camera ray sees.
+    float fadeAt(const SurfacePoint& point) const;
+    void blendBackdrop(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                       std::span<const Color> sums, std::span<Pixel> pixels) const;
 
     const SceneDescription& scene_;
     std::unique_ptr<const BedLight> bed_light_;

@@ -49,6 +49,44 @@ void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32
                                       voxelsAt(count + 1) * kBytesPerActiveVoxel * 1e-9, memory * 1e-9);
 }
 
+// Voxels larger than the part, and more voxels than an index can count.
+void refuseUnfit(const Lattice& lattice, const Bounds& bounds) {
+    const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
+    if (lattice.voxel_size > extent)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm is larger than the part ({:.3f} x {:.3f} x {:.3f} mm); the "
+                        "layer height is {:g} mm, try {:g}",
+                        lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2), lattice.layer_height,
+                        lattice.layer_height / 2));
+    // OpenVDB indexes with 32-bit integers; a factor of four is reserved for the band and for other tools.
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
+    if (farthest / lattice.voxel_size > 536870912.0)
+        throw UsageError(
+            fmt::format("voxel size {:g} mm: {:.3g} voxels from the origin to the part's far end, more "
+                        "than OpenVDB can index; try {:g} mm",
+                        lattice.voxel_size, farthest / lattice.voxel_size, lattice.layer_height / 2));
+}
+
+// The part of the level beads' length whose planes are planes of samples.
+double alignedShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice) {
+    const auto on_plane = [&](double z) {
+        const double k = (z - lattice.origin_z) / lattice.voxel_size;
+        return std::abs(k - std::round(k)) <= kOnPlane;
+    };
+    double level = 0;
+    double aligned = 0;
+    for (const std::uint32_t index : selection) {
+        const gcode::Bead& bead = toolpath.beads[index];
+        if (bead.z0 != bead.z1) continue;
+        const double length = gcode::beadLength(toolpath, bead);
+        level += length;
+        if (on_plane(bead.z0) && on_plane(bead.z0 - toolpath.runOf(bead).height)) aligned += length;
+    }
+    return level > 0 ? aligned / level : 0;
+}
+
 }  // namespace
 
 Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Bounds& bounds,
@@ -93,23 +131,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
     } else {
         chooseByItself(toolpath, selection, request, lattice);
     }
-    const double extent = std::max({bounds.extent(0), bounds.extent(1), bounds.extent(2)});
-    if (lattice.voxel_size > extent)
-        throw UsageError(
-            fmt::format("voxel size {:g} mm is larger than the part ({:.3f} x {:.3f} x {:.3f} mm); the "
-                        "layer height is {:g} mm, try {:g}",
-                        lattice.voxel_size, bounds.extent(0), bounds.extent(1), bounds.extent(2), lattice.layer_height,
-                        lattice.layer_height / 2));
-    // OpenVDB indexes with 32-bit integers; a factor of four is reserved for the band and for other tools.
-    double farthest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        farthest = std::max({farthest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
-    if (farthest / lattice.voxel_size > 536870912.0)
-        throw UsageError(
-            fmt::format("voxel size {:g} mm: {:.3g} voxels from the origin to the part's far end, more "
-                        "than OpenVDB can index; try {:g} mm",
-                        lattice.voxel_size, farthest / lattice.voxel_size, lattice.layer_height / 2));
-
+    refuseUnfit(lattice, bounds);
     if (!by_plane.empty()) {
         const double plane = static_cast<double>(longest(by_plane)) * 1e-3;
         lattice.origin_z = plane - std::floor(plane / lattice.voxel_size + kOnPlane) * lattice.voxel_size;
@@ -122,20 +144,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         if (std::abs(lattice.origin_z) < 1e-9) lattice.origin_z = 0;
     }
 
-    const auto on_plane = [&](double z) {
-        const double k = (z - lattice.origin_z) / lattice.voxel_size;
-        return std::abs(k - std::round(k)) <= kOnPlane;
-    };
-    double level = 0;
-    double aligned = 0;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        if (bead.z0 != bead.z1) continue;
-        const double length = gcode::beadLength(toolpath, bead);
-        level += length;
-        if (on_plane(bead.z0) && on_plane(bead.z0 - toolpath.runOf(bead).height)) aligned += length;
-    }
-    lattice.aligned_share = level > 0 ? aligned / level : 0;
+    lattice.aligned_share = alignedShare(toolpath, selection, lattice);
     return lattice;
 }
 

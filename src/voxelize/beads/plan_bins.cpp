@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace stratum::voxelize {
 namespace {
@@ -19,24 +20,16 @@ namespace {
 constexpr std::size_t kMostParts = 16;
 constexpr std::size_t kFewestBeadsAPart = 4096;
 
-}  // namespace
-
-PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-                   std::size_t memory_limit) {
-    if (stack.beads.empty()) return;
-    const double edge = lattice.voxel_size * kLeafDim;
-    const Footprints footprints(toolpath, edge, 0.5 * (kLeafDim - 1) * lattice.voxel_size, lattice.background(), true);
-    const auto beadAt = [&](std::size_t rank) -> const gcode::Bead& { return toolpath.beads[stack.beads[rank]]; };
+// An upper bound on the entries by arithmetic, before anything is visited or allocated, and the rectangle of columns.
+std::pair<double, ColumnRange> boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack,
+                                            const Footprints& footprints, double edge, std::size_t parts) {
     const std::size_t beads = stack.beads.size();
-    std::size_t parts = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
-
-    // An upper bound by arithmetic, before anything is visited or allocated.
     std::vector<double> part_bounds(parts, 0.0);
     std::vector<ColumnRange> part_ranges(parts);
     parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p != end; ++p)
             for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank) {
-                const gcode::Bead& bead = beadAt(rank);
+                const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
                 const double limit = footprints.limit(bead);
                 const double across = 2 * limit / edge + 1;
                 const double dx = bead.x1 - bead.x0;
@@ -53,6 +46,21 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
         bound += part_bounds[p];
         all.include(part_ranges[p]);
     }
+    return {bound, all};
+}
+
+}  // namespace
+
+PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
+                   std::size_t memory_limit) {
+    if (stack.beads.empty()) return;
+    const double edge = lattice.voxel_size * kLeafDim;
+    const Footprints footprints(toolpath, edge, 0.5 * (kLeafDim - 1) * lattice.voxel_size, lattice.background(), true);
+    const auto beadAt = [&](std::size_t rank) -> const gcode::Bead& { return toolpath.beads[stack.beads[rank]]; };
+    const std::size_t beads = stack.beads.size();
+    std::size_t parts = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
+
+    const auto [bound, all] = boundEntries(toolpath, stack, footprints, edge, parts);
     if (all.empty()) return;
     first_i_ = all.i0;
     first_j_ = all.j0;
