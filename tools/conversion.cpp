@@ -278,7 +278,7 @@ private:
         if (settles() && (stats || o_.summary)) {
             const voxelize::DepositBalance balance = voxelizer.balance();
             if (o_.summary) say(o_.common, depositLines(balance));
-            if (stats) deposit_ = describeDeposit(balance, enclosedMm3(grid, lattice_, true));
+            if (stats) deposit_ = describeDeposit(toolpath_.deposit, balance, enclosedMm3(grid, lattice_, true));
         }
         if (!stats) return;
         grid_ = describeGrid(grid, lattice_, volume, deposited);

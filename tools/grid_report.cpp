@@ -46,7 +46,7 @@ Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid
             {"bytes", leaves * static_cast<std::size_t>(voxelize::kBytesPerLeaf)}};
 }
 
-Json describeDeposit(const voxelize::DepositBalance& balance, double surface_mm3) {
+Json describeDeposit(const gcode::DepositModel& deposit, const voxelize::DepositBalance& balance, double surface_mm3) {
     Json features = Json::object();
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         const voxelize::DepositShare& share = balance.features[f];
@@ -54,11 +54,8 @@ Json describeDeposit(const voxelize::DepositBalance& balance, double surface_mm3
             features[std::string(gcode::featureName(static_cast<gcode::Feature>(f)))] = {
                 {"fed_mm3", share.fed}, {"laid_mm3", share.laid}, {"surplus_mm3", share.surplus()}};
     }
-    return {{"fed_mm3", balance.all.fed},
-            {"laid_mm3", balance.all.laid},
-            {"surface_mm3", surface_mm3},
-            {"surplus_mm3", balance.all.surplus()},
-            {"features", features}};
+    return {{"model", gcode::describe(deposit)}, {"fed_mm3", balance.all.fed},           {"laid_mm3", balance.all.laid},
+            {"surface_mm3", surface_mm3},        {"surplus_mm3", balance.all.surplus()}, {"features", features}};
 }
 
 std::string depositLines(const voxelize::DepositBalance& balance) {

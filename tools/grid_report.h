@@ -18,7 +18,8 @@ nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxeli
 /// What --interior cull would save of it: floods it.
 nlohmann::ordered_json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid);
 /// What of the beads their layers have room for; `surface_mm3` is what the level set encloses.
-nlohmann::ordered_json describeDeposit(const voxelize::DepositBalance& balance, double surface_mm3);
+nlohmann::ordered_json describeDeposit(const gcode::DepositModel& deposit, const voxelize::DepositBalance& balance,
+                                       double surface_mm3);
 /// The same in lines of text, each with its line end.
 std::string depositLines(const voxelize::DepositBalance& balance);
 nlohmann::ordered_json describeMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid,

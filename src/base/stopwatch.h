@@ -5,6 +5,10 @@
 
 namespace stratum {
 
+inline double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Wall time since construction or the last lap, in seconds.
 class Stopwatch {
 public:

@@ -17,6 +17,12 @@ constexpr std::string_view trim(std::string_view text, std::string_view blanks =
 /// Without blanks, line ends of Windows and quotes at both ends: values as slicers write them.
 constexpr std::string_view trimQuoted(std::string_view text) { return trim(text, " \t\r\""); }
 
+/// A to Z, in either case.
+constexpr bool isLetter(char c) {
+    const char lower = static_cast<char>(c | 0x20);
+    return lower >= 'a' && lower <= 'z';
+}
+
 constexpr char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c; }
 constexpr char upperCase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; }
 

@@ -212,7 +212,8 @@ private:
                   {"layers", toolpath_->layer_count},
                   {"voxel_size_mm", lattice_.voxel_size},
                   {"half_width", lattice_.half_width},
-                  {"choice", lattice_.reason}};
+                  {"choice", lattice_.reason},
+                  {"beads_model", gcode::describe(toolpath_->deposit)}};
         const std::string chosen = voxelize::describeSelection(request_.print);
         if (!chosen.empty()) report["selection"] = chosen;
         const double error = voxelize::kLargestErrorVoxels * lattice_.voxel_size;

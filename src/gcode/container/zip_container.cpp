@@ -19,7 +19,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr zip_int64_t kMostEntries = 65536;
-constexpr std::size_t kChunk = std::size_t{16} << 20;  // between two reports of progress
+constexpr std::size_t kZipChunk = std::size_t{16} << 20;  // between two reports of progress
 
 // libzip's error texts are valid only during the lifetime of the error object.
 std::string reasonOf(zip_error_t& error) {
@@ -141,7 +141,7 @@ void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std:
     std::size_t done = 0;
     while (done <= status.size) {
         const zip_int64_t got =
-            zip_fread(file.get(), start + done, std::min<zip_uint64_t>(status.size + 1 - done, kChunk));
+            zip_fread(file.get(), start + done, std::min<zip_uint64_t>(status.size + 1 - done, kZipChunk));
         if (got < 0)
             fail(fmt::format("unzipping stops after {} of {} bytes ({}); the file is damaged: copy or export it again",
                              done, status.size, zip_file_strerror(file.get())));

@@ -10,7 +10,7 @@ namespace stratum::gcode {
 namespace {
 
 constexpr std::size_t kReach = std::size_t{1} << 18;  // as of the other settings
-constexpr std::array<std::string_view, kMotionAxes> kAxes{"x", "y", "z", "e"};
+constexpr std::array<std::string_view, kMotionAxes> kAxisNames{"x", "y", "z", "e"};
 
 // The first of a list is the normal mode's.
 std::optional<double> number(std::string_view text, double least, double most) {
@@ -106,7 +106,7 @@ private:
     void byAxis(std::string_view key, std::string_view value) {
         MachineLimits& limits = settings_.limits;
         for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-            if (!key.ends_with(kAxes[axis])) continue;
+            if (!key.ends_with(kAxisNames[axis])) continue;
             const std::string_view kind = key.substr(0, key.size() - 1);
             if (kind == "feedrate_" || kind == "speed_") {
                 take(limits.speed[axis], value, 1e-3, kFastestAxis);

@@ -14,7 +14,7 @@ struct Name {
 };
 
 // Names behind ";TYPE:" and similar tags. One list for all slicers: a name means the same in all of them.
-constexpr std::array kTypeNames{
+constexpr std::array kFeatureTypes{
     // PrusaSlicer, SuperSlicer
     Name{"perimeter", Feature::perimeter},
     Name{"internal perimeter", Feature::perimeter},
@@ -157,7 +157,7 @@ std::optional<Feature> lookUp(const std::array<Name, n>& names, std::string_view
 
 }  // namespace
 
-std::optional<Feature> featureOfType(std::string_view name) { return lookUp(kTypeNames, name); }
+std::optional<Feature> featureOfType(std::string_view name) { return lookUp(kFeatureTypes, name); }
 std::optional<Feature> featureOfBareName(std::string_view name) { return lookUp(kBareNames, name); }
 std::optional<Feature> featureOfSegment(std::string_view name) { return lookUp(kSegmentNames, name); }
 std::optional<Feature> featureOfPath(std::string_view name) { return lookUp(kPathNames, name); }

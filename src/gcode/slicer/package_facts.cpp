@@ -9,7 +9,7 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kMostTools = 256;
+constexpr std::size_t kMostFilaments = 256;
 
 std::string unescape(std::string_view text) {
     using Entity = std::pair<std::string_view, char>;
@@ -98,7 +98,7 @@ PackageFacts readSliceInfo(std::string_view xml, int plate) {
         const std::string_view id = attribute(tag, "id");
         std::size_t number = 0;
         const auto [end, status] = std::from_chars(id.data(), id.data() + id.size(), number);
-        if (status != std::errc{} || number == 0 || number > kMostTools) return;
+        if (status != std::errc{} || number == 0 || number > kMostFilaments) return;
         if (facts.filament_colors.size() < number) facts.filament_colors.resize(number);
         if (facts.stated.materials.size() < number) facts.stated.materials.resize(number);
         facts.filament_colors[number - 1] = parseColor(attribute(tag, "color"));
@@ -111,7 +111,7 @@ std::vector<std::string> materialPaths(std::string_view xml) {
     std::vector<std::string> paths;
     forTags(xml, "Relationship", [&](std::string_view tag) {
         std::string_view target = attribute(tag, "Target");
-        if (!attribute(tag, "Type").ends_with("/material") || paths.size() >= kMostTools) return;
+        if (!attribute(tag, "Type").ends_with("/material") || paths.size() >= kMostFilaments) return;
         if (target.starts_with('/')) target.remove_prefix(1);
         paths.emplace_back(target);
     });

@@ -13,7 +13,7 @@ namespace stratum::gcode {
 namespace {
 
 // Because of thumbnails and Cura's SETTING_3 lines, settings can be this far from the ends.
-constexpr std::size_t kReach = std::size_t{1} << 18;
+constexpr std::size_t kSettingsReach = std::size_t{1} << 18;
 constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
 std::optional<bool> flag(std::string_view text) {
@@ -202,9 +202,9 @@ void readComments(std::string_view part, SettingsReader& reader) {
 
 Settings readSettings(std::string_view bytes) {
     SettingsReader reader;
-    readComments(bytes.substr(0, kReach), reader);
-    if (bytes.size() > kReach) {
-        std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));
+    readComments(bytes.substr(0, kSettingsReach), reader);
+    if (bytes.size() > kSettingsReach) {
+        std::string_view tail = bytes.substr(std::max(kSettingsReach, bytes.size() - kSettingsReach));
         // The tail may start inside a line, which must not be taken for a comment.
         tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
         readComments(tail, reader);

@@ -1,5 +1,6 @@
 #include "gcode/text/lexer.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 
 #include <algorithm>
@@ -10,10 +11,6 @@ namespace {
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
-bool isLetter(char c) {
-    const char lower = static_cast<char>(c | 0x20);
-    return lower >= 'a' && lower <= 'z';
-}
 char upper(char c) { return static_cast<char>(c & ~0x20); }
 
 // Commands whose argument is text, a file name or other commands, so that "M117 G1 X5" moves nothing (Marlin's

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace stratum::gcode {
 
@@ -24,5 +25,8 @@ struct DepositModel {
     }
     bool operator==(const DepositModel&) const = default;
 };
+
+/// "settled, corners of 50 % of half the height"; "capsule, stadium" is the default.
+std::string describe(const DepositModel& deposit);
 
 }  // namespace stratum::gcode

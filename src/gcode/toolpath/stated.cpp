@@ -1,5 +1,6 @@
 #include "gcode/toolpath/stated.h"
 
+#include "base/text.h"
 #include "gcode/text/number.h"
 #include "gcode/text/setting_text.h"
 
@@ -14,8 +15,6 @@ namespace stratum::gcode {
 namespace {
 
 constexpr double kLongest = 1e9;  // s, thirty years
-
-bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 // Each part of a list, with its number.
 template <typename Take>

@@ -170,14 +170,6 @@ constexpr std::array<Named, 148> kNames = {{{"aliceblue", 0xf0f8ff},
                                             {"yellow", 0xffff00},
                                             {"yellowgreen", 0x9acd32}}};
 
-Color fromSrgb(std::uint32_t hex) {
-    const auto channel = [](std::uint32_t v) {
-        const double s = (v & 0xffU) / 255.0;
-        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    };
-    return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
-}
-
 std::optional<std::uint32_t> parseHex(std::string_view digits) {
     if (digits.size() != 3 && digits.size() != 6) return std::nullopt;
     std::uint32_t value = 0;
@@ -193,6 +185,14 @@ std::optional<std::uint32_t> parseHex(std::string_view digits) {
 constexpr float kStudioGain = 0.92f;
 
 }  // namespace
+
+Color fromSrgb(std::uint32_t hex) {
+    const auto channel = [](std::uint32_t v) {
+        const double s = (v & 0xffU) / 255.0;
+        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    };
+    return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
+}
 
 std::optional<Color> parseNamedColor(std::string_view text) {
     if (text.starts_with('#')) {

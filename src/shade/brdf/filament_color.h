@@ -3,6 +3,7 @@
 
 #include "shade/color.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@ namespace stratum::shade {
 /// Parses "#RRGGBB", "#RGB", or a color's name in CSS Color 4, e.g. "teal", in any case of letters. Linear RGB of that
 /// sRGB color; nothing for other texts.
 std::optional<Color> parseNamedColor(std::string_view text);
+
+/// Linear RGB of the sRGB color 0xRRGGBB.
+Color fromSrgb(std::uint32_t hex);
 
 /// "#rrggbb" of linear RGB, the nearest.
 std::string hexOf(const Color& linear);

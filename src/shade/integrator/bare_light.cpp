@@ -20,7 +20,7 @@ constexpr int kFine = 8;           // samples along each side of a cell: fine en
 constexpr float kGlossPower = 16.0f;
 
 /// Light from a part of the sphere.
-struct Part {
+struct LightPart {
     glm::vec3 direction;
     float irradiance;  // luminance, of a surface that faces it
 };
@@ -31,9 +31,9 @@ glm::vec3 direction(double row, double column) {
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center) {
+std::vector<LightPart> gather(const SceneDescription& scene, const glm::dvec3& center) {
     constexpr std::size_t kColumns = 2 * std::size_t{kRows};
-    std::vector<Part> parts(kRows * kColumns);
+    std::vector<LightPart> parts(kRows * kColumns);
     parallelFor(kRows, 1, [&](std::size_t first, std::size_t last) {
         std::vector<glm::vec3> directions(std::size_t{kFine} * kFine);
         std::vector<Color> colors(directions.size());
@@ -46,7 +46,7 @@ std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center
                                               static_cast<double>(column) + (static_cast<double>(j) + 0.5) / kFine);
                 }
                 scene.environment->radianceStream(directions, colors);
-                Part& part = parts[row * kColumns + column];
+                LightPart& part = parts[row * kColumns + column];
                 part.direction = direction(static_cast<double>(row) + 0.5, static_cast<double>(column) + 0.5);
                 float sum = 0.0f;
                 for (const Color& color : colors) sum += luminance(color);
@@ -62,9 +62,9 @@ std::vector<Part> gather(const SceneDescription& scene, const glm::dvec3& center
     if (!scene.bed) return parts;
     // The bed in place of what lies below it.
     float above = 0.0f;
-    for (const Part& part : parts) above += std::max(part.direction.z, 0.0f) * part.irradiance;
+    for (const LightPart& part : parts) above += std::max(part.direction.z, 0.0f) * part.irradiance;
     const float bed = luminance(scene.bed->texture.mean()) * above * kInvPi;
-    std::erase_if(parts, [](const Part& part) { return part.direction.z < 0.0f; });
+    std::erase_if(parts, [](const LightPart& part) { return part.direction.z < 0.0f; });
     for (std::size_t row = kRows / 2; row < kRows; ++row) {
         const double a = std::numbers::pi * static_cast<double>(row) / kRows;
         const double b = std::numbers::pi * static_cast<double>(row + 1) / kRows;
@@ -90,14 +90,14 @@ glm::vec3 unfolded(float u, float v) {
 }  // namespace
 
 BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : table_(kSide * kSide) {
-    const std::vector<Part> parts = gather(scene, center);
+    const std::vector<LightPart> parts = gather(scene, center);
     parallelFor(table_.size(), kSide, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
             const auto place = [](std::size_t i) { return 2.0f * static_cast<float>(i) / (kSide - 1) - 1.0f; };
             const glm::vec3 d = unfolded(place(n % kSide), place(n / kSide));
             float matt = 0.0f;
             float gloss = 0.0f;
-            for (const Part& part : parts) {
+            for (const LightPart& part : parts) {
                 const float c = std::max(glm::dot(part.direction, d), 0.0f);
                 matt += c * part.irradiance;
                 float power = c * c;

@@ -18,16 +18,16 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 12> kNames = {"path",   "direct", "environment-sum", "phong", "ao",
-                                                     "normal", "depth",  "position",        "mask",  "layer",
-                                                     "tool",   "feature"};
+constexpr std::array<std::string_view, 12> kIntegratorNames = {"path",   "direct", "environment-sum", "phong", "ao",
+                                                               "normal", "depth",  "position",        "mask",  "layer",
+                                                               "tool",   "feature"};
 
 }  // namespace
 
 void IntegratorOptions::validate() const {
-    if (std::find(kNames.begin(), kNames.end(), name) == kNames.end())
-        throw UsageError(fmt::format("--integrator {}: unknown; choose {}{}", name, fmt::join(kNames, ", "),
-                                     didYouMean(name, kNames)));
+    if (std::find(kIntegratorNames.begin(), kIntegratorNames.end(), name) == kIntegratorNames.end())
+        throw UsageError(fmt::format("--integrator {}: unknown; choose {}{}", name, fmt::join(kIntegratorNames, ", "),
+                                     didYouMean(name, kIntegratorNames)));
     if (bounces < 1 || bounces > 64)
         throw UsageError(fmt::format("--bounces {}: must be from 1 (direct light) to 64", bounces));
     const auto within = [](float value, float high) { return value >= 0.0f && value <= high; };

@@ -15,14 +15,14 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::string_view kOption = "--light";
+constexpr std::string_view kLightOption = "--light";
 
 glm::dvec3 vectorAt(const Preset& preset, std::size_t first) {
     return {preset.values[first], preset.values[first + 1], preset.values[first + 2]};
 }
 
 Color colorAt(const Preset& preset, std::size_t first, std::string_view what) {
-    for (std::size_t i = first; i < first + 3; ++i) requireRange(preset, i, 0.0f, 1e9f, kOption, what);
+    for (std::size_t i = first; i < first + 3; ++i) requireRange(preset, i, 0.0f, 1e9f, kLightOption, what);
     return Color(vectorAt(preset, first));
 }
 
@@ -30,48 +30,48 @@ glm::vec3 towards(const Preset& preset, std::string_view text) {
     const glm::dvec3 travel = vectorAt(preset, 0);
     if (!(glm::length(travel) > 0.0))
         throw UsageError(
-            fmt::format("{} {}: the direction is zero; write e.g. {}:1,1,-2,3,3,3", kOption, text, preset.name));
+            fmt::format("{} {}: the direction is zero; write e.g. {}:1,1,-2,3,3,3", kLightOption, text, preset.name));
     return glm::vec3(-glm::normalize(travel));
 }
 
 }  // namespace
 
 std::shared_ptr<const Light> parseLight(std::string_view text) {
-    Preset preset = parsePreset(text, kOption);
+    Preset preset = parsePreset(text, kLightOption);
     if (preset.name == "directional") {
-        requireValues(preset, 6, kOption, "directional:X,Y,Z,R,G,B");
+        requireValues(preset, 6, kLightOption, "directional:X,Y,Z,R,G,B");
         return std::make_shared<DirectionalLight>(towards(preset, text), colorAt(preset, 3, "an irradiance"));
     }
     if (preset.name == "sun") {
         if (preset.values.size() == 6) preset.values.push_back(SunLight::kRealDiameter);
-        requireValues(preset, 7, kOption, "sun:X,Y,Z,R,G,B,DEGREES");
-        requireRange(preset, 6, 0.01f, 90.0f, kOption, "its diameter in degrees");
+        requireValues(preset, 7, kLightOption, "sun:X,Y,Z,R,G,B,DEGREES");
+        requireRange(preset, 6, 0.01f, 90.0f, kLightOption, "its diameter in degrees");
         return std::make_shared<SunLight>(towards(preset, text), colorAt(preset, 3, "an irradiance"), preset.values[6]);
     }
     if (preset.name == "point") {
-        requireValues(preset, 6, kOption, "point:X,Y,Z,R,G,B");
+        requireValues(preset, 6, kLightOption, "point:X,Y,Z,R,G,B");
         return std::make_shared<PointLight>(vectorAt(preset, 0), colorAt(preset, 3, "an intensity"));
     }
     if (preset.name == "rectangle") {
-        requireValues(preset, 12, kOption, "rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B");
+        requireValues(preset, 12, kLightOption, "rectangle:X,Y,Z,UX,UY,UZ,VX,VY,VZ,R,G,B");
         const glm::dvec3 u = vectorAt(preset, 3);
         const glm::dvec3 v = vectorAt(preset, 6);
         if (!(glm::length(u) > 0.0 && glm::length(v) > 0.0) ||
             std::abs(glm::dot(u, v)) > 1e-4 * glm::length(u) * glm::length(v))
             throw UsageError(
-                fmt::format("{} {}: the half edges U and V must be perpendicular and not zero", kOption, text));
+                fmt::format("{} {}: the half edges U and V must be perpendicular and not zero", kLightOption, text));
         return std::make_shared<RectangleLight>(vectorAt(preset, 0), u, v, colorAt(preset, 9, "a radiance"));
     }
-    throw UsageError(
-        fmt::format("{} {}: unknown light; write directional:, sun:, point:, rectangle: or ambient: and "
-                    "numbers, see -h{}",
-                    kOption, text, didYouMean(preset.name, {"directional", "sun", "point", "rectangle", "ambient"})));
+    throw UsageError(fmt::format(
+        "{} {}: unknown light; write directional:, sun:, point:, rectangle: or ambient: and "
+        "numbers, see -h{}",
+        kLightOption, text, didYouMean(preset.name, {"directional", "sun", "point", "rectangle", "ambient"})));
 }
 
 std::optional<Color> parseAmbient(std::string_view text) {
     if (text.substr(0, text.find(':')) != "ambient") return std::nullopt;
-    const Preset preset = parsePreset(text, kOption);
-    requireValues(preset, 3, kOption, "ambient:R,G,B");
+    const Preset preset = parsePreset(text, kLightOption);
+    requireValues(preset, 3, kLightOption, "ambient:R,G,B");
     return colorAt(preset, 0, "a radiance");
 }
 

@@ -26,14 +26,14 @@ struct Block {
     std::size_t line = 0;
 };
 
-struct File {
+struct MiniDiffFile {
     std::vector<double> azimuths, radials;  // degrees
     std::vector<Block> blocks;
     std::size_t skipped = 0;
 };
 
-File readBlocks(ScanText& text) {
-    File file;
+MiniDiffFile readBlocks(ScanText& text) {
+    MiniDiffFile file;
     Block block;
     bool front = true;
     bool brdf = true;
@@ -102,7 +102,7 @@ bool isMiniDiff(std::string_view text) {
 
 BrdfScan readMiniDiff(std::string_view bytes, std::string_view name) {
     ScanText text(bytes, name);
-    const File file = readBlocks(text);
+    const MiniDiffFile file = readBlocks(text);
     if (file.blocks.empty())
         text.fail(fmt::format("no block of a front side's BRDF was found ({} others were skipped)", file.skipped));
 

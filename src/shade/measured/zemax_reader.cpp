@@ -14,10 +14,10 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::size_t kMostAngles = 2000;
-constexpr std::size_t kMostReadings = std::size_t{1} << 26;
+constexpr std::size_t kMostZemaxAngles = 2000;
+constexpr std::size_t kMostSamples = std::size_t{1} << 26;
 
-struct File {
+struct ZemaxFile {
     std::vector<double> rotations, incidences, azimuths, radials;  // degrees
     bool plane_symmetrical = false;
     bool xyz = false;
@@ -25,12 +25,12 @@ struct File {
 };
 
 std::vector<double> angles(ScanText& text, std::string_view value, std::string_view what) {
-    return text.numbers(countOf(text, value, what, 1, kMostAngles), what);
+    return text.numbers(countOf(text, value, what, 1, kMostZemaxAngles), what);
 }
 
 /// The matrices of one channel: for each rotation and incidence a TIS and azimuths x radials. Only the first rotation
 /// of the sample is kept.
-std::vector<double> readChannel(ScanText& text, const File& file) {
+std::vector<double> readChannel(ScanText& text, const ZemaxFile& file) {
     std::vector<double> readings;
     const std::size_t count = file.azimuths.size() * file.radials.size();
     for (std::size_t rotation = 0; rotation < file.rotations.size(); ++rotation) {
@@ -44,8 +44,8 @@ std::vector<double> readChannel(ScanText& text, const File& file) {
     return readings;
 }
 
-File readFile(ScanText& text) {
-    File file;
+ZemaxFile readFile(ScanText& text) {
+    ZemaxFile file;
     std::size_t channel = 0;
     std::string_view line;
     while (text.next(line)) {
@@ -69,8 +69,8 @@ File readFile(ScanText& text) {
                 text.fail("DataBegin before AngleOfIncidence, ScatterAzimuth and ScatterRadial");
             if (file.rotations.empty()) file.rotations = {0.0};
             if (file.rotations.size() * file.incidences.size() * file.azimuths.size() >
-                kMostReadings / file.radials.size())
-                text.fail(fmt::format("more than {} readings; this is no scan of a surface", kMostReadings));
+                kMostSamples / file.radials.size())
+                text.fail(fmt::format("more than {} readings; this is no scan of a surface", kMostSamples));
             if (channel >= 3) text.fail("more than three channels");
             file.channels[channel++] = readChannel(text, file);
         }
@@ -90,7 +90,7 @@ bool isZemax(std::string_view text) {
 
 BrdfScan readZemax(std::string_view bytes, std::string_view name) {
     ScanText text(bytes, name);
-    const File file = readFile(text);
+    const ZemaxFile file = readFile(text);
 
     // About the mirror direction, as the file has it; scanAt interpolates in it.
     BrdfScan about;

@@ -23,33 +23,25 @@ constexpr std::size_t kRampSteps = 256;
 constexpr float kBrightest = 0.95f;  // no filament reflects everything
 const Color kNeutral(0.18f);         // of values that are no numbers
 
-Color fromSrgb(std::uint32_t hex) {
-    const auto channel = [](std::uint32_t v) {
-        const double s = (v & 0xffu) / 255.0;
-        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    };
-    return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
-}
-
 /// Similar to the usual colors of slicers.
-struct Named {
+struct FeatureColor {
     std::string_view name;
     std::uint32_t color;
 };
-constexpr std::array<Named, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d},
-                                                   {"external-perimeter", 0xe87a2c},
-                                                   {"overhang-perimeter", 0x3a48d6},
-                                                   {"infill", 0xa83232},
-                                                   {"solid-infill", 0x8c52c4},
-                                                   {"top-infill", 0xe04848},
-                                                   {"bridge", 0x4a80c0},
-                                                   {"gap-fill", 0xe8e8e8},
-                                                   {"ironing", 0xe89070},
-                                                   {"skirt", 0x0a8a70},
-                                                   {"brim", 0x0a8a70},
-                                                   {"support", 0x40b840},
-                                                   {"support-interface", 0x1e7a1e},
-                                                   {"wipe-tower", 0xa8d8a0}}};
+constexpr std::array<FeatureColor, 14> kFeatureColors = {{{"perimeter", 0xe8cf3d},
+                                                          {"external-perimeter", 0xe87a2c},
+                                                          {"overhang-perimeter", 0x3a48d6},
+                                                          {"infill", 0xa83232},
+                                                          {"solid-infill", 0x8c52c4},
+                                                          {"top-infill", 0xe04848},
+                                                          {"bridge", 0x4a80c0},
+                                                          {"gap-fill", 0xe8e8e8},
+                                                          {"ironing", 0xe89070},
+                                                          {"skirt", 0x0a8a70},
+                                                          {"brim", 0x0a8a70},
+                                                          {"support", 0x40b840},
+                                                          {"support-interface", 0x1e7a1e},
+                                                          {"wipe-tower", 0xa8d8a0}}};
 
 /// The number of a key of `each`: itself, or the index of a name.
 int valueOf(const std::string& key, const MaterialOptions& options, const trace::AttributeSummary& summary) {
@@ -71,7 +63,7 @@ int valueOf(const std::string& key, const MaterialOptions& options, const trace:
 Color colorOfInteger(int value, const trace::AttributeSummary& summary) {
     const auto id = static_cast<std::size_t>(value);
     if (id < summary.labels.size())
-        for (const Named& named : kFeatureColors)
+        for (const FeatureColor& named : kFeatureColors)
             if (named.name == summary.labels[id]) return fromSrgb(named.color);
     return categoryColor(id);
 }

@@ -16,12 +16,12 @@
 namespace stratum::study {
 namespace {
 
-constexpr const char* kError = "largest error of the distance, mm";
+constexpr const char* kGridError = "largest error of the distance, mm";
 
 StabilityCase field(std::string name, const voxelize::Lattice& lattice, const voxelize::VoxelizeOptions& options = {}) {
     const gcode::Toolpath toolpath = crossedLines(kBeadWidth, kBeadHeight);
     return {"grid",     std::move(name),
-            kError,     fieldTolerance(toolpath, lattice),
+            kGridError, fieldTolerance(toolpath, lattice),
             kRoundings, [=] { return largestFieldError(toolpath, lattice, options); }};
 }
 

@@ -20,8 +20,8 @@
 namespace stratum::study {
 namespace {
 
-constexpr double kVoxel = 0.1;
-constexpr double kBand = 3 * kVoxel;
+constexpr double kRayVoxel = 0.1;
+constexpr double kBand = 3 * kRayVoxel;
 // A sample is a float within the band; between two of them a zero moves by no more than their rounding.
 constexpr double kSample = kBand * 0x1p-24 * 2;
 
@@ -29,14 +29,14 @@ constexpr double kSample = kBand * 0x1p-24 * 2;
 openvdb::FloatGrid::Ptr plane(const openvdb::Vec3d& normal, double offset) {
     openvdb::initialize();
     auto grid = openvdb::FloatGrid::create(static_cast<float>(kBand));
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(kRayVoxel));
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     grid->setName("surface");
     auto accessor = grid->getAccessor();
     for (int x = -32; x <= 32; ++x)
         for (int y = -32; y <= 32; ++y)
             for (int z = -32; z <= 32; ++z) {
-                const double d = kVoxel * normal.dot(openvdb::Vec3d(x, y, z)) - offset;
+                const double d = kRayVoxel * normal.dot(openvdb::Vec3d(x, y, z)) - offset;
                 if (std::abs(d) < kBand)
                     accessor.setValue(openvdb::Coord(x, y, z), static_cast<float>(d));
                 else if (d < 0)
@@ -53,7 +53,7 @@ openvdb::FloatGrid::Ptr ball(float radius = 2, const openvdb::Vec3f& center = op
 }
 
 // How far a ball's trilinear zero is off, and the roundings of its samples.
-constexpr double kBallBend = kVoxel * kVoxel / 8 * 2 / 2.0 + kSample;
+constexpr double kBallBend = kRayVoxel * kRayVoxel / 8 * 2 / 2.0 + kSample;
 
 StabilityCase rays(std::string name, std::string quantity, double tolerance, std::string why,
                    std::function<double()> measure) {
@@ -101,7 +101,7 @@ double downAt(double at) {
     for (const double other : {0.0, 0.5, 1.0, at})
         for (const double zero : {0.0, -0.0, 1e-310, -5e-324}) {
             trace::Hit hit;
-            if (!field->intersect({{at * kVoxel, other * kVoxel, 5}, {zero, zero, -1}}, hit))
+            if (!field->intersect({{at * kRayVoxel, other * kRayVoxel, 5}, {zero, zero, -1}}, hit))
                 return std::numeric_limits<double>::infinity();
             largest = std::max(largest, std::abs(hit.position.z - 0.034));
         }
@@ -148,7 +148,7 @@ double leaks(bool on_lattice) {
     for (int n = 0; n < kRays; ++n) {
         trace::Ray ray{{where(random), where(random), where(random)}, randomDirection(random)};
         if (on_lattice) {
-            ray.origin = kVoxel * glm::round(ray.origin / kVoxel);
+            ray.origin = kRayVoxel * glm::round(ray.origin / kRayVoxel);
             ray.direction = glm::dvec3(0);
             ray.direction[n % 3] = n % 2 == 0 ? 1 : -1;
             if (n % 4 == 0) ray.direction[(n + 1) % 3] = 1;
@@ -226,7 +226,7 @@ double wrongIntervals() {
 
 // The largest difference, mm, between a ball's hits and the paper's, for a ball of this voxel (of world units).
 double scaledBall(double scale) {
-    const auto grid = ball(static_cast<float>(2 * scale), openvdb::Vec3f(0), static_cast<float>(kVoxel * scale));
+    const auto grid = ball(static_cast<float>(2 * scale), openvdb::Vec3f(0), static_cast<float>(kRayVoxel * scale));
     const TracedField field(*grid);
     std::mt19937 random(9);
     double largest = 0;
@@ -303,7 +303,7 @@ void addPlanes(std::vector<StabilityCase>& cases) {
     cases.push_back(rays("tilted plane from random directions", "largest distance from the plane, mm", 4 * kSample,
                          "eight float samples of the band, each rounded by 2^-24", tiltedPlane));
     cases.push_back(rays("normal of a tilted plane", "largest length of the difference",
-                         2 * std::sqrt(3.0) * kSample / kVoxel, "two samples' roundings over a voxel, on three axes",
+                         2 * std::sqrt(3.0) * kSample / kRayVoxel, "two samples' roundings over a voxel, on three axes",
                          normalOfATiltedPlane));
     cases.push_back(rays("intervals that end on the surface", "wrong answers", 0,
                          "8 roundings of 2^-53 of t decide on which side an end lies", wrongIntervals));
@@ -320,10 +320,10 @@ void addBalls(std::vector<StabilityCase>& cases) {
                              [scale] { return scaledBall(scale); }));
     cases.push_back(rays("tangent, a voxel inside", "share of rays that miss", 0,
                          "a voxel is more than the trilinear zero is off (voxel^2 / 4R)",
-                         [] { return missesOfABall((2 - kVoxel) / 2); }));
+                         [] { return missesOfABall((2 - kRayVoxel) / 2); }));
     cases.push_back(rays("tangent, a hundredth of a voxel outside", "share of rays that hit", 0,
                          "the trilinear interpolant of a convex distance is nowhere below it",
-                         [] { return 1 - missesOfABall((2 + 0.01 * kVoxel) / 2); }));
+                         [] { return 1 - missesOfABall((2 + 0.01 * kRayVoxel) / 2); }));
     cases.push_back(rays("out of a closed ball", "share of rays that leak", 0,
                          "neighbouring cells see the same bits on their face", [] { return leaks(false); }));
     cases.push_back(rays("out of a closed ball, on the lattice", "share of rays that leak", 0,
@@ -336,7 +336,7 @@ void addBalls(std::vector<StabilityCase>& cases) {
     cases.push_back(rays("one by one or in a stream", "rays whose bits differ", 0,
                          "vector and scalar code do the same operations in the same order", streamDiffers));
     cases.push_back(
-        rays("against sphere tracing", "largest difference of t, mm", 2e-3 * kVoxel,
+        rays("against sphere tracing", "largest difference of t, mm", 2e-3 * kRayVoxel,
              "it ends within a thousandth of a voxel; a ball's field has a slope above 1/2 along its normal",
              againstSphereTracing));
 }

@@ -1,6 +1,7 @@
 #include "voxelize/grid/exterior.h"
 
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "voxelize/leaf/leaf_mask.h"
 #include "voxelize/leaf/leaf_positions.h"
 
@@ -18,8 +19,6 @@ namespace stratum::voxelize {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // A leaf position that the flood has reached. Only the thread that works on its column writes; other threads read the
 // words of `reached` meanwhile. Bits are only ever set, and the thread that sets a bit queues the neighbours that it

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
@@ -52,8 +53,6 @@ constexpr double kChannelRadius = 0.15;  // layer heights
 constexpr std::size_t kColumnGrain = 16;
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::size_t memoryLimit(const VoxelizeOptions& options) {
     return options.memory_limit != 0 ? options.memory_limit : availableMemory();

@@ -6,8 +6,8 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr Firmware kKlipper = Firmware::klipper;
-constexpr Firmware kReprap = Firmware::reprap;
+constexpr Firmware kKlipperMotion = Firmware::klipper;
+constexpr Firmware kReprapMotion = Firmware::reprap;
 
 class MotionDialect : public testing::TestWithParam<Dialect> {};
 
@@ -92,7 +92,7 @@ const Dialect kFrames[] = {
      .filament = 2,
      .end = Point{110, 0, .2},
      .quiet = true,
-     .firmware = kReprap},
+     .firmware = kReprapMotion},
     {.name = "g10_l20",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nG10 L20 P1 X0\nG1 X10 E1\n",
      .rule = "names the place in a workspace, as G92 does",
@@ -101,7 +101,7 @@ const Dialect kFrames[] = {
      .filament = 2,
      .end = Point{20, 0, .2},
      .quiet = true,
-     .firmware = kReprap},
+     .firmware = kReprapMotion},
     {.name = "m206_before_the_first_bead",
      .program = "M83\nG1 Z.2\nM206 X5\nG1 X10 E1\n",
      .rule = "the place has another name",
@@ -135,7 +135,7 @@ const Dialect kFrames[] = {
      .filament = 1,
      .end = Point{10, 0, .2},
      .quiet = true,
-     .firmware = kReprap},
+     .firmware = kReprapMotion},
     {.name = "extruder_offset",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nT1\nG1 X-8 E1\nG1 X2 E1\n; extruder_offset = 0x0,18x0\n",
      .rule = "the slicer subtracted the nozzle's offset; it is added again",
@@ -208,7 +208,7 @@ const Dialect kFrames[] = {
      .start = Point{10, 0, .2},
      .end = Point{10, 5, .2},
      .quiet = true,
-     .firmware = kReprap},
+     .firmware = kReprapMotion},
     {.name = "g1_r_of_the_last_tool_change",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nT1\nG1 X90 Y90\nG1 R2 X0 Y0\nG1 Y5 E1\n",
      .rule = "slot 2 is filled by a change of tool",
@@ -216,7 +216,7 @@ const Dialect kFrames[] = {
      .beads = 2,
      .filament = 2,
      .start = Point{10, 0, .2},
-     .firmware = kReprap},
+     .firmware = kReprapMotion},
     {.name = "g1_r_in_marlin",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nG60\nG1 X50\nG1 R0 X20 E1\n",
      .rule = "R means nothing on a straight move",
@@ -232,7 +232,7 @@ const Dialect kFrames[] = {
      .filament = 1,
      .end = Point{10, 0, .2},
      .quiet = true,
-     .firmware = kKlipper},
+     .firmware = kKlipperMotion},
     {.name = "set_gcode_offset_afterwards",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nset_gcode_offset X_ADJUST=5 Y=2\nG1 X10 Y0 E1\n",
      .rule = "applies to the moves that come",
@@ -242,7 +242,7 @@ const Dialect kFrames[] = {
      .start = Point{10, 0, .2},
      .end = Point{15, 2, .2},
      .quiet = true,
-     .firmware = kKlipper},
+     .firmware = kKlipperMotion},
     {.name = "set_gcode_offset_move",
      .program = "M83\nG1 Z.2\nG1 X10 E1\nSET_GCODE_OFFSET X=5 MOVE=1\nG1 X20 E1\n",
      .rule = "MOVE=1 goes there at once",
@@ -251,7 +251,7 @@ const Dialect kFrames[] = {
      .filament = 2,
      .start = Point{15, 0, .2},
      .end = Point{25, 0, .2},
-     .firmware = kKlipper},
+     .firmware = kKlipperMotion},
     {.name = "restore_gcode_state",
      .program =
          "M83\nG1 Z.2\nG1 X10 E1\nSAVE_GCODE_STATE NAME=a\nG91\nM82\nG92 X0\nG1 X5\nRESTORE_GCODE_STATE NAME=a\nG1 X20 "
@@ -263,7 +263,7 @@ const Dialect kFrames[] = {
      .start = Point{15, 0, .2},
      .end = Point{20, 0, .2},
      .quiet = true,
-     .firmware = kKlipper},
+     .firmware = kKlipperMotion},
     {.name = "restore_gcode_state_move",
      .program =
          "M83\nG1 Z.2\nG1 X10 E1\nSAVE_GCODE_STATE NAME=a\nG1 X50 Z9\nRESTORE_GCODE_STATE NAME=a MOVE=1\nG1 X20 E1\n",
@@ -273,7 +273,7 @@ const Dialect kFrames[] = {
      .filament = 2,
      .start = Point{10, 0, .2},
      .end = Point{20, 0, .2},
-     .firmware = kKlipper},
+     .firmware = kKlipperMotion},
 };
 
 const Dialect kCurves[] = {

@@ -30,16 +30,16 @@ bool sameBits(const glm::dvec3& a, const glm::dvec3& b) {
     return sameBits(a.x, b.x) && sameBits(a.y, b.y) && sameBits(a.z, b.z);
 }
 
-struct Tally {
+struct StreamTally {
     std::size_t hits = 0, missed = 0, extra = 0, moved = 0, blocked_wrongly = 0;
 };
 
-Tally compare(trace::Tracer& tracer, const std::vector<trace::Ray>& rays) {
+StreamTally compare(trace::Tracer& tracer, const std::vector<trace::Ray>& rays) {
     std::vector<trace::Hit> hits(rays.size());
     std::vector<std::uint8_t> blocked(rays.size(), 7);
     tracer.intersectStream(rays, hits);
     tracer.occludedStream(rays, blocked);
-    Tally tally;
+    StreamTally tally;
     for (std::size_t n = 0; n < rays.size(); ++n) {
         trace::Hit expected;
         const bool found = tracer.intersect(rays[n], expected);
@@ -60,7 +60,7 @@ TEST_P(BrickStream, HasTheBitsOfTheScalarWalk) {
     for (const int kind : {0, 1, 2, 3}) {
         const auto intersector = makeBrickIntersector(*test::rubble(0.1F, kind % 2 != 0),
                                                       kind < 2 ? BrickValues::Float32 : BrickValues::Int16);
-        const Tally tally = compare(*intersector->makeTracer(), test::randomRays(200000, 4, 0.1, 11));
+        const StreamTally tally = compare(*intersector->makeTracer(), test::randomRays(200000, 4, 0.1, 11));
         EXPECT_GT(tally.hits, 60000U);
         EXPECT_EQ(tally.missed, 0U);
         EXPECT_EQ(tally.extra, 0U);
@@ -86,7 +86,7 @@ TEST_P(BrickStream, HasThemForPicturesToo) {
                 if (view % 4 == 0) ray.t_min = away - 2;
                 if (view % 4 == 1) ray.t_max = away - 1;
             }
-            const Tally tally = compare(*tracer, rays);
+            const StreamTally tally = compare(*tracer, rays);
             hits += tally.hits;
             ASSERT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U) << view;
         }
@@ -100,7 +100,7 @@ TEST_P(BrickStream, FollowsTheTransform) {
     grid->transform().postRotate(-0.3, openvdb::math::Z_AXIS);
     grid->transform().postTranslate(openvdb::Vec3d(0.3, -0.2, 0.1));
     const auto intersector = makeBrickIntersector(*grid);
-    const Tally tally = compare(*intersector->makeTracer(), test::randomRays(50000, 4, 0.1, 12));
+    const StreamTally tally = compare(*intersector->makeTracer(), test::randomRays(50000, 4, 0.1, 12));
     EXPECT_GT(tally.hits, 15000U);
     EXPECT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U);
 }
@@ -168,7 +168,7 @@ TEST_P(BrickStream, CrossesEmptySpaceBetweenFarParts) {
     auto grid = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     openvdb::tools::csgUnion(*grid, *test::sphereGrid(1, openvdb::Vec3f(60, 45, -30), 0.1F));
     const auto intersector = makeBrickIntersector(*grid);
-    const Tally tally = compare(*intersector->makeTracer(), test::randomRays(50000, 60, 0.1, 14));
+    const StreamTally tally = compare(*intersector->makeTracer(), test::randomRays(50000, 60, 0.1, 14));
     EXPECT_GT(tally.hits, 5U);
     EXPECT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U);
 }

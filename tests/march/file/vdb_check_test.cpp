@@ -53,8 +53,8 @@ protected:
     }
 };
 
-constexpr std::uint32_t kZip = openvdb::io::COMPRESS_ZIP, kMask = openvdb::io::COMPRESS_ACTIVE_MASK,
-                        kBlosc = openvdb::io::COMPRESS_BLOSC;
+constexpr std::uint32_t kZip = openvdb::io::COMPRESS_ZIP, kMaskFlag = openvdb::io::COMPRESS_ACTIVE_MASK,
+                        kBloscFlag = openvdb::io::COMPRESS_BLOSC;
 
 TEST_F(VdbCheck, AcceptsWhatOpenVdbWrites) {
     const auto grid = test::rubble(0.05F, true);
@@ -80,7 +80,8 @@ TEST_F(VdbCheck, AcceptsWhatOpenVdbWrites) {
     twin->setName("twin");
     const auto points = openvdb::BoolGrid::create(false);
     points->setName("points");
-    for (const std::uint32_t compression : {kMask | kBlosc, kMask | kZip, kBlosc, kZip, kMask, std::uint32_t{0}}) {
+    for (const std::uint32_t compression :
+         {kMaskFlag | kBloscFlag, kMaskFlag | kZip, kBloscFlag, kZip, kMaskFlag, std::uint32_t{0}}) {
         const std::string bytes = bytesOf({grid, layer, color, half, half_color, zipped, twin, points}, compression);
         for (const char* name : {"surface", "layer", "color", "half", "half_color", "zipped", "twin"})
             EXPECT_EQ(refusal(bytes, VdbDepth::leaves, name), "") << name << " " << compression;
@@ -88,7 +89,7 @@ TEST_F(VdbCheck, AcceptsWhatOpenVdbWrites) {
         // Nobody has checked its tree.
         EXPECT_NE(refusal(bytes, VdbDepth::leaves, "points"), "");
     }
-    EXPECT_EQ(refusal(bytesOf({openvdb::FloatGrid::create(1.0F)}, kMask | kBlosc), VdbDepth::leaves, ""), "");
+    EXPECT_EQ(refusal(bytesOf({openvdb::FloatGrid::create(1.0F)}, kMaskFlag | kBloscFlag), VdbDepth::leaves, ""), "");
 }
 
 // The list of the leaves' sizes is packed differently by its length.
@@ -104,7 +105,7 @@ TEST_F(VdbCheck, AcceptsAnyNumberOfLeaves) {
 }
 
 TEST_F(VdbCheck, RefusesEveryCut) {
-    for (const std::uint32_t compression : {kMask | kBlosc, kMask | kZip, kMask}) {
+    for (const std::uint32_t compression : {kMaskFlag | kBloscFlag, kMaskFlag | kZip, kMaskFlag}) {
         const std::string bytes = bytesOf({small()}, compression);
         for (std::size_t size = 1; size < bytes.size(); size += size < 1000 ? 1 : 37)
             EXPECT_NE(refusal(bytes.substr(0, size)), "") << size;
@@ -113,7 +114,7 @@ TEST_F(VdbCheck, RefusesEveryCut) {
 
 // What OpenVDB would believe: each 32-bit word of the head, at its largest.
 TEST_F(VdbCheck, EveryLargeNumberIsRefusedOrHarmless) {
-    const std::string bytes = bytesOf({small()}, kMask | kBlosc);
+    const std::string bytes = bytesOf({small()}, kMaskFlag | kBloscFlag);
     std::size_t refused = 0;
     const fs::path path = folder_ / "broken.vdb";
     for (std::size_t at = 8; at < 1200; at += 3) {
@@ -133,7 +134,7 @@ TEST_F(VdbCheck, EveryLargeNumberIsRefusedOrHarmless) {
 TEST_F(VdbCheck, RefusesTwoNodesAtOnePlace) {
     auto grid = small();
     grid->tree().setValueOn(openvdb::Coord(4096, 0, 0), 0.1F);
-    std::string bytes = bytesOf({grid}, kMask | kBlosc);
+    std::string bytes = bytesOf({grid}, kMaskFlag | kBloscFlag);
     const std::int32_t second[3] = {4096, 0, 0};
     const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(second), sizeof second));
     ASSERT_NE(at, std::string::npos);
@@ -146,7 +147,7 @@ TEST_F(VdbCheck, RefusesAFrustumOfAnotherKind) {
     auto grid = small();
     grid->setTransform(openvdb::math::Transform::createFrustumTransform(
         openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(10)), 0.5, 10.0));
-    std::string bytes = bytesOf({grid}, kMask | kBlosc);
+    std::string bytes = bytesOf({grid}, kMaskFlag | kBloscFlag);
     EXPECT_EQ(refusal(bytes), "");
     const std::size_t at = bytes.find("AffineMap", bytes.find("NonlinearFrustumMap"));
     ASSERT_NE(at, std::string::npos);
@@ -155,7 +156,7 @@ TEST_F(VdbCheck, RefusesAFrustumOfAnotherKind) {
 }
 
 TEST_F(VdbCheck, RefusesOtherFormats) {
-    std::string bytes = bytesOf({small()}, kMask | kBlosc);
+    std::string bytes = bytesOf({small()}, kMaskFlag | kBloscFlag);
     EXPECT_NE(refusal("not a vdb at all, but long enough to be one"), "");
     bytes[8] = static_cast<char>(221);
     EXPECT_NE(refusal(bytes).find("format 221"), std::string::npos);

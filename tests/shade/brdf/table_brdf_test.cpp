@@ -33,7 +33,7 @@ const TableBrdf& excessive() {
     return brdf;
 }
 
-constexpr double kCosines[] = {0.02, 0.1, 0.3, 0.6, 0.9, 1.0};
+constexpr double kTableCosines[] = {0.02, 0.1, 0.3, 0.6, 0.9, 1.0};
 
 TEST(TableBrdf, IsReciprocal) {
     std::mt19937 random(7);
@@ -76,7 +76,8 @@ TEST(TableBrdf, WhiteFurnace) {
     // A table of 1 / pi is a white Lambert surface, and its scale brings it just below 1.
     const TableBrdf white(HalfDiffTable(std::vector<Color>(HalfDiffTable::kCells, Color(shade::kInvPi))),
                           {{{1.0, 1e-9, 0.3}, {1.0, 1e-9, 0.3}, {1.0, 1e-9, 0.3}}}, {});
-    for (const double c : kCosines) EXPECT_NEAR(test::albedo(white, test::direction(c, 0.3), 300, 300), 1.0, 0.012);
+    for (const double c : kTableCosines)
+        EXPECT_NEAR(test::albedo(white, test::direction(c, 0.3), 300, 300), 1.0, 0.012);
 }
 
 TEST(TableBrdf, IsFiniteAtTheEdges) {

@@ -13,10 +13,10 @@ namespace {
 using shade::Color;
 using shade::Legend;
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kPictureWidth = 320;
+constexpr int kPictureHeight = 240;
 
-std::vector<std::uint8_t> drawn(const Legend& legend, int width = kWidth, int height = kHeight) {
+std::vector<std::uint8_t> drawn(const Legend& legend, int width = kPictureWidth, int height = kPictureHeight) {
     std::vector<std::uint8_t> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 40);
     shade::draw(legend, width, height, rgb);
     return rgb;
@@ -39,7 +39,7 @@ TEST(Legend, ShowsEachColorAndLeavesTheRestOfThePictureAlone) {
     const auto rgb = drawn(legend);
     EXPECT_GT(countOf(rgb, {0x1f, 0x4e, 0x6b}), 40);
     EXPECT_GT(countOf(rgb, {0xf2, 0xb3, 0x3d}), 40);
-    EXPECT_GT(countOf(rgb, {40, 40, 40}), kWidth * kHeight * 3 / 4);
+    EXPECT_GT(countOf(rgb, {40, 40, 40}), kPictureWidth * kPictureHeight * 3 / 4);
     // The letters.
     EXPECT_GT(countOf(rgb, {33, 33, 33}), 10);
 }

@@ -102,19 +102,19 @@ test::FunctionIntersector threeBalls() {
             }};
 }
 
-struct Case {
+struct RecursionCase {
     std::string name, brdf, environment;
     bool bed, lamp;
     float ambient;
     int bounces;
 };
 
-class PathRecursive : public testing::TestWithParam<Case> {};
+class PathRecursive : public testing::TestWithParam<RecursionCase> {};
 
 // Within 4.5 standard errors of the recursion's own mean, and within its 5 %, wherever it is looked.
 TEST_P(PathRecursive, HasTheSameMean) {
     const auto print = threeBalls();
-    const Case& c = GetParam();
+    const RecursionCase& c = GetParam();
     auto scene = test::plainScene(print, c.brdf.c_str(), c.environment.c_str(), c.bed);
     scene.backdrop.reset();
     scene.ambient = Color(c.ambient);
@@ -152,12 +152,13 @@ TEST_P(PathRecursive, HasTheSameMean) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, PathRecursive,
-    testing::Values(Case{"matt", "lambert:0.8,0.5,0.2", "constant:1,0.8,0.6", false, false, 0, 3},
-                    Case{"direct", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 1},
-                    Case{"bed_and_studio", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 3},
-                    Case{"lamp", "plastic:0.6,0.3,0.1,0.4", "constant:0.2,0.2,0.2", true, true, 0, 3},
-                    Case{"ambient_and_lamp", "lambert:0.8,0.5,0.2", "constant:0.2,0.2,0.2", false, true, 0.3f, 2}),
-    [](const testing::TestParamInfo<Case>& p) { return p.param.name; });
+    testing::Values(RecursionCase{"matt", "lambert:0.8,0.5,0.2", "constant:1,0.8,0.6", false, false, 0, 3},
+                    RecursionCase{"direct", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 1},
+                    RecursionCase{"bed_and_studio", "plastic:0.6,0.3,0.1,0.3", "studio", true, false, 0, 3},
+                    RecursionCase{"lamp", "plastic:0.6,0.3,0.1,0.4", "constant:0.2,0.2,0.2", true, true, 0, 3},
+                    RecursionCase{"ambient_and_lamp", "lambert:0.8,0.5,0.2", "constant:0.2,0.2,0.2", false, true, 0.3f,
+                                  2}),
+    [](const testing::TestParamInfo<RecursionCase>& p) { return p.param.name; });
 
 }  // namespace
 }  // namespace stratum

@@ -14,7 +14,7 @@ namespace {
 using shade::RenderOptions;
 using shade::RenderResult;
 
-RenderOptions small() {
+RenderOptions smallOptions() {
     RenderOptions options;
     options.width = 72;
     options.height = 50;
@@ -36,9 +36,9 @@ bool sameBytes(const shade::Film& a, const shade::Film& b) {
 }
 
 TEST(Render, SameBytesForAnyNumberOfThreads) {
-    const RenderResult one = renderWith(1, small());
-    const RenderResult two = renderWith(2, small());
-    const RenderResult four = renderWith(4, small());
+    const RenderResult one = renderWith(1, smallOptions());
+    const RenderResult two = renderWith(2, smallOptions());
+    const RenderResult four = renderWith(4, smallOptions());
     EXPECT_TRUE(sameBytes(one.film, two.film));
     EXPECT_TRUE(sameBytes(one.film, four.film));
     EXPECT_EQ(one.rays, two.rays);
@@ -49,7 +49,7 @@ TEST(Render, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Render, SeedChangesTheNoiseOnly) {
-    RenderOptions options = small();
+    RenderOptions options = smallOptions();
     options.spp = 16;
     const RenderResult a = renderWith(2, options);
     options.seed = 1;
@@ -65,7 +65,7 @@ TEST(Render, SeedChangesTheNoiseOnly) {
 }
 
 TEST(Render, CropIsAPartOfTheSamePicture) {
-    RenderOptions options = small();
+    RenderOptions options = smallOptions();
     const RenderResult whole = renderWith(2, options);
     options.crop = shade::PixelBox{13, 7, 60, 44};
     const RenderResult part = renderWith(2, options);
@@ -78,7 +78,7 @@ TEST(Render, CropIsAPartOfTheSamePicture) {
 }
 
 TEST(Render, CropIsAPartOfTheSamePictureWhenTilesDecide) {
-    RenderOptions options = small();
+    RenderOptions options = smallOptions();
     options.spp = 64;
     options.noise = 0.05;
     const RenderResult whole = renderWith(2, options);
@@ -92,7 +92,7 @@ TEST(Render, CropIsAPartOfTheSamePictureWhenTilesDecide) {
 
 TEST(Render, EveryIntegratorIsFinite) {
     for (const char* name : {"path", "direct", "ao", "normal", "depth"}) {
-        RenderOptions options = small();
+        RenderOptions options = smallOptions();
         options.integrator.name = name;
         const RenderResult result = renderWith(2, options);
         for (const shade::Pixel& p : result.film.pixels()) {
@@ -104,7 +104,7 @@ TEST(Render, EveryIntegratorIsFinite) {
 
 TEST(Render, ReportsProgressOncePerTileUpToTheEnd) {
     const auto none = test::nothing();
-    const RenderOptions options = small();
+    const RenderOptions options = smallOptions();
     std::uint64_t last = 0;
     int calls = 0;
     shade::render(none, shade::makeScene({}, none, 72, 50), options, [&](std::uint64_t done, std::uint64_t total) {
@@ -145,7 +145,7 @@ TEST(Render, ByTheClockEveryPixelGetsSamplesAndTheWorstGetMost) {
 
 TEST(RenderOptions, RefusesNonsense) {
     const auto broken = [](auto change) {
-        RenderOptions options = small();
+        RenderOptions options = smallOptions();
         change(options);
         EXPECT_THROW(options.validate(), UsageError);
     };
@@ -156,7 +156,7 @@ TEST(RenderOptions, RefusesNonsense) {
     broken([](RenderOptions& o) { o.crop = shade::PixelBox{0, 0, 73, 50}; });
     broken([](RenderOptions& o) { o.crop = shade::PixelBox{5, 5, 5, 9}; });
     const auto none = test::nothing();
-    EXPECT_THROW(shade::render(none, shade::makeScene({}, none, 10, 10), small()), UsageError);
+    EXPECT_THROW(shade::render(none, shade::makeScene({}, none, 10, 10), smallOptions()), UsageError);
 }
 
 }  // namespace

@@ -15,8 +15,6 @@
 namespace stratum::study {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Every edge is shared by two triangles that run along it in opposite ways.
 void expectClosed(const TriangleMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
@@ -50,7 +48,7 @@ TEST(TriangleMesh, OfASphereFillsItFromWithin) {
         EXPECT_EQ(sphere.triangles.size(), static_cast<std::size_t>(2 * rings * (rings - 1)));
         for (const glm::dvec3& p : sphere.corners) EXPECT_NEAR(glm::distance(p, {1, 2, 3}), 2, 1e-12);
     }
-    EXPECT_NEAR(volume(sphereMesh({1, 2, 3}, 2, 100)), 32 * kPi / 3, 32 * kPi / 3 * 3e-3);
+    EXPECT_NEAR(volume(sphereMesh({1, 2, 3}, 2, 100)), 32 * std::numbers::pi / 3, 32 * std::numbers::pi / 3 * 3e-3);
 }
 
 TEST(TriangleMesh, OfACylinderIsAPrism) {
@@ -58,7 +56,7 @@ TEST(TriangleMesh, OfACylinderIsAPrism) {
         const TriangleMesh prism = cylinderMesh({1, 2, 3}, 1.5, 0.5, axis, 10);
         expectClosed(prism);
         EXPECT_EQ(prism.triangles.size(), 40U);
-        EXPECT_NEAR(volume(prism), 5 * 1.5 * 1.5 * std::sin(2 * kPi / 10), 1e-12);
+        EXPECT_NEAR(volume(prism), 5 * 1.5 * 1.5 * std::sin(2 * std::numbers::pi / 10), 1e-12);
         for (const glm::dvec3& p : prism.corners) EXPECT_NEAR(std::abs(p[axis] - (axis + 1)), 0.5, 1e-12);
     }
 }

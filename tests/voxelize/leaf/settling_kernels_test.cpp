@@ -13,8 +13,8 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr double kVoxel = 0.05;
-constexpr double kHalfExtent = 3.5 * kVoxel;
+constexpr double kGrooveVoxel = 0.05;
+constexpr double kGrooveExtent = 3.5 * kGrooveVoxel;
 constexpr double kHalfFlat = 0.125;
 
 gcode::Toolpath randomBeads(int count) {
@@ -34,24 +34,24 @@ gcode::Toolpath randomBeads(int count) {
 BeadPlan planOf(const ColumnGrid& grid, const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     BeadPlan plan;
     if (bead.arc < 0)
-        planOfLine(grid, localLine(bead, kHalfFlat, 0, 0, kHalfExtent, 1), plan);
+        planOfLine(grid, localLine(bead, kHalfFlat, 0, 0, kGrooveExtent, 1), plan);
     else
         planOfArc(grid,
-                  localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], kHalfFlat, 0, 0, kHalfExtent, 1),
+                  localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], kHalfFlat, 0, 0, kGrooveExtent, 1),
                   plan);
     return plan;
 }
 
 TEST(SettlingKernels, DistancesAndDirectionsAreThoseOfThePath) {
-    const ColumnGrid grid(static_cast<float>(kVoxel));
+    const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     const gcode::Toolpath toolpath = randomBeads(300);
     for (const gcode::Bead& bead : toolpath.beads) {
         const BeadPlan plan = planOf(grid, toolpath, bead);
         const PlanPath path(toolpath, bead);
         double least = 1e9;
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const double x = (static_cast<double>(c / 8) - 3.5) * kVoxel;
-            const double y = (static_cast<double>(c % 8) - 3.5) * kVoxel;
+            const double x = (static_cast<double>(c / 8) - 3.5) * kGrooveVoxel;
+            const double y = (static_cast<double>(c % 8) - 3.5) * kGrooveVoxel;
             const double rho = path.distance(x, y);
             least = std::min(least, rho - kHalfFlat);
             ASSERT_NEAR(plan.d.v[c], rho - kHalfFlat, 1e-6);
@@ -70,12 +70,12 @@ TEST(SettlingKernels, DistancesAndDirectionsAreThoseOfThePath) {
 TEST(SettlingKernels, BeadsThatMayNotFillAreTooFar) {
     const SettlingCurve curve(2, 0.02);
     const GrooveRule rule(curve, 0.1);
-    const ColumnGrid grid(static_cast<float>(kVoxel));
+    const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     std::size_t left_out = 0;
     for (const gcode::Bead& bead : randomBeads(3000).beads) {
         if (bead.arc >= 0) continue;
-        const LocalLine line = localLine(bead, kHalfFlat, 0, 0, kHalfExtent, 1);
-        if (mayFill(line, rule, kHalfExtent)) continue;
+        const LocalLine line = localLine(bead, kHalfFlat, 0, 0, kGrooveExtent, 1);
+        if (mayFill(line, rule, kGrooveExtent)) continue;
         ++left_out;
         BeadPlan plan;
         planOfLine(grid, line, plan);
@@ -88,7 +88,7 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
     const gcode::Toolpath toolpath = randomBeads(14);
     const SettlingCurve curve(3, 0.02);
     const GrooveRule rule(curve, 0.07);
-    const ColumnGrid grid(static_cast<float>(kVoxel));
+    const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     struct Result {
         PlanField cap, d, sides2;
         float least;
