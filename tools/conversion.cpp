@@ -119,7 +119,7 @@ private:
     };
 
     bool culls() const { return interior_ == voxelize::Interior::cull; }
-    bool settles() const { return toolpath_.deposit.beads == gcode::DepositModel::Beads::settled; }
+    bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
         if (!o_.common.quiet) fmt::print(stderr, "gcode2vdb: {}\n", text);
     }

@@ -19,16 +19,15 @@ public:
 };
 
 std::string beadModel(const gcode::DepositModel& deposit) {
-    const bool stadium = !deposit.corner_mm && deposit.corner_fraction == 1;
-    std::string text = stadium
+    std::string text = deposit.stadium()
                            ? "hypot(max(rho - c, 0), z - zc) - h/2, c = (w - h)/2; layers welded"
                            : "d = rho - c, v = |z - zc| - (h/2 - r): hypot(max(d, 0), max(v, 0)) + min(max(d, v), 0) "
                              "- r; layers welded";
     if (deposit.corner_mm)
         text += fmt::format("; r = {:g} mm, at most h/2", *deposit.corner_mm);
-    else if (!stadium)
+    else if (!deposit.stadium())
         text += fmt::format("; r = {:g} h/2", deposit.corner_fraction);
-    if (deposit.beads == gcode::DepositModel::Beads::settled) text += "; settled: overlaps fill grooves";
+    if (deposit.settles()) text += "; settled: overlaps fill grooves";
     return text;
 }
 
@@ -61,8 +60,7 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
     number("voxel_size_mm", lattice.voxel_size);
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);
-    if (provenance.deposit.beads == gcode::DepositModel::Beads::settled)
-        number("largest_slope", voxelize::kSettledSlope);
+    if (provenance.deposit.settles()) number("largest_slope", voxelize::kSettledSlope);
     // The file_* statistics that production loaders look for, e.g. file_mem_bytes.
     grid.addStatsMetadata();
 }

@@ -39,8 +39,7 @@ struct FileOptions {
 };
 
 /// Adds the metadata: provenance, "voxel_size_mm", "half_width_voxels", "layer_height_mm", "bead_model", "interior",
-/// "largest_slope" where values change faster than distance,
-/// "program", creator, and OpenVDB's own file statistics.
+/// "largest_slope" where values change faster than distance, "program", creator, and OpenVDB's own file statistics.
 void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const Provenance& provenance);
 
 /// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old

@@ -35,7 +35,7 @@ public:
           high_((active.max() & ~(kBrick - 1)) - map_.origin),
           // The samples of a brick are nine along each axis: those of its cells' corners.
           footprints_(*layout.toolpath, kBrick * layout.lattice.voxel_size, 0.5 * kBrick * layout.lattice.voxel_size,
-                      kSlack * layout.lattice.voxel_size) {
+                      kSlack * layout.lattice.voxel_size, voxelize::Footprints::Reach::solid) {
         for (int axis = 0; axis < 3; ++axis) {
             low_[axis] /= kBrick;
             high_[axis] /= kBrick;

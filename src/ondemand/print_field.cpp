@@ -73,7 +73,7 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
     const double h = lattice.voxel_size;
     constexpr int kDim = voxelize::kLeafDim;
     const voxelize::Footprints footprints(*layout_.toolpath, kDim * h, 0.5 * (kDim - 1) * h, lattice.background(),
-                                          true);
+                                          voxelize::Footprints::Reach::field);
     const auto leafOf = [&](double z) { return static_cast<int>(std::floor((z - lattice.origin_z) / (kDim * h))); };
     std::vector<openvdb::Coord> leaves;
     for (std::uint32_t rank = 0; rank < stack.beads.size(); ++rank) {

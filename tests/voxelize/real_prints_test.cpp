@@ -2,6 +2,7 @@
 #include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
+#include "print_points.h"
 #include "toolpaths.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
@@ -12,7 +13,6 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <random>
 
 namespace stratum::voxelize {
 namespace {
@@ -38,16 +38,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Print{"cura", "preprocess_cancellation-cura.gcode", "1:", true}),
     [](const auto& print) { return std::string(print.param.name); });
 
-// A copy that holds the selected level beads only: what brute force can answer.
-gcode::Toolpath levelPart(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& selection) {
-    gcode::Toolpath part;
-    part.runs = toolpath.runs;
-    part.arcs = toolpath.arcs;
-    for (const std::uint32_t index : selection)
-        if (toolpath.beads[index].z0 == toolpath.beads[index].z1) part.beads.push_back(toolpath.beads[index]);
-    return part;
-}
-
 TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
     const Print& print = GetParam();
     const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
@@ -57,7 +47,7 @@ TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
     EXPECT_NEAR(gcode::beadVolume(whole), whole.extruded_mm3, 1e-3 * whole.extruded_mm3);
     Selection selection;
     parseLayers(print.layers, selection);
-    const gcode::Toolpath toolpath = levelPart(whole, selectBeads(whole, selection));
+    const gcode::Toolpath toolpath = test::levelPart(whole, selectBeads(whole, selection));
     const auto beads = test::allBeads(toolpath);
     const test::BruteForce brute(toolpath);
 
@@ -70,15 +60,7 @@ TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
 
         // Active voxels drawn at random, the same for every run.
         constexpr std::size_t kPoints = 120000;
-        std::vector<openvdb::Coord> points;
-        std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
-        for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(leaf.getLeaf());
-        std::mt19937_64 random(11);
-        while (points.size() < kPoints) {
-            const auto* leaf = leaves[random() % leaves.size()];
-            const auto offset = static_cast<openvdb::Index>(random() % 512);
-            if (leaf->isValueOn(offset)) points.push_back(leaf->offsetToGlobalCoord(offset));
-        }
+        const auto points = test::randomActiveVoxels(*grid, kPoints);
         std::atomic<std::size_t> outside{0};
         std::atomic<std::size_t> inside{0};
         std::atomic<std::size_t> interfaces{0};

@@ -15,9 +15,8 @@
 
 namespace stratum::test {
 
-/// What one bead of a layer looks like from a point of the plan: distance beyond its flat, mm, and direction from its
-/// path.
-struct SeenBead {
+/// A bead at a point of the plan: the distance beyond its flat, mm, and the direction from its path to the point.
+struct BeadAtPoint {
     double d = 0, nx = 0, ny = 0;
 };
 
@@ -116,7 +115,7 @@ class SettledField {
 public:
     explicit SettledField(const gcode::Toolpath& toolpath)
         : toolpath_(toolpath),
-          settles_(toolpath.deposit.beads == gcode::DepositModel::Beads::settled),
+          settles_(toolpath.deposit.settles()),
           stack_(voxelize::stackLayers(toolpath, allBeads(toolpath))) {
         double widest = 0;
         for (const gcode::Bead& bead : toolpath.beads) widest = std::max(widest, static_cast<double>(bead.width));
@@ -182,7 +181,7 @@ private:
                 cells_[l][{i, j}].push_back(rank);
     }
 
-    SeenBead seen(const voxelize::Layer& layer, std::uint32_t rank, double x, double y) const {
+    BeadAtPoint beadAt(const voxelize::Layer& layer, std::uint32_t rank, double x, double y) const {
         const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
         double px = 0;
         double py = 0;
@@ -229,10 +228,10 @@ private:
         const double radius = layer.radius;
         const auto found = cells_[l].find(cellOf(x, y));
         if (found == cells_[l].end()) return {1e9, 1e9};
-        std::vector<SeenBead> beads;
+        std::vector<BeadAtPoint> beads;
         double d = std::numeric_limits<double>::max();
         for (const std::uint32_t rank : found->second) {
-            const SeenBead bead = seen(layer, rank, x, y);
+            const BeadAtPoint bead = beadAt(layer, rank, x, y);
             d = std::min(d, bead.d);
             if (bead.d < 2 * radius) beads.push_back(bead);
         }

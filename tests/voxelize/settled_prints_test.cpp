@@ -2,6 +2,7 @@
 #include "base/mapped_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
+#include "print_points.h"
 #include "settled_field.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/enclosed_volume.h"
@@ -11,7 +12,6 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <random>
 
 namespace stratum::voxelize {
 namespace {
@@ -47,18 +47,10 @@ INSTANTIATE_TEST_SUITE_P(Prints, SettledPrint,
                                          SettledFile{"cura", "preprocess_cancellation-cura.gcode", true, 0.5}),
                          [](const auto& print) { return std::string(print.param.name); });
 
-// The level beads of some layers alone.
 gcode::Toolpath levelPart(const gcode::Toolpath& toolpath, const char* layers) {
     Selection selection;
     parseLayers(layers, selection);
-    gcode::Toolpath part;
-    part.runs = toolpath.runs;
-    part.arcs = toolpath.arcs;
-    part.deposit = toolpath.deposit;
-    part.layer_count = toolpath.layer_count;
-    for (const std::uint32_t index : selectBeads(toolpath, selection))
-        if (toolpath.beads[index].z0 == toolpath.beads[index].z1) part.beads.push_back(toolpath.beads[index]);
-    return part;
+    return test::levelPart(toolpath, selectBeads(toolpath, selection));
 }
 
 TEST_P(SettledPrint, AgreesWithBruteForce) {
@@ -72,15 +64,7 @@ TEST_P(SettledPrint, AgreesWithBruteForce) {
     const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
     const auto grid = voxelize(toolpath, beads, lattice);
     constexpr std::size_t kPoints = 100000;
-    std::vector<openvdb::Coord> points;
-    std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
-    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) leaves.push_back(leaf.getLeaf());
-    std::mt19937_64 random(11);
-    while (points.size() < kPoints) {
-        const auto* leaf = leaves[random() % leaves.size()];
-        const auto offset = static_cast<openvdb::Index>(random() % 512);
-        if (leaf->isValueOn(offset)) points.push_back(leaf->offsetToGlobalCoord(offset));
-    }
+    const auto points = test::randomActiveVoxels(*grid, kPoints);
     std::atomic<std::size_t> outside{0};
     std::atomic<std::size_t> inside{0};
     std::atomic<std::size_t> wrong{0};

@@ -213,7 +213,7 @@ private:
                   {"voxel_size_mm", lattice_.voxel_size},
                   {"half_width", lattice_.half_width},
                   {"choice", lattice_.reason},
-                  {"beads_model", gcode::describe(toolpath_->deposit)}};
+                  {"deposit", {{"model", gcode::describe(toolpath_->deposit)}}}};
         const std::string chosen = voxelize::describeSelection(request_.print);
         if (!chosen.empty()) report["selection"] = chosen;
         const double error = voxelize::kLargestErrorVoxels * lattice_.voxel_size;

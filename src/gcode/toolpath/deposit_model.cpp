@@ -8,9 +8,9 @@ std::string describe(const DepositModel& deposit) {
     std::string section = "stadium";
     if (deposit.corner_mm)
         section = fmt::format("corners of {:g} mm", *deposit.corner_mm);
-    else if (deposit.corner_fraction != 1)
+    else if (!deposit.stadium())
         section = fmt::format("corners of {:g} % of half the height", 100 * deposit.corner_fraction);
-    return fmt::format("{}, {}", deposit.beads == DepositModel::Beads::settled ? "settled" : "capsule", section);
+    return fmt::format("{}, {}", deposit.settles() ? "settled" : "capsule", section);
 }
 
 }  // namespace stratum::gcode

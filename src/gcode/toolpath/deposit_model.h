@@ -15,7 +15,8 @@ struct DepositModel {
         settled,  ///< what two neighbours of a layer both claim fills the groove between them; keeps the volume
     };
     Beads beads = Beads::capsule;
-    /// Corner radius of the section as a fraction of half its height, 0..1. 1 is a stadium. `corner_mm` precedes.
+    /// Corner radius of the section as a fraction of half its height, 0..1. 1 is a stadium. `corner_mm` takes
+    /// precedence.
     double corner_fraction = 1;
     std::optional<double> corner_mm;  ///< the same in mm; half the height where that is less
 
@@ -23,7 +24,9 @@ struct DepositModel {
     double cornerRadius(double height) const {
         return std::min(corner_mm.value_or(corner_fraction * 0.5 * height), 0.5 * height);
     }
-    bool operator==(const DepositModel&) const = default;
+    bool settles() const { return beads == Beads::settled; }
+    /// For every height.
+    bool stadium() const { return !corner_mm && corner_fraction == 1; }
 };
 
 /// "settled, corners of 50 % of half the height"; "capsule, stadium" is the default.

@@ -68,11 +68,14 @@ double sectionWidth(double area, double height) {
     return area / height + height * (1 - kQuarterPi);
 }
 
+double beadVolume(const Toolpath& toolpath, const Bead& bead) {
+    return sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height)) *
+           beadLength(toolpath, bead);
+}
+
 double beadVolume(const Toolpath& toolpath) {
     double volume = 0;
-    for (const Bead& bead : toolpath.beads)
-        volume += sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height)) *
-                  beadLength(toolpath, bead);
+    for (const Bead& bead : toolpath.beads) volume += beadVolume(toolpath, bead);
     return volume;
 }
 

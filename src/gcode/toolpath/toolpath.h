@@ -148,7 +148,10 @@ double sectionArea(double width, double height);
 /// Inverse of sectionArea: the width in mm that gives `area` (mm^2) at `height` (mm).
 double sectionWidth(double area, double height);
 
-/// Sum over beads of section area times length, in mm^3.
+/// Section area times length of a bead, in mm^3.
+double beadVolume(const Toolpath& toolpath, const Bead& bead);
+
+/// The sum over all beads, in mm^3.
 double beadVolume(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace stratum::voxelize {
@@ -30,14 +31,20 @@ struct ColumnRange {
 /// the path: no sample is farther from that center than half the diagonal they span.
 class Footprints {
 public:
-    /// All mm: columns are `edge` wide, from multiples of it; their samples span twice `half_span`; beads reach `band`
-    /// beyond their solid. With `in_pairs` a bead that settles reaches as far as it may fill a groove: two radii from
-    /// its flat.
-    Footprints(const gcode::Toolpath& toolpath, double edge, double half_span, double band, bool in_pairs = false)
+    /// What of a bead reaches a column.
+    enum class Reach : std::uint8_t {
+        solid,  ///< its solid and the band around it
+        field,  ///< the same, and the grooves that it may fill where beads settle: two radii from its flat
+    };
+
+    /// All mm: columns are `edge` wide, from multiples of it; their samples span twice `half_span`; the band is `band`
+    /// wide.
+    Footprints(const gcode::Toolpath& toolpath, double edge, double half_span, double band, Reach reach)
         : toolpath_(toolpath),
           edge_(edge),
           half_(half_span),
-          pair_band_(in_pairs && toolpath.deposit.beads == gcode::DepositModel::Beads::settled ? band : -1),
+          fills_grooves_(reach == Reach::field && toolpath.deposit.settles()),
+          band_(band),
           // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
 
@@ -45,7 +52,7 @@ public:
     double limit(const gcode::Bead& bead) const {
         const Section section = sectionOf(toolpath_, bead);
         const double radius = radiusOf(bead, section);
-        const double more = pair_band_ >= 0 ? std::max(radius - pair_band_, 0.0) : 0;
+        const double more = fills_grooves_ ? std::max(radius - band_, 0.0) : 0;
         return section.half_flat + radius + more + slack_;
     }
 
@@ -141,7 +148,9 @@ private:
     int last(double mm) const { return static_cast<int>(std::floor((mm - half_) / edge_ + 1e-9)); }
 
     const gcode::Toolpath& toolpath_;
-    const double edge_, half_, pair_band_, slack_;  // mm; pair_band_ < 0: beads are taken one by one
+    const double edge_, half_;  // mm
+    const bool fills_grooves_;
+    const double band_, slack_;  // mm
 };
 
 }  // namespace stratum::voxelize

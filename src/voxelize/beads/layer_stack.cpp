@@ -111,7 +111,7 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
         group_of.push_back(last_group);
     }
     rankBeads(selection, group_of, groups, toolpath.deposit, stack);
-    if (toolpath.deposit.beads == gcode::DepositModel::Beads::settled) addSettling(stack);
+    if (toolpath.deposit.settles()) addSettling(stack);
     stack.extents.reserve(stack.direct().size());
     for (const std::uint32_t bead : stack.direct()) {
         const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();

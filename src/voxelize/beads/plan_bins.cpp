@@ -55,7 +55,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                    std::size_t memory_limit) {
     if (stack.beads.empty()) return;
     const double edge = lattice.voxel_size * kLeafDim;
-    const Footprints footprints(toolpath, edge, 0.5 * (kLeafDim - 1) * lattice.voxel_size, lattice.background(), true);
+    const Footprints footprints(toolpath, edge, 0.5 * (kLeafDim - 1) * lattice.voxel_size, lattice.background(),
+                                Footprints::Reach::field);
     const auto beadAt = [&](std::size_t rank) -> const gcode::Bead& { return toolpath.beads[stack.beads[rank]]; };
     const std::size_t beads = stack.beads.size();
     std::size_t parts = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);

@@ -48,7 +48,7 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
     double sum = 0;
     for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
         const gcode::Bead& bead = toolpath.beads[i];
-        sum += gcode::beadLength(toolpath, bead) * gcode::sectionArea(bead.width, toolpath.runOf(bead).height);
+        sum += gcode::beadVolume(toolpath, bead);
         if (sum >= target) return i + 1;
     }
     return toolpath.beads.size();

@@ -21,21 +21,16 @@ SettlingCurve::SettlingCurve(double ratio, double weld_gap)
     : ratio_(ratio),
       // E = C, solved for m: the integrals of the root cancel.
       closing_(1 - (2 - 0.5 * std::numbers::pi) / ratio),
-      weld_cap_(std::min(1.0, std::sqrt(1 - std::pow(std::max(1 - 0.5 * weld_gap * ratio, 0.0), 2)))) {
+      weld_level_(std::min(1.0, std::sqrt(1 - std::pow(std::max(1 - 0.5 * weld_gap * ratio, 0.0), 2)))) {
     table_.reserve(kSteps + 1);
     for (int n = 0; n <= kSteps; ++n) {
         const double from_one = 1 - static_cast<double>(n) / kSteps;
         const double root_q = 1 - from_one * from_one;
-        table_.push_back(static_cast<float>(cap(closing_ + (1 - closing_) * root_q * root_q)));
+        table_.push_back(static_cast<float>(level(closing_ + (1 - closing_) * root_q * root_q)));
     }
 }
 
-double SettlingCurve::thickness(double d) const {
-    if (d <= 0) return ratio_;
-    return d < 1 ? ratio_ - depth(d) : 0;
-}
-
-double SettlingCurve::cap(double m) const {
+double SettlingCurve::level(double m) const {
     if (m <= closing_) return 0;
     if (m >= 1) return 1;
     const double quarter = 0.25 * std::numbers::pi;

@@ -5,13 +5,14 @@
 // from its flat, and V = height - T the depth of the groove, both sides together:
 //     T(d) = height - 2 r + 2 sqrt(r^2 - d^2),  V(d) = 2 r - 2 sqrt(r^2 - d^2)        0 < d < r
 // As a viscous liquid would, the claimed area fills the groove from its bottom, in the middle, up to a level: where
-// d > cap, the thickness is T(cap), with
-//     2 int_cap^m (V(d) - V(cap)) dd = min(E, C).
+// d > level, the thickness is T(level), with
+//     2 int_level^m (V(d) - V(level)) dd = min(E, C).
 // So the sum of both areas is kept, for every gap with E <= C, and at the spacing of the slicers, width - height
 // (1 - pi / 4) for a stadium, the layer closes to a slab. Where more is claimed (E > C) there is no room for it.
 //
-// In the plan field a filled groove is min(d, cap). cap is constant between parallel beads, so the slope stays 1 there;
-// where the gap narrows, the depth changes by height / (2 m) times the change of m; see docs/deposit.md.
+// In the plan field a filled groove is min(d, level). The level is constant between parallel beads, so the slope stays
+// 1 there; where the gap narrows, the depth of each face changes by about height / (2 m) times the change of m. See
+// docs/deposit.md.
 // Source of the section: Comminal et al. 2018, doi 10.1016/j.addma.2017.12.013.
 #pragma once
 
@@ -19,7 +20,7 @@
 
 namespace stratum::voxelize {
 
-/// cap for one shape of section, in units of the corner radius. Immutable.
+/// The level of a groove for one shape of section, in units of the corner radius. Immutable.
 class SettlingCurve {
 public:
     /// Steps of table(): the error of interpolated volumes is below 1e-6 of a bead's.
@@ -31,26 +32,24 @@ public:
     double ratio() const { return ratio_; }
     /// Half the gap, in radii, at which the groove is just filled.
     double closing() const { return closing_; }
-    /// cap / r for half a gap of `m` radii: 0 up to closing(), 1 from 1 on. Solves the equation; slow.
-    double cap(double m) const;
-    /// cap / r at equal steps of z = 1 - sqrt(1 - sqrt(q)), q = (m - closing) / (1 - closing): kSteps + 1 values. Both
+    /// Of half a gap of `m` radii: 0 up to closing(), 1 from 1 on. Solves the equation; slow.
+    double level(double m) const;
+    /// Levels at equal steps of z = 1 - sqrt(1 - sqrt(q)), q = (m - closing) / (1 - closing): kSteps + 1 values. Both
     /// roots remove a vertical tangent, so that linear interpolation suffices.
     const std::vector<float>& table() const { return table_; }
 
-    /// T(d), in radii, of a bead of this shape; `height` over the flat, 0 from d = 1 on.
-    double thickness(double d) const;
-    /// In radii: V(weldCap()) is the gap that welds close. The faces of two such grooves, one over the other, are as
+    /// In radii: V(weldLevel()) is the gap that welds close. The faces of two such grooves, one over the other, are as
     /// near as two planes that count as touching.
-    double weldCap() const { return weld_cap_; }
+    double weldLevel() const { return weld_level_; }
 
 private:
-    double ratio_, closing_, weld_cap_;
+    double ratio_, closing_, weld_level_;
     std::vector<float> table_;
 };
 
-/// How far from opposite two beads may be seen and still fill their groove: the gap is counted larger by
-/// kTurnPenalty r ((cosine - kOpposite) / -kOpposite)^2 where the cosine between the directions from both paths is
-/// above kOpposite. Neighbours along one path, seen in the same direction, don't fill each other.
+/// Two beads fill their groove where the directions from their paths to a point are about opposite: where the cosine
+/// between them is above kOpposite, the gap is counted larger by kTurnPenalty r ((cosine - kOpposite) / -kOpposite)^2.
+/// Neighbours along one path lie in the same direction and don't fill each other.
 constexpr double kOpposite = -0.9;
 constexpr double kTurnPenalty = 2;
 

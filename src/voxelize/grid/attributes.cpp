@@ -89,7 +89,15 @@ std::vector<Attribute> parseGrids(std::string_view text) {
 
 BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes)
     : toolpath_(toolpath) {
-    if (std::find(attributes.begin(), attributes.end(), Attribute::time) == attributes.end()) return;
+    const auto wanted = [attributes](Attribute attribute) {
+        return std::find(attributes.begin(), attributes.end(), attribute) != attributes.end();
+    };
+    if (wanted(Attribute::width)) {
+        width_.reserve(toolpath.beads.size());
+        for (const gcode::Bead& bead : toolpath.beads)
+            width_.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
+    }
+    if (!wanted(Attribute::time)) return;
     start_.reserve(toolpath.beads.size());
     for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
     if (!start_.empty()) return;
@@ -116,8 +124,7 @@ std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) co
 
 float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
     if (attribute == Attribute::time) return start_[bead];
-    if (attribute == Attribute::width)
-        return static_cast<float>(2 * sectionOf(toolpath_, toolpath_.beads[bead]).halfWidth());
+    if (attribute == Attribute::width) return width_[bead];
     const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
     if (!(seconds > 0)) return toolpath_.runOf(toolpath_.beads[bead]).speed;
     return static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;

@@ -45,6 +45,7 @@ public:
 private:
     const gcode::Toolpath& toolpath_;
     std::vector<float> start_;  // by bead, seconds; only with Attribute::time
+    std::vector<float> width_;  // by bead, mm; only with Attribute::width
 };
 
 /// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.

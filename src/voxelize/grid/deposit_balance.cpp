@@ -36,9 +36,8 @@ double thickness(const Layer& layer, double d) {
 
 // Adds the parts of one column of a layer.
 void addLayer(const gcode::Toolpath& toolpath, const LayerStack& stack, const LeafColumn::LayerPlan& plan, double scale,
-              double sample_area, std::vector<double>& claims, Sums& laid) {
+              double sample_area, std::vector<double>& shares, Sums& laid) {
     const std::size_t beads = plan.beads.size();
-    std::vector<double>& shares = claims;
     shares.assign(2 * beads, 0.0);  // own thickness, then the sum of parts
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
         double sum = 0;
@@ -82,8 +81,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
         if (stack.beads[rank] >= end) continue;
         const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
         const gcode::Run& run = toolpath.runOf(bead);
-        const double volume = gcode::beadLength(toolpath, bead) *
-                              gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height));
+        const double volume = gcode::beadVolume(toolpath, bead);
         fed.add(run, volume);
         if (rank >= stack.first_direct) laid.add(run, volume);
     }

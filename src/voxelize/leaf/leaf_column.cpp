@@ -187,19 +187,18 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
 LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     const Layer& layer = stack_.layers[source.layer];
     gatherPaths(source, true);
-    all_ranks_.assign(line_ids_.begin(), line_ids_.end());
-    all_ranks_.insert(all_ranks_.end(), arc_ids_.begin(), arc_ids_.end());
-    all_.clear();
-    for (const LocalLine& line : lines_) planOfLine(grid_, line, all_.emplace_back());
-    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, all_.emplace_back());
+    line_ids_.insert(line_ids_.end(), arc_ids_.begin(), arc_ids_.end());
+    near_.clear();
+    for (const LocalLine& line : lines_) planOfLine(grid_, line, near_.emplace_back());
+    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
     std::fill(std::begin(d_.v), std::end(d_.v), std::numeric_limits<float>::max());
     minimumOfLines(grid_, lines_, d_, nullptr, nullptr);
     minimumOfArcs(grid_, arcs_, d_, nullptr, nullptr);
     if (layer.settling != nullptr)
-        settle(*layer.settling, layer.radius, d_, sides2_);
+        fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
     else
         squaredSides(d_, sides2_);
-    return {&layer, all_ranks_, all_, &sides2_};
+    return {&layer, line_ids_, near_, &sides2_};
 }
 
 float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
@@ -209,12 +208,16 @@ float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d
     for (const LocalLine& line : lines_)
         if (mayFill(line, rule, half_extent)) planOfLine(grid_, line, near_.emplace_back());
     for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
-    PlanField cap;
-    std::fill(std::begin(cap.v), std::end(cap.v), kNoGroove);
+    return fillBetweenNear(rule, d, sides2);
+}
+
+float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const {
+    PlanField levels;
+    std::fill(std::begin(levels.v), std::end(levels.v), kNoGroove);
     for (std::size_t a = 0; a < near_.size(); ++a)
         for (std::size_t b = a + 1; b < near_.size(); ++b)
-            if (near_[a].least + near_[b].least < 2 * rule.radius) lowerCap(near_[a], near_[b], d, rule, cap);
-    return fillGrooves(cap, rule, d, sides2);
+            if (near_[a].least + near_[b].least < 2 * rule.radius) lowerLevels(near_[a], near_[b], d, rule, levels);
+    return fillGrooves(levels, rule, d, sides2);
 }
 
 void LeafColumn::addWelds(const PlanLayer& upper) {

@@ -105,6 +105,8 @@ private:
     LayerPlan planLayer(const ColumnLayer& source);
     /// Fills the grooves of a layer whose d is the minimum over lines_ and arcs_; returns the least of sides2.
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
+    /// The same for the beads in near_.
+    float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const;
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -138,10 +140,8 @@ private:
     std::vector<LocalLine> lines_;
     std::vector<LocalArc> arcs_;
     std::vector<std::uint32_t> line_ids_, arc_ids_;
-    std::vector<BeadPlan> near_;  // beads that may fill a groove
-    std::vector<BeadPlan> all_;   // for forEachLayer()
-    std::vector<std::uint32_t> all_ranks_;
-    PlanField d_, sides2_;
+    std::vector<BeadPlan> near_;  // beads that may fill a groove; all of the layer in planLayer()
+    PlanField d_, sides2_;        // of planLayer()
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

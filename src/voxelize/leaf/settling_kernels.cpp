@@ -94,7 +94,7 @@ HWY_INLINE VF lookUp(const float* table, VF z) {
     return hn::Add(low, hn::Mul(hn::Sub(at, hn::ConvertTo(f, step)), hn::Sub(high, low)));
 }
 
-void LowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap) {
+void LowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels) {
     const F f;
     const VF zero = hn::Zero(f);
     const VF one = hn::Set(f, 1.0F);
@@ -104,7 +104,7 @@ void LowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const Gr
         const VF least = hn::Load(f, d.v + c);
         const VF gap = hn::Add(hn::Max(hn::Load(f, a.d.v + c), zero), hn::Max(hn::Load(f, b.d.v + c), zero));
         // Deep in a flat nothing changes.
-        const auto near = hn::And(hn::Lt(gap, two_radii), hn::Gt(least, hn::Set(f, -rule.weld_cap)));
+        const auto near = hn::And(hn::Lt(gap, two_radii), hn::Gt(least, hn::Set(f, -rule.weld_level)));
         if (hn::AllFalse(f, near)) return;
         const VF cosine =
             dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
@@ -118,25 +118,25 @@ void LowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const Gr
         const VF q = hn::Min(hn::Max(open, zero), one);
         const VF z = hn::Sub(one, hn::Sqrt(hn::Sub(one, hn::Sqrt(q))));
         const VF level = hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
-        const VF before = hn::Load(f, cap.v + c);
-        hn::Store(hn::IfThenElse(fills, hn::Min(before, level), before), f, cap.v + c);
+        const VF before = hn::Load(f, levels.v + c);
+        hn::Store(hn::IfThenElse(fills, hn::Min(before, level), before), f, levels.v + c);
     });
 }
 
-float FillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
+float FillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
     const F f;
-    const VF weld_cap = hn::Set(f, rule.weld_cap);
-    const VF per_radius = hn::Set(f, rule.weld_cap / rule.radius);
+    const VF weld_level = hn::Set(f, rule.weld_level);
+    const VF per_radius = hn::Set(f, rule.weld_level / rule.radius);
     VF least = hn::Set(f, 3e38F);
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF nearest = hn::Load(f, d.v + c);
-        const VF level = hn::Load(f, cap.v + c);
+        const VF level = hn::Load(f, levels.v + c);
         const VF side = hn::Max(hn::Min(nearest, level), hn::Zero(f));
         const VF squared = hn::Mul(side, side);
         hn::Store(squared, f, sides2.v + c);
         least = hn::Min(least, squared);
-        // weld_cap (1 - level / radius) below the level: nothing where the groove is as deep as without filling.
-        const VF welded = hn::Sub(hn::Add(level, hn::Mul(level, per_radius)), weld_cap);
+        // weld_level (1 - level / radius) below the level: nothing where the groove is as deep as without filling.
+        const VF welded = hn::Sub(hn::Add(level, hn::Mul(level, per_radius)), weld_level);
         hn::Store(hn::Min(nearest, welded), f, d.v + c);
     });
     return hn::GetLane(hn::MinOfLanes(f, least));
@@ -151,7 +151,7 @@ namespace stratum::voxelize {
 
 HWY_EXPORT(PlanOfLine);
 HWY_EXPORT(PlanOfArc);
-HWY_EXPORT(LowerCap);
+HWY_EXPORT(LowerLevels);
 HWY_EXPORT(FillGrooves);
 
 GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
@@ -159,7 +159,7 @@ GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
       radius(static_cast<float>(the_radius)),
       closing(static_cast<float>(curve.closing())),
       per_open(static_cast<float>(1 / (1 - curve.closing()))),
-      weld_cap(static_cast<float>(curve.weldCap() * the_radius)) {}
+      weld_level(static_cast<float>(curve.weldLevel() * the_radius)) {}
 
 bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent) {
     const double past = std::max({static_cast<double>(line.lo), -static_cast<double>(line.hi), 0.0});
@@ -174,11 +174,11 @@ void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
     HWY_DYNAMIC_DISPATCH(PlanOfArc)(grid, arc, out);
 }
-void lowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap) {
-    HWY_DYNAMIC_DISPATCH(LowerCap)(a, b, d, rule, cap);
+void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels) {
+    HWY_DYNAMIC_DISPATCH(LowerLevels)(a, b, d, rule, levels);
 }
-float fillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
-    return HWY_DYNAMIC_DISPATCH(FillGrooves)(cap, rule, d, sides2);
+float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
+    return HWY_DYNAMIC_DISPATCH(FillGrooves)(levels, rule, d, sides2);
 }
 
 }  // namespace stratum::voxelize

@@ -22,7 +22,7 @@ struct GrooveRule {
     const float* table;  ///< SettlingCurve::table()
     float radius;
     float closing, per_open;  ///< in radii: q = (m - closing) per_open
-    float weld_cap;           ///< world units
+    float weld_level;         ///< world units
 
     GrooveRule(const SettlingCurve& curve, double radius);
 };
@@ -34,11 +34,12 @@ bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent);
 /// Above every level.
 constexpr float kNoGroove = 1e30F;
 
-/// cap = min(cap, level of the groove between the two beads), where they have one. `d`: the minimum over all beads.
-void lowerCap(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& cap);
+/// levels = min(levels, level of the groove between the two beads), where they have one. `d`: the minimum over all
+/// beads.
+void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels);
 
-/// sides2 = max(min(d, cap), 0)^2; returns the least of it. Afterwards d is min(d, cap), less where the groove is so
-/// shallow that the layers above and below count as touching: negative there, so that they are welded.
-float fillGrooves(const PlanField& cap, const GrooveRule& rule, PlanField& d, PlanField& sides2);
+/// sides2 = max(min(d, levels), 0)^2; returns the least of it. Afterwards d is min(d, levels), less where the groove is
+/// so shallow that the layers above and below count as touching: negative there, so that they are welded.
+float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2);
 
 }  // namespace stratum::voxelize

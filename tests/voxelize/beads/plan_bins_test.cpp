@@ -68,7 +68,7 @@ TEST(Footprints, OfArcsAreThoseOfEveryColumn) {
         // The two ends may lie on circles of slightly different size.
         if (n % 3 == 0) toolpath.beads[0].x1 = toolpath.beads[0].x1 + 0.02;
         const gcode::Bead& bead = toolpath.beads[0];
-        const Footprints footprints(toolpath, 0.4, 0.175, 0.15);
+        const Footprints footprints(toolpath, 0.4, 0.175, 0.15, Footprints::Reach::solid);
         const double reach = footprints.limit(bead);
         const ColumnRange all = footprints.range(bead, reach);
         const PlanPath path(toolpath, bead);

@@ -57,14 +57,14 @@ TEST(Settling, LevelsRiseFromNothingToTheEdgeWithTheGap) {
     for (const double ratio : {2.0, 2.2, 5.0, 50.0}) {
         const SettlingCurve curve(ratio, 0.02);
         const test::GrooveOracle groove(ratio, 1);
-        EXPECT_EQ(curve.cap(curve.closing()), 0);
-        EXPECT_EQ(curve.cap(1), 1);
+        EXPECT_EQ(curve.level(curve.closing()), 0);
+        EXPECT_EQ(curve.level(1), 1);
         EXPECT_EQ(curve.table().front(), 0);
         EXPECT_EQ(curve.table().back(), 1);
         double before = 0;
         for (int n = 1; n <= 50; ++n) {
             const double m = curve.closing() + (1 - curve.closing()) * n / 50;
-            const double level = curve.cap(m);
+            const double level = curve.level(m);
             EXPECT_GE(level, before);
             EXPECT_LE(level, m);
             EXPECT_NEAR(level, groove.level(m), 2e-6) << ratio << ", " << m;
@@ -77,9 +77,9 @@ TEST(Settling, LevelsRiseFromNothingToTheEdgeWithTheGap) {
 TEST(Settling, WeldsReachGroovesAsShallowAsTheirGap) {
     for (const double radius : {0.1, 0.05}) {
         const SettlingCurve curve(0.2 / radius, 0.02);
-        EXPECT_NEAR(test::GrooveOracle(0.2, radius).depth(radius * curve.weldCap()), 0.02 * 0.2, 1e-9);
+        EXPECT_NEAR(test::GrooveOracle(0.2, radius).depth(radius * curve.weldLevel()), 0.02 * 0.2, 1e-9);
     }
-    EXPECT_EQ(SettlingCurve(1000, 0.02).weldCap(), 1);
+    EXPECT_EQ(SettlingCurve(1000, 0.02).weldLevel(), 1);
 }
 
 }  // namespace

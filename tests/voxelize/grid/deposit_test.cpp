@@ -1,4 +1,5 @@
 // Sections with corners and settled beads, against brute force in double.
+#include "same_grids.h"
 #include "settled_field.h"
 #include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/voxelizer.h"
@@ -166,14 +167,11 @@ TEST_P(Deposit, StepsAndThreadsGiveTheSameBytes) {
     for (const std::uint32_t end : {3U, 10U, 17U}) {
         const auto grown = stepwise.printUntil(end);
         const auto fresh = Voxelizer(toolpath, beads, lattice).printUntil(end);
-        for (auto voxel = fresh->cbeginValueOn(); voxel; ++voxel)
-            ASSERT_EQ(*voxel, grown->tree().getValue(voxel.getCoord())) << end;
+        test::expectSame(*fresh, *grown);
     }
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     const auto alone = voxelize(toolpath, beads, lattice);
-    EXPECT_EQ(whole->activeVoxelCount(), alone->activeVoxelCount());
-    for (auto voxel = whole->cbeginValueOn(); voxel; ++voxel)
-        ASSERT_EQ(*voxel, alone->tree().getValue(voxel.getCoord()));
+    test::expectSame(*whole, *alone);
 }
 
 TEST_P(Deposit, ASlopedBeadHasTheSameSection) {
@@ -210,9 +208,7 @@ TEST(DepositModel, AStadiumIsTheDefaultToTheBit) {
     const auto before = voxelize(toolpath, beads, lattice);
     toolpath.deposit.corner_mm = 5;  // no more than half the height
     const auto after = voxelize(toolpath, beads, lattice);
-    EXPECT_EQ(before->activeVoxelCount(), after->activeVoxelCount());
-    for (auto voxel = before->cbeginValueOn(); voxel; ++voxel)
-        ASSERT_EQ(*voxel, after->tree().getValue(voxel.getCoord()));
+    test::expectSame(*before, *after);
 }
 
 TEST(DepositModel, SharpCornersAreABox) {

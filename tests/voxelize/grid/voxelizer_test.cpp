@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "plain_field.h"
+#include "same_grids.h"
 #include "toolpaths.h"
 
 #include <gtest/gtest.h>
@@ -52,21 +53,6 @@ void expectNothingWrong(const openvdb::FloatGrid& grid) {
     EXPECT_EQ(openvdb::tools::checkLevelSet(grid, 8), "");
     const std::string ninth = openvdb::tools::checkLevelSet(grid, 9);
     EXPECT_TRUE(ninth.empty() || ninth.find("NormGrad") != std::string::npos) << ninth;
-}
-
-void expectSame(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
-    ASSERT_TRUE(a.tree().hasSameTopology(b.tree()));
-    auto other = b.tree().cbeginLeaf();
-    for (auto leaf = a.tree().cbeginLeaf(); leaf; ++leaf, ++other) {
-        ASSERT_EQ(leaf->origin(), other->origin());
-        ASSERT_EQ(std::memcmp(leaf->buffer().data(), other->buffer().data(), sizeof(float) * 512), 0);
-    }
-    auto tile = b.tree().cbeginValueOff();
-    tile.setMaxDepth(openvdb::FloatTree::ValueOffCIter::LEAF_DEPTH - 1);
-    auto mine = a.tree().cbeginValueOff();
-    mine.setMaxDepth(openvdb::FloatTree::ValueOffCIter::LEAF_DEPTH - 1);
-    for (; mine && tile; ++mine, ++tile) ASSERT_EQ(*mine, *tile);
-    EXPECT_EQ(static_cast<bool>(mine), static_cast<bool>(tile));
 }
 
 TEST(Voxelizer, EveryVoxelAgreesWithBruteForce) {
@@ -130,7 +116,7 @@ TEST(Voxelizer, APartialPrintIsTheSameHoweverItWasReached) {
                 const auto grown = series.printUntil(end);
                 const std::vector<std::uint32_t> part(beads.begin(), beads.begin() + end);
                 const auto fresh = voxelize(toolpath, part, lattice, options);
-                expectSame(*fresh, *grown);
+                test::expectSame(*fresh, *grown);
                 // Steps that change little evaluate little.
                 if (end == 18 && interior == Interior::keep) {
                     EXPECT_LT(series.report().leaves_evaluated, fresh->tree().leafCount());
@@ -179,7 +165,7 @@ TEST(Voxelizer, SignsAreCompleteAndTilesPruned) {
     const auto grid = voxelize(toolpath, allBeads(toolpath), latticeOf(0.1));
     const auto filled = grid->deepCopy();
     openvdb::tools::signedFloodFill(filled->tree());
-    expectSame(*grid, *filled);
+    test::expectSame(*grid, *filled);
     EXPECT_LT(grid->getConstAccessor().getValue(openvdb::Coord(150, 0, 20)), 0);
     EXPECT_FALSE(grid->tree().isValueOn(openvdb::Coord(150, 0, 20)));
     EXPECT_EQ(grid->tree().probeConstLeaf(openvdb::Coord(150, 0, 20)), nullptr);
@@ -193,7 +179,7 @@ TEST(Voxelizer, OneThreadOrTwoTheSameVoxels) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n + 1);
         grids[n] = voxelize(toolpath, allBeads(toolpath), latticeOf(0.05));
     }
-    expectSame(*grids[0], *grids[1]);
+    test::expectSame(*grids[0], *grids[1]);
 }
 
 TEST(Voxelizer, WeldedFlatsLeaveNoCrack) {

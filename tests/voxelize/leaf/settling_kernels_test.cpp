@@ -90,7 +90,7 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
     const GrooveRule rule(curve, 0.07);
     const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     struct Result {
-        PlanField cap, d, sides2;
+        PlanField levels, d, sides2;
         float least;
     };
     std::vector<Result> results;
@@ -101,19 +101,19 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
         std::vector<BeadPlan> plans;
         for (const gcode::Bead& bead : toolpath.beads) plans.push_back(planOf(grid, toolpath, bead));
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            r.cap.v[c] = kNoGroove;
+            r.levels.v[c] = kNoGroove;
             r.d.v[c] = plans[0].d.v[c];
             for (const BeadPlan& plan : plans) r.d.v[c] = std::min(r.d.v[c], plan.d.v[c]);
         }
         for (std::size_t a = 0; a < plans.size(); ++a)
-            for (std::size_t b = a + 1; b < plans.size(); ++b) lowerCap(plans[a], plans[b], r.d, rule, r.cap);
-        r.least = fillGrooves(r.cap, rule, r.d, r.sides2);
+            for (std::size_t b = a + 1; b < plans.size(); ++b) lowerLevels(plans[a], plans[b], r.d, rule, r.levels);
+        r.least = fillGrooves(r.levels, rule, r.d, r.sides2);
         names += std::string(kernelTarget()) + " ";
         results.push_back(r);
     }
     hwy::SetSupportedTargetsForTest(0);
     std::size_t filled = 0;
-    for (const float level : results[0].cap.v) filled += level < kNoGroove ? 1 : 0;
+    for (const float level : results[0].levels.v) filled += level < kNoGroove ? 1 : 0;
     EXPECT_GT(filled, 3U);
     for (const Result& r : results) EXPECT_EQ(std::memcmp(&r, &results[0], sizeof r), 0) << names;
 }
