@@ -12,16 +12,17 @@ MAY_INCLUDE = {
     "vdb": set(),  # not to be included from: part of the precompiled headers
     "gcode": {"base"},
     "motion": {"base", "gcode"},
+    "deposit": {"base", "gcode", "motion"},
     "voxelize": {"base", "gcode"},
     "export": {"base", "gcode", "voxelize"},
     "trace": {"base"},
     "march": {"base", "trace"},
     "ondemand": {"base", "gcode", "voxelize", "trace", "march"},
     "shade": {"base", "trace"},
-    "assemble": {"base", "gcode", "motion", "voxelize", "trace", "march", "ondemand", "shade"},
+    "assemble": {"base", "gcode", "motion", "deposit", "voxelize", "trace", "march", "ondemand", "shade"},
     "study": {"base", "gcode", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
 }
-WITHOUT_OPENVDB = {"base", "gcode", "motion", "trace", "shade"}
+WITHOUT_OPENVDB = {"base", "gcode", "motion", "deposit", "trace", "shade"}
 MOST_LINES = 450
 MOST_FILES = 30  # of code, in one folder
 MOST_FUNCTION_LINES = 80

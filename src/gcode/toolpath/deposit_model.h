@@ -20,6 +20,12 @@ struct DepositModel {
     double corner_fraction = 1;
     std::optional<double> corner_mm;  ///< the same in mm; half the height where that is less
 
+    /// Seconds by which the flow out of the nozzle lags behind the extruder; none: every bead has its commanded width.
+    std::optional<double> flow_lag;
+    std::optional<double> pressure_advance;  ///< s; overrides the file's. Only with flow_lag
+    /// How far a bead over nothing hangs down in the middle, as a fraction of the span.
+    double sag = 0;
+
     /// Corner radius (mm) of a section of this height (mm).
     double cornerRadius(double height) const {
         return std::min(corner_mm.value_or(corner_fraction * 0.5 * height), 0.5 * height);

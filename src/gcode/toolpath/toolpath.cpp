@@ -79,4 +79,9 @@ double beadVolume(const Toolpath& toolpath) {
     return volume;
 }
 
+double laidVolume(const Toolpath& toolpath, std::uint32_t index) {
+    return toolpath.flow.empty() ? beadVolume(toolpath, toolpath.beads[index])
+                                 : static_cast<double>(toolpath.flow[index].volume);
+}
+
 }  // namespace stratum::gcode

@@ -99,6 +99,14 @@ struct BeadTiming {
     float exit = 0;     ///< mm/s, at its end
 };
 
+/// What flows out along a bead, where the flow was simulated (src/deposit).
+struct BeadFlow {
+    float volume = 0;  ///< mm^3, laid
+    float rate = 0;    ///< mm^3/s, mean
+    float widening =
+        0;  ///< mm, width at the end less width at the start; Bead::width is the mean. Less than the length
+};
+
 /// Everything that one G-code file deposits, in print order.
 struct Toolpath {
     std::vector<Bead> beads;
@@ -118,6 +126,7 @@ struct Toolpath {
     std::vector<std::optional<Rgb>> tool_colors;
     std::vector<ColorChange> color_changes;  ///< in print order
     std::vector<BeadTiming> timing;          ///< by bead; empty unless its motion was planned
+    std::vector<BeadFlow> flow;              ///< by bead; empty unless it was simulated
     std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
     std::vector<double> footer_by_tool;      ///< mm of each tool as the file states it; empty if it doesn't
     double footer_mm = 0;                    ///< mm of all tools as the file states it; 0 if it doesn't
@@ -153,5 +162,15 @@ double beadVolume(const Toolpath& toolpath, const Bead& bead);
 
 /// The sum over all beads, in mm^3.
 double beadVolume(const Toolpath& toolpath);
+
+/// What bead `index` lays, in mm^3: of the simulated flow if there is one, else its beadVolume().
+double laidVolume(const Toolpath& toolpath, std::uint32_t index);
+
+/// Width at the end of bead `index` less width at its start, mm.
+inline double widening(const Toolpath& toolpath, const Bead& bead) {
+    return toolpath.flow.empty()
+               ? 0.0
+               : static_cast<double>(toolpath.flow[static_cast<std::size_t>(&bead - toolpath.beads.data())].widening);
+}
 
 }  // namespace stratum::gcode
