@@ -13,7 +13,10 @@ constexpr std::array<std::string_view, 6> kRules{
 // Collects the data for the sums while the toolpath is being read.
 class Recorder : public PlanSink {
 public:
+    explicit Recorder(PlanSink* also) : also_(also) {}
+
     void piece(const PlannedPiece& piece) override {
+        if (also_ != nullptr) also_->piece(piece);
         const Segment& segment = piece.segment;
         const double seconds = piece.speed.seconds();
         if (segment.bead == gcode::Move::kNoBead) {
@@ -30,12 +33,18 @@ public:
         bead.peak = std::max(bead.peak, static_cast<float>(piece.speed.peak));
         bead.exit = static_cast<float>(piece.speed.exit);
     }
-    void wait(double, double seconds) override { waiting += seconds; }
+    void wait(double start, double seconds) override {
+        if (also_ != nullptr) also_->wait(start, seconds);
+        waiting += seconds;
+    }
 
     std::vector<gcode::BeadTiming> timing;
     double travel = 0;
     double retraction = 0;
     double waiting = 0;
+
+private:
+    PlanSink* also_;
 };
 
 void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
@@ -60,8 +69,8 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
 std::string_view ruleName(CornerRule rule) { return kRules[static_cast<std::size_t>(rule)]; }
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
-                                  PrintTimes& times) {
-    Recorder recorder;
+                                  PrintTimes& times, PlanSink* also) {
+    Recorder recorder(also);
     Planner planner(recorder);
     gcode::ReadOptions read = options;
     read.motion = &planner;

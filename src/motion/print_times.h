@@ -27,9 +27,9 @@ struct PrintTimes {
 /// The name of a rule on command lines and in reports; "auto" is automatic.
 std::string_view ruleName(gcode::CornerRule rule);
 
-/// Reads a program and plans its motion: fills Toolpath::timing and returns the sums. Throws what readToolpath()
-/// throws. Takes about twice as long as reading alone, and 24 bytes a bead.
+/// Reads a program and plans its motion: fills Toolpath::timing and returns the sums. `also`, if not null, gets the
+/// plan too. Throws what readToolpath() throws. Takes about twice as long as reading alone, and 24 bytes a bead.
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
-                                  PrintTimes& times);
+                                  PrintTimes& times, PlanSink* also = nullptr);
 
 }  // namespace stratum::motion

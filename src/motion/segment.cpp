@@ -35,6 +35,9 @@ void cutMove(const gcode::Move& move, const gcode::MachineLimits& limits,
     Segment segment;
     segment.bead = move.bead;
     segment.line = move.line;
+    segment.filament_area = move.filament_area;
+    segment.pressure_advance = limits.pressure_advance;
+    segment.curved = move.sweep != 0;
     const double path = pathLength(move);
     segment.travels = path > kNoMotion;
     const double length = segment.travels ? path : std::abs(d[3]);

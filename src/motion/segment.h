@@ -19,7 +19,10 @@ struct Segment {
     double asked = 0;                                    ///< mm/s, programmed, before the axes' limits
     double acceleration = 0;                             ///< mm/s^2, likewise; > 0
     std::array<double, gcode::kMotionAxes> direction{};  ///< mm of each axis per mm of length
+    double filament_area = 0;                            ///< mm^2, section of the filament
+    double pressure_advance = 0;                         ///< s, in force
     bool travels = false;                                ///< x, y or z moves; else E alone
+    bool curved = false;                                 ///< a chord of an arc
     std::uint32_t bead = gcode::Move::kNoBead;
     std::uint32_t line = 0;
 };

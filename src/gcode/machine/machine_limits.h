@@ -17,6 +17,7 @@ constexpr double kStrongestAxis = 1e7;    // mm/s^2
 constexpr double kWeakestAxis = 1e-2;     // mm/s^2
 constexpr double kLongestWait = 1e6;      // s
 constexpr double kLongestDeviation = 10;  // mm, of a junction
+constexpr double kLongestAdvance = 5;     // s, of pressure advance
 
 struct MachineSettings {
     MachineLimits limits;

@@ -78,6 +78,9 @@ void Machine::executeMacro(const Command& command) {
         useTool(trailingNumber(argument(command.text, "EXTRUDER").value_or("")));
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
+    } else if (moves_ != nullptr && same(name, "SET_PRESSURE_ADVANCE")) {
+        if (const auto advance = numberArgument(command.text, "ADVANCE"))
+            moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
     } else if (!isHarmlessMacro(name)) {
         warn(fmt::format("macro {} is not in the file; what it prints or moves is not in the toolpath",
                          name.substr(0, 60)));

@@ -308,7 +308,7 @@ void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, dou
     const double filament = (volumetric_ ? drive / filamentArea() : drive) * flow_[tool_];
     const std::size_t beads = recorder_.toolpath().beads.size();
     const auto bead = beads > beads_before ? static_cast<std::uint32_t>(beads - 1) : Move::kNoBead;
-    moves_->move(frame_.position(), target, arc, filament, feed_ * speed_factor_, bead, line_);
+    moves_->move(frame_.position(), target, arc, filament, filamentArea(), feed_ * speed_factor_, bead, line_);
 }
 
 void Machine::recordTravel(const Command& command, const Point& target, int motion, double drive) {

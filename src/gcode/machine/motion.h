@@ -40,7 +40,8 @@ struct MachineLimits {
     double least_travel_speed = 0;                                ///< mm/s (M205 T)
     double junction_deviation = 0.013;                            ///< mm; Marlin's default
     double corner_velocity = 5;                                   ///< mm/s; Klipper's default
-    double cruise_ratio = 0.5;  ///< Klipper's minimum_cruise_ratio; its older max_accel_to_decel is (1 - this) a
+    double cruise_ratio = 0.5;    ///< Klipper's minimum_cruise_ratio; its older max_accel_to_decel is (1 - this) a
+    double pressure_advance = 0;  ///< s (M900 K, M572 S, SET_PRESSURE_ADVANCE); for flow, not for times
     CornerRule rule = CornerRule::jerk;
 };
 
@@ -50,6 +51,7 @@ struct Move {
 
     std::array<double, kMotionAxes> delta{};  ///< mm; E in mm of filament, flow factor (M221) included
     double speed = 0;                         ///< mm/s, programmed along the path, or of E if nothing else moves
+    double filament_area = 0;                 ///< mm^2, section of the filament
     double sweep = 0;                         ///< radians; 0: straight
     PlanPoint center{};                       ///< mm from the start; of an arc
     std::uint32_t bead = kNoBead;             ///< index into Toolpath::beads of its bead, or kNoBead

@@ -114,6 +114,7 @@ void MotionRecorder::runRetraction(const Retraction& retraction, double sign, st
     if (!(retraction.length > 0)) return;
     Move move;
     move.delta[3] = sign * retraction.length;
+    move.filament_area = filament_area_;
     move.speed = retraction.speed > 0 ? std::max(retraction.speed, kSlowest) : kDefaultSpeed;
     move.line = line;
     sink_.move(move);
@@ -170,6 +171,12 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
         case 566:
             byAxis(command, limits_.jerk, 1.0 / 60, 0, kFastestAxis, line);
             break;
+        case 572:
+            if (command.hasValue('S')) pressureAdvance("M572 S", command.value('S'), line);
+            return;
+        case 900:
+            if (command.hasValue('K')) pressureAdvance("M900 K", command.value('K'), line);
+            return;
         default:
             if (rests(command)) sink_.wait(0);
             return;
@@ -202,9 +209,20 @@ void MotionRecorder::changeTool(std::size_t from, std::size_t to) {
     if (from != to) sink_.wait(at(settings_.unload, from) + at(settings_.load, to) + settings_.change);
 }
 
+void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std::uint32_t line) {
+    // Linear Advance 1.0 counts K in other units, from about 10 up; nothing tells what it means for the flow.
+    if (!(seconds >= 0 && seconds <= kLongestAdvance))
+        return warnings_.add(fmt::format("{}{:g} is no pressure advance in seconds (0 to {:g}); ignored", what, seconds,
+                                         kLongestAdvance),
+                             line);
+    limits_.pressure_advance = seconds;
+    sink_.limits(limits_);
+}
+
 void MotionRecorder::move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament,
-                          double speed, std::uint32_t bead, std::uint32_t line) {
+                          double filament_area, double speed, std::uint32_t bead, std::uint32_t line) {
     Move move;
+    move.filament_area = filament_area_ = filament_area;
     move.delta = {to.x - from.x, to.y - from.y, to.z - from.z, filament};
     if (arc) {
         move.sweep = arc->sweep;

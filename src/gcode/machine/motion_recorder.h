@@ -34,10 +34,13 @@ public:
     void command(const Command& command, double unit, std::uint32_t line);
     void velocityLimit(const VelocityLimit& limit, std::uint32_t line);
     void changeTool(std::size_t from, std::size_t to);
+    /// `seconds`: as `what` has it in the file, M900 K or the like.
+    void pressureAdvance(std::string_view what, double seconds, std::uint32_t line);
 
     /// A move in print space. `filament` is the movement of E in mm; `speed` is in mm/s, 0 if none was set yet.
-    void move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament, double speed,
-              std::uint32_t bead, std::uint32_t line);
+    /// `filament_area`: its section, mm^2.
+    void move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament, double filament_area,
+              double speed, std::uint32_t bead, std::uint32_t line);
 
 private:
     struct Retraction {
@@ -59,6 +62,7 @@ private:
     MachineSettings settings_;
     MachineLimits limits_;
     WarningLog& warnings_;
+    double filament_area_ = 0;  // mm^2, of the last move
     Retraction retract_;
     Retraction recover_;
     bool retracted_ = false;

@@ -75,7 +75,7 @@ double beadVolume(const Toolpath& toolpath, const Bead& bead) {
 
 double beadVolume(const Toolpath& toolpath) {
     double volume = 0;
-    for (const Bead& bead : toolpath.beads) volume += beadVolume(toolpath, bead);
+    for (std::uint32_t n = 0; n < toolpath.beads.size(); ++n) volume += laidVolume(toolpath, n);
     return volume;
 }
 

@@ -160,11 +160,11 @@ double sectionWidth(double area, double height);
 /// Section area times length of a bead, in mm^3.
 double beadVolume(const Toolpath& toolpath, const Bead& bead);
 
-/// The sum over all beads, in mm^3.
-double beadVolume(const Toolpath& toolpath);
-
 /// What bead `index` lays, in mm^3: of the simulated flow if there is one, else its beadVolume().
 double laidVolume(const Toolpath& toolpath, std::uint32_t index);
+
+/// The sum of laidVolume() over all beads, in mm^3.
+double beadVolume(const Toolpath& toolpath);
 
 /// Width at the end of bead `index` less width at its start, mm.
 inline double widening(const Toolpath& toolpath, const Bead& bead) {

@@ -1,0 +1,156 @@
+#include "deposit/apply_flow.h"
+
+#include "deposit/bead_cutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace stratum::deposit {
+namespace {
+
+constexpr double kThinnest = 0.05;  // mm, diameter of a thread
+// The width may grow by this share of the length: beyond 45 degrees to each side one end would hide the other.
+constexpr double kSteepest = 1.0;
+
+// Half the width of a rectangle of the same area and height as a stadium, less half the stadium's width, mm.
+double roundedOff(double height) { return 0.5 * height * (1 - std::numbers::pi / 4); }
+
+// The reader may find after the motion was recorded that the filament is another one.
+double filamentScale(const FlowRecord& record, const gcode::Toolpath& toolpath) {
+    constexpr double kAnother = 1.5;
+    const double scale = std::numbers::pi / 4 * toolpath.filament_diameter * toolpath.filament_diameter /
+                         (record.filament_area > 0 ? record.filament_area : 1);
+    const double needed = record.fed_to_beads > 0 ? toolpath.extruded_mm3 / record.fed_to_beads : 1;
+    return needed > kAnother && std::abs(needed - scale) < 0.1 * scale ? scale : 1;
+}
+
+class FlowPieces {
+public:
+    FlowPieces(const FlowRecord& record, const gcode::Toolpath& toolpath)
+        : record_(record), toolpath_(toolpath), scale_(filamentScale(record, toolpath)) {
+        pieces_.reserve(record.parts.size() + record.spots.size());
+    }
+
+    void run() {
+        for (const FlowPart& part : record_.parts) {
+            addSpots(part.bead, false);
+            addPart(part);
+        }
+        addSpots(0xffffffff, true);
+        report_.purged += record_.purged * scale_ + carried_;
+        report_.laid = record_.laid * scale_;
+        report_.fed = record_.fed * scale_;
+        report_.in_nozzle = report_.fed - report_.laid;
+        report_.longest_advance = record_.longest_advance;
+        report_.beads = toolpath_.beads.size();
+    }
+
+    const std::vector<BeadPiece>& pieces() const { return pieces_; }
+    const FlowReport& report() const { return report_; }
+
+private:
+    double heightOf(std::uint32_t bead) const {
+        return static_cast<double>(toolpath_.runOf(toolpath_.beads[bead]).height);
+    }
+
+    // All spots up to the start of this bead, or up to its end.
+    void addSpots(std::uint32_t bead, bool at_end) {
+        for (; next_spot_ < record_.spots.size(); ++next_spot_) {
+            const FlowSpot& spot = record_.spots[next_spot_];
+            if (spot.bead > bead || (spot.bead == bead && spot.at_end && !at_end)) return;
+            addDisc(spot);
+        }
+    }
+
+    void addPart(const FlowPart& part) {
+        const gcode::Bead& bead = toolpath_.beads[part.bead];
+        const double length = gcode::beadLength(toolpath_, bead) * (part.to - part.from);
+        const double volume = part.volume * scale_ + carried_;
+        const double height = heightOf(part.bead);
+        const double width = length > 0 ? gcode::sectionWidth(volume / length, height) : 0;
+        if (!(width >= kThinnest)) {
+            carried_ = volume;
+            return;
+        }
+        carried_ = 0;
+        double widening = 0;
+        if (width > height && bead.arc < 0 && bead.z0 == bead.z1) {
+            const double most = std::min(2 * (width - height), kSteepest * length);
+            widening = std::clamp(part.growth * scale_ / height, -most, most);
+        }
+        BeadPiece piece;
+        piece.bead = part.bead;
+        piece.from = part.from;
+        piece.to = part.to;
+        piece.width = static_cast<float>(width);
+        piece.flow.volume = static_cast<float>(volume);
+        piece.flow.rate = part.seconds > 0 ? static_cast<float>(volume / part.seconds) : 0;
+        piece.flow.widening = static_cast<float>(widening);
+        const float speed = part.seconds > 0 ? static_cast<float>(length / part.seconds) : 0;
+        piece.timing = {part.start, static_cast<float>(part.seconds), speed, speed, speed};
+        pieces_.push_back(piece);
+        report_.in_parts += volume;
+        ++report_.parts;
+    }
+
+    void addDisc(const FlowSpot& spot) {
+        const double volume = spot.volume * scale_;
+        if (volume > kMostInDisc) {
+            report_.purged += volume;
+            return;
+        }
+        const double height = heightOf(spot.bead);
+        const double rounded = roundedOff(height);
+        // The bead's commanded width: what really lies there changes fast.
+        const double half = std::max(0.5 * static_cast<double>(toolpath_.beads[spot.bead].width) - rounded, 0.0);
+        BeadPiece piece;
+        piece.bead = spot.bead;
+        piece.from = piece.to = spot.at_end ? 1 : 0;
+        piece.width = static_cast<float>(2 * (discRadius(half, volume / height, spot.inside) + rounded));
+        piece.flow.volume = static_cast<float>(volume);
+        piece.timing.start = spot.time;
+        pieces_.push_back(piece);
+        report_.in_discs += volume;
+        ++report_.discs;
+    }
+
+    const FlowRecord& record_;
+    const gcode::Toolpath& toolpath_;
+    const double scale_;
+    std::vector<BeadPiece> pieces_;
+    FlowReport report_;
+    std::size_t next_spot_ = 0;
+    double carried_ = 0;  // mm^3, of threads too thin
+};
+
+}  // namespace
+
+double discRadius(double half_width, double area, bool inside) {
+    const auto added = [&](double radius) {
+        const double angle = std::acos(std::min(half_width / radius, 1.0));
+        const double beside = radius * radius * (2 * angle - std::sin(2 * angle));
+        if (inside) return beside;
+        return 0.5 * (std::numbers::pi * (radius * radius - half_width * half_width) + beside);
+    };
+    double low = std::max(half_width, 1e-6);
+    double high = 2 * low;
+    while (added(high) < area) high *= 2;
+    constexpr int kHalvings = 50;
+    for (int n = 0; n < kHalvings; ++n) {
+        const double middle = 0.5 * (low + high);
+        (added(middle) < area ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+FlowReport applyFlow(const FlowRecord& record, gcode::Toolpath& toolpath) {
+    FlowPieces pieces(record, toolpath);
+    pieces.run();
+    toolpath.flow.resize(toolpath.beads.size());
+    cutBeads(toolpath, pieces.pieces());
+    return pieces.report();
+}
+
+}  // namespace stratum::deposit

@@ -1,0 +1,37 @@
+// FlowRecord -> beads: parts get widths, spots become discs.
+#pragma once
+
+#include "deposit/flow_record.h"
+#include "gcode/toolpath/toolpath.h"
+
+#include <cstddef>
+
+namespace stratum::deposit {
+
+/// Volumes in mm^3: fed = laid + in_nozzle, laid = in_parts + in_discs + purged.
+struct FlowReport {
+    double lag = 0;              ///< s
+    double longest_advance = 0;  ///< s, the largest pressure advance in force
+    double fed = 0;              ///< that the extruder has moved at its furthest
+    double laid = 0;
+    double in_parts = 0;
+    double in_discs = 0;
+    double purged = 0;      ///< flowed out where nothing is printed; not in the toolpath
+    double in_nozzle = 0;   ///< not yet flowed out at the end, or drawn back
+    std::size_t beads = 0;  ///< of the file
+    std::size_t parts = 0;
+    std::size_t discs = 0;
+};
+
+/// Plastic at one place of more than this is a purge, mm^3: real printers push it off beside the part.
+constexpr double kMostInDisc = 10;
+
+/// The radius (mm) of the disc that adds this area (mm^2) to a path of this half width (mm): beyond its end, or, of a
+/// place inside a path, beside it.
+double discRadius(double half_width, double area, bool inside);
+
+/// Replaces the beads of the file by those that flow out. Sets Toolpath::flow. Widths are finite and positive; a round
+/// thread thinner than 0.05 mm is laid with what follows it.
+FlowReport applyFlow(const FlowRecord& record, gcode::Toolpath& toolpath);
+
+}  // namespace stratum::deposit

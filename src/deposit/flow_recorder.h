@@ -1,0 +1,69 @@
+// Computes from the planned motion what flows out of the nozzle, and where.
+//
+// The extruder presses filament into the nozzle: E(t), as a volume. Pressure advance K adds K dE/dt while it prints.
+// What is pressed in and has not flowed out is pressure, and the flow is proportional to it:
+//     T dV/dt = E + K dE/dt - V    while that is positive, else dV/dt = 0
+// A retraction draws the plastic back: the flow stops at once, and starts again when the extruder is back where it was.
+// On each phase of a trapezoid dE/dt = a + b t, so the flow is, in closed form,
+//     Q(t) = a' + b (t - T) + (Q0 - a' + b T) exp(-t / T),   a' = a + K b,   V = E + K dE/dt - T Q.
+// Nothing is lost: what is laid and what is in the nozzle is what was fed.
+//
+// Sources: klipper3d.org/Kinematics.html, "Pressure advance", for the extruder's rule; P. Tronvoll et al.,
+// "Investigating pressure advance algorithms for filament-based melt extrusion additive manufacturing" (2019), for the
+// lag of first order.
+#pragma once
+
+#include "deposit/flow_path.h"
+#include "deposit/flow_record.h"
+#include "motion/planner.h"
+
+#include <optional>
+#include <vector>
+
+namespace stratum::deposit {
+
+/// Beads that follow each other without a travel are one path. What flows out on a travel is laid where the travel
+/// begins: strings are not modelled. What flows out after it, before the nozzle prints, is laid where the next path
+/// begins; what flows out before another travel is purged.
+class FlowRecorder : public motion::PlanSink {
+public:
+    /// Seconds, >= 0. `advance` overrides that of the file.
+    FlowRecorder(double lag, std::optional<double> advance) : lag_(lag), advance_(advance) {}
+
+    void piece(const motion::PlannedPiece& piece) override;
+    void wait(double start, double seconds) override;
+    /// The record, at the end of the program. Called once.
+    FlowRecord finish();
+
+private:
+    // Commanded flow a + b t (mm^3/s) for t from 0 to `seconds`.
+    struct Phase {
+        double start, seconds, a, b;
+        double v0, v1;  // mm/s along the path
+        bool prints;
+    };
+    void runPhase(const Phase& phase, const motion::Segment& segment);
+    void layPhase(const Phase& phase, const motion::Segment& segment);
+    /// What the extruder has pressed in at t, its advance included, mm^3.
+    double pressed(const Phase& phase, double t) const;
+    /// The flow at `to`, of a phase with the pressure `pressure` (mm^3) at `from`.
+    double flowAt(const Phase& phase, double from, double pressure, double to) const;
+    /// Goes on from one time of a phase to another; returns what flows out.
+    double flowOut(const Phase& phase, double from, double to);
+    void rest(double volume, bool in_plane, double time);
+    void endPath();
+
+    const double lag_;
+    const std::optional<double> advance_;
+    double advance_now_ = 0;          // s
+    double fed_ = 0;                  // mm^3, E at the begin of a phase
+    double along_ = 0;                // mm, on the last bead of path_
+    double path_x_ = 0, path_y_ = 0;  // mm, from the begin of path_ to its end
+    std::vector<FlowInterval> path_;
+    std::vector<PathSpot> spots_;
+    bool travelled_ = true;  // since the end of path_
+    PathSpot arrival_;       // before the next path
+    FlowRecord record_;
+};
+
+}  // namespace stratum::deposit

@@ -1,0 +1,32 @@
+#include "deposit/read_print.h"
+
+#include "deposit/flow_recorder.h"
+#include "motion/planner.h"
+
+namespace stratum::deposit {
+
+PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed) {
+    PrintRead print;
+    std::optional<FlowRecorder> flow;
+    const gcode::DepositModel& deposit = options.deposit;
+    if (deposit.flow_lag) flow.emplace(*deposit.flow_lag, deposit.pressure_advance);
+    if (timed) {
+        print.toolpath =
+            motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr);
+    } else if (flow) {
+        motion::Planner planner(*flow);
+        gcode::ReadOptions read = options;
+        read.motion = &planner;
+        print.toolpath = gcode::readToolpath(bytes, name, read);
+        planner.finish();
+    } else {
+        print.toolpath = gcode::readToolpath(bytes, name, options);
+    }
+    if (flow) {
+        print.flow = applyFlow(flow->finish(), print.toolpath);
+        print.flow->lag = *deposit.flow_lag;
+    }
+    return print;
+}
+
+}  // namespace stratum::deposit
