@@ -4,6 +4,7 @@
 #include "deposit/read_print.h"
 #include "motions.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +28,15 @@ PrintRead readText(const std::string& program, const gcode::ReadOptions& options
     return readPrint(program, "test.gcode", options, false);
 }
 
-// An L of two lines, 20 mm each, 0.2 mm high and 0.45 wide, at 60 mm/s. E of a line: 20 * 0.0814 / 2.405.
-const std::string kCorner =
-    "M83\nM204 P1000 T1000\nM205 X8 Y8\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\nG1 Z0.2 F3600\nG1 X5 Y5 E-1\nG1 X10 Y10\n"
-    "G1 E1.2 F1800\nG1 X30 Y10 E0.677 F3600\nG1 X30 Y30 E0.677\nG1 E-1 F1800\nG1 X0 Y0 F9000\n";
+// An L of two lines, 20 mm each, 0.2 mm high and 0.45 wide, at 60 mm/s. E of a line: 20 * 0.0814 / 2.405. Retracts 1 mm
+// and primes this much.
+std::string corner(const char* prime) {
+    return fmt::format(
+        "M83\nM204 P1000 T1000\nM205 X8 Y8\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\nG1 Z0.2 F3600\nG1 X5 Y5 E-1\n"
+        "G1 X10 Y10\nG1 E{} F1800\nG1 X30 Y10 E0.677 F3600\nG1 X30 Y30 E0.677\nG1 E-1 F1800\nG1 X0 Y0 F9000\n",
+        prime);
+}
+const std::string kCorner = corner("1.2");
 
 double sumOf(const gcode::Toolpath& toolpath) {
     double sum = 0;
@@ -74,8 +80,7 @@ TEST(Flow, WithoutLagBeadsKeepTheirWidths) {
 
 TEST(Flow, AdvanceOfTheSameTimeCancelsTheLag) {
     // Primes what was retracted, no more.
-    std::string program = kCorner;
-    program.replace(program.find("E1.2"), 4, "E1");
+    const std::string program = corner("1");
     const PrintRead print = readText(program, withLag(0.05, 0.05));
     const gcode::Toolpath plain = gcode::readToolpath(program, "test.gcode");
     expectSound(print);
