@@ -9,17 +9,16 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "deposit/read_print.h"
 #include "export/mesh_file.h"
 #include "export/surface_mesh.h"
 #include "export/usd_file.h"
 #include "export/vdb_file.h"
 #include "gcode/container/input_bytes.h"
-#include "gcode/reader.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
 #include "gcode/toolpath/toolpath_csv.h"
 #include "gcode/toolpath/warning_log.h"
-#include "motion/print_times.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/attributes.h"
@@ -128,9 +127,10 @@ private:
         gcode::ReadOptions read = o_.print.read;
         ProgressBar bar("reading", o_.common.quiet);
         read.progress = bar.callback();
-        planned_ = needsTimes(o_);
-        toolpath_ = planned_ ? motion::readTimedToolpath(file_.bytes(), file_.name(), read, times_)
-                             : gcode::readToolpath(file_.bytes(), file_.name(), read);
+        deposit::PrintRead print = deposit::readPrint(file_.bytes(), file_.name(), read, needsTimes(o_));
+        toolpath_ = std::move(print.toolpath);
+        times_ = std::move(print.times);
+        flow_ = print.flow;
         seconds_.parse = watch_.lap();
     }
 
@@ -140,7 +140,8 @@ private:
                                    file_.name(), toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer,
                                    toolpath_.layer_count, toolpath_.beads.size(), toolpath_.arcs.size(),
                                    toolpath_.filament_mm * 1e-3, gcode::beadVolume(toolpath_) * 1e-3));
-        if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(times_, toolpath_.stated));
+        if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, toolpath_.stated));
+        if (o_.summary && flow_) say(o_.common, flowLine(*flow_));
         if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     }
 
@@ -301,6 +302,8 @@ private:
         }
         if (!settles())
             skip("settling", "beads are capsules (--beads settled)", "pairs of neighbouring beads in each plan field");
+        if (!flow_)
+            skip("flow", "beads have their commanded widths (--flow-lag)", "a plan of the motion, and more beads");
         if (!o_.interior_distance)
             skip("distances inside the solid", "the surface needs only their sign",
                  "a fast-sweeping pass over the grid");
@@ -330,9 +333,10 @@ private:
                   {"slicer", toolpath_.slicer},
                   {"format", toolpath_.format}}},
                 {"toolpath", toolpath_report},
-                {"time", planned_ ? describeTimes(times_, toolpath_.stated) : Json(nullptr)},
+                {"time", times_ ? describeTimes(*times_, toolpath_.stated) : Json(nullptr)},
                 {"grid", grid_},
                 {"deposit", deposit_},
+                {"flow", flow_ ? describeFlow(*flow_) : Json(nullptr)},
                 {"files", files_},
                 {"skipped", left_out},
                 {"seconds",
@@ -354,8 +358,8 @@ private:
     Stopwatch total_, watch_;
     Seconds seconds_;
     const gcode::InputBytes file_;
-    motion::PrintTimes times_;
-    bool planned_ = false;
+    std::optional<motion::PrintTimes> times_;
+    std::optional<deposit::FlowReport> flow_;
     gcode::Toolpath toolpath_;
     std::vector<std::uint32_t> selection_;
     std::size_t selected_beads_ = 0;

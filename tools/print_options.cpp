@@ -2,6 +2,9 @@
 
 #include "choices.h"
 
+#include "deposit/printer.h"
+#include "gcode/machine/machine_limits.h"
+
 #include <fmt/format.h>
 
 namespace stratum::tools {
@@ -65,6 +68,14 @@ void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
 
 void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* plastic = kPlastic;
+    // First: the options after it override what the preset says.
+    completes(app.add_option_function<std::string>(
+                  "--printer", [&options](const std::string& preset) { deposit::usePrinter(preset, options.read); },
+                  "What the printer makes of the program: ideal: beads as commanded (default); typical: a model of a "
+                  "tuned printer, all effects below; or a JSON file. Other options override it"),
+              Completion::preset, {"ideal", "typical"})
+        ->type_name("PRESET|FILE")
+        ->group(plastic);
     const auto beads = [](gcode::DepositModel::Beads value) { return static_cast<int>(value); };
     app.add_option(
            "--beads", options.read.deposit.beads,
@@ -76,11 +87,28 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->group(plastic);
     completes(
         app.add_option_function<std::string>(
-            "--section", [&options](const std::string& text) { voxelize::parseSection(text, options.read.deposit); },
+            "--section", [&options](const std::string& text) { deposit::parseSection(text, options.read.deposit); },
             "Corner radius of a bead's section, in mm or as a percentage of half its height (default stadium, "
             "100%)"),
         Completion::word, {"stadium"})
         ->type_name("MM|PERCENT%")
+        ->group(plastic);
+    app.add_option("--flow-lag", options.read.deposit.flow_lag,
+                   "Simulates the flow, which follows the extruder with this lag: widths along beads, primes and what "
+                   "flows at rest; 0 alone lays primes where they are")
+        ->check(CLI::Range(0.0, deposit::kLongestLag))
+        ->type_name("SECONDS")
+        ->group(plastic);
+    app.add_option(
+           "--pressure-advance", options.read.deposit.pressure_advance,
+           "For --flow-lag: the firmware's compensation, instead of the file's (M900, M572, SET_PRESSURE_ADVANCE)")
+        ->check(CLI::Range(0.0, gcode::kLongestAdvance))
+        ->type_name("SECONDS")
+        ->group(plastic);
+    app.add_option("--sag", options.read.deposit.sag,
+                   "How far a bead over nothing hangs down, as a fraction of the span (default 0)")
+        ->check(CLI::Range(0.0, deposit::kLargestSag))
+        ->type_name("FRACTION")
         ->group(plastic);
 }
 

@@ -102,4 +102,24 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"warnings", warnings}};
 }
 
+nlohmann::ordered_json describeFlow(const deposit::FlowReport& flow) {
+    return {{"lag_s", flow.lag},
+            {"longest_advance_s", flow.longest_advance},
+            {"fed_mm3", flow.fed},
+            {"laid_mm3", flow.laid},
+            {"in_discs_mm3", flow.in_discs},
+            {"purged_mm3", flow.purged},
+            {"in_nozzle_mm3", flow.in_nozzle},
+            {"beads_of_file", flow.beads},
+            {"parts", flow.parts},
+            {"discs", flow.discs}};
+}
+
+std::string flowLine(const deposit::FlowReport& flow) {
+    return fmt::format(
+        "flow with a lag of {:g} s: {:.2f} mm^3 fed, {:.2f} laid ({:.2f} at {} rests, {:.2f} purged elsewhere), {:.2f} "
+        "left in the nozzle; {} beads became {} parts\n",
+        flow.lag, flow.fed, flow.laid, flow.in_discs, flow.discs, flow.purged, flow.in_nozzle, flow.beads, flow.parts);
+}
+
 }  // namespace stratum::tools

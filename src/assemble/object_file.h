@@ -1,7 +1,7 @@
 // The objects of a scene file: what stands where, and of what it is made.
 #pragma once
 
-#include "assemble/json_section.h"
+#include "base/json_section.h"
 #include "shade/scene/material.h"
 #include "trace/scene_intersector.h"
 #include "trace/sdf.h"

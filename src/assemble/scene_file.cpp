@@ -1,8 +1,8 @@
 #include "assemble/scene_file.h"
 
-#include "assemble/json_section.h"
 #include "assemble/object_file.h"
 #include "base/error.h"
+#include "base/json_section.h"
 #include "base/mapped_file.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/camera/camera_pose.h"

@@ -13,6 +13,7 @@ namespace {
 constexpr double kThinnest = 0.05;  // mm, diameter of a thread
 // The width may grow by this share of the length: beyond 45 degrees to each side one end would hide the other.
 constexpr double kSteepest = 1.0;
+constexpr double kMostShortened = 0.9;  // of a part's length
 
 // Half the width of a rectangle of the same area and height as a stadium, less half the stadium's width, mm.
 double roundedOff(double height) { return 0.5 * height * (1 - std::numbers::pi / 4); }
@@ -24,6 +25,14 @@ double filamentScale(const FlowRecord& record, const gcode::Toolpath& toolpath) 
                          (record.filament_area > 0 ? record.filament_area : 1);
     const double needed = record.fed_to_beads > 0 ? toolpath.extruded_mm3 / record.fed_to_beads : 1;
     return needed > kAnother && std::abs(needed - scale) < 0.1 * scale ? scale : 1;
+}
+
+// mm^3 that a path's end adds, for it is half a disc: the half of a stadium turned about its middle, or half a ball.
+double endVolume(double width, double height) {
+    constexpr double kPi = std::numbers::pi;
+    const double radius = 0.5 * std::min(width, height);
+    const double flat = 0.5 * std::max(width - height, 0.0);
+    return 0.5 * kPi * (flat * flat * 2 * radius + kPi * radius * radius * flat + 4.0 / 3 * radius * radius * radius);
 }
 
 class FlowPieces {
@@ -75,15 +84,17 @@ private:
             return;
         }
         carried_ = 0;
-        double widening = 0;
-        if (width > height && bead.arc < 0 && bead.z0 == bead.z1) {
-            const double most = std::min(2 * (width - height), kSteepest * length);
-            widening = std::clamp(part.growth * scale_ / height, -most, most);
-        }
         BeadPiece piece;
         piece.bead = part.bead;
         piece.from = part.from;
         piece.to = part.to;
+        shortenEnds(part, volume, endVolume(width, height), piece);
+        double widening = 0;
+        if (width > height && bead.arc < 0 && bead.z0 == bead.z1) {
+            const double most =
+                std::min(2 * (width - height), kSteepest * length * (piece.to - piece.from) / (part.to - part.from));
+            widening = std::clamp(part.growth * scale_ / height, -most, most);
+        }
         piece.width = static_cast<float>(width);
         piece.flow.volume = static_cast<float>(volume);
         piece.flow.rate = part.seconds > 0 ? static_cast<float>(volume / part.seconds) : 0;
@@ -93,6 +104,29 @@ private:
         pieces_.push_back(piece);
         report_.in_parts += volume;
         ++report_.parts;
+    }
+
+    // An open path ends where the volume is that of its flow: the half discs at its ends are taken from its length,
+    // unless a spot fills them.
+    void shortenEnds(const FlowPart& part, double volume, double end_volume, BeadPiece& piece) {
+        const double share = (part.to - part.from) / volume;
+        const auto missing = [&](double spot) { return share * std::max(end_volume - spot, 0.0); };
+        double start = part.begins ? missing(start_spot_) : 0;
+        double end = 0;
+        if (part.ends) {
+            const bool spot = next_spot_ < record_.spots.size() && record_.spots[next_spot_].bead == part.bead &&
+                              record_.spots[next_spot_].at_end;
+            end = missing(spot ? record_.spots[next_spot_].volume * scale_ : 0);
+        }
+        const double most = kMostShortened * (part.to - part.from);
+        if (start + end > most) {
+            const double fits = most / (start + end);
+            start *= fits;
+            end *= fits;
+        }
+        piece.from += start;
+        piece.to -= end;
+        start_spot_ = 0;
     }
 
     void addDisc(const FlowSpot& spot) {
@@ -105,10 +139,13 @@ private:
         const double rounded = roundedOff(height);
         // The bead's commanded width: what really lies there changes fast.
         const double half = std::max(0.5 * static_cast<double>(toolpath_.beads[spot.bead].width) - rounded, 0.0);
+        const double end = endVolume(static_cast<double>(toolpath_.beads[spot.bead].width), height);
+        if (!spot.inside && !spot.at_end) start_spot_ = volume;
+        const double beyond = spot.inside ? volume : volume - end;
         BeadPiece piece;
         piece.bead = spot.bead;
         piece.from = piece.to = spot.at_end ? 1 : 0;
-        piece.width = static_cast<float>(2 * (discRadius(half, volume / height, spot.inside) + rounded));
+        piece.width = static_cast<float>(2 * (discRadius(half, std::max(beyond, 0.0) / height, spot.inside) + rounded));
         piece.flow.volume = static_cast<float>(volume);
         piece.timing.start = spot.time;
         pieces_.push_back(piece);
@@ -122,7 +159,8 @@ private:
     std::vector<BeadPiece> pieces_;
     FlowReport report_;
     std::size_t next_spot_ = 0;
-    double carried_ = 0;  // mm^3, of threads too thin
+    double carried_ = 0;     // mm^3, of threads too thin
+    double start_spot_ = 0;  // mm^3, at the begin of the next part
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ constexpr double kMostInDisc = 10;
 /// place inside a path, beside it.
 double discRadius(double half_width, double area, bool inside);
 
-/// Replaces the beads of the file by those that flow out. Sets Toolpath::flow. Widths are finite and positive; a round
+/// Replaces the beads of the file by those that flow out. Open paths end a little earlier than in the file, so that the
+/// half discs at their ends add nothing to what was fed. Sets Toolpath::flow. Widths are finite and positive; a round
 /// thread thinner than 0.05 mm is laid with what follows it.
 FlowReport applyFlow(const FlowRecord& record, gcode::Toolpath& toolpath);
 

@@ -6,7 +6,7 @@
 namespace stratum::deposit {
 namespace {
 
-// A spot of at most this share of what lies beside it in kLeastPart is no disc of its own.
+// A spot of at most this share of what lies in the cell beside it is no disc of its own.
 constexpr double kSmallSpot = 0.25;
 
 // Neighbouring intervals over which the flow is averaged.
@@ -15,14 +15,14 @@ struct Cell {
     double length, volume;
 };
 
-std::vector<Cell> averageOver(std::span<const FlowInterval> path) {
+std::vector<Cell> averageOver(std::span<const FlowInterval> path, double least) {
     std::vector<Cell> cells;
     Cell cell{0, 0, 0, 0};
     for (std::size_t n = 0; n < path.size(); ++n) {
         cell.last = n + 1;
         cell.length += path[n].s1 - path[n].s0;
         cell.volume += path[n].volume;
-        if (cell.length < kLeastPart) continue;
+        if (cell.length < least) continue;
         cells.push_back(cell);
         cell = {n + 1, n + 1, 0, 0};
     }
@@ -115,16 +115,17 @@ void divideBead(std::span<const FlowInterval> parts, FlowRecord& record) {
         }
         const FlowInterval& first = parts.front();
         const FlowInterval& last = parts[count - 1];
-        record.parts.push_back(
-            {first.bead, first.s0 / length, last.s1 / length, fit.volume, fit.growth, first.t0, last.t1 - first.t0});
+        record.parts.push_back({first.bead, first.s0 / length, last.s1 / length, fit.volume, fit.growth, first.t0,
+                                last.t1 - first.t0, false, false});
         parts = parts.subspan(count);
     }
 }
 
 }  // namespace
 
-void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> spots, bool closed, FlowRecord& record) {
-    std::vector<Cell> cells = averageOver(path);
+void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> spots, bool closed, double least,
+                FlowRecord& record) {
+    std::vector<Cell> cells = averageOver(path, least);
     if (!(cells.front().length > 0)) {
         double volume = cells.front().volume;
         for (const PathSpot& spot : spots) volume += spot.volume;
@@ -133,12 +134,16 @@ void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> sp
     }
     placeSpots(path, spots, closed, cells, record.spots);
     const std::vector<FlowInterval> all = averaged(path, cells);
+    const std::size_t first_part = record.parts.size();
     for (std::size_t first = 0; first < all.size();) {
         std::size_t last = first + 1;
         while (last < all.size() && all[last].bead == all[first].bead) ++last;
         divideBead(std::span(all).subspan(first, last - first), record);
         first = last;
     }
+    if (closed || record.parts.size() == first_part) return;
+    record.parts[first_part].begins = true;
+    record.parts.back().ends = true;
 }
 
 }  // namespace stratum::deposit

@@ -9,9 +9,6 @@
 
 namespace stratum::deposit {
 
-/// Flow is averaged over at least this length of the path, mm: half the width of a usual nozzle, over which the plastic
-/// leaves it. Without it a stop of no length would have an infinite section.
-constexpr double kLeastPart = 0.2;
 /// A part's section is within this of the averaged one, as a fraction of the commanded section.
 constexpr double kSectionTolerance = 0.02;
 
@@ -33,7 +30,10 @@ struct PathSpot {
 };
 
 /// Appends the parts and spots of a path, which is not empty. Spots of little volume become part of the path beside
-/// them. Spots are ascending. A closed path ends where it begins.
-void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> spots, bool closed, FlowRecord& record);
+/// them. Spots are ascending. A closed path ends where it begins. The flow is averaged over at least `least` mm of the
+/// path, half the width of the nozzle, over which the plastic leaves it: without that a stop of no length would have an
+/// infinite section.
+void dividePath(std::span<const FlowInterval> path, std::span<const PathSpot> spots, bool closed, double least,
+                FlowRecord& record);
 
 }  // namespace stratum::deposit

@@ -14,6 +14,8 @@ struct FlowPart {
     double growth = 0;        ///< mm^2, the section at the end less that at the start
     double start = 0;         ///< s since the program's begin
     double seconds = 0;       ///< that it takes
+    bool begins = false;      ///< an open path
+    bool ends = false;        ///< likewise
 };
 
 /// What flows out while the nozzle rests at the end of a bead: primes, pressure that falls.

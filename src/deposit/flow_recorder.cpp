@@ -23,11 +23,10 @@ double timeAt(double s, double v0, double v1, double seconds) {
 
 // Places that divide a phase of this length, finer towards both ends, where the flow changes most.
 template <typename Visit>
-void forEachPlace(double length, Visit visit) {
-    constexpr double kFirst = 0.5 * kLeastPart;
-    double step = kFirst;
+void forEachPlace(double length, double first, Visit visit) {
+    double step = first;
     for (; 2 * step < length; step *= 2) visit(step);
-    for (step /= 2; step >= kFirst; step /= 2)
+    for (step /= 2; step >= first; step /= 2)
         if (length - step > 0.5 * length) visit(length - step);
 }
 
@@ -117,7 +116,8 @@ void FlowRecorder::layPhase(const Phase& phase, const motion::Segment& segment) 
     };
     const double flow = lag_ > 0 ? (pressed(phase, 0) - record_.laid) / lag_ : phase.a;
     const bool constant = !(lag_ > 0) || (phase.b == 0 && std::abs(flow - phase.a) <= kSteady * phase.a);
-    if (!constant) forEachPlace(length, [&](double s) { lay(s, timeAt(s, phase.v0, phase.v1, phase.seconds)); });
+    if (!constant)
+        forEachPlace(length, 0.5 * least_, [&](double s) { lay(s, timeAt(s, phase.v0, phase.v1, phase.seconds)); });
     lay(length, phase.seconds);
     along_ += length;
 }
@@ -173,7 +173,7 @@ void FlowRecorder::endPath() {
     if (!path_.empty()) {
         // Slicers end a loop a fraction of the nozzle's width before its begin.
         const bool closed = path_.front().bead != path_.back().bead && std::hypot(path_x_, path_y_) < kClosed;
-        dividePath(path_, spots_, closed, record_);
+        dividePath(path_, spots_, closed, least_, record_);
     } else {
         for (const PathSpot& spot : spots_) record_.purged += spot.volume;
     }

@@ -27,8 +27,9 @@ namespace stratum::deposit {
 /// begins; what flows out before another travel is purged.
 class FlowRecorder : public motion::PlanSink {
 public:
-    /// Seconds, >= 0. `advance` overrides that of the file.
-    FlowRecorder(double lag, std::optional<double> advance) : lag_(lag), advance_(advance) {}
+    /// Seconds, >= 0. `advance` overrides that of the file. `nozzle`: mm, > 0.
+    FlowRecorder(double lag, std::optional<double> advance, double nozzle)
+        : lag_(lag), advance_(advance), least_(0.5 * nozzle) {}
 
     void piece(const motion::PlannedPiece& piece) override;
     void wait(double start, double seconds) override;
@@ -55,6 +56,7 @@ private:
 
     const double lag_;
     const std::optional<double> advance_;
+    const double least_;              // mm of the path over which the flow is averaged
     double advance_now_ = 0;          // s
     double fed_ = 0;                  // mm^3, E at the begin of a phase
     double along_ = 0;                // mm, on the last bead of path_

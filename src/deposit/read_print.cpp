@@ -9,7 +9,7 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     PrintRead print;
     std::optional<FlowRecorder> flow;
     const gcode::DepositModel& deposit = options.deposit;
-    if (deposit.flow_lag) flow.emplace(*deposit.flow_lag, deposit.pressure_advance);
+    if (deposit.flow_lag) flow.emplace(*deposit.flow_lag, deposit.pressure_advance, deposit.nozzle_diameter);
     if (timed) {
         print.toolpath =
             motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr);

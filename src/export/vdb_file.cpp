@@ -27,6 +27,8 @@ std::string beadModel(const gcode::DepositModel& deposit) {
         text += fmt::format("; r = {:g} mm, at most h/2", *deposit.corner_mm);
     else if (!deposit.stadium())
         text += fmt::format("; r = {:g} h/2", deposit.corner_fraction);
+    if (deposit.flow_lag) text += fmt::format("; widths by flow, lag {:g} s", *deposit.flow_lag);
+    if (deposit.sag > 0) text += fmt::format("; beads over nothing hang by {:g} of their span", deposit.sag);
     if (deposit.settles()) text += "; settled: overlaps fill grooves";
     return text;
 }

@@ -106,7 +106,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     Machine machine(settings, options, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
     if (options.motion != nullptr) {
-        motion.emplace(*options.motion, readMachineSettings(text, options.corner_rule), warnings);
+        motion.emplace(*options.motion, readMachineSettings(text, options.corner_rule, options.limits), warnings);
         machine.recordMotion(&*motion);
     }
     Lexer lexer(text);

@@ -10,11 +10,9 @@ namespace stratum::gcode {
 namespace {
 
 void count(const Toolpath& toolpath, const Bead& bead, FeatureTotal& total) {
-    const double length = beadLength(toolpath, bead);
     ++total.beads;
-    total.length += length;
-    total.volume +=
-        length * sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
+    total.length += beadLength(toolpath, bead);
+    total.volume += laidVolume(toolpath, static_cast<std::uint32_t>(&bead - toolpath.beads.data()));
 }
 
 void compare(double measured, double footer, fmt::memory_buffer& out) {

@@ -19,8 +19,11 @@ inline gcode::Toolpath levelPart(const gcode::Toolpath& toolpath, const std::vec
     part.arcs = toolpath.arcs;
     part.deposit = toolpath.deposit;
     part.layer_count = toolpath.layer_count;
-    for (const std::uint32_t index : selection)
-        if (toolpath.beads[index].z0 == toolpath.beads[index].z1) part.beads.push_back(toolpath.beads[index]);
+    for (const std::uint32_t index : selection) {
+        if (toolpath.beads[index].z0 != toolpath.beads[index].z1) continue;
+        part.beads.push_back(toolpath.beads[index]);
+        if (!toolpath.flow.empty()) part.flow.push_back(toolpath.flow[index]);
+    }
     return part;
 }
 

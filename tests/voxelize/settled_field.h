@@ -212,12 +212,19 @@ private:
             px = arc.center_x + radius * std::cos(at);
             py = arc.center_y + radius * std::sin(at);
         }
-        const double rho = std::hypot(x - px, y - py);
         const double height = 2 * (layer.radius + layer.half_side);
         const double width = static_cast<double>(bead.width);
         // The flat that keeps the area of the stadium.
         const double area = height * (width - height * (1 - std::numbers::pi / 4));
         const double flat = (area + (4 - std::numbers::pi) * layer.radius * layer.radius) / height - 2 * layer.radius;
+        if (const double more = gcode::widening(toolpath_, bead); more != 0) {
+            const TaperOffset taper = taperOffset(bead, flat / 2 - more / 4, flat / 2 + more / 4, x, y);
+            px = std::lerp(double{bead.x0}, double{bead.x1}, taper.at);
+            py = std::lerp(double{bead.y0}, double{bead.y1}, taper.at);
+            const double rho = std::hypot(x - px, y - py);
+            return {taper.d, rho > 0 ? (x - px) / rho : 0, rho > 0 ? (y - py) / rho : 0};
+        }
+        const double rho = std::hypot(x - px, y - py);
         if (rho == 0) return {-flat / 2, 0, 0};
         return {rho - flat / 2, (x - px) / rho, (y - py) / rho};
     }

@@ -1,7 +1,7 @@
 // Settled beads on real prints: values against brute force, slopes, and volumes.
 #include "base/mapped_file.h"
 #include "corpus.h"
-#include "gcode/reader.h"
+#include "deposit/read_print.h"
 #include "print_points.h"
 #include "settled_field.h"
 #include "voxelize/beads/selection.h"
@@ -21,6 +21,7 @@ struct SettledFile {
     const char* path;  // below data/gcode or the corpus's gcode
     bool corpus;
     double corner_fraction;
+    double flow_lag = -1;  // s; below 0: the flow isn't simulated
 };
 
 class SettledPrint : public testing::TestWithParam<SettledFile> {
@@ -32,20 +33,24 @@ protected:
         if (!std::filesystem::exists(path)) return false;
         const MappedFile file(path);
         gcode::ReadOptions options;
-        options.deposit = {gcode::DepositModel::Beads::settled, print.corner_fraction, std::nullopt};
-        toolpath = gcode::readToolpath(file.bytes(), print.path, options);
+        options.deposit.beads = gcode::DepositModel::Beads::settled;
+        options.deposit.corner_fraction = print.corner_fraction;
+        if (print.flow_lag >= 0) options.deposit.flow_lag = print.flow_lag;
+        toolpath = deposit::readPrint(file.bytes(), print.path, options, false).toolpath;
         return true;
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Prints, SettledPrint,
-                         testing::Values(SettledFile{"hull", "hull.gcode", false, 1},
-                                         SettledFile{"gear", "gear.gcode", false, 0.5},
-                                         SettledFile{"bridges", "bridges.gcode", false, 1},
-                                         SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
-                                         SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
-                                         SettledFile{"cura", "preprocess_cancellation-cura.gcode", true, 0.5}),
-                         [](const auto& print) { return std::string(print.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Prints, SettledPrint,
+    testing::Values(SettledFile{"hull", "hull.gcode", false, 1}, SettledFile{"gear", "gear.gcode", false, 0.5},
+                    SettledFile{"bridges", "bridges.gcode", false, 1},
+                    SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
+                    SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
+                    SettledFile{"hull_lagging", "hull.gcode", false, 1, 0.03},
+                    SettledFile{"arcs_lagging", "preprocess_cancellation-superslicer.gcode", true, 1, 0.1},
+                    SettledFile{"cura", "preprocess_cancellation-cura.gcode", true, 0.5}),
+    [](const auto& print) { return std::string(print.param.name); });
 
 gcode::Toolpath levelPart(const gcode::Toolpath& toolpath, const char* layers) {
     Selection selection;

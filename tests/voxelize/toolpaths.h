@@ -17,6 +17,31 @@ using study::addArc;
 using study::addBead;
 using study::allBeads;
 
+/// The plan distance to a straight bead whose half flat changes linearly: the least over its discs, by search. It is
+/// convex along the path.
+struct TaperOffset {
+    double d, at;  ///< mm; fraction of the path of the nearest disc
+};
+inline TaperOffset taperOffset(const gcode::Bead& bead, double start, double end, double x, double y) {
+    const auto offset = [&](double t) {
+        return std::hypot(x - std::lerp(double{bead.x0}, double{bead.x1}, t),
+                          y - std::lerp(double{bead.y0}, double{bead.y1}, t)) -
+               std::lerp(start, end, t);
+    };
+    double low = 0;
+    double high = 1;
+    for (int n = 0; n < 60; ++n) {
+        const double a = low + (high - low) / 3;
+        const double b = high - (high - low) / 3;
+        (offset(a) > offset(b) ? low : high) = offset(a) > offset(b) ? a : b;
+    }
+    // Ends to the bit: the search comes only near them.
+    TaperOffset best{offset(0.5 * (low + high)), 0.5 * (low + high)};
+    for (const double t : {0.0, 1.0})
+        if (offset(t) < best.d) best = {offset(t), t};
+    return best;
+}
+
 /// The field of one level bead, written from the definition: nearest point of the path in the plane, then the formula.
 /// Straight paths in closed form; arcs by turning to the chord-free polar form. Sloped beads are not covered.
 inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y,
@@ -50,7 +75,10 @@ inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Be
     const double width = static_cast<double>(bead.width);
     const double radius = std::min(width, height) / 2;
     const double c = std::max(width - height, 0.0) / 2;
-    return std::hypot(std::max(rho - c, 0.0), z - (bead.z0 - height / 2)) - radius;
+    double d = rho - c;
+    if (const double more = gcode::widening(toolpath, bead); more != 0)
+        d = taperOffset(bead, c - more / 4, c + more / 4, x, y).d;
+    return std::hypot(std::max(d, 0.0), z - (bead.z0 - height / 2)) - radius;
 }
 
 /// Minimum over all level beads of a toolpath. Beads are looked at in short blocks whose boxes let most be passed over:

@@ -4,10 +4,9 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
+#include "deposit/read_print.h"
 #include "gcode/container/input_bytes.h"
-#include "gcode/reader.h"
 #include "gcode/toolpath/warning_log.h"
-#include "motion/print_times.h"
 #include "ondemand/detail_levels.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/selection.h"
@@ -114,14 +113,12 @@ Json reportOf(const std::vector<PrintLevel>& levels, double per_distance) {
 }
 
 // A file that is no .vdb is read as G-code; one named .vdb gets a message about both.
-gcode::Toolpath readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
+deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
     if (file.bytes().starts_with(kVdbMagic))
         throw InputError(
             fmt::format("{}: holds OpenVDB grids, which can't be read from a stream; give a file", file.name()));
     try {
-        motion::PrintTimes times;
-        return timed ? motion::readTimedToolpath(file.bytes(), file.name(), options, times)
-                     : gcode::readToolpath(file.bytes(), file.name(), options);
+        return deposit::readPrint(file.bytes(), file.name(), options, timed);
     } catch (const InputError& error) {
         if (!file.name().ends_with(".vdb")) throw;
         throw InputError(
@@ -162,7 +159,7 @@ private:
             const Step step(events_, "reading", true);
             if (events_.fraction) read.progress = events_.fraction;
             const bool timed = request_.timed || request_.series_by_time || voxelize::needsTiming(request_.printed);
-            toolpath_ = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed));
+            toolpath_ = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed).toolpath);
         }
         for (const gcode::Warning& warning : toolpath_->warnings)
             warnings_.add(Warning::Kind::program, gcode::describe(warning, name_));

@@ -25,6 +25,10 @@ void take(double& target, std::string_view text, double least, double most) {
 
 class LimitsReader {
 public:
+    explicit LimitsReader(const std::optional<MachineLimits>& defaults) : given_(defaults.has_value()) {
+        if (defaults) settings_.limits = *defaults;
+    }
+
     void comment(std::string_view text) {
         text = trimQuoted(text);
         const auto setting = keyAndValue(text);
@@ -36,7 +40,7 @@ public:
 
     MachineSettings finish(CornerRule rule) {
         MachineLimits& limits = settings_.limits;
-        if (cura_ && !any_limit_) {
+        if (cura_ && !any_limit_ && !given_) {
             // fdmprinter.def.json, for a machine that says nothing else.
             limits.speed = {500, 500, 500, 500};
             limits.acceleration = {9000, 9000, 100, 10000};
@@ -55,7 +59,7 @@ public:
 
 private:
     CornerRule suggestedRule() const {
-        if (cura_ && !any_limit_) return CornerRule::plan_jerk;
+        if (cura_ && !any_limit_ && !given_) return CornerRule::plan_jerk;
         if (deviation_) return CornerRule::junction_deviation;
         if (flavor_ == "klipper" && !settings_.states_jerk) return CornerRule::corner_velocity;
         return settings_.states_jerk ? CornerRule::slicer_jerk : CornerRule::jerk;
@@ -126,6 +130,7 @@ private:
     bool deviation_ = false;
     bool any_limit_ = false;
     bool cura_ = false;
+    const bool given_;
 };
 
 void readComments(std::string_view part, LimitsReader& reader) {
@@ -138,8 +143,9 @@ void readComments(std::string_view part, LimitsReader& reader) {
 
 }  // namespace
 
-MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule) {
-    LimitsReader reader;
+MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
+                                    const std::optional<MachineLimits>& defaults) {
+    LimitsReader reader(defaults);
     readComments(bytes.substr(0, kReach), reader);
     if (bytes.size() > kReach) {
         std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));

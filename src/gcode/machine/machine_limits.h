@@ -31,7 +31,9 @@ struct MachineSettings {
     double change = 0;                 ///< s, of every change of tool
 };
 
-/// Reads the comments at both ends of a program. A `rule` other than automatic is used unchanged.
-MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule);
+/// Reads the comments at both ends of a program. A `rule` other than automatic is used unchanged. `defaults`, if given,
+/// hold where the file states nothing.
+MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
+                                    const std::optional<MachineLimits>& defaults = {});
 
 }  // namespace stratum::gcode

@@ -26,6 +26,7 @@ struct ReadOptions {
     std::optional<int> plate;                ///< number of a program in a .gcode.3mf; needed only if it has several
     MotionSink* motion = nullptr;            ///< receives all motion; nullptr: motion is not recorded
     CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
+    std::optional<MachineLimits> limits;             ///< for `motion`, of a file that states none
     DepositModel deposit;                            ///< becomes Toolpath::deposit
     /// Called from time to time with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;

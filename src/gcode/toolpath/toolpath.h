@@ -166,7 +166,7 @@ double laidVolume(const Toolpath& toolpath, std::uint32_t index);
 /// The sum of laidVolume() over all beads, in mm^3.
 double beadVolume(const Toolpath& toolpath);
 
-/// Width at the end of bead `index` less width at its start, mm.
+/// Width at the end of a bead less width at its start, mm. `bead` is an element of Toolpath::beads.
 inline double widening(const Toolpath& toolpath, const Bead& bead) {
     return toolpath.flow.empty()
                ? 0.0

@@ -44,8 +44,7 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
             fmt::format_to(std::back_inserter(text), ",,,");
         }
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", bead.width, run.height, length,
-                       length * sectionArea(static_cast<double>(bead.width), static_cast<double>(run.height)),
-                       run.speed);
+                       laidVolume(toolpath, static_cast<std::uint32_t>(&bead - toolpath.beads.data())), run.speed);
         if (text.size() >= kChunk) flush();
     }
     flush();

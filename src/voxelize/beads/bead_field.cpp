@@ -101,10 +101,18 @@ Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     return section;
 }
 
+EndFlats endFlats(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double mean) {
+    // The flat changes as the width does; half of it to each side of the mean.
+    const double half_change = 0.25 * gcode::widening(toolpath, bead);
+    if (half_change == 0 || bead.arc >= 0 || bead.z0 != bead.z1) return {mean, mean};
+    return {std::max(mean - half_change, 0.0), std::max(mean + half_change, 0.0)};
+}
+
 BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
     : path_(toolpath, bead), x0_(bead.x0), y0_(bead.y0), dx_(bead.x1 - bead.x0), dy_(bead.y1 - bead.y0) {
     const Section section = sectionOf(toolpath, bead);
     half_flat_ = section.half_flat;
+    flats_ = endFlats(toolpath, bead, half_flat_);
     radius_ = section.radius;
     half_side_ = section.half_side;
     zc0_ = bead.z0 - section.drop;
@@ -118,10 +126,23 @@ BeadField::BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
             const double area = gcode::sectionArea(bead.width, toolpath.runOf(bead).height);
             radius_ = std::sqrt(area / std::numbers::pi);
             half_flat_ = half_side_ = 0;
+            flats_ = {};
         }
         if (half_flat_ > 0) reach_ = kSlopedReach * 2 * (radius_ + half_side_);
     }
     rod_ = half_flat_ == 0 && bead.arc < 0;
+}
+
+double BeadField::planOffset(double x, double y) const {
+    if (flats_.start == flats_.end) return path_.distance(x, y) - half_flat_;
+    const double length = path_.length();
+    const double ux = dx_ / length;
+    const double uy = dy_ / length;
+    const double along = (x - x0_) * ux + (y - y0_) * uy;
+    const double across = std::abs((y - y0_) * ux - (x - x0_) * uy);
+    const double slope = (flats_.end - flats_.start) / length;
+    const double s = std::clamp(along + across * slope / std::sqrt(1 - slope * slope), 0.0, length);
+    return std::hypot(along - s, across) - (flats_.start + slope * s);
 }
 
 double BeadField::distance(double x, double y, double z) const {
@@ -137,7 +158,7 @@ double BeadField::distance(double x, double y, double z) const {
         const double qz = pz - t * dz;
         return std::sqrt(qx * qx + qy * qy + qz * qz) - radius_;
     }
-    const double offset = path_.distance(x, y) - half_flat_;
+    const double offset = planOffset(x, y);
     const double side = std::max(offset, 0.0);
     double up = 0;
     if (level_) {
@@ -155,7 +176,7 @@ Bounds BeadField::bounds() const {
     double plan_min[2];
     double plan_max[2];
     path_.bounds(plan_min, plan_max);
-    const double side = half_flat_ + radius_;
+    const double side = std::max(flats_.start, flats_.end) + radius_;
     const double half_height = radius_ + half_side_;
     const double above = rod_ ? radius_ : half_height / cosine_;
     const double below = rod_ ? radius_ : (half_height + reach_) / cosine_;

@@ -86,6 +86,16 @@ double flatInset(double height, double radius);
 
 Section sectionOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
+/// Half the flat (mm) at the two ends of a bead. They differ where a level straight bead widens (gcode::BeadFlow): then
+/// the bead is swept by a section whose flat changes linearly, and with s the position along the path
+///     d = min over s of |p - path(s)| - half_flat(s)
+/// which is closed form, since the nearest s lies a constant angle off the perpendicular.
+struct EndFlats {
+    double start = 0, end = 0;
+};
+/// `bead` is an element of Toolpath::beads.
+EndFlats endFlats(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double mean);
+
 /// How far a sloped bead is extended below its underside, as a fraction of its height, to weld it to the layer below.
 constexpr double kSlopedReach = 0.02;
 
@@ -96,6 +106,7 @@ constexpr double kSlopedReach = 0.02;
 /// become round rods of the same section area. Round straight beads are exact 3-D capsules at any slope.
 class BeadField {
 public:
+    /// `bead` is an element of Toolpath::beads.
     BeadField(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
     /// Signed distance (mm, negative inside) at a point of print space (mm).
@@ -105,6 +116,9 @@ public:
     Bounds bounds() const;
 
     const PlanPath& path() const { return path_; }
+    /// Distance in the plan to the flat, mm: negative over it.
+    double planOffset(double x, double y) const;
+    /// The mean, if the bead widens.
     double halfFlat() const { return half_flat_; }
     double radius() const { return radius_; }
     /// Half the height of the straight sides, mm; see Section.
@@ -120,6 +134,7 @@ public:
 private:
     PlanPath path_;
     double half_flat_, radius_, half_side_;
+    EndFlats flats_;
     double x0_, y0_, dx_, dy_;  // mm, center line in the plane
     double zc0_, zc1_;          // mm, center line at the start and the end
     double cosine_ = 1, reach_ = 0;

@@ -13,7 +13,7 @@ double estimateActiveVoxels(const gcode::Toolpath& toolpath, std::span<const std
         const gcode::Bead& bead = toolpath.beads[index];
         const double height = static_cast<double>(toolpath.runOf(bead).height);
         const double length = gcode::beadLength(toolpath, bead);
-        solid += length * gcode::sectionArea(static_cast<double>(bead.width), height);
+        solid += gcode::laidVolume(toolpath, index);
         // One side of a wall is exposed, the others touch neighbours.
         surface += length * height;
     }

@@ -53,7 +53,8 @@ public:
         const Section section = sectionOf(toolpath_, bead);
         const double radius = radiusOf(bead, section);
         const double more = fills_grooves_ ? std::max(radius - band_, 0.0) : 0;
-        return section.half_flat + radius + more + slack_;
+        const EndFlats flats = endFlats(toolpath_, bead, section.half_flat);
+        return std::max(flats.start, flats.end) + radius + more + slack_;
     }
 
     /// Columns whose centers lie in the box of the path, enlarged by `limit` on each side.

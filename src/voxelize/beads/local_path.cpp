@@ -37,6 +37,23 @@ LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double 
     return line;
 }
 
+LocalTaper localTaper(const gcode::Bead& bead, const EndFlats& flats, double x, double y, double half_extent,
+                      double scale) {
+    LocalTaper taper{};
+    taper.line = localLine(bead, std::max(flats.start, flats.end), x, y, half_extent, scale);
+    const double dx = bead.x1 - bead.x0;
+    const double dy = bead.y1 - bead.y0;
+    const double length = std::sqrt(dx * dx + dy * dy);
+    const double slope = (flats.end - flats.start) / length;
+    // From the section nearest to the column, so that no long way is multiplied by the slope in floats.
+    const double near = std::clamp(((x - bead.x0) * dx + (y - bead.y0) * dy) / length, 0.0, length);
+    taper.flat = static_cast<float>((flats.start + slope * near) * scale);
+    taper.flat_at = near == 0 ? taper.line.lo : near == length ? taper.line.hi : 0.0F;
+    taper.slope = static_cast<float>(slope);
+    taper.lean = static_cast<float>(slope / std::sqrt(1 - slope * slope));
+    return taper;
+}
+
 LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_flat, double x, double y,
                   double half_extent, double scale) {
     const double from_x = bead.x0 - arc.center_x;

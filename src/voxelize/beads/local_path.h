@@ -6,6 +6,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "voxelize/beads/bead_field.h"
 
 namespace stratum::voxelize {
 
@@ -16,6 +17,13 @@ struct LocalLine {
     float ux, uy, lo, hi;
     float half_flat;
     bool spans;  ///< the segment's ends lie beyond all samples of the column, so they can be ignored
+};
+
+/// A straight path whose half flat changes linearly: flat + slope (s - flat_at) at the position s. The nearest section
+/// of a point at the distance n from the line lies `lean` n farther along than the point.
+struct LocalTaper {
+    LocalLine line;  ///< half_flat: the larger end's
+    float flat, flat_at, slope, lean;
 };
 
 /// A circular path of one column. |v0 + q| - radius, with v0 the middle of the column from the center, is written so
@@ -40,6 +48,9 @@ bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 /// `x`, `y` (mm): the middle of the column's samples. `half_extent` (mm): its samples lie within that in x and y.
 /// `scale`: world units a mm. `half_flat` in mm.
 LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double y, double half_extent, double scale);
+/// `flats`: half the flat at the ends, mm. The path is longer than their difference.
+LocalTaper localTaper(const gcode::Bead& bead, const EndFlats& flats, double x, double y, double half_extent,
+                      double scale);
 /// For curved() beads only.
 LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_flat, double x, double y,
                   double half_extent, double scale);

@@ -47,8 +47,7 @@ std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
     const double target = share * gcode::beadVolume(toolpath) * (1 - 1e-9);
     double sum = 0;
     for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
-        const gcode::Bead& bead = toolpath.beads[i];
-        sum += gcode::beadVolume(toolpath, bead);
+        sum += gcode::laidVolume(toolpath, static_cast<std::uint32_t>(i));
         if (sum >= target) return i + 1;
     }
     return toolpath.beads.size();

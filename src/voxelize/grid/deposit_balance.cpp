@@ -79,9 +79,8 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     }
     for (std::uint32_t rank = 0; rank < stack.beads.size(); ++rank) {
         if (stack.beads[rank] >= end) continue;
-        const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
-        const gcode::Run& run = toolpath.runOf(bead);
-        const double volume = gcode::beadVolume(toolpath, bead);
+        const gcode::Run& run = toolpath.runOf(toolpath.beads[stack.beads[rank]]);
+        const double volume = gcode::laidVolume(toolpath, stack.beads[rank]);
         fed.add(run, volume);
         if (rank >= stack.first_direct) laid.add(run, volume);
     }

@@ -5,31 +5,9 @@
 #include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxel_choice.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
-#include <system_error>
-
 namespace stratum::voxelize {
-
-void parseSection(const std::string& text, gcode::DepositModel& deposit) {
-    deposit.corner_mm.reset();
-    deposit.corner_fraction = 1;
-    if (text == "stadium") return;
-    const bool percent = text.ends_with('%');
-    const char* const last = text.data() + text.size() - (percent ? 1 : 0);
-    double value = 0;
-    const auto [end, error] = fast_float::from_chars(text.data(), last, value);
-    constexpr double kLargest = 100;  // mm, or per cent
-    if (error != std::errc() || end != last || !(value >= 0 && value <= kLargest))
-        throw UsageError(fmt::format(
-            "--section {}: expected stadium, a corner radius in mm (0.05), or a percentage of half the height (50%)",
-            text));
-    if (percent)
-        deposit.corner_fraction = value / 100;
-    else
-        deposit.corner_mm = value;
-}
 
 double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
 

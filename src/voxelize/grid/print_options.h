@@ -27,10 +27,6 @@ struct PrintOptions {
     std::vector<std::string> objects;  ///< names or numbers, see chooseObject(); empty: all
 };
 
-/// Sets the corners of the section from "stadium", a radius in mm ("0.05"), or a percentage of half the height ("50%").
-/// Throws UsageError.
-void parseSection(const std::string& text, gcode::DepositModel& deposit);
-
 /// Millimetres in a world unit by its name in files and on command lines: mm, cm or m; 1 for unknown names.
 double millimetresIn(const std::string& unit);
 

@@ -102,11 +102,7 @@ double lostShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t>
 
 double depositedVolume(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
     double sum = 0;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        sum += gcode::beadLength(toolpath, bead) *
-               gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
-    }
+    for (const std::uint32_t index : selection) sum += gcode::laidVolume(toolpath, index);
     return sum;
 }
 

@@ -130,8 +130,10 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
 void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
     const Layer& layer = stack_.layers[source.layer];
     lines_.clear();
+    tapers_.clear();
     arcs_.clear();
     line_ids_.clear();
+    taper_ids_.clear();
     arc_ids_.clear();
     const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
     for (std::uint32_t e = source.first; e < source.last; ++e) {
@@ -142,7 +144,11 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
         if (stack_.beads[rank] >= end_) continue;
         const gcode::Bead& bead = toolpath_.beads[stack_.beads[rank]];
         const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.inset;
-        if (!curved(toolpath_, bead)) {
+        if (gcode::widening(toolpath_, bead) != 0) {
+            const EndFlats flats = endFlats(toolpath_, bead, half_flat);
+            tapers_.push_back(localTaper(bead, flats, middle_x_, middle_y_, half_extent, scale_));
+            if (with_ranks) taper_ids_.push_back(rank);
+        } else if (!curved(toolpath_, bead)) {
             lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent, scale_));
             if (with_ranks) line_ids_.push_back(rank);
         } else {
@@ -151,6 +157,13 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
             if (with_ranks) arc_ids_.push_back(rank);
         }
     }
+}
+
+void LeafColumn::minimumOfPaths(PlanField& d, PlanOwners* owners) const {
+    std::fill(std::begin(d.v), std::end(d.v), std::numeric_limits<float>::max());
+    if (!lines_.empty()) minimumOfLines(grid_, lines_, d, line_ids_.data(), owners);
+    if (!tapers_.empty()) minimumOfTapers(grid_, tapers_, d, taper_ids_.data(), owners);
+    if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, d, arc_ids_.data(), owners);
 }
 
 void LeafColumn::loadLayer(const ColumnLayer& source) {
@@ -167,13 +180,10 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     plan.half_height = layer.halfHeight();
     plan.radius = layer.radius;
     plan.half_side = layer.half_side;
-    std::fill(std::begin(plan.d.v), std::end(plan.d.v), std::numeric_limits<float>::max());
-    PlanOwners* owners = with_owners_ ? &plan.owners : nullptr;
-    if (!lines_.empty()) minimumOfLines(grid_, lines_, plan.d, line_ids_.data(), owners);
-    if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, plan.d, arc_ids_.data(), owners);
+    minimumOfPaths(plan.d, with_owners_ ? &plan.owners : nullptr);
     // Nothing of the column within the band: neither a surface nor a weld.
     const double reach = (layer.radius + band_) * scale_;
-    const bool settles = layer.settling != nullptr && lines_.size() + arcs_.size() > 1;
+    const bool settles = layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1;
     const float least =
         settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
     if (static_cast<double>(least) >= reach * reach) return;
@@ -187,13 +197,13 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
 LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     const Layer& layer = stack_.layers[source.layer];
     gatherPaths(source, true);
+    line_ids_.insert(line_ids_.end(), taper_ids_.begin(), taper_ids_.end());
     line_ids_.insert(line_ids_.end(), arc_ids_.begin(), arc_ids_.end());
     near_.clear();
     for (const LocalLine& line : lines_) planOfLine(grid_, line, near_.emplace_back());
+    for (const LocalTaper& taper : tapers_) planOfTaper(grid_, taper, near_.emplace_back());
     for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
-    std::fill(std::begin(d_.v), std::end(d_.v), std::numeric_limits<float>::max());
-    minimumOfLines(grid_, lines_, d_, nullptr, nullptr);
-    minimumOfArcs(grid_, arcs_, d_, nullptr, nullptr);
+    minimumOfPaths(d_, nullptr);
     if (layer.settling != nullptr)
         fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
     else
@@ -207,6 +217,8 @@ float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d
     near_.clear();
     for (const LocalLine& line : lines_)
         if (mayFill(line, rule, half_extent)) planOfLine(grid_, line, near_.emplace_back());
+    for (const LocalTaper& taper : tapers_)
+        if (mayFill(taper.line, rule, half_extent)) planOfTaper(grid_, taper, near_.emplace_back());
     for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
     return fillBetweenNear(rule, d, sides2);
 }

@@ -99,11 +99,13 @@ private:
     LeafRange leafRange(double z_min, double z_max) const;
     void mergeRanges();
     void moveWindow(double z_min, double z_max);
-    /// Fills lines_ and arcs_, and the ranks of both.
+    /// Fills lines_, tapers_ and arcs_, and the ranks of each.
     void gatherPaths(const ColumnLayer& source, bool with_ranks);
+    /// The least plan distance to those paths.
+    void minimumOfPaths(PlanField& d, PlanOwners* owners) const;
     void loadLayer(const ColumnLayer& source);
     LayerPlan planLayer(const ColumnLayer& source);
-    /// Fills the grooves of a layer whose d is the minimum over lines_ and arcs_; returns the least of sides2.
+    /// Fills the grooves of a layer whose d is the minimum over its paths; returns the least of sides2.
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     /// The same for the beads in near_.
     float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const;
@@ -138,8 +140,9 @@ private:
     std::vector<PlanWeld> welds_;
     std::vector<double> half_heights_;  // distinct, of the window
     std::vector<LocalLine> lines_;
+    std::vector<LocalTaper> tapers_;
     std::vector<LocalArc> arcs_;
-    std::vector<std::uint32_t> line_ids_, arc_ids_;
+    std::vector<std::uint32_t> line_ids_, taper_ids_, arc_ids_;
     std::vector<BeadPlan> near_;  // beads that may fill a groove; all of the layer in planLayer()
     PlanField d_, sides2_;        // of planLayer()
     LeafTerms terms_;

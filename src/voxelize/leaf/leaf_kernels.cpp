@@ -22,13 +22,12 @@ HWY_INLINE void minimumOf(const ColumnGrid& grid, std::span<const Path> paths, P
         const VF qy = hn::Load(f, grid.qy.v + c);
         VF least = hn::Load(f, d.v + c);
         if (owners == nullptr) {
-            for (const Path& path : paths)
-                least = hn::Min(least, hn::Sub(distance(path, qx, qy), hn::Set(f, path.half_flat)));
+            for (const Path& path : paths) least = hn::Min(least, offset(path, qx, qy));
         } else {
             const U u;
             hn::Vec<U> owner = hn::Load(u, owners->v + c);
             for (std::size_t n = 0; n < paths.size(); ++n) {
-                const VF own = hn::Sub(distance(paths[n], qx, qy), hn::Set(f, paths[n].half_flat));
+                const VF own = offset(paths[n], qx, qy);
                 const auto nearer = hn::Lt(own, least);
                 least = hn::IfThenElse(nearer, own, least);
                 owner = hn::IfThenElse(hn::RebindMask(u, nearer), hn::Set(u, ids[n]), owner);
@@ -47,6 +46,11 @@ void MinimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, Pl
 void MinimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
                    PlanOwners* owners) {
     minimumOf(grid, arcs, d, ids, owners);
+}
+
+void MinimumOfTapers(const ColumnGrid& grid, std::span<const LocalTaper> tapers, PlanField& d, const std::uint32_t* ids,
+                     PlanOwners* owners) {
+    minimumOf(grid, tapers, d, ids, owners);
 }
 
 float SquaredSides(const PlanField& d, PlanField& out) {
@@ -116,7 +120,7 @@ void SlopedLine(const ColumnGrid& grid, const LocalLine& line, float z0, float c
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF qx = hn::Load(f, grid.qx.v + c);
         const VF qy = hn::Load(f, grid.qy.v + c);
-        hn::Store(hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat)), f, d.v + c);
+        hn::Store(offset(line, qx, qy), f, d.v + c);
         const VF s = hn::Min(hn::Max(along(line, qx, qy), hn::Set(f, line.lo)), hn::Set(f, line.hi));
         hn::Store(hn::Add(hn::Set(f, z0), hn::Mul(s, hn::Set(f, climb_per_unit))), f, center_z.v + c);
     });
@@ -260,6 +264,7 @@ namespace stratum::voxelize {
 
 HWY_EXPORT(MinimumOfLines);
 HWY_EXPORT(MinimumOfArcs);
+HWY_EXPORT(MinimumOfTapers);
 HWY_EXPORT(SquaredSides);
 HWY_EXPORT(MaximumOf);
 HWY_EXPORT(ExpandLayers);
@@ -289,6 +294,10 @@ void minimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, Pl
 void minimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
                    PlanOwners* owners) {
     HWY_DYNAMIC_DISPATCH(MinimumOfArcs)(grid, arcs, d, ids, owners);
+}
+void minimumOfTapers(const ColumnGrid& grid, std::span<const LocalTaper> tapers, PlanField& d, const std::uint32_t* ids,
+                     PlanOwners* owners) {
+    HWY_DYNAMIC_DISPATCH(MinimumOfTapers)(grid, tapers, d, ids, owners);
 }
 float squaredSides(const PlanField& d, PlanField& out) { return HWY_DYNAMIC_DISPATCH(SquaredSides)(d, out); }
 float maximumOf(const PlanField& a, const PlanField& b, PlanField& out) {

@@ -48,6 +48,9 @@ void minimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, Pl
                     PlanOwners* owners);
 void minimumOfArcs(const ColumnGrid& grid, std::span<const LocalArc> arcs, PlanField& d, const std::uint32_t* ids,
                    PlanOwners* owners);
+/// The same of paths whose half flat changes.
+void minimumOfTapers(const ColumnGrid& grid, std::span<const LocalTaper> tapers, PlanField& d, const std::uint32_t* ids,
+                     PlanOwners* owners);
 
 /// out = max(d, 0)^2; returns the least of it.
 float squaredSides(const PlanField& d, PlanField& out);

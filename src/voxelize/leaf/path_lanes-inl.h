@@ -51,6 +51,30 @@ HWY_INLINE VF distance(const LocalLine& line, VF qx, VF qy) {
     return hn::Sqrt(dot(n, e, n, e));
 }
 
+// The distance to the flat of a path.
+HWY_INLINE VF offset(const LocalLine& line, VF qx, VF qy) {
+    const F f;
+    return hn::Sub(distance(line, qx, qy), hn::Set(f, line.half_flat));
+}
+
+// Of a tapered path also the way back along it from the nearest section, and the distance from the path there.
+struct TaperPoint {
+    VF d, past, rho;
+};
+HWY_INLINE TaperPoint nearest(const LocalTaper& taper, VF qx, VF qy) {
+    const F f;
+    const VF n = across(taper.line, qx, qy);
+    const VF s = along(taper.line, qx, qy);
+    const VF leant = hn::Add(s, hn::Mul(hn::Set(f, taper.lean), hn::Abs(n)));
+    const VF at = hn::Min(hn::Max(leant, hn::Set(f, taper.line.lo)), hn::Set(f, taper.line.hi));
+    const VF flat =
+        hn::Add(hn::Set(f, taper.flat), hn::Mul(hn::Set(f, taper.slope), hn::Sub(at, hn::Set(f, taper.flat_at))));
+    const VF past = hn::Sub(s, at);
+    const VF rho = hn::Sqrt(dot(n, past, n, past));
+    return {hn::Sub(rho, flat), past, rho};
+}
+HWY_INLINE VF offset(const LocalTaper& taper, VF qx, VF qy) { return nearest(taper, qx, qy).d; }
+
 // Where the nearest point of the circle lies on the arc, which is not full.
 HWY_INLINE hn::Mask<F> withinSweep(const LocalArc& arc, VF qx, VF qy) {
     const F f;
@@ -82,6 +106,10 @@ HWY_INLINE VF distance(const LocalArc& arc, VF qx, VF qy) {
     const VF by = hn::Sub(qy, hn::Set(f, arc.end_y));
     const VF to_ends = hn::Sqrt(hn::Min(dot(ax, ay, ax, ay), dot(bx, by, bx, by)));
     return hn::IfThenElse(withinSweep(arc, qx, qy), on_circle, to_ends);
+}
+HWY_INLINE VF offset(const LocalArc& arc, VF qx, VF qy) {
+    const F f;
+    return hn::Sub(distance(arc, qx, qy), hn::Set(f, arc.half_flat));
 }
 
 }  // namespace HWY_NAMESPACE

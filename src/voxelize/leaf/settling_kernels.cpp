@@ -17,10 +17,10 @@ namespace HWY_NAMESPACE {
 using I = hn::RebindToSigned<F>;
 
 // Stores d and the direction of (x, y), which points from the path to the sample. On the path itself it is none.
-HWY_INLINE void storePlan(VF distance, VF x, VF y, VF length, float half_flat, std::size_t c, BeadPlan& out) {
+HWY_INLINE void storePlan(VF d, VF x, VF y, VF length, std::size_t c, BeadPlan& out) {
     const F f;
     const VF inverse = hn::Div(hn::Set(f, 1.0F), hn::Max(length, hn::Set(f, 1e-30F)));
-    hn::Store(hn::Sub(distance, hn::Set(f, half_flat)), f, out.d.v + c);
+    hn::Store(d, f, out.d.v + c);
     hn::Store(hn::Mul(x, inverse), f, out.nx.v + c);
     hn::Store(hn::Mul(y, inverse), f, out.ny.v + c);
 }
@@ -41,10 +41,26 @@ void PlanOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
             y = hn::Add(y, hn::Mul(past, hn::Set(f, line.uy)));
         }
         const VF rho = distance(line, qx, qy);
-        storePlan(rho, x, y, rho, line.half_flat, c, out);
+        storePlan(hn::Sub(rho, hn::Set(f, line.half_flat)), x, y, rho, c, out);
         least = hn::Min(least, rho);
     });
     out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)) - line.half_flat, 0.0F);
+}
+
+void PlanOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out) {
+    const F f;
+    VF least = hn::Set(f, 3e38F);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF qx = hn::Load(f, grid.qx.v + c);
+        const VF qy = hn::Load(f, grid.qy.v + c);
+        const VF n = across(taper.line, qx, qy);
+        const TaperPoint point = nearest(taper, qx, qy);
+        const VF x = dot(n, point.past, hn::Set(f, taper.line.nx), hn::Set(f, taper.line.ux));
+        const VF y = dot(n, point.past, hn::Set(f, taper.line.ny), hn::Set(f, taper.line.uy));
+        storePlan(point.d, x, y, point.rho, c, out);
+        least = hn::Min(least, point.d);
+    });
+    out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)), 0.0F);
 }
 
 void PlanOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
@@ -76,7 +92,7 @@ void PlanOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
             length = hn::IfThenElse(on_arc, v, hn::Sqrt(hn::Min(a2, b2)));
         }
         const VF rho = distance(arc, qx, qy);
-        storePlan(rho, x, y, length, arc.half_flat, c, out);
+        storePlan(hn::Sub(rho, hn::Set(f, arc.half_flat)), x, y, length, c, out);
         least = hn::Min(least, rho);
     });
     out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)) - arc.half_flat, 0.0F);
@@ -150,6 +166,7 @@ HWY_AFTER_NAMESPACE();
 namespace stratum::voxelize {
 
 HWY_EXPORT(PlanOfLine);
+HWY_EXPORT(PlanOfTaper);
 HWY_EXPORT(PlanOfArc);
 HWY_EXPORT(LowerLevels);
 HWY_EXPORT(FillGrooves);
@@ -170,6 +187,9 @@ bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent) 
 
 void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
     HWY_DYNAMIC_DISPATCH(PlanOfLine)(grid, line, out);
+}
+void planOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out) {
+    HWY_DYNAMIC_DISPATCH(PlanOfTaper)(grid, taper, out);
 }
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
     HWY_DYNAMIC_DISPATCH(PlanOfArc)(grid, arc, out);

@@ -15,6 +15,7 @@ struct alignas(64) BeadPlan {
 };
 
 void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out);
+void planOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out);
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out);
 
 /// The constants of a layer, world units.

@@ -49,6 +49,18 @@ void zigzag(gcode::Toolpath& toolpath) {
         }
 }
 
+// Lines whose widths change along them, up and down, within reach of each other.
+void tapers(gcode::Toolpath& toolpath) {
+    parallelLines(toolpath, 0.42);
+    test::addBead(toolpath, -1, -1, kHeight, 2, -1.5, kHeight, 1.2, kHeight);
+    test::addBead(toolpath, 1, 3, kHeight, 1.1, 3.1, kHeight, 0.4, kHeight);
+    toolpath.flow.resize(toolpath.beads.size());
+    for (std::size_t n = 0; n < toolpath.beads.size(); ++n) {
+        const double most = std::min(gcode::beadLength(toolpath, toolpath.beads[n]), 0.3);
+        toolpath.flow[n].widening = static_cast<float>((n % 2 == 0 ? 1 : -1) * (n % 5 == 4 ? 0 : most));
+    }
+}
+
 const std::vector<Case>& cases() {
     static const std::vector<Case> kCases = {
         {"just_closed", [](auto& t) { parallelLines(t, gcode::sectionArea(kWidth, kHeight) / kHeight); }},
@@ -56,6 +68,7 @@ const std::vector<Case>& cases() {
         {"apart", [](auto& t) { parallelLines(t, 0.5); }},
         {"too_close", [](auto& t) { parallelLines(t, 0.3); }},
         {"zigzag", zigzag},
+        {"tapers", tapers},
         {"crossing", [](auto& t) { t = study::crossedLines(kWidth, kHeight); }},
         {"fan",
          [](auto& t) {
@@ -159,7 +172,7 @@ TEST_P(Deposit, AgreesWithBruteForce) {
 }
 
 TEST_P(Deposit, StepsAndThreadsGiveTheSameBytes) {
-    const gcode::Toolpath toolpath = make(cases()[4]);
+    const gcode::Toolpath toolpath = make(cases()[5]);
     const auto beads = test::allBeads(toolpath);
     const Lattice lattice = latticeOf(toolpath, 0.02);
     const auto whole = voxelize(toolpath, beads, lattice);
@@ -255,7 +268,8 @@ TEST(DepositBalance, FedIsLaidAndSurplus) {
     for (const double corner : {1.0, 0.5}) {
         gcode::Toolpath toolpath;
         zigzag(toolpath);
-        toolpath.deposit = {DepositModel::Beads::settled, corner, std::nullopt};
+        toolpath.deposit.beads = DepositModel::Beads::settled;
+        toolpath.deposit.corner_fraction = corner;
         const auto beads = test::allBeads(toolpath);
         const Lattice lattice = latticeOf(toolpath, 0.02);
         Voxelizer voxelizer(toolpath, beads, lattice);

@@ -62,6 +62,38 @@ TEST(LeafKernels, LinesAreExactBesideTheColumnHoweverLong) {
     }
 }
 
+TEST(LeafKernels, TapersAreExactHoweverLong) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> near(-2, 2);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const ColumnGrid grid(static_cast<float>(kVoxel));
+    for (int n = 0; n < 400; ++n) {
+        gcode::Toolpath toolpath;
+        const double x = 200 * unit(random);
+        const double y = 200 * unit(random);
+        const double length = std::pow(10.0, -1 + 3 * unit(random));
+        const double along = n % 3 == 0 ? 0 : n % 3 == 1 ? length : length * unit(random);
+        const double angle = 6.28 * unit(random);
+        const double ax = x + 0.5 * near(random) - along * std::cos(angle);
+        const double ay = y + 0.5 * near(random) - along * std::sin(angle);
+        test::addBead(toolpath, ax, ay, 0.2, ax + length * std::cos(angle), ay + length * std::sin(angle), 0.2, 0.45,
+                      0.2);
+        const double wide = 0.01 + std::min(0.45 * length, 2.0) * unit(random);
+        const EndFlats flats = n % 2 == 0 ? EndFlats{0, wide} : EndFlats{wide, 0.01};
+        const LocalTaper local[] = {localTaper(toolpath.beads[0], flats, x, y, kHalfExtent, 1)};
+        PlanField d;
+        std::fill(std::begin(d.v), std::end(d.v), 1e30f);
+        minimumOfTapers(grid, local, d, nullptr, nullptr);
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const double exact = test::taperOffset(toolpath.beads[0], flats.start, flats.end,
+                                                   x + (static_cast<double>(c / 8) - 3.5) * kVoxel,
+                                                   y + (static_cast<double>(c % 8) - 3.5) * kVoxel)
+                                     .d;
+            ASSERT_NEAR(d.v[c], exact, 1e-6 + 3e-7 * std::abs(exact)) << n << " " << c;
+        }
+    }
+}
+
 TEST(LeafKernels, APointIsALine) {
     gcode::Toolpath toolpath;
     test::addBead(toolpath, 3, 4, 0.2, 3, 4, 0.2, 0.45, 0.2);
@@ -99,6 +131,7 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
                          3 * where(random), 0.2, 0.2, 0.45, 0.2);
     }
     std::vector<LocalLine> lines;
+    std::vector<LocalTaper> tapers;
     std::vector<LocalArc> arcs;
     std::vector<std::uint32_t> ids;
     for (const gcode::Bead& bead : toolpath.beads) {
@@ -109,6 +142,8 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
                 localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], 0.125, 0.1, 0.2, kHalfExtent, 1));
         ids.push_back(static_cast<std::uint32_t>(ids.size()));
     }
+    for (const gcode::Bead& bead : toolpath.beads)
+        if (bead.arc < 0) tapers.push_back(localTaper(bead, {0.05, 0.1}, 0.1, 0.2, kHalfExtent, 1));
     struct Result {
         PlanField d, sides2, weld;
         PlanOwners owners;
@@ -125,6 +160,7 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
         Result r{};
         std::fill(std::begin(r.d.v), std::end(r.d.v), 1e30f);
         minimumOfLines(grid, lines, r.d, ids.data(), &r.owners);
+        minimumOfTapers(grid, tapers, r.d, ids.data(), &r.owners);
         minimumOfArcs(grid, arcs, r.d, ids.data(), &r.owners);
         squaredSides(r.d, r.sides2);
         maximumOf(r.d, r.sides2, r.weld);

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace stratum::assemble {
+namespace stratum {
 
 /// Every key that is asked for is known; finish() refuses all others. Keeps references to the JSON and the file's name.
 class JsonSection {
@@ -53,4 +53,4 @@ private:
     std::vector<std::string> known_;
 };
 
-}  // namespace stratum::assemble
+}  // namespace stratum

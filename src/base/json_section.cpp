@@ -1,4 +1,4 @@
-#include "assemble/json_section.h"
+#include "base/json_section.h"
 
 #include "base/error.h"
 #include "base/nearest_name.h"
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace stratum::assemble {
+namespace stratum {
 
 JsonSection::JsonSection(const Json& json, std::string path, const std::string& file)
     : json_(json), path_(std::move(path)), file_(file) {
@@ -86,4 +86,4 @@ void JsonSection::fail(std::string_view key, std::string_view expected) const {
     throw InputError(fmt::format("{}: {}: expected {}", file_, where.empty() ? "the file" : where, expected));
 }
 
-}  // namespace stratum::assemble
+}  // namespace stratum
