@@ -1,0 +1,52 @@
+// A bead's path in the plan (xy), measured in mm from its start, and which parts of it are near another path.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+
+#include <vector>
+
+namespace stratum::deposit {
+
+/// A part of a path, mm from its start.
+struct PathPart {
+    double from = 0;
+    double to = 0;
+};
+
+struct PlanPlace {
+    double x = 0;  ///< mm
+    double y = 0;  ///< mm
+};
+
+/// A segment or a circular arc. Arcs have the mean of both ends' radii, as gcode::Arc says.
+class BeadPath {
+public:
+    BeadPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+
+    /// In the plan, mm.
+    double length() const { return length_; }
+    bool straight() const { return radius_ == 0; }
+    double radius() const { return radius_; }  ///< mm; 0 if straight
+    double turn() const { return sweep_; }     ///< radians, counter-clockwise positive; 0 if straight
+
+    PlanPlace at(double mm) const;
+    /// From (x, y) to the path, mm.
+    double distance(double x, double y) const;
+
+    /// Appends the parts of this path that are within `reach` (mm) of `other`. Two segments: one part at most, in
+    /// closed form. With an arc: the ends are bisected to a micrometre, and parts shorter than kFineStep may be missed.
+    void partsNear(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+
+    static constexpr double kFineStep = 0.05;  ///< mm
+
+private:
+    void segmentNearSegment(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+    void walk(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+
+    double x0_, y0_, x1_, y1_;  // mm
+    double ux_ = 0, uy_ = 0;    // unit direction of a segment; 0 for a point
+    double length_ = 0;         // mm
+    double center_x_ = 0, center_y_ = 0, radius_ = 0, sweep_ = 0, angle_ = 0;
+};
+
+}  // namespace stratum::deposit

@@ -1,0 +1,190 @@
+#include "deposit/bead_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stratum::deposit {
+namespace {
+
+constexpr double kLeastCell = 2;  // mm
+constexpr double kMostCellsAcross = 1024;
+constexpr double kMostVisits = 2e7;         // entries of all cells, about; more of them get larger cells
+constexpr double kLargestCoordinate = 1e6;  // mm; beyond it a millimetre's parts are lost in a double's products
+constexpr double kChordTurn = 0.25;         // radians of an arc that are entered as one chord
+constexpr double kJoined = 1e-6;            // mm between two parts that are one
+
+bool isSupportMaterial(gcode::Feature feature) {
+    return feature == gcode::Feature::support || feature == gcode::Feature::support_interface;
+}
+
+double touching(double height) { return kTouchingShare * height + kTouchingRounding; }
+
+// Ascending and apart.
+void mergeParts(std::vector<PathPart>& parts) {
+    std::sort(parts.begin(), parts.end(), [](const PathPart& a, const PathPart& b) { return a.from < b.from; });
+    std::size_t kept = 0;
+    for (const PathPart& part : parts) {
+        if (kept > 0 && part.from <= parts[kept - 1].to + kJoined)
+            parts[kept - 1].to = std::max(parts[kept - 1].to, part.to);
+        else
+            parts[kept++] = part;
+    }
+    parts.resize(kept);
+}
+
+}  // namespace
+
+BeadSupport::BeadSupport(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
+    lowest_layer_ = std::numeric_limits<std::uint32_t>::max();
+    level_.resize(toolpath.beads.size());
+    for (std::size_t n = 0; n < level_.size(); ++n) {
+        const gcode::Bead& bead = toolpath.beads[n];
+        const std::uint32_t layer = toolpath.runOf(bead).layer;
+        if (layer >= 1) lowest_layer_ = std::min(lowest_layer_, layer);
+        level_[n] = usable(bead);
+    }
+    setGrid();
+    fillGrid();
+    asked_.resize(level_.size());
+}
+
+bool BeadSupport::usable(const gcode::Bead& bead) const {
+    const auto fine = [](double mm) { return std::abs(mm) <= kLargestCoordinate; };
+    const auto size = [](float mm) { return mm > 0 && static_cast<double>(mm) <= kLargestCoordinate; };
+    if (!(bead.z0 == bead.z1) || !size(bead.width) || !size(toolpath_.runOf(bead).height)) return false;
+    if (!fine(bead.x0) || !fine(bead.y0) || !fine(bead.x1) || !fine(bead.y1) || !fine(bead.z0)) return false;
+    if (bead.arc < 0) return true;
+    const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+    return fine(arc.center_x) && fine(arc.center_y) && std::abs(arc.sweep) <= 7;  // a turn, rounded
+}
+
+bool BeadSupport::everywhere(const gcode::Bead& bead) const {
+    const gcode::Run& run = toolpath_.runOf(bead);
+    if (run.layer <= lowest_layer_ || run.feature == gcode::Feature::ironing) return true;
+    const double height = static_cast<double>(run.height);
+    return bead.z0 - height <= touching(height);
+}
+
+bool BeadSupport::below(const gcode::Bead& lower, const gcode::Bead& upper) const {
+    const gcode::Run& run = toolpath_.runOf(upper);
+    const double height = static_cast<double>(run.height);
+    const bool parts_later = isSupportMaterial(run.feature) != isSupportMaterial(toolpath_.runOf(lower).feature);
+    const double gap = parts_later ? kSupportClearance : touching(height);
+    return lower.z0 >= upper.z0 - height - gap && lower.z0 <= upper.z0 - kLeastBurial * height;
+}
+
+double BeadSupport::reach(const gcode::Bead& lower, const gcode::Bead& upper) {
+    return kContact * 0.5 * (static_cast<double>(lower.width) + static_cast<double>(upper.width));
+}
+
+void BeadSupport::setGrid() {
+    double min_x = 1e300;
+    double min_y = 1e300;
+    double max_x = -1e300;
+    double max_y = -1e300;
+    double total = 0;
+    for (std::size_t n = 0; n < level_.size(); ++n) {
+        if (!level_[n]) continue;
+        const gcode::Bead& bead = toolpath_.beads[n];
+        const BeadPath path(toolpath_, bead);
+        const double side = path.straight() ? 0 : 2 * path.radius();  // as far as an arc can be from its ends
+        min_x = std::min(min_x, std::min<double>(bead.x0, bead.x1) - side);
+        min_y = std::min(min_y, std::min<double>(bead.y0, bead.y1) - side);
+        max_x = std::max(max_x, std::max<double>(bead.x0, bead.x1) + side);
+        max_y = std::max(max_y, std::max<double>(bead.y0, bead.y1) + side);
+        total += path.length();
+    }
+    if (!(max_x >= min_x)) return;
+    const double extent = std::max(max_x - min_x, max_y - min_y);
+    cell_ = std::max({kLeastCell, extent / kMostCellsAcross, total / kMostVisits});
+    origin_x_ = min_x;
+    origin_y_ = min_y;
+    columns_ = static_cast<long>((max_x - min_x) / cell_) + 1;
+    rows_ = static_cast<long>((max_y - min_y) / cell_) + 1;
+}
+
+// Visits the cells within half the reach of a bead, some of them twice. Where two beads are within reach of each other,
+// the place between them is within its own bead's half of it from both, so they share that cell.
+template <typename Visit>
+void BeadSupport::visitCells(const gcode::Bead& bead, const Visit& visit) const {
+    const BeadPath path(toolpath_, bead);
+    const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(path.turn()) / kChordTurn)));
+    const double off_chord = path.radius() * (1 - std::cos(0.5 * path.turn() / chords));
+    const double side = kContact * 0.5 * static_cast<double>(bead.width) + off_chord + kTouchingRounding;
+    const auto cellOf = [this](double mm, double origin, long count) {
+        return static_cast<long>(std::clamp((mm - origin) / cell_, 0.0, static_cast<double>(count - 1)));
+    };
+    PlanPlace a = path.at(0);
+    for (int chord = 1; chord <= chords; ++chord) {
+        const PlanPlace b = path.at(path.length() * chord / chords);
+        const long last_row = cellOf(std::max(a.y, b.y) + side, origin_y_, rows_);
+        for (long row = cellOf(std::min(a.y, b.y) - side, origin_y_, rows_); row <= last_row; ++row) {
+            // The part of the chord from which this row can be reached; outer rows hold what is beyond them too.
+            double from = 0;
+            double to = 1;
+            if (std::abs(b.y - a.y) > kJoined) {
+                const double low = (origin_y_ + static_cast<double>(row) * cell_ - side - a.y) / (b.y - a.y);
+                const double high = low + (cell_ + 2 * side) / (b.y - a.y);
+                from = std::clamp(std::min(low, high), 0.0, 1.0);
+                to = std::clamp(std::max(low, high), 0.0, 1.0);
+            }
+            const double from_x = std::lerp(a.x, b.x, from);
+            const double to_x = std::lerp(a.x, b.x, to);
+            const long last = cellOf(std::max(from_x, to_x) + side, origin_x_, columns_);
+            for (long column = cellOf(std::min(from_x, to_x) - side, origin_x_, columns_); column <= last; ++column)
+                visit(static_cast<std::size_t>(row * columns_ + column));
+        }
+        a = b;
+    }
+}
+
+void BeadSupport::fillGrid() {
+    std::vector<std::uint32_t> by_top;
+    for (std::uint32_t n = 0; n < level_.size(); ++n)
+        if (level_[n]) by_top.push_back(n);
+    std::stable_sort(by_top.begin(), by_top.end(), [this](std::uint32_t a, std::uint32_t b) {
+        return double{toolpath_.beads[a].z0} < double{toolpath_.beads[b].z0};
+    });
+    starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+    for (const std::uint32_t n : by_top)
+        visitCells(toolpath_.beads[n], [this](std::size_t cell) { ++starts_[cell + 1]; });
+    for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
+    entries_.resize(starts_.back());
+    std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    for (const std::uint32_t n : by_top) {
+        const auto top = static_cast<float>(toolpath_.beads[n].z0);
+        visitCells(toolpath_.beads[n], [&](std::size_t cell) { entries_[next[cell]++] = {top, n}; });
+    }
+}
+
+void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts) {
+    parts.clear();
+    const gcode::Bead& upper = toolpath_.beads[bead];
+    const BeadPath path(toolpath_, upper);
+    if (everywhere(upper)) {
+        parts.push_back({0, path.length()});
+        return;
+    }
+    const double height = static_cast<double>(toolpath_.runOf(upper).height);
+    const double rounding = 1e-6 * (1 + std::abs(upper.z0));  // of a float's top
+    const double lowest = upper.z0 - height - std::max(kSupportClearance, touching(height)) - rounding;
+    const double highest = upper.z0 - kLeastBurial * height + rounding;
+    bool whole = false;
+    visitCells(upper, [&](std::size_t cell) {
+        const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell + 1]);
+        auto entry = std::lower_bound(entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell]), end, lowest,
+                                      [](const Entry& one, double top) { return static_cast<double>(one.top) < top; });
+        for (; !whole && entry != end && static_cast<double>(entry->top) <= highest; ++entry) {
+            if (asked_[entry->bead] == bead + 1) continue;
+            asked_[entry->bead] = bead + 1;
+            const gcode::Bead& lower = toolpath_.beads[entry->bead];
+            if (!below(lower, upper)) continue;
+            path.partsNear(BeadPath(toolpath_, lower), reach(lower, upper), parts);
+            whole = !parts.empty() && parts.back().from <= 0 && parts.back().to >= path.length();
+        }
+    });
+    mergeParts(parts);
+}
+
+}  // namespace stratum::deposit
