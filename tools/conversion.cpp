@@ -80,11 +80,8 @@ std::vector<Job> planJobs(const ConvertCommand& o, const gcode::Toolpath& toolpa
 // Whether anything asks when beads are laid.
 bool needsTimes(const ConvertCommand& o) {
     const std::vector<voxelize::Attribute> grids = voxelize::parseGrids(o.grids);
-    const auto timed = [](voxelize::Attribute grid) {
-        return grid == voxelize::Attribute::time || grid == voxelize::Attribute::speed;
-    };
     return o.summary || !o.common.stats.empty() || voxelize::needsTiming(o.snapshots) ||
-           std::any_of(grids.begin(), grids.end(), timed);
+           std::any_of(grids.begin(), grids.end(), voxelize::usesTiming);
 }
 
 /// One input, step by step: each method needs what those before it found.
@@ -131,6 +128,7 @@ private:
         toolpath_ = std::move(print.toolpath);
         times_ = std::move(print.times);
         flow_ = print.flow;
+        sag_ = print.sag;
         seconds_.parse = watch_.lap();
     }
 
@@ -142,6 +140,7 @@ private:
                                    toolpath_.filament_mm * 1e-3, gcode::beadVolume(toolpath_) * 1e-3));
         if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, toolpath_.stated));
         if (o_.summary && flow_) say(o_.common, flowLine(*flow_));
+        if (o_.summary && sag_) say(o_.common, sagLine(*sag_));
         if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     }
 
@@ -337,6 +336,7 @@ private:
                 {"grid", grid_},
                 {"deposit", deposit_},
                 {"flow", flow_ ? describeFlow(*flow_) : Json(nullptr)},
+                {"sag", sag_ ? describeSag(*sag_) : Json(nullptr)},
                 {"files", files_},
                 {"skipped", left_out},
                 {"seconds",
@@ -360,6 +360,7 @@ private:
     const gcode::InputBytes file_;
     std::optional<motion::PrintTimes> times_;
     std::optional<deposit::FlowReport> flow_;
+    std::optional<deposit::SagReport> sag_;
     gcode::Toolpath toolpath_;
     std::vector<std::uint32_t> selection_;
     std::size_t selected_beads_ = 0;

@@ -102,11 +102,12 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
-    tools::completes(app.add_option("--grids", o.grids,
-                                    "Also layer,time,feature,tool,object,width,speed,color, as grids of the same "
-                                    "voxels; surface alone is no others (default: color if there are several)"),
-                     tools::Completion::list,
-                     {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "color"})
+    tools::completes(
+        app.add_option("--grids", o.grids,
+                       "Also layer,time,feature,tool,object,width,speed,flow,overfill,color, as grids of the same "
+                       "voxels; surface alone is no others (default: color if there are several)"),
+        tools::Completion::list,
+        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "color"})
         ->type_name("LIST")
         ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")

@@ -107,7 +107,7 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->group(plastic);
     app.add_option("--sag", options.read.deposit.sag,
                    "How far a bead over nothing hangs down, as a fraction of the span (default 0)")
-        ->check(CLI::Range(0.0, deposit::kLargestSag))
+        ->check(CLI::Range(0.0, deposit::kMostSag))
         ->type_name("FRACTION")
         ->group(plastic);
 }

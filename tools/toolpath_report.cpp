@@ -122,4 +122,13 @@ std::string flowLine(const deposit::FlowReport& flow) {
         flow.lag, flow.fed, flow.laid, flow.in_discs, flow.discs, flow.purged, flow.in_nozzle, flow.beads, flow.parts);
 }
 
+nlohmann::ordered_json describeSag(const deposit::SagReport& sag) {
+    return {{"spans", sag.spans}, {"length_mm", sag.length_mm}, {"deepest_mm", sag.deepest_mm}};
+}
+
+std::string sagLine(const deposit::SagReport& sag) {
+    return fmt::format("sag: {} spans of {:.1f} mm in all hang, at most {:.2f} mm\n", sag.spans, sag.length_mm,
+                       sag.deepest_mm);
+}
+
 }  // namespace stratum::tools

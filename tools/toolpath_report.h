@@ -2,6 +2,7 @@
 #pragma once
 
 #include "deposit/apply_flow.h"
+#include "deposit/sag.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <nlohmann/json.hpp>
@@ -17,5 +18,8 @@ nlohmann::ordered_json describeToolpath(const gcode::Toolpath& toolpath);
 nlohmann::ordered_json describeFlow(const deposit::FlowReport& flow);
 /// The same in a line of text, with its line end.
 std::string flowLine(const deposit::FlowReport& flow);
+/// What hangs over nothing.
+nlohmann::ordered_json describeSag(const deposit::SagReport& sag);
+std::string sagLine(const deposit::SagReport& sag);
 
 }  // namespace stratum::tools

@@ -226,8 +226,9 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
     completes(app.add_option("--color-by", o.scene.color_by,
                              "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
-                             "time, color"),
-              Completion::word, {"tool", "feature", "layer", "object", "speed", "width", "time", "color"})
+                             "flow, overfill, time, color"),
+              Completion::word,
+              {"tool", "feature", "layer", "object", "speed", "width", "flow", "overfill", "time", "color"})
         ->type_name("NAME")
         ->group(kLight);
     app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(kLight);

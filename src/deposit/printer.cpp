@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 2> kPresets{"ideal", "typical"};
 DepositModel typicalPrinter() {
     DepositModel deposit;
     deposit.beads = DepositModel::Beads::settled;
-    deposit.flow_lag = 0.01;
+    deposit.flow_lag = 0.015;
     deposit.pressure_advance = 0;
     deposit.sag = 0.02;
     return deposit;
@@ -78,7 +78,7 @@ void readPrinter(const std::string& path, gcode::ReadOptions& options) {
     Json json;
     try {
         json = Json::parse(file.bytes());
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {
         throw InputError(
             fmt::format("{}: no JSON: {}; docs/deposit.md has an example of a printer", path, error.what()));
     }
@@ -102,7 +102,7 @@ void readPrinter(const std::string& path, gcode::ReadOptions& options) {
     if (readNumber(section, "pressure_advance_s", 0, gcode::kLongestAdvance, advance))
         deposit.pressure_advance = advance;
     readNumber(section, "nozzle_diameter_mm", 0.05, 10, deposit.nozzle_diameter);
-    readNumber(section, "sag", 0, kLargestSag, deposit.sag);
+    readNumber(section, "sag", 0, kMostSag, deposit.sag);
     if (auto limits = section.section("limits")) options.limits = readLimits(std::move(*limits));
     section.finish();
     options.deposit = deposit;

@@ -1,6 +1,7 @@
 // What a printer makes of a program: presets of DepositModel and of the machine's limits.
 #pragma once
 
+#include "deposit/sag.h"
 #include "gcode/machine/read_options.h"
 
 #include <string>
@@ -17,8 +18,6 @@ void usePrinter(const std::string& preset, gcode::ReadOptions& options);
 /// Throws UsageError.
 void parseSection(const std::string& text, gcode::DepositModel& deposit);
 
-/// Bounds of what a preset or a command line may say.
-constexpr double kLongestLag = 10;  // s
-constexpr double kLargestSag = 0.5;
+constexpr double kLongestLag = 10;  ///< s, that a preset or a command line may say
 
 }  // namespace stratum::deposit

@@ -26,6 +26,7 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
         print.flow = applyFlow(flow->finish(), print.toolpath);
         print.flow->lag = *deposit.flow_lag;
     }
+    if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);
     return print;
 }
 

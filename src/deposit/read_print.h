@@ -2,6 +2,7 @@
 #pragma once
 
 #include "deposit/apply_flow.h"
+#include "deposit/sag.h"
 #include "gcode/reader.h"
 #include "motion/print_times.h"
 
@@ -14,6 +15,7 @@ struct PrintRead {
     gcode::Toolpath toolpath;
     std::optional<motion::PrintTimes> times;  ///< if asked for; Toolpath::timing is then filled
     std::optional<FlowReport> flow;           ///< if ReadOptions::deposit has a lag
+    std::optional<SagReport> sag;             ///< if it has a sag
 };
 
 /// Reads a program; plans its motion only if `timed` or if the flow is simulated. Throws what readToolpath() throws.

@@ -1,6 +1,7 @@
 #include "ondemand/print_attributes.h"
 
 #include "base/error.h"
+#include "voxelize/grid/deposit_balance.h"
 
 #include <fmt/format.h>
 
@@ -104,18 +105,27 @@ private:
     std::vector<Owned> cache_ = std::vector<Owned>(kSide * kSide * kSide);
 };
 
+// What BeadAttributes wants, if that is the attribute.
+std::vector<float> overfillFor(const PrintField& field, Attribute attribute) {
+    if (attribute != Attribute::overfill) return {};
+    const auto& layout = field.layout();
+    return voxelize::overfillOfBeads(*layout.toolpath, layout.stack, layout.lattice);
+}
+
 class PrintAttribute final : public march::AttributeSource {
 public:
     PrintAttribute(std::shared_ptr<const PrintField> field, Attribute attribute)
         : field_(std::move(field)),
           attribute_(attribute),
-          values_(*field_->layout().toolpath, std::span(&attribute_, 1)) {}
+          values_(*field_->layout().toolpath, std::span(&attribute_, 1), overfillFor(*field_, attribute_)) {}
 
     std::unique_ptr<march::AttributeLookup> makeLookup() const override {
         return std::make_unique<Lookup>(*field_, values_, attribute_);
     }
     std::size_t bytes() const override {
-        return attribute_ == Attribute::time ? field_->layout().toolpath->beads.size() * sizeof(float) : 0;
+        return attribute_ == Attribute::time || attribute_ == Attribute::overfill
+                   ? field_->layout().toolpath->beads.size() * sizeof(float)
+                   : 0;
     }
 
 private:
@@ -133,8 +143,10 @@ voxelize::Attribute attributeNamed(std::string_view name) {
     } catch (const UsageError&) {
         // said below, for what was asked here
     }
-    throw UsageError(fmt::format(
-        "{}: prints have no such attribute; choose layer, time, feature, tool, object, width, speed or color", name));
+    throw UsageError(
+        fmt::format("{}: prints have no such attribute; choose layer, time, feature, tool, object, width, speed, flow, "
+                    "overfill or color",
+                    name));
 }
 
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
@@ -150,7 +162,7 @@ trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute a
     const std::array<Attribute, 1> wanted{attribute};
     const auto grids = voxelize::makeAttributeGrids(toolpath, wanted, *nothing);
     trace::AttributeSummary summary = march::summarize(*grids.front());
-    const voxelize::BeadAttributes values(toolpath, wanted);
+    const voxelize::BeadAttributes values(toolpath, wanted, overfillFor(field, attribute));
     const auto before = [](const glm::vec3& a, const glm::vec3& b) {
         return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
     };

@@ -3,6 +3,7 @@
 #include "base/mapped_file.h"
 #include "base/parallel_for.h"
 #include "corpus.h"
+#include "deposit/read_print.h"
 #include "gcode/reader.h"
 #include "march/brick/brick_grid.h"
 #include "march/brick/brick_intersector.h"
@@ -33,8 +34,21 @@ struct Print {
     gcode::DepositModel deposit = {};
 };
 
-constexpr gcode::DepositModel kSettled{gcode::DepositModel::Beads::settled, 1, std::nullopt};
-constexpr gcode::DepositModel kSettledCorners{gcode::DepositModel::Beads::settled, 0.4, std::nullopt};
+gcode::DepositModel settledWith(double corner_fraction) {
+    gcode::DepositModel deposit;
+    deposit.beads = gcode::DepositModel::Beads::settled;
+    deposit.corner_fraction = corner_fraction;
+    return deposit;
+}
+const gcode::DepositModel kSettled = settledWith(1);
+// Beads that widen, discs, sloped beads.
+const gcode::DepositModel kFlowing = [] {
+    gcode::DepositModel deposit = settledWith(1);
+    deposit.flow_lag = 0.05;
+    deposit.sag = 0.03;
+    return deposit;
+}();
+const gcode::DepositModel kSettledCorners = settledWith(0.4);
 
 class FieldOfPrint : public testing::TestWithParam<Print> {};
 
@@ -43,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Print{"hull", "hull.gcode", "1:30", false, 4}, Print{"gear", "gear.gcode", "1:", false, 2},
                     Print{"gear_odd", "gear.gcode", "1:", false, 3}, Print{"gear_coarse", "gear.gcode", "1:", false, 1},
                     Print{"gear_settled", "gear.gcode", "1:20", false, 2, kSettled},
+                    Print{"bridges_flowing", "bridges.gcode", "1:12", false, 3, kFlowing},
                     // The band is less than what beads reach to fill a groove.
                     Print{"knot_settled", "knot.gcode", "1:9", false, 10, kSettledCorners},
                     Print{"arcs_superslicer", "preprocess_cancellation-superslicer.gcode", "1:20", true, 2},
@@ -149,7 +164,7 @@ TEST_P(FieldOfPrint, HasTheSamplesOfTheGrid) {
     gcode::ReadOptions options;
     options.deposit = print.deposit;
     const auto toolpath =
-        std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), print.path, options));
+        std::make_shared<const gcode::Toolpath>(deposit::readPrint(file.bytes(), print.path, options, false).toolpath);
     voxelize::Selection selection;
     voxelize::parseLayers(print.layers, selection);
     expectSame(toolpath, voxelize::selectBeads(*toolpath, selection), {std::nullopt, print.per_layer});

@@ -128,7 +128,9 @@ TEST_P(SettledPrint, SolidLayersKeepTheirVolume) {
         std::printf("  %s, %d voxels a layer: fed %.2f mm3, surface %.2f, surplus %.2f, rest %.3f %%\n",
                     GetParam().name, per_layer, all.fed, surface, all.surplus(),
                     100 * (all.fed - surface - all.surplus()) / all.fed);
-        EXPECT_NEAR(surface + all.surplus(), all.fed, 5e-3 * all.fed);
+        // Widths that change along the beads leave wedges between them, which samples close: less so, the finer.
+        const double most = GetParam().flow_lag < 0 ? 5e-3 : 0.06 / per_layer;
+        EXPECT_NEAR(surface + all.surplus(), all.fed, most * all.fed);
     }
 }
 

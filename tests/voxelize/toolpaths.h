@@ -17,29 +17,29 @@ using study::addArc;
 using study::addBead;
 using study::allBeads;
 
-/// The plan distance to a straight bead whose half flat changes linearly: the least over its discs, by search. It is
-/// convex along the path.
+/// The plan distance to a straight bead whose half flat changes linearly: the least over its discs. It is convex along
+/// the path, so the sign of its slope is bisected.
 struct TaperOffset {
     double d, at;  ///< mm; fraction of the path of the nearest disc
 };
 inline TaperOffset taperOffset(const gcode::Bead& bead, double start, double end, double x, double y) {
-    const auto offset = [&](double t) {
-        return std::hypot(x - std::lerp(double{bead.x0}, double{bead.x1}, t),
-                          y - std::lerp(double{bead.y0}, double{bead.y1}, t)) -
-               std::lerp(start, end, t);
+    const double ux = bead.x1 - bead.x0;
+    const double uy = bead.y1 - bead.y0;
+    const auto falls = [&](double t) {
+        const double px = x - bead.x0 - t * ux;
+        const double py = y - bead.y0 - t * uy;
+        return -(px * ux + py * uy) < (end - start) * std::sqrt(px * px + py * py);
     };
     double low = 0;
     double high = 1;
-    for (int n = 0; n < 60; ++n) {
-        const double a = low + (high - low) / 3;
-        const double b = high - (high - low) / 3;
-        (offset(a) > offset(b) ? low : high) = offset(a) > offset(b) ? a : b;
+    if (!falls(0)) high = 0;
+    if (falls(1)) low = 1;
+    while (high - low > 1e-13) {
+        const double middle = 0.5 * (low + high);
+        (falls(middle) ? low : high) = middle;
     }
-    // Ends to the bit: the search comes only near them.
-    TaperOffset best{offset(0.5 * (low + high)), 0.5 * (low + high)};
-    for (const double t : {0.0, 1.0})
-        if (offset(t) < best.d) best = {offset(t), t};
-    return best;
+    const double at = 0.5 * (low + high);
+    return {std::hypot(x - bead.x0 - at * ux, y - bead.y0 - at * uy) - std::lerp(start, end, at), at};
 }
 
 /// The field of one level bead, written from the definition: nearest point of the path in the plane, then the formula.

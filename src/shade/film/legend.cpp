@@ -51,6 +51,7 @@ std::string unitOfAttribute(const std::string& attribute) {
     if (attribute == "width") return "mm";
     if (attribute == "speed") return "mm/s";
     if (attribute == "time") return "s";
+    if (attribute == "flow") return "mm^3/s";
     return {};
 }
 

@@ -13,12 +13,13 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames{"layer",  "time",  "feature", "tool",
-                                                 "object", "width", "speed",   "color"};
+constexpr std::array<std::string_view, 10> kNames{"layer", "time",  "feature", "tool",     "object",
+                                                  "width", "speed", "flow",    "overfill", "color"};
 constexpr float kGrey = 0.8f;
 
 // IEC 61966-2-1, by a table, because every voxel needs a color.
@@ -32,6 +33,13 @@ float linear(std::uint8_t srgb) {
         return table;
     }();
     return kTable[srgb];
+}
+
+// mm^2, of the bead's section.
+float areaOf(const gcode::Toolpath& toolpath, std::uint32_t index) {
+    const gcode::Bead& bead = toolpath.beads[index];
+    return static_cast<float>(
+        gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height)));
 }
 
 template <typename Grid>
@@ -59,6 +67,8 @@ AttributeKind attributeKind(Attribute attribute) {
         case Attribute::time:
         case Attribute::width:
         case Attribute::speed:
+        case Attribute::flow:
+        case Attribute::overfill:
             return AttributeKind::number;
         case Attribute::color:
             return AttributeKind::color;
@@ -87,8 +97,13 @@ std::vector<Attribute> parseGrids(std::string_view text) {
     return attributes;
 }
 
-BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes)
-    : toolpath_(toolpath) {
+bool usesTiming(Attribute attribute) {
+    return attribute == Attribute::time || attribute == Attribute::speed || attribute == Attribute::flow;
+}
+
+BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
+                               std::vector<float> overfill)
+    : toolpath_(toolpath), overfill_(std::move(overfill)) {
     const auto wanted = [attributes](Attribute attribute) {
         return std::find(attributes.begin(), attributes.end(), attribute) != attributes.end();
     };
@@ -125,9 +140,12 @@ std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) co
 float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
     if (attribute == Attribute::time) return start_[bead];
     if (attribute == Attribute::width) return width_[bead];
+    if (attribute == Attribute::overfill) return overfill_[bead];
+    if (attribute == Attribute::flow && !toolpath_.flow.empty()) return toolpath_.flow[bead].rate;
+    const float per_mm = attribute == Attribute::flow ? areaOf(toolpath_, bead) : 1;
     const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
-    if (!(seconds > 0)) return toolpath_.runOf(toolpath_.beads[bead]).speed;
-    return static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;
+    if (!(seconds > 0)) return per_mm * toolpath_.runOf(toolpath_.beads[bead]).speed;
+    return per_mm * static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;
 }
 
 openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {

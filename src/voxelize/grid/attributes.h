@@ -15,19 +15,23 @@ namespace stratum::voxelize {
 /// One grid each, with the name written here and with the surface's transform and active voxels; a voxel has the value
 /// of the bead whose surface is nearest.
 enum class Attribute : std::uint8_t {
-    layer,    ///< Int32: 1, 2, ...
-    time,     ///< float: seconds from the program's start to the bead (Toolpath::timing); without a plan, of extruding
-    feature,  ///< Int32: see gcode::Feature; metadata "names" lists them
-    tool,     ///< Int32: T number
-    object,   ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
-    width,    ///< float: mm
-    speed,    ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
-    color,    ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
+    layer,     ///< Int32: 1, 2, ...
+    time,      ///< float: seconds from the program's start to the bead (Toolpath::timing); without a plan, of extruding
+    feature,   ///< Int32: see gcode::Feature; metadata "names" lists them
+    tool,      ///< Int32: T number
+    object,    ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
+    width,     ///< float: mm
+    speed,     ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
+    flow,      ///< float: mm^3/s, mean of the simulated flow (Toolpath::flow); without it, section times speed
+    overfill,  ///< float: share of the bead's plastic that has no place in its layer: overfillOfBeads()
+    color,     ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
 };
 
 /// Parses "surface,layer,tool". The surface is always written and may be named. Throws UsageError with the names.
 std::vector<Attribute> parseGrids(std::string_view text);
 std::string_view attributeName(Attribute attribute);
+/// Whether its values follow from a plan of the motion where there is one.
+bool usesTiming(Attribute attribute);
 
 /// The value type of its grid: Int32, float or Vec3f.
 enum class AttributeKind : std::uint8_t { integer, number, color };
@@ -36,7 +40,9 @@ AttributeKind attributeKind(Attribute attribute);
 /// A value of every bead for every attribute; made once, read by all threads.
 class BeadAttributes {
 public:
-    BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes);
+    /// `overfill`: overfillOfBeads(); only with Attribute::overfill.
+    BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
+                   std::vector<float> overfill = {});
 
     std::int32_t integer(Attribute attribute, std::uint32_t bead) const;
     float number(Attribute attribute, std::uint32_t bead) const;
@@ -46,6 +52,7 @@ private:
     const gcode::Toolpath& toolpath_;
     std::vector<float> start_;  // by bead, seconds; only with Attribute::time
     std::vector<float> width_;  // by bead, mm; only with Attribute::width
+    std::vector<float> overfill_;
 };
 
 /// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.

@@ -6,7 +6,9 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 namespace stratum::voxelize {
 namespace {
@@ -14,12 +16,13 @@ namespace {
 constexpr std::size_t kBalanceGrain = 16;
 // Integers, because their sum does not depend on the order of threads; mm^3.
 constexpr double kUnit = 1e-9;
+std::int64_t unitsOf(double volume) { return std::llround(volume / kUnit); }
 
 struct Sums {
     explicit Sums(std::size_t layers) : by_layer(layers) {}
 
     void add(const gcode::Run& run, double volume) {
-        const auto units = static_cast<std::int64_t>(std::llround(volume / kUnit));
+        const std::int64_t units = unitsOf(volume);
         by_feature[static_cast<std::size_t>(run.feature)] += units;
         by_layer[run.layer] += units;
     }
@@ -34,9 +37,10 @@ double thickness(const Layer& layer, double d) {
     return d < layer.radius ? 2 * (layer.half_side + std::sqrt(layer.radius * layer.radius - d * d)) : 0;
 }
 
-// Adds the parts of one column of a layer.
-void addLayer(const gcode::Toolpath& toolpath, const LayerStack& stack, const LeafColumn::LayerPlan& plan, double scale,
-              double sample_area, std::vector<double>& shares, Sums& laid) {
+// Calls add(bead, volume) for the parts of one column of a layer.
+template <typename Add>
+void addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double scale, double sample_area,
+              std::vector<double>& shares, const Add& add) {
     const std::size_t beads = plan.beads.size();
     shares.assign(2 * beads, 0.0);  // own thickness, then the sum of parts
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
@@ -48,8 +52,7 @@ void addLayer(const gcode::Toolpath& toolpath, const LayerStack& stack, const Le
         for (std::size_t n = 0; n < beads; ++n) shares[beads + n] += solid * shares[n] / sum;
     }
     for (std::size_t n = 0; n < beads; ++n)
-        if (shares[beads + n] > 0)
-            laid.add(toolpath.runOf(toolpath.beads[stack.beads[plan.ranks[n]]]), shares[beads + n] * sample_area);
+        if (shares[beads + n] > 0) add(stack.beads[plan.ranks[n]], shares[beads + n] * sample_area);
 }
 
 }  // namespace
@@ -67,7 +70,9 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
             if (bins[c].empty()) continue;
             column.open(bins.originI(c), bins.originJ(c), bins[c], end);
             column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
-                addLayer(toolpath, stack, plan, column.scale(), sample_area, scratch, laid);
+                addLayer(stack, plan, column.scale(), sample_area, scratch, [&](std::uint32_t bead, double volume) {
+                    laid.add(toolpath.runOf(toolpath.beads[bead]), volume);
+                });
             });
         }
     });
@@ -94,6 +99,36 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     }
     for (std::size_t l = 0; l < layers; ++l) balance.layers[l] = {mm3(fed.by_layer[l]), mm3(laid.by_layer[l])};
     return balance;
+}
+
+std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice) {
+    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
+    // Sums in integers, as above: those of a bead are met in any order.
+    std::vector<std::atomic<std::int64_t>> laid(toolpath.beads.size());
+    tbb::enumerable_thread_specific<LeafColumn> columns([&] { return LeafColumn(toolpath, stack, lattice, 1); });
+    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = columns.local();
+        std::vector<double> scratch;
+        const double sample_area = lattice.voxel_size * lattice.voxel_size;
+        const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
+        for (std::size_t c = first; c != last; ++c) {
+            if (bins[c].empty()) continue;
+            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
+            column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
+                addLayer(stack, plan, 1, sample_area, scratch, [&](std::uint32_t bead, double volume) {
+                    laid[bead].fetch_add(unitsOf(volume), std::memory_order_relaxed);
+                });
+            });
+        }
+    });
+    std::vector<float> shares(toolpath.beads.size(), 0);
+    for (std::uint32_t rank = 0; rank < stack.first_direct; ++rank) {
+        const std::uint32_t bead = stack.beads[rank];
+        const double fed = gcode::laidVolume(toolpath, bead);
+        const double missing = fed - static_cast<double>(laid[bead].load()) * kUnit;
+        if (fed > 0) shares[bead] = static_cast<float>(std::clamp(missing / fed, 0.0, 1.0));
+    }
+    return shares;
 }
 
 }  // namespace stratum::voxelize

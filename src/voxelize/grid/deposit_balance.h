@@ -3,6 +3,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
+#include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_positions.h"
 
@@ -32,5 +33,9 @@ struct DepositBalance {
 /// of threads.
 DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins,
                               const Lattice& lattice, const ColumnSource& columns, std::uint32_t end);
+
+/// By bead of the toolpath: the share of its plastic that has no place, 0..1; 0 for beads that are not in the stack and
+/// for sloped and round ones. As balanceDeposit(), of all beads.
+std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice);
 
 }  // namespace stratum::voxelize

@@ -237,7 +237,9 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     const State& s = *state_;
     std::vector<openvdb::GridBase::Ptr> grids = makeAttributeGrids(s.toolpath, wanted, *s.grid);
     if (wanted.empty()) return grids;
-    const BeadAttributes values(s.toolpath, wanted);
+    const bool overfill = std::find(wanted.begin(), wanted.end(), Attribute::overfill) != wanted.end();
+    const BeadAttributes values(s.toolpath, wanted,
+                                overfill ? overfillOfBeads(s.toolpath, s.stack, s.lattice) : std::vector<float>());
     ProgressMeter meter(std::max<std::size_t>(s.bins.entryCount(), 1), s.options.progress);
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
     tbb::enumerable_thread_specific<LeafColumn> owning(

@@ -51,7 +51,7 @@ void zigzag(gcode::Toolpath& toolpath) {
 
 // Lines whose widths change along them, up and down, within reach of each other.
 void tapers(gcode::Toolpath& toolpath) {
-    parallelLines(toolpath, 0.42);
+    for (int n = 0; n < 5; ++n) test::addBead(toolpath, 0, 0.42 * n, kHeight, 2, 0.42 * n, kHeight, kWidth, kHeight);
     test::addBead(toolpath, -1, -1, kHeight, 2, -1.5, kHeight, 1.2, kHeight);
     test::addBead(toolpath, 1, 3, kHeight, 1.1, 3.1, kHeight, 0.4, kHeight);
     toolpath.flow.resize(toolpath.beads.size());
