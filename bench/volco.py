@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Volume and time of a tile of 24 beads: capsules, settled beads and VOLCO, the volume-conserving voxel simulator.
+"""Volume and time of a tile of 24 beads: capsules, settled beads, the same with flow, and VOLCO, the volume-conserving voxel simulator.
 
     bench/volco.py [--volco FOLDER] [--bin GCODE2VDB] [--voxel-size MM] [--runs N] [--volco-runs N] [--threads N]
 
@@ -29,7 +29,11 @@ AREA = HEIGHT * (WIDTH - HEIGHT) + math.pi * HEIGHT**2 / 4  # of a stadium
 SPACING = AREA / HEIGHT  # w - h (1 - pi/4)
 BEADS = LINES * LAYERS
 LAYOUTS = ["parallel", "zigzag", "crossed"]
-MODELS = ["capsule", "settled"]
+MODELS = {  # options of gcode2vdb
+    "capsule": ["--beads", "capsule"],
+    "settled": ["--beads", "settled"],
+    "settled, flow": ["--beads", "settled", "--flow-lag", "0"],  # lines end where their flow does
+}
 
 
 def lines(layout, layer, length):
@@ -77,7 +81,7 @@ class Tile:
         self.check()
 
     def command(self, model, length=LENGTH):
-        return [self.options.bin, self.paths[length], "--voxel-size", str(self.options.voxel_size), "--beads", model,
+        return [self.options.bin, self.paths[length], "--voxel-size", str(self.options.voxel_size), *MODELS[model],
                 "--threads", str(self.options.threads), "--quiet", "-o", os.path.join(self.folder, "tile.vdb")]
 
     def stats(self, model, length=LENGTH):
@@ -86,13 +90,14 @@ class Tile:
     def volume(self, model, length):
         """mm^3 that the level set encloses; of large grids of capsules only a sample is known, which is not enough."""
         stats = self.stats(model, length)
-        if model == "settled":
+        if stats["deposit"]:
             return stats["deposit"]["surface_mm3"]
         return stats["grid"]["volume_mm3"] if stats["grid"]["volume_leaves"] == stats["grid"]["leaves"] else math.nan
 
     def ours(self, model):
-        """Seconds of making the grid, and of a process that makes no report but the grid's file."""
-        return self.stats(model)["seconds"]["voxelize"], seconds(self.command(model))[1]
+        """Seconds from the bytes to the grid, and of a process that makes no report but the grid's file."""
+        parts = self.stats(model)["seconds"]
+        return parts["parse"] + parts["voxelize"], seconds(self.command(model))[1]
 
     def volco(self):
         """mm^3, seconds of depositing, seconds of the process."""

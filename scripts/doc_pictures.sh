@@ -53,6 +53,15 @@ for percent in 25 50 75 100; do
 done
 near=(--voxels-per-layer 8 --zoom 4 --size 700x525)
 tiles settled 2 data/gcode/tile.gcode "${near[*]}" "${near[*]} --beads settled"
+# Top layer, seam, wall and corner: as commanded, and by a typical printer.
+pairs=()
+for camera in "--eye 94,88,16 --look-at 101,97,2.4" "--eye 118,88,10 --look-at 108,98,3.2" \
+    "--eye 92,72,6 --look-at 96,87.4,1.6" "--eye 88,76,11 --look-at 92,90,2.4"; do
+    for printer in ideal typical; do
+        pairs+=("$camera --fov 22 --size 480x360 --spp 24 --voxels-per-layer 8 --printer $printer")
+    done
+done
+tiles deposit 4 data/gcode/tile.gcode "${pairs[@]}"
 shown=(--size 640x480)
 picture gallery_gear data/gcode/gear.gcode "${shown[@]}" --brdf pla-yellow
 picture gallery_vase data/gcode/vase.gcode "${shown[@]}" --brdf silk-pink

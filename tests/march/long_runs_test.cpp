@@ -6,7 +6,8 @@
 #include "base/parallel_for.h"
 #include "brute_march.h"
 #include "corpus.h"
-#include "gcode/reader.h"
+#include "deposit/printer.h"
+#include "deposit/read_print.h"
 #include "random_rays.h"
 #include "rubble.h"
 #include "voxelize/beads/selection.h"
@@ -30,17 +31,32 @@ constexpr std::size_t kBlock = std::size_t{1} << 14;  // rays that are made and 
 /// All of them with STRATUM_LONG=1 in the environment, else a fiftieth.
 std::size_t full(std::size_t rays) { return std::getenv("STRATUM_LONG") != nullptr ? rays : rays / 50; }
 
+// Calls work(tracer, random, rays) for `count` rays in all, in parallel; each block has its own seed.
+template <typename Work>
+void inBlocks(const trace::Intersector& intersector, std::size_t count, const Work& work) {
+    parallelFor((count + kBlock - 1) / kBlock, 1, [&](std::size_t first, std::size_t last) {
+        const auto tracer = intersector.makeTracer();
+        for (std::size_t block = first; block != last; ++block) {
+            std::mt19937 random(static_cast<std::uint32_t>(block) + 1);
+            work(*tracer, random, std::min(kBlock, count - block * kBlock));
+        }
+    });
+}
+
+openvdb::FloatGrid::Ptr levelSetOf(const gcode::Toolpath& toolpath) {
+    std::vector<std::uint32_t> beads(toolpath.beads.size());
+    std::iota(beads.begin(), beads.end(), 0U);
+    voxelize::LatticeRequest request;
+    request.voxel_size = kVoxel;
+    return voxelize::voxelize(toolpath, beads,
+                              voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request));
+}
+
 class LongRuns : public testing::Test {
 protected:
     static void SetUpTestSuite() {
         const MappedFile file(test::dataDir() / "gcode" / "hull.gcode");
-        const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), "hull.gcode");
-        std::vector<std::uint32_t> beads(toolpath.beads.size());
-        std::iota(beads.begin(), beads.end(), 0U);
-        voxelize::LatticeRequest request;
-        request.voxel_size = kVoxel;
-        grid_ = voxelize::voxelize(
-            toolpath, beads, voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request));
+        grid_ = levelSetOf(gcode::readToolpath(file.bytes(), "hull.gcode"));
         intersector_ = makeBrickIntersector(*grid_);
     }
     static void TearDownTestSuite() {
@@ -48,16 +64,9 @@ protected:
         grid_.reset();
     }
 
-    // Calls work(tracer, random, rays, block) for `count` rays in all, in parallel; each block has its own seed.
     template <typename Work>
     static void inBlocks(std::size_t count, const Work& work) {
-        parallelFor((count + kBlock - 1) / kBlock, 1, [&](std::size_t first, std::size_t last) {
-            const auto tracer = intersector_->makeTracer();
-            for (std::size_t block = first; block != last; ++block) {
-                std::mt19937 random(static_cast<std::uint32_t>(block) + 1);
-                work(*tracer, random, std::min(kBlock, count - block * kBlock));
-            }
-        });
+        march::inBlocks(*intersector_, count, work);
     }
     static glm::dvec3 center() { return 0.5 * (intersector_->bounds().min + intersector_->bounds().max); }
     static double radius() { return 0.5 * glm::length(intersector_->bounds().max - intersector_->bounds().min); }
@@ -117,21 +126,21 @@ TEST_F(LongRuns, AMillionRaysMeetWhatTheBruteMarchMeets) {
     EXPECT_LE(crossings, kRays / 10000);
 }
 
-TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) {
-    const std::size_t kRays = full(10000000);
+// Rays from samples inside a solid, which must all meet its surface from the inside.
+void expectNoLeak(const openvdb::FloatGrid& grid, const trace::Intersector& intersector, std::size_t count) {
     std::vector<openvdb::Coord> solid;
-    for (auto it = grid_->cbeginValueOn(); it; ++it)
+    for (auto it = grid.cbeginValueOn(); it; ++it)
         // Samples that are zero but for rounding, on flats that lie on voxel planes, are the surface itself.
         if (*it < -1e-5 * kVoxel) solid.push_back(it.getCoord());
     ASSERT_GT(solid.size(), 1000000U);
     std::atomic<std::size_t> leaks{0};
     std::atomic<std::size_t> wrong{0};
-    inBlocks(kRays, [&](trace::Tracer& tracer, std::mt19937& random, std::size_t count) {
-        std::vector<trace::Ray> rays(count);
-        std::vector<trace::Hit> hits(count);
-        std::vector<std::uint8_t> blocked(count);
-        for (std::size_t n = 0; n < count; ++n) {
-            const openvdb::Vec3d start = grid_->indexToWorld(solid[random() % solid.size()]);
+    inBlocks(intersector, count, [&](trace::Tracer& tracer, std::mt19937& random, std::size_t size) {
+        std::vector<trace::Ray> rays(size);
+        std::vector<trace::Hit> hits(size);
+        std::vector<std::uint8_t> blocked(size);
+        for (std::size_t n = 0; n < size; ++n) {
+            const openvdb::Vec3d start = grid.indexToWorld(solid[random() % solid.size()]);
             rays[n].origin = {start[0], start[1], start[2]};
             rays[n].direction = test::randomDirection(random);
             // Along lattice lines and planes as well.
@@ -141,7 +150,7 @@ TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) {
         }
         tracer.intersectStream(rays, hits);
         tracer.occludedStream(rays, blocked);
-        for (std::size_t n = 0; n < count; ++n) {
+        for (std::size_t n = 0; n < size; ++n) {
             const bool found = std::isfinite(hits[n].t);
             leaks += found && blocked[n] == 1 ? 0 : 1;
             // From inside, the surface is left through its inner side.
@@ -151,6 +160,17 @@ TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) {
     std::printf("  %zu leaks, %zu met from the wrong side\n", leaks.load(), wrong.load());
     EXPECT_EQ(leaks, 0U);
     EXPECT_EQ(wrong, 0U);
+}
+
+TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) { expectNoLeak(*grid_, *intersector_, full(10000000)); }
+
+TEST_F(LongRuns, AMillionRaysFromInsideATypicalPrintNeverGetOut) {
+    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    gcode::ReadOptions options;
+    deposit::usePrinter("typical", options);
+    const gcode::Toolpath toolpath = deposit::readPrint(file.bytes(), "gear.gcode", options, false).toolpath;
+    const openvdb::FloatGrid::Ptr grid = levelSetOf(toolpath);
+    expectNoLeak(*grid, *makeBrickIntersector(*grid), 1000000);
 }
 
 TEST_F(LongRuns, TenMillionGrazingRaysEndWithFiniteAnswers) {
