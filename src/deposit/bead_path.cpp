@@ -42,6 +42,13 @@ LineRange inDisc(double ux, double uy, double x, double y, double radius) {
     return {along - half, along + half};
 }
 
+// Of the same disc, where the point lies more across the line than along it.
+LineRange besideDisc(double ux, double uy, double x, double y, double radius) {
+    LineRange range = inDisc(ux, uy, x, y, radius);
+    range.clip(-(x * ux + y * uy), 1, -std::abs(x * uy - y * ux), std::abs(x * uy - y * ux));
+    return range;
+}
+
 }  // namespace
 
 BeadPath::BeadPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
@@ -84,25 +91,78 @@ double BeadPath::distance(double x, double y) const {
         const double t = std::clamp(px * ux_ + py * uy_, 0.0, length_);
         return std::hypot(px - t * ux_, py - t * uy_);
     }
-    const double vx = x - center_x_;
-    const double vy = y - center_y_;
-    constexpr double kTurn = 2 * std::numbers::pi;
-    double turned = (std::atan2(vy, vx) - angle_) * (sweep_ < 0 ? -1 : 1);
-    turned -= kTurn * std::floor(turned / kTurn);
-    if (turned <= std::abs(sweep_)) return std::abs(std::hypot(vx, vy) - radius_);
-    const PlanPlace start = at(0);
-    const PlanPlace end = at(length_);
-    return std::min(std::hypot(x - start.x, y - start.y), std::hypot(x - end.x, y - end.y));
+    const double mm = nearest(x, y);
+    if (mm > 0 && mm < length_) return std::abs(std::hypot(x - center_x_, y - center_y_) - radius_);
+    const PlanPlace end = at(mm);
+    return std::hypot(x - end.x, y - end.y);
 }
 
-void BeadPath::partsNear(const BeadPath& other, double reach, std::vector<PathPart>& parts) const {
-    if (!straight() || !other.straight()) {
-        walk(other, reach, parts);
-    } else if (length_ > 0) {
+double BeadPath::nearest(double x, double y) const {
+    if (straight()) return std::clamp((x - x0_) * ux_ + (y - y0_) * uy_, 0.0, length_);
+    constexpr double kTurn = 2 * std::numbers::pi;
+    const double sweep = std::abs(sweep_);
+    double turned = (std::atan2(y - center_y_, x - center_x_) - angle_) * (sweep_ < 0 ? -1 : 1);
+    turned -= kTurn * std::floor(turned / kTurn);
+    if (turned <= sweep) return std::min(radius_ * turned, length_);
+    return turned - sweep < kTurn - turned ? length_ : 0;  // the end that is fewer degrees away
+}
+
+std::size_t BeadPath::partsNear(const BeadPath& other, double reach, std::vector<PathPart>& parts) const {
+    if (!straight() || !other.straight())
+        return walk(
+            [&](double mm) {
+                const PlanPlace place = at(mm);
+                return other.distance(place.x, place.y) - reach;
+            },
+            parts);
+    if (length_ > 0) {
         segmentNearSegment(other, reach, parts);
     } else if (other.distance(x0_, y0_) <= reach) {
         parts.push_back({0, 0});
     }
+    return 1;
+}
+
+std::size_t BeadPath::partsBeside(const BeadPath& other, PathPart held, double reach,
+                                  std::vector<PathPart>& parts) const {
+    if (straight() && other.straight() && length_ > 0) {
+        segmentBesideSegment(other, held, reach, parts);
+        return 1;
+    }
+    const std::size_t before = parts.size();
+    const std::size_t distances = walk(
+        [&](double mm) {
+            const PlanPlace place = at(mm);
+            const double gap = other.distance(place.x, place.y) - reach;
+            if (gap > 0) return gap;
+            return beside(mm, other, held) ? 0 : kFineStep;
+        },
+        parts);
+    // Where two paths meet, the direction between them is rounding.
+    const double shortest = std::min(kFineStep, length_);
+    const auto first = parts.begin() + static_cast<std::ptrdiff_t>(before);
+    parts.erase(
+        std::remove_if(first, parts.end(), [&](const PathPart& part) { return part.to - part.from < shortest; }),
+        parts.end());
+    return distances;
+}
+
+// But for the reach.
+bool BeadPath::beside(double mm, const BeadPath& other, PathPart held) const {
+    const PlanPlace here = at(mm);
+    const double nearest = other.nearest(here.x, here.y);
+    if (nearest < held.from || nearest > held.to) return false;
+    if (!(length_ > 0)) return true;
+    double ux = ux_;
+    double uy = uy_;
+    if (!straight()) {
+        ux = -(here.y - center_y_) / radius_;
+        uy = (here.x - center_x_) / radius_;
+    }
+    const PlanPlace there = other.at(nearest);
+    const double dx = there.x - here.x;
+    const double dy = there.y - here.y;
+    return std::abs(dx * ux + dy * uy) <= std::abs(dx * uy - dy * ux);
 }
 
 // What is within reach of a segment is two discs and the rectangle between them. It is convex, so the line is in it
@@ -123,20 +183,50 @@ void BeadPath::segmentNearSegment(const BeadPath& other, double reach, std::vect
     if (from <= to) parts.push_back({from, to});
 }
 
-// The distance to the other path changes by a mm per mm at most, so a step as long as what is missing to the reach
-// passes nothing over.
-void BeadPath::walk(const BeadPath& other, double reach, std::vector<PathPart>& parts) const {
-    const auto beyond = [&](double mm) {
-        const PlanPlace place = at(mm);
-        return other.distance(place.x, place.y) - reach;
+// What is nearest to a place in the other's interior lies square to it, so that there the angle between the two decides
+// what is beside; what is nearest to an end is in the half plane beyond it.
+void BeadPath::segmentBesideSegment(const BeadPath& other, PathPart held, double reach,
+                                    std::vector<PathPart>& parts) const {
+    const double ax = other.x0_ - x0_;
+    const double ay = other.y0_ - y0_;
+    const double foot = -(ax * other.ux_ + ay * other.uy_);  // on the other, of this path's start
+    const double slope = ux_ * other.ux_ + uy_ * other.uy_;
+    const double turn = other.ux_ * uy_ - other.uy_ * ux_;
+    const auto keep = [&](LineRange range) {
+        range.clip(0, 1, 0, length_);
+        if (range.from < range.to) parts.push_back({range.from, range.to});
     };
+    if (std::abs(slope) > std::abs(turn)) {
+        LineRange range{0, length_};
+        range.clip(foot, slope, held.from, held.to);
+        range.clip(ax * other.uy_ - ay * other.ux_, turn, -reach, reach);
+        keep(range);
+    }
+    if (held.from <= 0) {
+        LineRange range = besideDisc(ux_, uy_, ax, ay, reach);
+        range.clip(foot, slope, -1e300, 0);
+        keep(range);
+    }
+    if (held.to >= other.length_) {
+        LineRange range = besideDisc(ux_, uy_, other.x1_ - x0_, other.y1_ - y0_, reach);
+        range.clip(foot, slope, other.length_, 1e300);
+        keep(range);
+    }
+}
+
+// The parts in which `beyond` is not above 0. A step as long as its absolute value passes nothing over, as the distance
+// to another path changes by a mm per mm at most. Returns the number of its values.
+template <typename Beyond>
+std::size_t BeadPath::walk(const Beyond& beyond, std::vector<PathPart>& parts) const {
     const double least = std::max(kFineStep, length_ / kMostSteps);
+    std::size_t values = 1;
     double begin = 0;
     double here = 0;
     double gap = beyond(0);
     while (here < length_) {
         const double next = std::min(length_, here + std::max(least, std::abs(gap)));
         const double next_gap = beyond(next);
+        ++values;
         if ((gap <= 0) != (next_gap <= 0)) {
             double low = here;
             double high = next;
@@ -144,6 +234,7 @@ void BeadPath::walk(const BeadPath& other, double reach, std::vector<PathPart>& 
                 const double middle = 0.5 * (low + high);
                 if (middle <= low || middle >= high) break;  // no double lies between them
                 ((beyond(middle) <= 0) == (gap <= 0) ? low : high) = middle;
+                ++values;
             }
             if (gap <= 0)
                 parts.push_back({begin, low});
@@ -154,6 +245,7 @@ void BeadPath::walk(const BeadPath& other, double reach, std::vector<PathPart>& 
         gap = next_gap;
     }
     if (gap <= 0) parts.push_back({begin, length_});
+    return values;
 }
 
 }  // namespace stratum::deposit

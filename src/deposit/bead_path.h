@@ -3,6 +3,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace stratum::deposit {
@@ -33,15 +34,27 @@ public:
     /// From (x, y) to the path, mm.
     double distance(double x, double y) const;
 
+    /// mm along the path to its place nearest to (x, y).
+    double nearest(double x, double y) const;
+
     /// Appends the parts of this path that are within `reach` (mm) of `other`. Two segments: one part at most, in
     /// closed form. With an arc: the ends are bisected to a micrometre, and parts shorter than kFineStep may be missed.
-    void partsNear(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+    /// Returns how many distances that took; closed forms count as one.
+    std::size_t partsNear(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+
+    /// The same for the places that are beside `other`: within `reach` of their nearest place on it, which is in its
+    /// part `held`, and seen from which they lie more across this path than along it (so not ahead of an end, nor where
+    /// the two cross steeply). Parts may overlap. A path of no length has no direction: for it, reach and part decide.
+    std::size_t partsBeside(const BeadPath& other, PathPart held, double reach, std::vector<PathPart>& parts) const;
 
     static constexpr double kFineStep = 0.05;  ///< mm
 
 private:
     void segmentNearSegment(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
-    void walk(const BeadPath& other, double reach, std::vector<PathPart>& parts) const;
+    void segmentBesideSegment(const BeadPath& other, PathPart held, double reach, std::vector<PathPart>& parts) const;
+    bool beside(double mm, const BeadPath& other, PathPart held) const;
+    template <typename Beyond>
+    std::size_t walk(const Beyond& beyond, std::vector<PathPart>& parts) const;
 
     double x0_, y0_, x1_, y1_;  // mm
     double ux_ = 0, uy_ = 0;    // unit direction of a segment; 0 for a point

@@ -13,6 +13,12 @@ constexpr double kMostVisits = 2e7;         // entries of all cells, about; more
 constexpr double kLargestCoordinate = 1e6;  // mm; beyond it a millimetre's parts are lost in a double's products
 constexpr double kChordTurn = 0.25;         // radians of an arc that are entered as one chord
 constexpr double kJoined = 1e-6;            // mm between two parts that are one
+constexpr std::size_t kMergedAfter = 64;    // parts
+
+// Of BeadSupport::below_
+constexpr std::uint32_t kUnknown = 0xffffffff;
+constexpr std::uint32_t kNone = 0xfffffffe;
+constexpr std::uint32_t kWhole = 0xfffffffd;
 
 bool isSupportMaterial(gcode::Feature feature) {
     return feature == gcode::Feature::support || feature == gcode::Feature::support_interface;
@@ -33,6 +39,10 @@ void mergeParts(std::vector<PathPart>& parts) {
     parts.resize(kept);
 }
 
+bool covers(const std::vector<PathPart>& parts, double length) {
+    return parts.size() == 1 && parts[0].from <= 0 && parts[0].to >= length;
+}
+
 }  // namespace
 
 BeadSupport::BeadSupport(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
@@ -47,6 +57,7 @@ BeadSupport::BeadSupport(const gcode::Toolpath& toolpath) : toolpath_(toolpath) 
     setGrid();
     fillGrid();
     asked_.resize(level_.size());
+    below_.assign(level_.size(), kUnknown);
 }
 
 bool BeadSupport::usable(const gcode::Bead& bead) const {
@@ -76,6 +87,15 @@ bool BeadSupport::below(const gcode::Bead& lower, const gcode::Bead& upper) cons
 
 double BeadSupport::reach(const gcode::Bead& lower, const gcode::Bead& upper) {
     return kContact * 0.5 * (static_cast<double>(lower.width) + static_cast<double>(upper.width));
+}
+
+bool BeadSupport::holds(const gcode::Bead& neighbour, const gcode::Bead& bead) const {
+    return std::abs(neighbour.z0 - bead.z0) <= kTouchingRounding &&
+           toolpath_.runOf(neighbour).feature != gcode::Feature::ironing;
+}
+
+double BeadSupport::reachBeside(const gcode::Bead& a, const gcode::Bead& b) {
+    return kBeside * 0.5 * (static_cast<double>(a.width) + static_cast<double>(b.width));
 }
 
 void BeadSupport::setGrid() {
@@ -111,7 +131,7 @@ void BeadSupport::visitCells(const gcode::Bead& bead, const Visit& visit) const 
     const BeadPath path(toolpath_, bead);
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(path.turn()) / kChordTurn)));
     const double off_chord = path.radius() * (1 - std::cos(0.5 * path.turn() / chords));
-    const double side = kContact * 0.5 * static_cast<double>(bead.width) + off_chord + kTouchingRounding;
+    const double side = kBeside * 0.5 * static_cast<double>(bead.width) + off_chord + kTouchingRounding;
     const auto cellOf = [this](double mm, double origin, long count) {
         return static_cast<long>(std::clamp((mm - origin) / cell_, 0.0, static_cast<double>(count - 1)));
     };
@@ -146,45 +166,137 @@ void BeadSupport::fillGrid() {
     std::stable_sort(by_top.begin(), by_top.end(), [this](std::uint32_t a, std::uint32_t b) {
         return double{toolpath_.beads[a].z0} < double{toolpath_.beads[b].z0};
     });
-    starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+    const std::size_t cells = static_cast<std::size_t>(columns_ * rows_);
+    starts_.assign(cells + 1, 0);
+    // Chords of an arc share cells.
+    std::vector<std::uint32_t> last(cells, kUnknown);
     for (const std::uint32_t n : by_top)
-        visitCells(toolpath_.beads[n], [this](std::size_t cell) { ++starts_[cell + 1]; });
+        visitCells(toolpath_.beads[n], [&](std::size_t cell) {
+            if (last[cell] != n) ++starts_[cell + 1];
+            last[cell] = n;
+        });
     for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
     entries_.resize(starts_.back());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
+    last.assign(cells, kUnknown);
     for (const std::uint32_t n : by_top) {
         const auto top = static_cast<float>(toolpath_.beads[n].z0);
-        visitCells(toolpath_.beads[n], [&](std::size_t cell) { entries_[next[cell]++] = {top, n}; });
+        visitCells(toolpath_.beads[n], [&](std::size_t cell) {
+            if (last[cell] != n) entries_[next[cell]++] = {top, n};
+            last[cell] = n;
+        });
+    }
+}
+
+// Collects in `candidates` the level beads with their tops in this range that share a cell with a bead and are
+// accepted, each once; returns false past one of the bounds.
+template <typename Accept>
+bool BeadSupport::gather(std::uint32_t bead, double lowest, double highest, const Accept& accept,
+                         std::vector<std::uint32_t>& candidates) {
+    const double rounding = 1e-6 * (1 + std::max(std::abs(lowest), std::abs(highest)));  // of a float's top
+    const auto low = static_cast<float>(lowest - rounding);
+    const auto high = static_cast<float>(highest + rounding);
+    candidates.clear();
+    ++searches_;
+    bool few = true;
+    visitCells(toolpath_.beads[bead], [&](std::size_t cell) {
+        if (!few) return;
+        const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell]);
+        const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell + 1]);
+        const auto first = std::lower_bound(begin, end, low, [](const Entry& one, float top) { return one.top < top; });
+        const auto last = std::upper_bound(first, end, high, [](float top, const Entry& one) { return top < one.top; });
+        few = static_cast<std::size_t>(last - first) <= kMostInCell;
+        for (auto entry = first; few && entry != last; ++entry) {
+            if (asked_[entry->bead] == searches_) continue;
+            asked_[entry->bead] = searches_;
+            if (accept(entry->bead)) candidates.push_back(entry->bead);
+            few = candidates.size() <= kMostDistances;
+        }
+    });
+    return few;
+}
+
+// Appends what the candidates give, until that is the whole path. append(candidate) returns the distances it took.
+template <typename Append>
+void BeadSupport::unite(const BeadPath& path, const std::vector<std::uint32_t>& candidates,
+                        std::vector<PathPart>& parts, const Append& append) {
+    std::size_t distances = 0;
+    std::size_t merge_at = parts.size() + kMergedAfter;
+    for (const std::uint32_t candidate : candidates) {
+        const std::size_t before = parts.size();
+        distances += append(candidate);
+        bool whole = distances > kMostDistances;
+        for (std::size_t n = before; n < parts.size(); ++n)
+            whole = whole || (parts[n].from <= 0 && parts[n].to >= path.length());
+        if (!whole && parts.size() >= merge_at) {
+            mergeParts(parts);
+            whole = covers(parts, path.length());
+            merge_at = 2 * parts.size() + kMergedAfter;
+        }
+        if (whole) {
+            parts.assign(1, {0, path.length()});
+            return;
+        }
+    }
+    mergeParts(parts);
+}
+
+void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts) {
+    const gcode::Bead& upper = toolpath_.beads[bead];
+    const BeadPath path(toolpath_, upper);
+    const double height = static_cast<double>(toolpath_.runOf(upper).height);
+    const double lowest = upper.z0 - height - std::max(kSupportClearance, touching(height));
+    const auto carries = [&](std::uint32_t lower) { return below(toolpath_.beads[lower], upper); };
+    if (everywhere(upper) || !gather(bead, lowest, upper.z0 - kLeastBurial * height, carries, lower_)) {
+        parts.push_back({0, path.length()});
+        return;
+    }
+    unite(path, lower_, parts, [&](std::uint32_t n) {
+        const gcode::Bead& lower = toolpath_.beads[n];
+        return path.partsNear(BeadPath(toolpath_, lower), reach(lower, upper), parts);
+    });
+}
+
+void BeadSupport::fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) {
+    parts.clear();
+    const std::uint32_t known = below_[bead];
+    if (known == kNone) return;
+    if (known == kWhole) {
+        parts.push_back({0, BeadPath(toolpath_, toolpath_.beads[bead]).length()});
+    } else if (known == kUnknown) {
+        searchBelow(bead, parts);
+        if (parts.empty()) {
+            below_[bead] = kNone;
+        } else if (covers(parts, BeadPath(toolpath_, toolpath_.beads[bead]).length())) {
+            below_[bead] = kWhole;
+        } else {
+            below_[bead] = static_cast<std::uint32_t>(below_parts_.size());
+            below_parts_.insert(below_parts_.end(), parts.begin(), parts.end());
+            below_parts_.push_back({1, 0});
+        }
+    } else {
+        for (auto part = below_parts_.begin() + known; part->from <= part->to; ++part) parts.push_back(*part);
     }
 }
 
 void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts) {
-    parts.clear();
-    const gcode::Bead& upper = toolpath_.beads[bead];
-    const BeadPath path(toolpath_, upper);
-    if (everywhere(upper)) {
-        parts.push_back({0, path.length()});
+    fromBelow(bead, parts);
+    const gcode::Bead& middle = toolpath_.beads[bead];
+    const BeadPath path(toolpath_, middle);
+    if (covers(parts, path.length())) return;
+    const auto neighbours = [&](std::uint32_t n) { return n != bead && holds(toolpath_.beads[n], middle); };
+    if (!gather(bead, middle.z0 - kTouchingRounding, middle.z0 + kTouchingRounding, neighbours, beside_)) {
+        parts.assign(1, {0, path.length()});
         return;
     }
-    const double height = static_cast<double>(toolpath_.runOf(upper).height);
-    const double rounding = 1e-6 * (1 + std::abs(upper.z0));  // of a float's top
-    const double lowest = upper.z0 - height - std::max(kSupportClearance, touching(height)) - rounding;
-    const double highest = upper.z0 - kLeastBurial * height + rounding;
-    bool whole = false;
-    visitCells(upper, [&](std::size_t cell) {
-        const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell + 1]);
-        auto entry = std::lower_bound(entries_.begin() + static_cast<std::ptrdiff_t>(starts_[cell]), end, lowest,
-                                      [](const Entry& one, double top) { return static_cast<double>(one.top) < top; });
-        for (; !whole && entry != end && static_cast<double>(entry->top) <= highest; ++entry) {
-            if (asked_[entry->bead] == bead + 1) continue;
-            asked_[entry->bead] = bead + 1;
-            const gcode::Bead& lower = toolpath_.beads[entry->bead];
-            if (!below(lower, upper)) continue;
-            path.partsNear(BeadPath(toolpath_, lower), reach(lower, upper), parts);
-            whole = !parts.empty() && parts.back().from <= 0 && parts.back().to >= path.length();
-        }
+    unite(path, beside_, parts, [&](std::uint32_t n) {
+        fromBelow(n, neighbour_parts_);
+        std::size_t distances = 0;
+        const gcode::Bead& neighbour = toolpath_.beads[n];
+        for (const PathPart& held : neighbour_parts_)
+            distances += path.partsBeside(BeadPath(toolpath_, neighbour), held, reachBeside(neighbour, middle), parts);
+        return distances;
     });
-    mergeParts(parts);
 }
 
 }  // namespace stratum::deposit

@@ -17,9 +17,9 @@ struct SagReport {
 /// Largest `fraction`; larger ones count as this.
 constexpr double kMostSag = 0.5;
 
-/// Lets level beads hang where nothing is below them (bead_support.h says what carries a bead). A span is an
-/// unsupported part of a chain of level beads, each beginning where the last ended, with support at both of its ends.
-/// Over a span of length L in the plan, the place at s (mm) drops by
+/// Lets level beads hang where nothing carries them (bead_support.h says what does, below them and beside). A span is
+/// an unsupported part of a chain of level beads, each beginning where the last ended, with support at both of its
+/// ends. Over a span of length L in the plan, the place at s (mm) drops by
 ///     4 fraction s (L - s) / L        (mm; fraction L in the middle)
 /// but no steeper than 0.99 from the two ends, so that a piece stays below 45 degrees; that matters for fractions above
 /// 0.2475. Loose ends, loops without support, sloped beads, and spans shorter than the widest of their beads, which the

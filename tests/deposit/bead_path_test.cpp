@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -31,6 +32,27 @@ void expectParts(const BeadPath& path, const BeadPath& other, double reach, cons
     }
 }
 
+void expectBeside(const BeadPath& path, const BeadPath& other, PathPart held, double reach, PathPart expected) {
+    std::vector<PathPart> parts;
+    path.partsBeside(other, held, reach, parts);
+    ASSERT_FALSE(parts.empty());
+    // The parts of two segments adjoin.
+    std::sort(parts.begin(), parts.end(), [](const PathPart& a, const PathPart& b) { return a.from < b.from; });
+    double to = parts[0].from;
+    for (const PathPart& part : parts) {
+        EXPECT_LE(part.from, to + 1e-9);
+        to = std::max(to, part.to);
+    }
+    EXPECT_NEAR(parts[0].from, expected.from, 2e-6);
+    EXPECT_NEAR(to, expected.to, 2e-6);
+}
+
+void expectNothingBeside(const BeadPath& path, const BeadPath& other, double reach) {
+    std::vector<PathPart> parts;
+    path.partsBeside(other, {0, other.length()}, reach, parts);
+    for (const PathPart& part : parts) EXPECT_LT(part.to - part.from, 1e-9);
+}
+
 TEST(BeadPath, PlacesAndDistances) {
     EXPECT_EQ(segment(1, 1, 4, 5).length(), 5);
     EXPECT_NEAR(segment(1, 1, 4, 5).at(2.5).y, 3, 1e-12);
@@ -42,6 +64,11 @@ TEST(BeadPath, PlacesAndDistances) {
     EXPECT_NEAR(clockwise.distance(3, -3), std::hypot(3, 3) - 2, 1e-12);
     EXPECT_NEAR(clockwise.distance(0, 2), std::hypot(2, 2), 1e-12);
     EXPECT_NEAR(arc(2, 2 * std::numbers::pi).distance(0, -0.5), 1.5, 1e-12);
+    EXPECT_EQ(segment(1, 1, 5, 1).nearest(9, 3), 4);
+    EXPECT_EQ(segment(1, 1, 5, 1).nearest(2, 3), 1);
+    EXPECT_NEAR(clockwise.nearest(3, -3), 0.5 * clockwise.length(), 1e-12);
+    EXPECT_EQ(clockwise.nearest(-1, -5), clockwise.length());
+    EXPECT_EQ(clockwise.nearest(5, 1), 0);
     EXPECT_EQ(arc(0, 1).length(), 0);
     EXPECT_TRUE(arc(0, 1).straight());
 }
@@ -68,6 +95,41 @@ TEST(BeadPath, PartsNearAnArc) {
     const double near = 5 * std::asin(0.2);
     expectParts(arc(5, std::numbers::pi), segment(-9, 0, 9, 0), 1,
                 {{0, near}, {5 * std::numbers::pi - near, 5 * std::numbers::pi}});
+}
+
+TEST(BeadPath, PartsBesideASegment) {
+    const BeadPath path = segment(0, 0, 10, 0);
+    const double beyond_end = std::sqrt(1 - 0.9 * 0.9);
+    expectBeside(path, segment(2, 0.9, 7, 0.9), {0, 5}, 1, {2 - beyond_end, 7 + beyond_end});
+    expectBeside(path, segment(7, 0.9, 2, 0.9), {0, 5}, 1, {2 - beyond_end, 7 + beyond_end});
+    expectBeside(path, segment(2, 0.9, 7, 0.9), {1, 4}, 1, {3, 6});
+    expectBeside(path, segment(2, 0.9, 7, 0.9), {0, 4}, 1, {2 - beyond_end, 6});
+    expectBeside(path, segment(2, 0.2, 7, 0.2), {0, 5}, 1, {1.8, 7.2});  // not farther ahead than aside
+    expectBeside(path, segment(0, 0, 10, 0), {2, 4}, 1, {2, 4});
+    expectBeside(path, segment(3, 0.5, 3, 0.5), {0, 0}, 1, {2.5, 3.5});
+    expectBeside(path, segment(2, -1, 8, 1), {0, 10}, 0.5, {5 - 0.5 * std::sqrt(10), 5 + 0.5 * std::sqrt(10)});
+    expectBeside(segment(4, 0.8, 4, 0.8), path, {3, 5}, 1, {0, 0});
+    expectNothingBeside(path, segment(2, 1.1, 7, 1.1), 1);
+    expectNothingBeside(path, segment(10, 0, 15, 0), 1);  // ahead
+    expectNothingBeside(path, segment(15, 0.1, 10.2, 0.1), 1);
+    expectNothingBeside(path, segment(10, 0, 10, 5), 1);  // a corner
+    expectNothingBeside(path, segment(5, -4, 5, 4), 1);   // a crossing
+    expectNothingBeside(path, segment(3, -4, 7, 4), 1);
+    std::vector<PathPart> parts;
+    segment(4, 0.8, 4, 0.8).partsBeside(path, {5, 6}, 1, parts);
+    EXPECT_TRUE(parts.empty());
+}
+
+TEST(BeadPath, PartsBesideAnArc) {
+    const double half = std::numbers::pi;
+    expectBeside(arc(5, half), arc(5.5, half), {0, 5.5 * half}, 1, {0, 5 * half});
+    expectBeside(arc(5, half), arc(5.5, half), {1.1, 5.5}, 1, {1, 5});
+    expectBeside(arc(5, 2 * half), segment(5.5, -9, 5.5, 9), {9, 18}, 1, {0, 5 * std::acos(0.9)});
+    expectNothingBeside(arc(5, half), arc(7, half), 1);
+    expectNothingBeside(arc(5, half), segment(5, 0, 5, -4), 1);     // ahead
+    expectNothingBeside(segment(-9, 0, 9, 0), arc(5, half), 0.25);  // crossings
+    // A small ring beside a line has both sides of it within reach.
+    expectBeside(segment(-5, 1, 5, 1), arc(1, 2 * half), {0, 2 * half}, 0.25, {5 - 0.75, 5 + 0.75});
 }
 
 }  // namespace

@@ -127,6 +127,20 @@ TEST(Sag, LooseEndsAndLoopsStay) {
     expectUntouched(firstLayer);
 }
 
+TEST(Sag, LinesBesideASupportedOneStay) {
+    // A third wall along x carries the first of three parallel lines; with it, that holds the second.
+    for (const bool wall : {false, true}) {
+        gcode::Toolpath toolpath = twoWalls();
+        if (wall) {
+            toolpath.beads.push_back(toolpath.beads[0]);
+            toolpath.beads[2].x1 = 10;
+            toolpath.beads[2].y0 = toolpath.beads[2].y1 = 1;
+        }
+        for (const double y : {1.2, 1.6, 2.0}) addBead(toolpath, 0, y, 10, y);
+        EXPECT_EQ(sagBeads(toolpath, 0.02).spans, wall ? 1U : 3U);
+    }
+}
+
 TEST(Sag, SpansShorterThanABeadIsWideStay) {
     for (const double gap : {0.35, 0.45}) {
         gcode::Toolpath toolpath = twoWalls();
