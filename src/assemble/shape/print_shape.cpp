@@ -37,7 +37,8 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     Stopwatch watch;
     PrintRequest request = options.prints;
     for (const std::string& name : needs.names())
-        if (needs.contains(object, name)) request.timed = request.timed || voxelize::usesTiming(ondemand::attributeNamed(name));
+        if (needs.contains(object, name))
+            request.timed = request.timed || voxelize::usesTiming(ondemand::attributeNamed(name));
     PrintLevels print = readPrintLevels(object.vdb, request, options.hash, options.events, warnings);
     Shape shape;
     shape.report = std::move(print.report);
