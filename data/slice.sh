@@ -130,6 +130,10 @@ tile_absolute()   { stl tile; prusa tile_absolute.gcode tile.stl --perimeter-gen
 tile_fwretract()  { stl tile; prusa tile_fwretract.gcode tile.stl --perimeter-generator classic --use-firmware-retraction; }
 tile_volumetric() { stl tile; prusa tile_volumetric.gcode tile.stl --perimeter-generator classic --load "$data/volumetric.ini"; }
 
+# Debian's slicers write no arcs.
+tile_arcs()       { need python3 python3; [ -s "$data/gcode/tile.gcode" ] || tile
+                    run python3 "$data/weld_arcs.py" "$data/gcode/tile.gcode" "$data/gcode/tile_arcs.gcode" 0.05; }
+
 hull_cura()    { stl hull;    cura hull_cura.gcode hull.stl -s layer_height=0.3 -s layer_height_0=0.3 \
                      -s infill_sparse_thickness=0.3 -s retraction_combing=off; }
 bridges_cura() { stl bridges; cura bridges_cura.gcode bridges.stl -s layer_height=0.3 -s layer_height_0=0.3 \
@@ -137,7 +141,7 @@ bridges_cura() { stl bridges; cura bridges_cura.gcode bridges.stl -s layer_heigh
 tile_cura()    { stl tile;    cura tile_cura.gcode tile.stl; }
 
 all=(hull vase gear knot bridges two_tone two_tone_mmu
-     tile tile_absolute tile_fwretract tile_volumetric hull_cura bridges_cura tile_cura)
+     tile tile_absolute tile_fwretract tile_volumetric tile_arcs hull_cura bridges_cura tile_cura)
 
 if [ "${1:-}" = --list ]; then printf '%s\n' "${all[@]}"; exit 0; fi
 [ $# -gt 0 ] || set -- "${all[@]}"

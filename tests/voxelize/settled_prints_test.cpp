@@ -46,6 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SettledFile{"hull", "hull.gcode", false, 1}, SettledFile{"gear", "gear.gcode", false, 0.5},
                     SettledFile{"bridges", "bridges.gcode", false, 1},
                     SettledFile{"two_tone", "two_tone.gcode", false, 0.7},
+                    SettledFile{"tile_arcs", "tile_arcs.gcode", false, 1, 0.02},
                     SettledFile{"arcs", "preprocess_cancellation-superslicer.gcode", true, 1},
                     SettledFile{"hull_lagging", "hull.gcode", false, 1, 0.03},
                     SettledFile{"arcs_lagging", "preprocess_cancellation-superslicer.gcode", true, 1, 0.1},

@@ -69,7 +69,7 @@ void checkMetadata(VdbCursor& cursor, VdbGrid* grid) {
         if (type != "bool") cursor.fail(fmt::format("{} that is neither true nor false", kHalf));
         half = value[0] != 0;
     }
-    if (grid != nullptr && half != grid->half) cursor.fail("two minds about half floats");
+    if (grid != nullptr && half != grid->half) cursor.fail("half-float flags disagree");
 }
 
 /// Its bytes.
