@@ -25,9 +25,14 @@ double timeAt(double s, double v0, double v1, double seconds) {
 template <typename Visit>
 void forEachPlace(double length, double first, Visit visit) {
     double step = first;
-    for (; 2 * step < length; step *= 2) visit(step);
-    for (step /= 2; step >= first; step /= 2)
+    while (2 * step < length) {
+        visit(step);
+        step *= 2;
+    }
+    while (step > first) {
+        step /= 2;
         if (length - step > 0.5 * length) visit(length - step);
+    }
 }
 
 }  // namespace

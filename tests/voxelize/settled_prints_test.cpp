@@ -69,8 +69,9 @@ TEST_P(SettledPrint, AgreesWithBruteForce) {
     request.voxels_per_layer = 4;
     const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
     const auto grid = voxelize(toolpath, beads, lattice);
-    constexpr std::size_t kPoints = 100000;
-    const auto points = test::randomActiveVoxels(*grid, kPoints);
+    // Of beads that widen fewer: the oracle searches the nearest place of each.
+    const std::size_t count = GetParam().flow_lag < 0 ? 100000 : 30000;
+    const auto points = test::randomActiveVoxels(*grid, count);
     std::atomic<std::size_t> outside{0};
     std::atomic<std::size_t> inside{0};
     std::atomic<std::size_t> wrong{0};
@@ -101,8 +102,8 @@ TEST_P(SettledPrint, AgreesWithBruteForce) {
     });
     EXPECT_EQ(wrong, 0U) << "of " << outside << " outside";
     EXPECT_EQ(wrong_sign, 0U) << "of " << inside << " inside and " << outside << " outside";
-    EXPECT_GT(outside, 10000U);
-    EXPECT_GT(inside, 10000U);
+    EXPECT_GT(outside, count / 10);
+    EXPECT_GT(inside, count / 10);
     std::sort(slopes.begin(), slopes.end());
     const auto above = [&](float limit) {
         return 100.0 * static_cast<double>(slopes.end() - std::upper_bound(slopes.begin(), slopes.end(), limit)) /
