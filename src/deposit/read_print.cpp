@@ -1,7 +1,10 @@
 #include "deposit/read_print.h"
 
+#include "base/error.h"
 #include "deposit/flow_recorder.h"
 #include "motion/planner.h"
+
+#include <fmt/format.h>
 
 namespace stratum::deposit {
 
@@ -25,6 +28,10 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     if (flow) {
         print.flow = applyFlow(flow->finish(), print.toolpath);
         print.flow->lag = *deposit.flow_lag;
+        if (print.toolpath.empty())
+            throw InputError(
+                fmt::format("{}: nothing flows out with a lag of {:g} s; is the lag longer than the print?", name,
+                            *deposit.flow_lag));
     }
     if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);
     return print;

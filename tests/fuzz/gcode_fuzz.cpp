@@ -1,5 +1,6 @@
-// libFuzzer: any text as a program. Only InputError and UsageError may come out of reading it, and a toolpath that is
-// read must be one that can be drawn: finite places, positive sections, no index out of bounds.
+// libFuzzer: any text as a program, as commanded and with flow and sag. Only InputError and UsageError may come out of
+// reading it, and a toolpath that is read must be one that can be drawn: finite places, positive sections, no index out
+// of bounds.
 //
 //   cmake --preset release -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DSTRATUM_FUZZ=ON
 //       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
@@ -9,6 +10,7 @@
 // FOLDER collects the inputs that reach new code; tests/fuzz/gcode holds the smallest set of them so far. The first
 // byte chooses the options, so that one folder serves all firmwares.
 #include "base/error.h"
+#include "deposit/read_print.h"
 #include "gcode/reader.h"
 #include "gcode/summary.h"
 
@@ -36,6 +38,12 @@ void check(const stratum::gcode::Toolpath& toolpath) {
         require(run.object < toolpath.objects.size());
         require(std::isfinite(stratum::gcode::beadLength(toolpath, bead)));
     }
+    for (std::size_t n = 0; n < toolpath.flow.size(); ++n) {
+        const stratum::gcode::BeadFlow& flow = toolpath.flow[n];
+        require(std::isfinite(flow.volume) && flow.volume >= 0 && std::isfinite(flow.rate));
+        const double length = stratum::gcode::beadLength(toolpath, toolpath.beads[n]);
+        require(std::abs(static_cast<double>(flow.widening)) <= length * (1 + 1e-6));
+    }
     require(std::isfinite(toolpath.extruded_mm3));
     require(!stratum::gcode::summarize(toolpath).empty());
 }
@@ -47,8 +55,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     stratum::gcode::ReadOptions options;
     options.firmware = static_cast<stratum::gcode::Firmware>(data[0] & 3U);
     options.extruder_mode = static_cast<stratum::gcode::ExtruderMode>((data[0] >> 2U & 3U) % 3);
+    const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
     try {
-        check(stratum::gcode::readToolpath({reinterpret_cast<const char*>(data) + 1, size - 1}, "fuzz", options));
+        check(stratum::gcode::readToolpath(text, "fuzz", options));
+        options.deposit.flow_lag = (data[0] & 16U) != 0 ? 1.0 : 0.02;
+        options.deposit.sag = 0.1;
+        check(stratum::deposit::readPrint(text, "fuzz", options, true).toolpath);
     } catch (const stratum::InputError&) {
     } catch (const stratum::UsageError&) {
     }
