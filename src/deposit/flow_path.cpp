@@ -8,6 +8,10 @@ namespace {
 
 // A spot of at most this share of what lies in the cell beside it is no disc of its own.
 constexpr double kSmallSpot = 0.25;
+// Sections this near to each other are one, as a fraction: a long arc at a steady flow is one interval, not thousands.
+constexpr double kSameSection = 1e-6;
+// Intervals in a part: each one more is a new fit to all of them.
+constexpr std::size_t kMostInPart = 64;
 
 // Neighbouring intervals over which the flow is averaged.
 struct Cell {
@@ -49,6 +53,12 @@ void placeSpots(std::span<const FlowInterval> path, std::span<const PathSpot> sp
     }
 }
 
+bool sameFlow(const FlowInterval& a, const FlowInterval& b) {
+    const double one = a.volume * (b.s1 - b.s0);
+    const double other = b.volume * (a.s1 - a.s0);
+    return a.bead == b.bead && std::abs(one - other) <= kSameSection * std::abs(one);
+}
+
 // The intervals of each bead with the flow of their cells; those of one bead and cell become one.
 std::vector<FlowInterval> averaged(std::span<const FlowInterval> path, const std::vector<Cell>& cells) {
     std::vector<FlowInterval> all;
@@ -64,6 +74,13 @@ std::vector<FlowInterval> averaged(std::span<const FlowInterval> path, const std
         }
         for (std::size_t n = begin; n < all.size(); ++n)
             all[n].volume = cell.volume * (all[n].s1 - all[n].s0) / cell.length;
+        if (begin > 0 && sameFlow(all[begin - 1], all[begin])) {
+            FlowInterval& before = all[begin - 1];
+            before.s1 = all[begin].s1;
+            before.t1 = all[begin].t1;
+            before.volume += all[begin].volume;
+            all.erase(all.begin() + static_cast<std::ptrdiff_t>(begin));
+        }
     }
     return all;
 }
@@ -107,7 +124,7 @@ void divideBead(std::span<const FlowInterval> parts, FlowRecord& record) {
     while (!parts.empty()) {
         std::size_t count = 1;
         Fit fit = fitLine(parts.first(1));
-        for (std::size_t more = 2; more <= parts.size(); ++more) {
+        for (std::size_t more = 2; more <= std::min(parts.size(), kMostInPart); ++more) {
             const Fit longer = fitLine(parts.first(more));
             if (!longer.good) break;
             fit = longer;
