@@ -215,17 +215,24 @@ private:
         else
             writeGrids(grid, grids, job);
         seconds_.write += watch_.lap();
+        // Nobody would read it otherwise.
+        const bool checks = !o_.common.quiet || !o_.common.stats.empty();
+        if (checks) check(job, *grid);
+        tellOutput(voxelizer, job, *grid, mesh);
+        if (checks && job.label.empty()) describeWhole(voxelizer, *grid);
+    }
+
+    // Whether the level set holds what its beads lay.
+    void check(const Job& job, const openvdb::FloatGrid& grid) {
         const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
-        const double deposited = voxelize::depositedVolume(toolpath_, printed);
-        const double volume = [&] {
+        deposited_ = voxelize::depositedVolume(toolpath_, printed);
+        {
             const ProgressNote note("measuring", o_.common.quiet);
-            return enclosedMm3(*grid, lattice_);
-        }();
-        const std::string doubt = doubtOf(volume, deposited, provenance_.culled);
+            enclosed_ = enclosedMm3(grid, lattice_);
+        }
+        const std::string doubt = doubtOf(enclosed_, deposited_, provenance_.culled);
         if (!doubt.empty()) warn(fmt::format("{}: {}", file_.name(), doubt));
         seconds_.check += watch_.lap();
-        tellOutput(voxelizer, job, *grid, mesh);
-        if (job.label.empty()) describeWhole(voxelizer, *grid, volume, deposited);
     }
 
     exporter::SurfaceMesh writeMesh(const openvdb::FloatGrid& grid, const openvdb::GridPtrVec& grids, const Job& job) {
@@ -272,8 +279,7 @@ private:
     }
 
     // Reports that cost time: only of the whole print, and only if somebody reads them.
-    void describeWhole(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid, double volume,
-                       double deposited) {
+    void describeWhole(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
         const bool stats = !o_.common.stats.empty();
         if (settles() && (stats || o_.summary)) {
             const voxelize::DepositBalance balance = voxelizer.balance();
@@ -281,7 +287,7 @@ private:
             if (stats) deposit_ = describeDeposit(toolpath_.deposit, balance, enclosedMm3(grid, lattice_, true));
         }
         if (!stats) return;
-        grid_ = describeGrid(grid, lattice_, volume, deposited);
+        grid_ = describeGrid(grid, lattice_, enclosed_, deposited_);
         if (o_.forecast && !culls()) grid_["cull_would_save"] = describeCull(voxelizer, grid);
     }
 
@@ -375,6 +381,7 @@ private:
     std::optional<ProgressBar> bar_;
     Json files_ = Json::array();
     Json grid_, deposit_;
+    double enclosed_ = 0, deposited_ = 0;  // mm^3, of the last output
 };
 
 }  // namespace

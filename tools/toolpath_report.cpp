@@ -118,7 +118,7 @@ nlohmann::ordered_json describeFlow(const deposit::FlowReport& flow) {
 std::string flowLine(const deposit::FlowReport& flow) {
     return fmt::format(
         "flow with a lag of {:g} s: {:.2f} mm^3 fed, {:.2f} laid ({:.2f} at {} rests, {:.2f} purged elsewhere), {:.2f} "
-        "left in the nozzle; {} beads became {} parts\n",
+        "left in the nozzle; {} beads became {} parts",
         flow.lag, flow.fed, flow.laid, flow.in_discs, flow.discs, flow.purged, flow.in_nozzle, flow.beads, flow.parts);
 }
 
@@ -127,7 +127,7 @@ nlohmann::ordered_json describeSag(const deposit::SagReport& sag) {
 }
 
 std::string sagLine(const deposit::SagReport& sag) {
-    return fmt::format("sag: {} spans of {:.1f} mm in all hang, at most {:.2f} mm\n", sag.spans, sag.length_mm,
+    return fmt::format("sag: {} spans of {:.1f} mm in all hang, at most {:.2f} mm", sag.spans, sag.length_mm,
                        sag.deepest_mm);
 }
 

@@ -16,7 +16,7 @@ nlohmann::ordered_json describeToolpath(const gcode::Toolpath& toolpath);
 
 /// What flows out of the nozzle.
 nlohmann::ordered_json describeFlow(const deposit::FlowReport& flow);
-/// The same in a line of text, with its line end.
+/// The same in a line of text.
 std::string flowLine(const deposit::FlowReport& flow);
 /// What hangs over nothing.
 nlohmann::ordered_json describeSag(const deposit::SagReport& sag);
