@@ -84,14 +84,16 @@ PartWhole wholeOf(const Json& json) {
     return whole;
 }
 
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 Json layersOf(const std::vector<FilmLayer>& layers) {
     Json json = Json::array();
     for (const FilmLayer& layer : layers) json.push_back({layer.name, layer.channels});
     return json;
 }
 
-std::uint32_t crcOf(const Film& film) {
-    uLong crc = 0;
+std::uint32_t crcOf(uLong before, const Film& film) {
+    uLong crc = before;
     const auto add = [&crc](const auto& values) {
         crc = ::crc32_z(crc, reinterpret_cast<const unsigned char*>(values.data()), values.size() * sizeof values[0]);
     };
@@ -100,13 +102,20 @@ std::uint32_t crcOf(const Film& film) {
     return static_cast<std::uint32_t>(crc);
 }
 
+std::uint32_t crcOf(const Json& json, const Metadata& metadata) {
+    std::string text = textOf(json);
+    for (const auto& [name, value] : metadata) text += fmt::format("\n{}\n{}", name, value);
+    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+}
+
 [[noreturn]] void damaged(const std::filesystem::path& path, std::string_view why) {
     throw InputError(fmt::format("{}: is damaged ({}); trace this shard again", path.string(), why));
 }
 
-Part partOf(const std::string& text) {
-    const Json json = Json::parse(text);
+Part partOf(const std::string& text, const Metadata& metadata) {
+    Json json = Json::parse(text);
     Part part;
+    part.metadata = metadata;
     if (json.at("format").get<int>() != kFormat) throw std::runtime_error("its format is of another version");
     part.whole = wholeOf(json.at("whole"));
     part.index = json.at("index");
@@ -118,6 +127,8 @@ Part partOf(const std::string& text) {
         part.layers.push_back({layer.at(0).get<std::string>(), layer.at(1).get<std::vector<std::string>>(), {}});
     }
     part.crc = json.at("crc");
+    json.erase("crc");
+    part.head = crcOf(json, metadata);
     return part;
 }
 
@@ -141,19 +152,27 @@ void check(const Part& part) {
         throw std::runtime_error("its place is not that of its number, so it would overlap others");
 }
 
+/// So many layers as it states: before memory is allocated for them.
+void checkChannels(const Part& part, const Imf::ChannelList& channels) {
+    for (const FilmLayer& layer : part.layers)
+        for (const std::string& channel : layer.channels)
+            if (!channels.findChannel(layer.name + "." + channel))
+                throw std::runtime_error(fmt::format("its channel {}.{} is missing", layer.name, channel));
+}
+
 }  // namespace
 
 void writePart(PictureFile& file, const Film& film, Part part) {
-    const Json json{{"format", kFormat},
-                    {"whole", jsonOf(part.whole)},
-                    {"index", part.index},
-                    {"piece", jsonOf(film.region())},
-                    {"samples", part.samples},
-                    {"pixels", part.pixels},
-                    {"content", static_cast<int>(film.content())},
-                    {"layers", layersOf(film.layers())},
-                    {"crc", crcOf(film)}};
-    part.metadata[kAttribute] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    Json json{{"format", kFormat},
+              {"whole", jsonOf(part.whole)},
+              {"index", part.index},
+              {"piece", jsonOf(film.region())},
+              {"samples", part.samples},
+              {"pixels", part.pixels},
+              {"content", static_cast<int>(film.content())},
+              {"layers", layersOf(film.layers())}};
+    json["crc"] = crcOf(crcOf(json, part.metadata), film);
+    part.metadata[kAttribute] = textOf(json);
     file.write(film, part.metadata);
 }
 
@@ -172,9 +191,9 @@ Part readPart(const std::filesystem::path& path) {
         if (own.empty())
             throw InputError(
                 fmt::format("{}: is no part of a picture; name those that vdbtrace --shard wrote", path.string()));
-        Part part = partOf(own.mapped());
+        Part part = partOf(own.mapped(), metadata);
         check(part);
-        part.metadata = std::move(metadata);
+        checkChannels(part, file.header().channels());
         const Imath::Box2i window = file.header().dataWindow();
         if (part.piece != PixelBox{window.min.x, window.min.y, window.max.x + 1, window.max.y + 1})
             throw std::runtime_error("its data window is not its piece");
@@ -194,18 +213,12 @@ void addLayers(const Part& part, Film& film) {
 void readPixels(const std::filesystem::path& path, const Part& part, Film& film) {
     try {
         Imf::InputFile file(path.c_str(), 1);
-        const Imf::FrameBuffer buffer = exrBufferOf(film);
-        for (auto slice = buffer.begin(); slice != buffer.end(); ++slice) {
-            const Imf::Channel* channel = file.header().channels().findChannel(slice.name());
-            if (!channel || channel->type != Imf::FLOAT || channel->xSampling != 1 || channel->ySampling != 1)
-                throw std::runtime_error(fmt::format("its channel {} is missing or not float", slice.name()));
-        }
-        file.setFrameBuffer(buffer);
+        file.setFrameBuffer(exrBufferOf(film));
         file.readPixels(part.piece.y0, part.piece.y1 - 1);
     } catch (const std::exception& error) {
         damaged(path, error.what());
     }
-    if (crcOf(film.part(part.piece)) != part.crc) damaged(path, "its checksum is wrong");
+    if (crcOf(part.head, film.part(part.piece)) != part.crc) damaged(path, "its checksum is wrong");
 }
 
 bool isPartOf(const std::filesystem::path& path, const std::string& version, const std::string& scene,

@@ -37,11 +37,12 @@ struct Part {
     std::uint64_t samples = 0, pixels = 0;  ///< RenderResult::samples and pixels
     FilmContent content = FilmContent::radiance;
     std::vector<FilmLayer> layers;  ///< without values
-    std::uint32_t crc = 0;          ///< of all values
+    std::uint32_t head = 0;         ///< CRC-32 of all that is said of the pixels
+    std::uint32_t crc = 0;          ///< CRC-32 of that and of all values
     Metadata metadata;              ///< of the picture; its mean number of samples is the part's own
 };
 
-/// Writes a part. Content, layers and crc are taken from the film, whose region is the piece. Throws OutputError.
+/// Writes a part. Content, layers and checksums are taken from the film, whose region is the piece. Throws OutputError.
 void writePart(PictureFile& file, const Film& film, Part part);
 
 /// Reads what a part says of itself. Throws InputError for other files and damaged ones.
