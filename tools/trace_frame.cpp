@@ -142,6 +142,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
             writePiece(picture, o, frame.number, result, metadata, legend);
         else
             picture.write(result.film, metadata, o.tone, legend);
+        recordPicture(o, frame.number);
     }
     if (!options.checkpoint.empty()) fs::remove(options.checkpoint);  // the picture is there
     seconds.write = watch.lap();

@@ -286,7 +286,9 @@ void addShardOptions(CLI::App& app, TraceCommand& o) {
         ->needs(shard)
         ->type_name("NAME")
         ->group(machines);
-    app.add_flag("--resume", o.shard.resume, "Skips a part that is there and says that it is of this scene and shard")
+    app.add_flag("--resume", o.shard.resume,
+                 "Skips a part that is there and says that it is of this scene and shard; of frames, those that "
+                 "OUT.IofN.done says it finished")
         ->needs(shard)
         ->group(machines);
 }

@@ -26,7 +26,7 @@ struct ShardCommand {
     std::optional<shade::Shard> shard;
     bool pieces = false;              // traces a piece of each picture; else whole pictures
     std::vector<bool> made;           // which pictures are this process's; empty: all
-    std::vector<std::string> scenes;  // of pieces: a hash for each picture
+    std::vector<std::string> scenes;  // hashes of what each picture is of, for pieces and resume
 };
 
 /// As the command line and a scene file give it.

@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "shade/parts/frame_record.h"
 #include "shade/parts/shard.h"
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <utility>
 
 namespace stratum::tools {
 namespace {
@@ -29,12 +32,16 @@ shade::Shard shardOf(const std::string& text) {
                            environment("SLURM_ARRAY_TASK_MAX"), environment("SLURM_ARRAY_TASK_COUNT")});
 }
 
-void refuseForPieces(const TraceCommand& o) {
-    if (isStandardOutput(o.output)) throw UsageError("--shard: a part can't go to standard output; name a file by -o");
-    if (o.render.seconds > 0.0)
+void refuse(const TraceCommand& o, bool pieces) {
+    if (!o.bricks.picture.empty())
+        throw UsageError("--brick-picture shows the rays of a whole run; leave it out with --shard");
+    if (pieces && o.render.seconds > 0.0)
         throw UsageError(
             "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --noise or --spp, or "
             "--shard-by frames");
+    if (!pieces && !o.shard.resume) return;
+    if (isStandardOutput(o.output))
+        throw UsageError("--shard: a part can't go to standard output, nor be resumed there; name a file by -o");
     for (const std::string& input : o.inputs)
         if (input == "-")
             throw UsageError("--shard: every shard reads the input anew, and standard input is read once; name a file");
@@ -99,19 +106,13 @@ void divide(std::vector<TraceCommand>& commands) {
     for (const TraceCommand& o : commands) count += pictures(o);
     const bool series = count > 1 || commands.front().each;
     const bool pieces = given.by.empty() ? !series : given.by == "tiles";
-    if (given.resume && !pieces)
-        throw UsageError(
-            "--resume: a finished picture does not say which scene it is of; it is for --shard-by tiles, whose parts "
-            "do");
     const auto [first, last] = pieces ? std::pair<std::size_t, std::size_t>() : shade::chunkOf(count, shard);
     std::size_t number = 0;
     for (TraceCommand& o : commands) {
-        if (!o.bricks.picture.empty())
-            throw UsageError("--brick-picture shows the rays of a whole run; leave it out with --shard");
+        refuse(o, pieces);
         o.shard.shard = shard;
         o.shard.pieces = pieces;
         if (pieces) {
-            refuseForPieces(o);
             if (!o.render.checkpoint.empty()) o.render.checkpoint = shade::shardName(o.render.checkpoint, shard);
             continue;
         }
@@ -120,18 +121,36 @@ void divide(std::vector<TraceCommand>& commands) {
     }
 }
 
-void identifyPieces(TraceCommand& o) {
-    if (!o.shard.pieces) return;
+void identify(TraceCommand& o) {
+    if (!o.shard.pieces && !o.shard.resume) return;
     (void)renderOptionsOf(o);  // too many shards fail now
     Contents contents;
-    for (std::size_t n = 0; n < pictures(o); ++n) o.shard.scenes.push_back(sceneOf(o, n, contents));
+    for (std::size_t n = 0; n < pictures(o); ++n)
+        o.shard.scenes.push_back(makes(o, n) ? sceneOf(o, n, contents) : std::string());
     if (!o.shard.resume) return;
+    const std::optional<shade::FrameRecord> record =
+        o.shard.pieces ? std::nullopt : std::optional<shade::FrameRecord>(recordOf(o));
+    o.shard.made.resize(pictures(o), true);
     for (std::size_t n = 0; n < pictures(o); ++n) {
+        if (!o.shard.made[n]) continue;
         const std::string output = outputOf(o, n);
-        const bool there = shade::isPartOf(output, STRATUM_VERSION, o.shard.scenes[n], *o.shard.shard);
-        o.shard.made.push_back(!there);
-        if (there) say(o.common, fmt::format("  {}: is this shard of this scene already, skipped", output));
+        const std::string& scene = o.shard.scenes[n];
+        const bool there =
+            record ? record->has(output, scene) : shade::isPartOf(output, STRATUM_VERSION, scene, *o.shard.shard);
+        if (!there) continue;
+        o.shard.made[n] = false;
+        say(o.common, fmt::format("  {}: is this shard of this scene already, skipped", output));
     }
+}
+
+std::string recordOf(const TraceCommand& o) {
+    if (!o.shard.resume || o.shard.pieces) return {};
+    return shade::shardName(o.output, *o.shard.shard, ".done").string();
+}
+
+void recordPicture(const TraceCommand& o, std::size_t n) {
+    const std::string record = recordOf(o);
+    if (!record.empty()) shade::FrameRecord(record).add(outputOf(o, n), o.shard.scenes[n]);
 }
 
 shade::RenderOptions renderOptionsOf(const TraceCommand& o) {

@@ -24,9 +24,15 @@ bool makes(const TraceCommand& command, std::size_t n);
 /// Reads --shard and --shard-by of commands whose options are parsed, and gives each its pictures. Throws UsageError.
 void divide(std::vector<TraceCommand>& commands);
 
-/// If pieces are traced: what each picture is made of, before anything is loaded; and with --resume leaves out pieces
-/// that are there. To be called when all options are decided. Throws UsageError and InputError.
-void identifyPieces(TraceCommand& command);
+/// For pieces and for --resume: what each picture is made of, before anything is loaded; and with --resume leaves out
+/// what is there. To be called when all options are decided. Throws UsageError and InputError.
+void identify(TraceCommand& command);
+
+/// Where --resume notes the finished pictures of a series; empty if it doesn't.
+std::string recordOf(const TraceCommand& command);
+
+/// Notes there that picture n is written. Throws OutputError.
+void recordPicture(const TraceCommand& command, std::size_t n);
 
 /// The render options of this process: of its piece, if it traces one.
 shade::RenderOptions renderOptionsOf(const TraceCommand& command);

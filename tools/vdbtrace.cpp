@@ -99,6 +99,7 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     material(o.scene.brdf);
     if (!shade::isEnvironmentPreset(o.scene.env)) files.reads(o.scene.env);
     for (std::size_t n = 0; n < tools::pictures(o); ++n) files.writes(tools::outputOf(o, n), option);
+    files.writes(tools::recordOf(o), "--resume");
     files.writes(o.render.checkpoint, "--checkpoint");
     files.writes(o.write_brdf, "--write-brdf");
     files.writes(o.bricks.picture, "--brick-picture");
@@ -174,7 +175,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
     };
     for (tools::TraceCommand& o : commands) {
         chooseDenoising(o);
-        tools::identifyPieces(o);
+        tools::identify(o);
         if (!makesAny(o)) continue;
         for (const std::string& note : o.notes) tools::say(o.common, note);
         if (!whole.each) {

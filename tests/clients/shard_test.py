@@ -144,7 +144,7 @@ for shard, fragment in (("3/3", "must be from 0 to 2"), ("-1/3", "must be from 0
 refused(2, ["series has 5 pictures"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--turntable", "5", "--shard", "0/6")
 refused(2, ["standard output"], VDBTRACE, TILE, *SMALL, "-o", "-", "--shard", "0/2")
 refused(2, ["--time"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--time", "1", "--shard", "0/2")
-refused(2, ["--resume"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--turntable", "5", "--shard", "0/2", "--resume")
+refused(2, ["--resume requires --shard"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--resume")
 refused(2, ["SLURM_ARRAY_TASK_ID"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=SLURM)
 GAPS = dict(SLURM, SLURM_ARRAY_TASK_ID="5", SLURM_ARRAY_TASK_MIN="1", SLURM_ARRAY_TASK_MAX="9", SLURM_ARRAY_TASK_COUNT="3")
 refused(2, ["has gaps"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=GAPS)
@@ -232,5 +232,25 @@ film("grown", 6, 4, [TILE], "--progress-series", "3", "--turntable", "2", *COARS
 OTHERS = [TILE, gcode("tile_arcs.gcode"), gcode("tile_absolute.gcode")]
 film("inputs", 3, 3, OTHERS, *COARSE)
 film("each", 3, 2, OTHERS, "--each", *COARSE)
+
+# --- a film that is killed and resumed --------------------------------------------------------------------------------------
+FILM = [TILE, "--size", "96x72", "--spp", "8", "--turntable", "6", *COARSE]
+does(VDBTRACE, *FILM, "-o", "film.png", "--quiet")
+SHARDS = [[VDBTRACE, *FILM, "-o", "again.png", "--resume", "--shard", f"{index}/2"] for index in range(2)]
+kills = 0
+for index, first in ((0, 0), (1, 3)):
+    process = subprocess.Popen(SHARDS[index], cwd=FOLDER, stdout=subprocess.DEVNULL)
+    while process.poll() is None and not os.path.exists(path(f"again_00{first + 1}.png")):
+        time.sleep(0.002)
+    process.send_signal(signal.SIGKILL)
+    kills += process.wait() == -signal.SIGKILL
+    done = does(*SHARDS[index])
+    check("again_00" in done.stdout and done.stdout.count("skipped") in (1, 2, 3), f"shard {index}: {done.stdout.count('skipped')} skipped")
+    check(does(*SHARDS[index]).stdout.count("skipped") == 3, "  all of it, the third time")
+check(kills > 0 and all(same(f"film_00{n}.png", f"again_00{n}.png") for n in range(6)), f"{kills} kills, the same film")
+with open(path("again_004.png"), "wb") as file:
+    file.write(b"something else")
+check(does(*SHARDS[1]).stdout.count("skipped") == 2 and same("film_004.png", "again_004.png"), "a changed picture is made again")
+check(does(*SHARDS[1], "--seed", "4").stdout.count("skipped") == 0, "another scene is made again")
 
 shutil.rmtree(FOLDER)
