@@ -8,11 +8,12 @@ import subprocess
 import tempfile
 import time
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, SOURCE, check, gcode
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_shard_")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBMERGE = os.path.join(BIN, "vdbmerge")
+SCRIPTS = os.path.join(SOURCE, "scripts", "slurm")
 TILE = gcode("tile.gcode")
 SMALL = ["--size", "160x120", "--voxels-per-layer", "2", "--quiet"]
 SLURM = {name: value for name, value in os.environ.items() if not name.startswith("SLURM_")}
@@ -153,7 +154,9 @@ refused(2, ["has gaps"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slu
 trace("whole.png", *BASE)
 for task in range(4, 7):
     array = dict(SLURM, SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_MIN="4", SLURM_ARRAY_TASK_MAX="6", SLURM_ARRAY_TASK_COUNT="3")
-    trace("slurm.png", *BASE, shard="slurm", env=array)
+    does("bash", os.path.join(SCRIPTS, "picture.sh"), TILE, *SMALL[:-1], "-o", "slurm.png", *BASE, env=array)
+    does("bash", os.path.join(SCRIPTS, "film.sh"), TILE, *SMALL[:-1], "-o", "film.png", "--spp", "1", "--turntable", "3", env=array)
+check(sorted(name for name in os.listdir(FOLDER) if name.startswith("film_")) == [f"film_00{n}.png" for n in range(3)], "film.sh")
 does(VDBMERGE, "slurm.png", *parts("slurm", 3), "--quiet")
 check(same("slurm.png", "whole.png"), "tasks 4 to 6 of an array are the shards 0 to 2")
 
