@@ -36,8 +36,8 @@ Bands bandsOf(int bands, int rows, int columns, int count, bool by_pieces) {
     for (std::int64_t k = 0; k <= bands; ++k) {
         const auto first = static_cast<int>(count * k / bands);
         result.pieces.push_back(first);
-        result.rows.push_back(
-            static_cast<int>(by_pieces ? (std::int64_t{rows} * first * 2 + count) / (2 * count) : rows * k / bands));
+        result.rows.push_back(static_cast<int>(
+            by_pieces ? (std::int64_t{rows} * first * 2 + count) / (std::int64_t{2} * count) : rows * k / bands));
     }
     std::int64_t largest = 0;
     for (std::size_t k = 0; k + 1 < result.rows.size(); ++k) {
