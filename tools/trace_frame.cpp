@@ -1,6 +1,7 @@
 #include "trace_frame.h"
 
 #include "progress.h"
+#include "trace_shard.h"
 
 #include "shade/film/picture.h"
 #include "shade/post/denoise.h"
@@ -59,6 +60,46 @@ Json skippedBy(const TraceCommand& o, const assemble::TracedObjects& objects, co
     return skipped;
 }
 
+struct Seconds {
+    double render = 0.0, denoise = 0.0, write = 0.0, total = 0.0;
+};
+
+Json reportOf(const TraceCommand& o, const Frame& frame, const std::string& output,
+              const assemble::TracedObjects& objects, const shade::SceneDescription& scene,
+              const shade::RenderResult& result, const Seconds& seconds, int threads) {
+    const shade::RayCounts& rays = result.rays;
+    Json material = objects.material_report;
+    material["notes"] = scene.material->notes();
+    return {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
+            {"output", output},
+            {"image",
+             {{"width", o.render.width},
+              {"height", o.render.height},
+              {"spp", o.render.spp},
+              {"mean_spp", result.mean_spp},
+              {"exposure", o.tone.exposure},
+              {"denoised", o.denoise.value_or(false)}}},
+            {"rays",
+             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
+            {"march", objects.intersector->name()},
+            {"march_bytes", objects.intersector->bytes()},
+            {"on_demand", assemble::onDemandReport(objects)},
+            {"integrator", o.render.integrator.name},
+            {"material", material},
+            {"notes", o.notes},
+            {"seconds",
+             {{"load", frame.load_seconds},
+              {"build", frame.build_seconds},
+              {"render", seconds.render},
+              {"denoise", seconds.denoise},
+              {"write", seconds.write},
+              {"total", seconds.total}}},
+            {"mrays_per_second", static_cast<double>(rays.total()) / seconds.render * 1e-6},
+            {"peak_rss_bytes", peakRssBytes()},
+            {"threads", threads},
+            {"skipped", skippedBy(o, objects, scene, result.film)}};
+}
+
 }  // namespace
 
 std::string numbered(const std::string& output, std::size_t number, std::size_t count) {
@@ -73,72 +114,51 @@ std::string numbered(const std::string& output, std::size_t number, std::size_t 
 Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
                  const shade::SceneDescription& scene, int threads) {
     Stopwatch watch;
-    shade::PictureFile picture(frame.output);
+    const std::string output = outputOf(o, frame.number);
+    shade::PictureFile picture(output);
+    const shade::RenderOptions options = renderOptionsOf(o);
     shade::RenderResult result;
+    Seconds seconds;
     {
         ProgressBar bar("rendering", o.common.quiet);
-        result = shade::render(*objects.intersector, scene, o.render, progressOf(bar));
+        result = shade::render(*objects.intersector, scene, options, progressOf(bar));
     }
-    const double render_seconds = watch.lap();
+    seconds.render = watch.lap();
     const bool denoised = o.denoise.value_or(false);
-    if (denoised) {
+    if (denoised && !o.shard.pieces) {
         ProgressBar bar("denoising", o.common.quiet);
         shade::denoise(result.film, progressOf(bar));
         if (o.render.crop && result.film.region() != *o.render.crop) result.film = result.film.part(*o.render.crop);
     }
-    const double denoise_seconds = watch.lap();
+    seconds.denoise = watch.lap();
 
     shade::Metadata metadata = metadataOf(o, frame, objects, scene, result, denoised);
-    const bool shown = !picture.linear() && result.film.content() == shade::FilmContent::radiance;
+    const bool shown = !o.linear && result.film.content() == shade::FilmContent::radiance;
     if (shown) metadata.insert({"Exposure", fmt::format("{:.3f} stops", o.tone.exposure)});
+    const shade::Legend* legend = o.legend && !objects.legends.empty() ? &objects.legends.front() : nullptr;
     {
         const ProgressNote note("writing", o.common.quiet);
-        picture.write(result.film, metadata, o.tone,
-                      o.legend && !objects.legends.empty() ? &objects.legends.front() : nullptr);
+        if (o.shard.pieces)
+            writePiece(picture, o, frame.number, result, metadata, legend);
+        else
+            picture.write(result.film, metadata, o.tone, legend);
+        recordPicture(o, frame.number);
     }
-    if (!o.render.checkpoint.empty()) fs::remove(o.render.checkpoint);  // the picture is there
-    const double write_seconds = watch.lap();
-    const double total_seconds =
-        frame.load_seconds + frame.build_seconds + render_seconds + denoise_seconds + write_seconds;
+    if (!options.checkpoint.empty()) fs::remove(options.checkpoint);  // the picture is there
+    seconds.write = watch.lap();
+    seconds.total = frame.load_seconds + frame.build_seconds + seconds.render + seconds.denoise + seconds.write;
 
     const shade::RayCounts& rays = result.rays;
-    const double mrays = static_cast<double>(rays.total()) / render_seconds * 1e-6;
-    say(o.common, fmt::format("  {}: {} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", frame.output,
-                              o.render.width, o.render.height, result.mean_spp,
-                              humanCount(static_cast<double>(rays.total())), mrays, total_seconds));
+    const std::string piece =
+        o.shard.pieces ? fmt::format("{} x {} of ", result.film.width(), result.film.height()) : std::string();
+    say(o.common,
+        fmt::format("  {}: {}{} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", output, piece,
+                    o.render.width, o.render.height, result.mean_spp, humanCount(static_cast<double>(rays.total())),
+                    static_cast<double>(rays.total()) / seconds.render * 1e-6, seconds.total));
     if (shown && !o.exposure_given && o.tone.exposure != 0.0)
         say(o.common,
             fmt::format("  exposure {:+.2f} stops, found from the light; --exposure sets it", o.tone.exposure));
-    Json material = objects.material_report;
-    material["notes"] = scene.material->notes();
-    return {{"input", objects.reports.size() == 1 ? objects.reports.front() : Json{{"objects", objects.reports}}},
-            {"output", frame.output},
-            {"image",
-             {{"width", o.render.width},
-              {"height", o.render.height},
-              {"spp", o.render.spp},
-              {"mean_spp", result.mean_spp},
-              {"exposure", o.tone.exposure},
-              {"denoised", denoised}}},
-            {"rays",
-             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
-            {"march", objects.intersector->name()},
-            {"march_bytes", objects.intersector->bytes()},
-            {"on_demand", assemble::onDemandReport(objects)},
-            {"integrator", o.render.integrator.name},
-            {"material", material},
-            {"notes", o.notes},
-            {"seconds",
-             {{"load", frame.load_seconds},
-              {"build", frame.build_seconds},
-              {"render", render_seconds},
-              {"denoise", denoise_seconds},
-              {"write", write_seconds},
-              {"total", total_seconds}}},
-            {"mrays_per_second", mrays},
-            {"peak_rss_bytes", peakRssBytes()},
-            {"threads", threads},
-            {"skipped", skippedBy(o, objects, scene, result.film)}};
+    return reportOf(o, frame, output, objects, scene, result, seconds, threads);
 }
 
 }  // namespace stratum::tools

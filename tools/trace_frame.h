@@ -16,7 +16,8 @@ namespace stratum::tools {
 std::string numbered(const std::string& output, std::size_t number, std::size_t count);
 
 struct Frame {
-    std::string source, output;
+    std::string source;
+    std::size_t number = 0;  ///< of the command's pictures, from 0
     double load_seconds = 0.0, build_seconds = 0.0;
 };
 

@@ -270,6 +270,29 @@ void addLightOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
 }
 
+void addShardOptions(CLI::App& app, TraceCommand& o) {
+    const char* machines = "Several machines";
+    auto* shard =
+        app.add_option("--shard", o.shard.text,
+                       "The share I of N, I from 0, of a picture or a series; slurm takes both from a task of its "
+                       "array. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
+            ->type_name("I/N|slurm")
+            ->group(machines);
+    app.add_option(
+           "--shard-by", o.shard.by,
+           "tiles: a piece of each picture, or frames: whole pictures of a series (default: frames of a series, "
+           "tiles of one picture)")
+        ->check(oneOf({"tiles", "frames"}))
+        ->needs(shard)
+        ->type_name("NAME")
+        ->group(machines);
+    app.add_flag("--resume", o.shard.resume,
+                 "Skips a part that is there and says that it is of this scene and shard; of frames, those that "
+                 "OUT.IofN.done says it finished")
+        ->needs(shard)
+        ->group(machines);
+}
+
 void addTracingOptions(CLI::App& app, TraceCommand& o) {
     const char* tracing = "Tracing";
     app.add_option(
@@ -296,6 +319,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addMaterialOptions(app, o);
     addLightOptions(app, o);
     addTracingOptions(app, o);
+    addShardOptions(app, o);
     addTracePrintOptions(app, o.prints, o.bricks);
     addCommonOptions(app, o.common,
                      {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
@@ -336,8 +360,9 @@ void readScene(TraceCommand& o, int argc, char** argv) {
 }
 
 std::string saidOf(const CLI::App& app) {
-    // Where the picture goes, who waits for it and on how many threads changes nothing of it.
-    constexpr std::array<std::string_view, 6> kOther = {"output", "checkpoint", "threads", "stats", "quiet", "IN"};
+    // Where the picture goes, who waits for it, on how many threads and machines changes nothing of it.
+    constexpr std::array<std::string_view, 9> kOther = {"output", "checkpoint", "threads",  "stats", "quiet",
+                                                        "IN",     "shard",      "shard-by", "resume"};
     std::string said;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_single_name();

@@ -8,6 +8,7 @@
 #include "march/brick/brick_layout.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/render.h"
+#include "shade/parts/shard.h"
 #include "shade/scene/scene.h"
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,16 @@
 #include <vector>
 
 namespace stratum::tools {
+
+/// --shard, and what follows from it (trace_shard.h).
+struct ShardCommand {
+    std::string text, by;  // as given
+    bool resume = false;
+    std::optional<shade::Shard> shard;
+    bool pieces = false;              // traces a piece of each picture; else whole pictures
+    std::vector<bool> made;           // which pictures are this process's; empty: all
+    std::vector<std::string> scenes;  // hashes of what each picture is of, for pieces and resume
+};
 
 /// As the command line and a scene file give it.
 struct TraceCommand {
@@ -36,6 +47,7 @@ struct TraceCommand {
     march::BrickValues values = march::BrickValues::Int16;
     assemble::PrintRequest prints;
     BrickCommand bricks;
+    ShardCommand shard;
     std::vector<assemble::ObjectOptions> objects;  // of a scene file; empty: the inputs
     shade::SceneOptions scene;
     shade::RenderOptions render;

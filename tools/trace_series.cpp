@@ -2,6 +2,7 @@
 
 #include "terminal_events.h"
 #include "trace_frame.h"
+#include "trace_shard.h"
 
 #include "assemble/ready_scene.h"
 #include "base/error.h"
@@ -50,6 +51,11 @@ public:
 
     /// Frames of one input, which all have the camera, the bed and the light of the first that is traced.
     void trace(std::size_t n) {
+        // Its pictures may be another process's; but the camera of all is of the first that is traced.
+        const std::size_t each = pictures(o_) / o_.inputs.size();
+        bool needed = !scene_;
+        for (std::size_t k = n * each; k < (n + 1) * each; ++k) needed = needed || makes(o_, k);
+        if (!needed) return;
         std::vector<assemble::ObjectOptions> wanted = o_.objects;
         if (wanted.empty()) {
             wanted.emplace_back();
@@ -100,28 +106,32 @@ private:
     void frames(std::size_t n, const assemble::TracedObjects& objects, assemble::LazyPrint* growing, Stopwatch& watch) {
         const std::size_t moments = growing != nullptr ? growing->moments() : 1;
         const auto turns = static_cast<std::size_t>(o_.turntable);
-        const std::size_t count = o_.inputs.size() * moments * turns;
         double before_seconds = watch.lap();
         // From the whole print down to its first part: what one picture has made, the next one mostly keeps.
+        bool first = true;
         for (std::size_t moment = moments; moment-- > 0;) {
+            const std::size_t before = (n * moments + moment) * turns;
+            bool any = false;
+            for (std::size_t turn = 0; turn < turns; ++turn) any = any || makes(o_, before + turn);
+            if (!any) continue;
             if (moment + 1 < moments) {
                 growing->show(moment);
                 before_seconds = watch.lap();
             }
-            const bool first = moment + 1 == moments;
             for (std::size_t turn = 0; turn < turns; ++turn) {
+                if (!makes(o_, before + turn)) continue;
                 shade::SceneDescription view = *scene_;
                 if (turn > 0)
                     view.camera =
                         scene_->camera.turned(360.0 * static_cast<double>(turn) / static_cast<double>(turns), middle_);
                 reports_.push_back(renderFrame(
                     o_,
-                    {fs::path(o_.inputs[n]).filename().string(),
-                     numbered(o_.output, (n * moments + moment) * turns + turn, count),
-                     first ? objects.load_seconds : 0.0, (first ? objects.build_seconds : 0.0) + before_seconds},
+                    {fs::path(o_.inputs[n]).filename().string(), before + turn, first ? objects.load_seconds : 0.0,
+                     (first ? objects.build_seconds : 0.0) + before_seconds},
                     objects, view, threads_));
                 watch.lap();
             }
+            first = false;
         }
     }
 

@@ -3,9 +3,9 @@
 #include "command_line.h"
 #include "output_names.h"
 #include "run_files.h"
-#include "trace_frame.h"
 #include "trace_options.h"
 #include "trace_series.h"
+#include "trace_shard.h"
 
 #include "assemble/shape/file_facts.h"
 #include "base/atomic_file.h"
@@ -28,10 +28,6 @@ using namespace stratum;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::size_t pictures(const tools::TraceCommand& o) {
-    return o.inputs.size() * static_cast<std::size_t>(o.prints.series) * static_cast<std::size_t>(o.turntable);
-}
-
 // What can't be read is told of when its turn comes.
 bool isLevelSet(const std::string& path) {
     try {
@@ -46,10 +42,10 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
     o.linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     if (!o.render.aovs.empty() && !o.linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
-    if (isStandardOutput(o.output) && pictures(o) > 1)
+    if (isStandardOutput(o.output) && tools::pictures(o) > 1)
         throw UsageError(fmt::format("-o {}: only one picture can go to standard output; name a file for the {}",
-                                     o.output, pictures(o)));
-    if (!o.render.checkpoint.empty() && pictures(o) > 1)
+                                     o.output, tools::pictures(o)));
+    if (!o.render.checkpoint.empty() && tools::pictures(o) > 1)
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (o.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
         throw UsageError("--progress-series is of one print alone");
@@ -65,6 +61,13 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
                })) {
         tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
     }
+}
+
+// Whether any of its pictures are this process's: of a series, some shards have none of an input.
+bool makesAny(const tools::TraceCommand& o) {
+    for (std::size_t n = 0; n < tools::pictures(o); ++n)
+        if (tools::makes(o, n)) return true;
+    return false;
 }
 
 // A picture to look at is clean; numbers to measure are unbiased.
@@ -95,7 +98,8 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     }
     material(o.scene.brdf);
     if (!shade::isEnvironmentPreset(o.scene.env)) files.reads(o.scene.env);
-    for (std::size_t n = 0; n < pictures(o); ++n) files.writes(tools::numbered(o.output, n, pictures(o)), option);
+    for (std::size_t n = 0; n < tools::pictures(o); ++n) files.writes(tools::outputOf(o, n), option);
+    files.writes(tools::recordOf(o), "--resume");
     files.writes(o.render.checkpoint, "--checkpoint");
     files.writes(o.write_brdf, "--write-brdf");
     files.writes(o.bricks.picture, "--brick-picture");
@@ -152,6 +156,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
         nameOutput(whole);
         commands = {whole};
     }
+    tools::divide(commands);
     const tools::ThreadLimit limit(whole.common.threads);
     tools::RunFiles files;
     for (const tools::TraceCommand& o : commands)
@@ -170,6 +175,8 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
     };
     for (tools::TraceCommand& o : commands) {
         chooseDenoising(o);
+        tools::identify(o);
+        if (!makesAny(o)) continue;
         for (const std::string& note : o.notes) tools::say(o.common, note);
         if (!whole.each) {
             keep(tools::traceSeries(o, limit.threads(), batch));

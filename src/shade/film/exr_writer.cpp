@@ -1,9 +1,9 @@
 #include "shade/film/exr_writer.h"
 
 #include "base/error.h"
+#include "shade/film/exr_buffer.h"
 
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
@@ -12,16 +12,11 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <array>
-#include <cstddef>
 #include <stdexcept>
-#include <type_traits>
 
 namespace stratum::shade {
 
 void writeExr(const std::filesystem::path& path, const Film& film, const std::map<std::string, std::string>& metadata) {
-    constexpr std::size_t kChannels = 4;
-    constexpr std::array<const char*, kChannels> kNames = {"R", "G", "B", "A"};
     const PixelBox& region = film.region();
     // Inclusive corners.
     const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(film.frameWidth() - 1, film.frameHeight() - 1));
@@ -34,32 +29,17 @@ void writeExr(const std::filesystem::path& path, const Film& film, const std::ma
         header.insert(name.c_str(), Imf::StringAttribute(text));
     }
 
-    // OpenEXR addresses pixels by frame coordinates: its base is where (0, 0) would be.
-    // Its frame buffers are also used for reading, and therefore not const; they are not written to here.
-    static_assert(sizeof(Pixel) == kChannels * sizeof(float) && std::is_standard_layout_v<Pixel>);
-    const auto step_y = sizeof(Pixel) * static_cast<std::size_t>(film.width());
-    auto* const pixels = reinterpret_cast<float*>(const_cast<Pixel*>(film.pixels().data()));
-    Imf::FrameBuffer buffer;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        header.channels().insert(kNames[c], Imf::Channel(Imf::FLOAT));
-        buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, pixels + c, data, sizeof(Pixel), step_y));
-    }
-    for (const FilmLayer& layer : film.layers()) {
-        const std::size_t pixel = sizeof(float) * layer.channels.size();
-        for (std::size_t c = 0; c < layer.channels.size(); ++c) {
-            const std::string name = layer.name + "." + layer.channels[c];
-            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(layer.values.data()) + c, data, pixel,
-                                                 pixel * static_cast<std::size_t>(film.width())));
-        }
-    }
+    for (const char* name : {"R", "G", "B", "A"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    for (const FilmLayer& layer : film.layers())
+        for (const std::string& channel : layer.channels)
+            header.channels().insert(layer.name + "." + channel, Imf::Channel(Imf::FLOAT));
     try {
         // The bytes don't depend on the number of threads.
         const auto threads =
             static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
         if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
         Imf::OutputFile file(path.c_str(), header, threads);
-        file.setFrameBuffer(buffer);
+        file.setFrameBuffer(exrBufferOf(film));
         file.writePixels(film.height());
     } catch (const std::exception& error) {
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));

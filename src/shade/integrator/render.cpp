@@ -56,7 +56,8 @@ public:
             tileByTile();
         const bool more = region_ != options_.region();
         return {more ? state_.film.part(options_.region()) : std::move(state_.film),
-                static_cast<double>(state_.samples) / static_cast<double>(pixels_), state_.rays};
+                static_cast<double>(state_.samples) / static_cast<double>(pixels_), state_.rays, state_.samples,
+                pixels_};
     }
 
 private:

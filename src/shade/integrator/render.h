@@ -49,6 +49,8 @@ struct RenderResult {
     Film film;              ///< of options.region()
     double mean_spp = 0.0;  ///< samples a pixel
     RayCounts rays;         ///< the same for any number of threads
+    /// What mean_spp is the quotient of. With RenderOptions::noise: of whole tiles around a crop.
+    std::uint64_t samples = 0, pixels = 0;
 };
 
 /// Called from time to time from any thread, never from two at once, with the number of finished pixels.

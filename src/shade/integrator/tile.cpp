@@ -9,7 +9,6 @@
 namespace stratum::shade {
 namespace {
 
-constexpr int kTile = 32;              // pixels a side: large enough for a task, small enough for load balance
 constexpr std::size_t kStream = 4096;  // samples at a time: enough to fill vectors, few enough for the cache
 
 }  // namespace

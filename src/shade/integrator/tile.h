@@ -12,6 +12,9 @@
 
 namespace stratum::shade {
 
+/// Pixels a side: large enough for a task, small enough for load balance.
+constexpr int kTile = 32;
+
 /// State of one thread.
 struct TileWorker {
     std::unique_ptr<trace::Tracer> tracer;

@@ -1,0 +1,255 @@
+#include "shade/parts/part.h"
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "shade/film/exr_buffer.h"
+#include "shade/film/exr_header.h"
+#include "shade/film/exr_reader.h"
+#include "shade/integrator/render.h"
+
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+#include <zlib.h>
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <exception>
+#include <stdexcept>
+
+namespace stratum::shade {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kAttribute = "StratumPart";
+constexpr int kFormat = 1;
+constexpr std::size_t kMostPixels = std::size_t{1} << 30;  // 32768 x 32768, what a render may have
+
+Json jsonOf(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
+
+PixelBox boxOf(const Json& json) {
+    return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
+}
+
+Json jsonOf(const Color& color) { return {color.r, color.g, color.b}; }
+
+Color colorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
+
+Json jsonOf(const Legend& legend) {
+    Json entries = Json::array();
+    for (const Legend::Entry& entry : legend.entries) entries.push_back({entry.name, jsonOf(entry.color)});
+    Json ramp = Json::array();
+    for (const Color& color : legend.ramp) ramp.push_back(jsonOf(color));
+    return {{"title", legend.title}, {"unit", legend.unit},   {"entries", entries},
+            {"ramp", ramp},          {"least", legend.least}, {"most", legend.most}};
+}
+
+Legend legendOf(const Json& json) {
+    Legend legend{json.at("title"), json.at("unit"), {}, {}, json.at("least"), json.at("most")};
+    for (const Json& entry : json.at("entries"))
+        legend.entries.push_back({entry.at(0).get<std::string>(), colorOf(entry.at(1))});
+    for (const Json& color : json.at("ramp")) legend.ramp.push_back(colorOf(color));
+    return legend;
+}
+
+Json jsonOf(const PartWhole& whole) {
+    return {{"version", whole.version},
+            {"scene", whole.scene},
+            {"size", {whole.width, whole.height}},
+            {"region", jsonOf(whole.region)},
+            {"crop", whole.crop ? jsonOf(*whole.crop) : Json()},
+            {"linear", whole.linear},
+            {"denoised", whole.denoised},
+            {"exposure", whole.exposure},
+            {"legend", whole.legend ? jsonOf(*whole.legend) : Json()},
+            {"shards", whole.shards}};
+}
+
+PartWhole wholeOf(const Json& json) {
+    PartWhole whole;
+    whole.version = json.at("version");
+    whole.scene = json.at("scene");
+    whole.width = json.at("size").at(0);
+    whole.height = json.at("size").at(1);
+    whole.region = boxOf(json.at("region"));
+    if (!json.at("crop").is_null()) whole.crop = boxOf(json.at("crop"));
+    whole.linear = json.at("linear");
+    whole.denoised = json.at("denoised");
+    whole.exposure = json.at("exposure");
+    if (!json.at("legend").is_null()) whole.legend = legendOf(json.at("legend"));
+    whole.shards = json.at("shards");
+    return whole;
+}
+
+std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json layersOf(const std::vector<FilmLayer>& layers) {
+    Json json = Json::array();
+    for (const FilmLayer& layer : layers) json.push_back({layer.name, layer.channels});
+    return json;
+}
+
+std::uint32_t crcOf(uLong before, const Film& film) {
+    uLong crc = before;
+    const auto add = [&crc](const auto& values) {
+        crc = ::crc32_z(crc, reinterpret_cast<const unsigned char*>(values.data()), values.size() * sizeof values[0]);
+    };
+    add(film.pixels());
+    for (const FilmLayer& layer : film.layers()) add(layer.values);
+    return static_cast<std::uint32_t>(crc);
+}
+
+std::uint32_t crcOf(const Json& json, const Metadata& metadata) {
+    std::string text = textOf(json);
+    for (const auto& [name, value] : metadata) text += fmt::format("\n{}\n{}", name, value);
+    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+}
+
+[[noreturn]] void damaged(const std::filesystem::path& path, std::string_view why) {
+    throw InputError(fmt::format("{}: is damaged ({}); trace this shard again", path.string(), why));
+}
+
+Part partOf(const std::string& text, const Metadata& metadata) {
+    Json json = Json::parse(text);
+    Part part;
+    part.metadata = metadata;
+    if (json.at("format").get<int>() != kFormat) throw std::runtime_error("its format is of another version");
+    part.whole = wholeOf(json.at("whole"));
+    part.index = json.at("index");
+    part.piece = boxOf(json.at("piece"));
+    part.samples = json.at("samples");
+    part.pixels = json.at("pixels");
+    part.content = static_cast<FilmContent>(json.at("content").get<int>());
+    for (const Json& layer : json.at("layers")) {
+        part.layers.push_back({layer.at(0).get<std::string>(), layer.at(1).get<std::vector<std::string>>(), {}});
+    }
+    part.crc = json.at("crc");
+    json.erase("crc");
+    part.head = crcOf(json, metadata);
+    return part;
+}
+
+/// What it says must be possible, before memory is allocated for it.
+void check(const Part& part) {
+    const auto inside = [](const PixelBox& box, const PixelBox& outer) {
+        return box.x0 >= outer.x0 && box.y0 >= outer.y0 && box.x1 <= outer.x1 && box.y1 <= outer.y1 &&
+               box.x0 < box.x1 && box.y0 < box.y1;
+    };
+    const PartWhole& whole = part.whole;
+    RenderOptions size;
+    size.width = whole.width;
+    size.height = whole.height;
+    size.validate();
+    if (!inside(whole.region, {0, 0, whole.width, whole.height}) || (whole.crop && !inside(*whole.crop, whole.region)))
+        throw std::runtime_error("its region is not in the picture");
+    if (part.index < 0 || part.index >= whole.shards || part.pixels < 1 || part.content < FilmContent::radiance ||
+        part.content > FilmContent::position)
+        throw std::runtime_error("its numbers are impossible");
+    if (part.piece != piecesOf(whole.region, whole.shards).at(static_cast<std::size_t>(part.index)))
+        throw std::runtime_error("its place is not that of its number, so it would overlap others");
+}
+
+/// So many layers as it states: before memory is allocated for them.
+void checkChannels(const Part& part, const Imf::ChannelList& channels) {
+    for (const FilmLayer& layer : part.layers)
+        for (const std::string& channel : layer.channels)
+            if (!channels.findChannel(layer.name + "." + channel))
+                throw std::runtime_error(fmt::format("its channel {}.{} is missing", layer.name, channel));
+}
+
+}  // namespace
+
+void writePart(PictureFile& file, const Film& film, Part part) {
+    Json json{{"format", kFormat},
+              {"whole", jsonOf(part.whole)},
+              {"index", part.index},
+              {"piece", jsonOf(film.region())},
+              {"samples", part.samples},
+              {"pixels", part.pixels},
+              {"content", static_cast<int>(film.content())},
+              {"layers", layersOf(film.layers())}};
+    json["crc"] = crcOf(crcOf(json, part.metadata), film);
+    part.metadata[kAttribute] = textOf(json);
+    file.write(film, part.metadata);
+}
+
+Part readPart(const std::filesystem::path& path) {
+    const MappedFile mapped(path);
+    if (!isExr(mapped.bytes()))
+        throw InputError(fmt::format("{}: is no OpenEXR; name the parts that vdbtrace --shard wrote", path.string()));
+    checkExrHeader(mapped.bytes(), kMostPixels, path.string());
+    try {
+        const Imf::InputFile file(path.c_str(), 1);
+        Metadata metadata;
+        for (auto i = file.header().begin(); i != file.header().end(); ++i)
+            if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute()))
+                metadata[i.name()] = text->value();
+        const auto own = metadata.extract(kAttribute);
+        if (own.empty())
+            throw InputError(
+                fmt::format("{}: is no part of a picture; name those that vdbtrace --shard wrote", path.string()));
+        Part part = partOf(own.mapped(), metadata);
+        check(part);
+        checkChannels(part, file.header().channels());
+        const Imath::Box2i window = file.header().dataWindow();
+        if (part.piece != PixelBox{window.min.x, window.min.y, window.max.x + 1, window.max.y + 1})
+            throw std::runtime_error("its data window is not its piece");
+        return part;
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        damaged(path, error.what());
+    }
+}
+
+void addLayers(const Part& part, Film& film) {
+    film.layers() = part.layers;
+    for (FilmLayer& layer : film.layers()) layer.values.resize(film.pixels().size() * layer.channels.size());
+}
+
+void readPixels(const std::filesystem::path& path, const Part& part, Film& film) {
+    try {
+        Imf::InputFile file(path.c_str(), 1);
+        file.setFrameBuffer(exrBufferOf(film));
+        file.readPixels(part.piece.y0, part.piece.y1 - 1);
+    } catch (const std::exception& error) {
+        damaged(path, error.what());
+    }
+    if (crcOf(part.head, film.part(part.piece)) != part.crc) damaged(path, "its checksum is wrong");
+}
+
+bool isPartOf(const std::filesystem::path& path, const std::string& version, const std::string& scene,
+              const Shard& shard) {
+    try {
+        const Part part = readPart(path);
+        if (part.whole.version != version || part.whole.scene != scene || part.index != shard.index ||
+            part.whole.shards != shard.count)
+            return false;
+        Film film(part.whole.width, part.whole.height, part.piece, part.content);
+        addLayers(part, film);
+        readPixels(path, part, film);
+        return true;
+    } catch (const InputError&) {
+        return false;  // missing or damaged: it is traced again
+    }
+}
+
+std::string differenceOf(const Part& part, const Part& other) {
+    if (part.whole.version != other.whole.version)
+        return fmt::format("made by version {}, not {}", part.whole.version, other.whole.version);
+    if (part.whole.shards != other.whole.shards)
+        return fmt::format("one of {} shards, not of {}", part.whole.shards, other.whole.shards);
+    if (part.whole.scene != other.whole.scene)
+        return "of another scene: the input files, the options, the seed or the frame differ";
+    Metadata metadata = part.metadata;
+    metadata[kMeanSamples] = other.metadata.contains(kMeanSamples) ? other.metadata.at(kMeanSamples) : std::string();
+    if (jsonOf(part.whole) != jsonOf(other.whole) || metadata != other.metadata || part.content != other.content ||
+        layersOf(part.layers) != layersOf(other.layers))
+        return "of another picture of the same scene";
+    return {};
+}
+
+}  // namespace stratum::shade
