@@ -70,7 +70,11 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* plastic = kPlastic;
     // First: the options after it override what the preset says.
     completes(app.add_option_function<std::string>(
-                  "--printer", [&options](const std::string& preset) { deposit::usePrinter(preset, options.read); },
+                  "--printer",
+                  [&options](const std::string& preset) {
+                      deposit::usePrinter(preset, options.read);
+                      options.printer = preset;
+                  },
                   "What the printer makes of the program: ideal: beads as commanded (default); typical: a model of a "
                   "tuned printer, all effects below; or a JSON file. Other options override it"),
               Completion::preset, {"ideal", "typical"})

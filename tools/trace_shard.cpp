@@ -82,6 +82,7 @@ std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
     }
     add(o.scene.brdf);
     add(o.scene.env);
+    add(o.prints.print.printer);
     return sha256Hex(text);
 }
 

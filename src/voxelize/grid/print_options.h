@@ -18,6 +18,7 @@ namespace stratum::voxelize {
 /// chooseLattice()'s default lattice.
 struct PrintOptions {
     gcode::ReadOptions read;
+    std::string printer;  ///< the preset or file that `read` has its printer from; empty: none was named
     LatticeRequest lattice;
     std::optional<double> tolerance;   ///< mm: the coarsest voxel whose surface stays this near to the beads
     std::string memory_budget;         ///< the finest voxel that fits, "4GB"; see parseSize(). Empty: none given
