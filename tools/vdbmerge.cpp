@@ -18,7 +18,8 @@ using namespace stratum;
 constexpr const char* kExamples = R"(
 Examples:
   vdbmerge part.png part.*of8.exr                   what vdbtrace -o part.png --shard 0/8 ... 7/8 wrote
-  vdbmerge part.exr part.*of8.exr                   the same of vdbtrace -o part.exr)";
+  vdbmerge part.exr part.*of8.exr                   the same of vdbtrace -o part.exr
+  vdbmerge - part.*of8.exr --quiet > part.png       to standard output)";
 
 struct MergeCommand {
     tools::CommonOptions common;
