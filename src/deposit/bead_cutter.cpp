@@ -1,5 +1,7 @@
 #include "deposit/bead_cutter.h"
 
+#include "deposit/bead_path.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,25 +10,14 @@
 namespace stratum::deposit {
 namespace {
 
-struct Point {
-    double x, y;
-};
-
-// The point of a circle's arc at a fraction of the sweep, on the mean radius of both ends; see gcode::Arc.
-Point onArc(const gcode::Bead& bead, const gcode::Arc& arc, double fraction) {
-    const double from_x = bead.x0 - arc.center_x;
-    const double from_y = bead.y0 - arc.center_y;
-    const double radius =
-        0.5 * (std::hypot(from_x, from_y) + std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y));
-    const double angle = std::atan2(from_y, from_x) + fraction * arc.sweep;
-    return {arc.center_x + radius * std::cos(angle), arc.center_y + radius * std::sin(angle)};
-}
-
-Point onPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double fraction) {
+gcode::PlanPoint onPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double fraction) {
     // The ends to the bit, so that neighbours stay joined.
     if (fraction <= 0) return {bead.x0, bead.y0};
     if (fraction >= 1) return {bead.x1, bead.y1};
-    if (bead.arc >= 0) return onArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], fraction);
+    if (bead.arc >= 0) {
+        const BeadPath path(toolpath, bead);
+        return path.at(fraction * path.length());
+    }
     return {std::lerp(double{bead.x0}, double{bead.x1}, fraction),
             std::lerp(double{bead.y0}, double{bead.y1}, fraction)};
 }
@@ -55,8 +46,8 @@ void cutBeads(gcode::Toolpath& toolpath, std::span<const BeadPiece> pieces) {
         const gcode::Bead& source = toolpath.beads[piece.bead];
         gcode::Bead bead = source;
         bead.width = piece.width;
-        const Point start = onPath(toolpath, source, piece.from);
-        const Point end = onPath(toolpath, source, piece.to);
+        const gcode::PlanPoint start = onPath(toolpath, source, piece.from);
+        const gcode::PlanPoint end = onPath(toolpath, source, piece.to);
         bead.x0 = start.x;
         bead.y0 = start.y;
         bead.z0 = heightAt(source, piece.from, piece.drop0);

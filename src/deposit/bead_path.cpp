@@ -78,7 +78,7 @@ BeadPath::BeadPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead)
     uy_ = dy / length_;
 }
 
-PlanPlace BeadPath::at(double mm) const {
+gcode::PlanPoint BeadPath::at(double mm) const {
     if (straight()) return {x0_ + mm * ux_, y0_ + mm * uy_};
     const double angle = angle_ + mm / length_ * sweep_;
     return {center_x_ + radius_ * std::cos(angle), center_y_ + radius_ * std::sin(angle)};
@@ -93,7 +93,7 @@ double BeadPath::distance(double x, double y) const {
     }
     const double mm = nearest(x, y);
     if (mm > 0 && mm < length_) return std::abs(std::hypot(x - center_x_, y - center_y_) - radius_);
-    const PlanPlace end = at(mm);
+    const gcode::PlanPoint end = at(mm);
     return std::hypot(x - end.x, y - end.y);
 }
 
@@ -111,7 +111,7 @@ std::size_t BeadPath::partsNear(const BeadPath& other, double reach, std::vector
     if (!straight() || !other.straight())
         return walk(
             [&](double mm) {
-                const PlanPlace place = at(mm);
+                const gcode::PlanPoint place = at(mm);
                 return other.distance(place.x, place.y) - reach;
             },
             parts);
@@ -132,7 +132,7 @@ std::size_t BeadPath::partsBeside(const BeadPath& other, PathPart held, double r
     const std::size_t before = parts.size();
     const std::size_t distances = walk(
         [&](double mm) {
-            const PlanPlace place = at(mm);
+            const gcode::PlanPoint place = at(mm);
             const double gap = other.distance(place.x, place.y) - reach;
             if (gap > 0) return gap;
             return beside(mm, other, held) ? 0 : kFineStep;
@@ -149,7 +149,7 @@ std::size_t BeadPath::partsBeside(const BeadPath& other, PathPart held, double r
 
 // But for the reach.
 bool BeadPath::beside(double mm, const BeadPath& other, PathPart held) const {
-    const PlanPlace here = at(mm);
+    const gcode::PlanPoint here = at(mm);
     const double nearest = other.nearest(here.x, here.y);
     if (nearest < held.from || nearest > held.to) return false;
     if (!(length_ > 0)) return true;
@@ -159,7 +159,7 @@ bool BeadPath::beside(double mm, const BeadPath& other, PathPart held) const {
         ux = -(here.y - center_y_) / radius_;
         uy = (here.x - center_x_) / radius_;
     }
-    const PlanPlace there = other.at(nearest);
+    const gcode::PlanPoint there = other.at(nearest);
     const double dx = there.x - here.x;
     const double dy = there.y - here.y;
     return std::abs(dx * ux + dy * uy) <= std::abs(dx * uy - dy * ux);

@@ -1,6 +1,7 @@
 // A bead's path in the plan (xy), measured in mm from its start, and which parts of it are near another path.
 #pragma once
 
+#include "gcode/toolpath/arc.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <cstddef>
@@ -14,11 +15,6 @@ struct PathPart {
     double to = 0;
 };
 
-struct PlanPlace {
-    double x = 0;  ///< mm
-    double y = 0;  ///< mm
-};
-
 /// A segment or a circular arc. Arcs have the mean of both ends' radii, as gcode::Arc says.
 class BeadPath {
 public:
@@ -30,7 +26,7 @@ public:
     double radius() const { return radius_; }  ///< mm; 0 if straight
     double turn() const { return sweep_; }     ///< radians, counter-clockwise positive; 0 if straight
 
-    PlanPlace at(double mm) const;
+    gcode::PlanPoint at(double mm) const;
     /// From (x, y) to the path, mm.
     double distance(double x, double y) const;
 

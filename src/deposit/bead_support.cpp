@@ -135,9 +135,9 @@ void BeadSupport::visitCells(const gcode::Bead& bead, const Visit& visit) const 
     const auto cellOf = [this](double mm, double origin, long count) {
         return static_cast<long>(std::clamp((mm - origin) / cell_, 0.0, static_cast<double>(count - 1)));
     };
-    PlanPlace a = path.at(0);
+    gcode::PlanPoint a = path.at(0);
     for (int chord = 1; chord <= chords; ++chord) {
-        const PlanPlace b = path.at(path.length() * chord / chords);
+        const gcode::PlanPoint b = path.at(path.length() * chord / chords);
         const long last_row = cellOf(std::max(a.y, b.y) + side, origin_y_, rows_);
         for (long row = cellOf(std::min(a.y, b.y) - side, origin_y_, rows_); row <= last_row; ++row) {
             // The part of the chord from which this row can be reached; outer rows hold what is beyond them too.

@@ -15,17 +15,17 @@ namespace {
 
 struct Nearest {
     double distance = 1e300;  // mm
-    PlanPlace place;
+    gcode::PlanPoint place;
 };
 
 // Arcs are many chords.
-Nearest slowNearest(const gcode::Toolpath& toolpath, const gcode::Bead& bead, PlanPlace from) {
+Nearest slowNearest(const gcode::Toolpath& toolpath, const gcode::Bead& bead, gcode::PlanPoint from) {
     Nearest nearest;
     const auto toSegment = [&](double ax, double ay, double bx, double by) {
         const double length2 = (bx - ax) * (bx - ax) + (by - ay) * (by - ay);
         double t = length2 > 0 ? ((from.x - ax) * (bx - ax) + (from.y - ay) * (by - ay)) / length2 : 0;
         t = std::min(1.0, std::max(0.0, t));
-        const PlanPlace place{ax + t * (bx - ax), ay + t * (by - ay)};
+        const gcode::PlanPoint place{ax + t * (bx - ax), ay + t * (by - ay)};
         const double distance = std::hypot(place.x - from.x, place.y - from.y);
         if (distance < nearest.distance) nearest = {distance, place};
     };
@@ -52,7 +52,7 @@ Nearest slowNearest(const gcode::Toolpath& toolpath, const gcode::Bead& bead, Pl
 
 // How far a place of `upper` is beyond the reach of what is below, mm.
 double slowBeyondBelow(const gcode::Toolpath& toolpath, const BeadSupport& support, const gcode::Bead& upper,
-                       PlanPlace place) {
+                       gcode::PlanPoint place) {
     if (toolpath.runOf(upper).layer == 1) return -1;
     double beyond = 1e300;
     for (const gcode::Bead& lower : toolpath.beads) {
@@ -69,9 +69,9 @@ double slowBeyondBeside(const gcode::Toolpath& toolpath, const BeadSupport& supp
                         bool& arcs) {
     const gcode::Bead& bead = toolpath.beads[n];
     const BeadPath path(toolpath, bead);
-    const PlanPlace place = path.at(s);
-    const PlanPlace before = path.at(s - 1e-5);
-    const PlanPlace after = path.at(s + 1e-5);
+    const gcode::PlanPoint place = path.at(s);
+    const gcode::PlanPoint before = path.at(s - 1e-5);
+    const gcode::PlanPoint after = path.at(s + 1e-5);
     const double step = std::hypot(after.x - before.x, after.y - before.y);
     double beyond = 1e300;
     for (std::uint32_t k = 0; k < toolpath.beads.size(); ++k) {
@@ -212,7 +212,7 @@ TEST(BeadSupport, EndsOfPartsAreAtTheReach) {
             path.partsNear(other, reach, parts);
             for (const PathPart& part : parts)
                 for (const double end : {part.from, part.to}) {
-                    const PlanPlace place = path.at(end);
+                    const gcode::PlanPoint place = path.at(end);
                     if (end == 0 || end == path.length())
                         EXPECT_LE(other.distance(place.x, place.y), reach + 1e-9);
                     else
