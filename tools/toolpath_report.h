@@ -1,7 +1,7 @@
 // The part of --stats that is about the G-code.
 #pragma once
 
-#include "deposit/apply_flow.h"
+#include "deposit/lay_flow.h"
 #include "deposit/sag.h"
 #include "gcode/toolpath/toolpath.h"
 

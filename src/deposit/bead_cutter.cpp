@@ -31,49 +31,58 @@ double heightAt(const gcode::Bead& bead, double fraction, double drop) {
 
 }  // namespace
 
-void cutBeads(gcode::Toolpath& toolpath, std::span<const BeadPiece> pieces) {
-    std::vector<gcode::Bead> beads;
-    std::vector<gcode::Arc> arcs;
-    std::vector<gcode::BeadFlow> flow;
-    std::vector<gcode::BeadTiming> timing;
-    beads.reserve(pieces.size());
-    if (!toolpath.flow.empty()) flow.reserve(pieces.size());
-    if (!toolpath.timing.empty()) timing.reserve(pieces.size());
-    auto change = toolpath.color_changes.begin();
-    for (const BeadPiece& piece : pieces) {
-        for (; change != toolpath.color_changes.end() && change->first_bead <= piece.bead; ++change)
-            change->first_bead = static_cast<std::uint32_t>(beads.size());
-        const gcode::Bead& source = toolpath.beads[piece.bead];
-        gcode::Bead bead = source;
-        bead.width = piece.width;
-        const gcode::PlanPoint start = onPath(toolpath, source, piece.from);
-        const gcode::PlanPoint end = onPath(toolpath, source, piece.to);
-        bead.x0 = start.x;
-        bead.y0 = start.y;
-        bead.z0 = heightAt(source, piece.from, piece.drop0);
-        bead.x1 = end.x;
-        bead.y1 = end.y;
-        bead.z1 = heightAt(source, piece.to, piece.drop1);
-        if (source.arc >= 0) {
-            gcode::Arc arc = toolpath.arcs[static_cast<std::size_t>(source.arc)];
-            if (piece.to > piece.from) {
-                arc.sweep *= piece.to - piece.from;
-                bead.arc = static_cast<std::int32_t>(arcs.size());
-                arcs.push_back(arc);
-            } else {
-                bead.arc = -static_cast<std::int32_t>(std::min(arc.line, std::uint32_t{0x7fffffff}));
-            }
+BeadPiece wholeBead(const gcode::Toolpath& toolpath, std::uint32_t bead) {
+    BeadPiece piece{.bead = bead, .width = toolpath.beads[bead].width};
+    if (!toolpath.flow.empty()) piece.flow = toolpath.flow[bead];
+    if (!toolpath.timing.empty()) piece.timing = toolpath.timing[bead];
+    return piece;
+}
+
+BeadCutter::BeadCutter(gcode::Toolpath& toolpath, bool with_flow, std::size_t expected)
+    : toolpath_(toolpath), with_flow_(with_flow) {
+    beads_.reserve(expected);
+    if (with_flow) flow_.reserve(expected);
+    if (!toolpath.timing.empty()) timing_.reserve(expected);
+}
+
+void BeadCutter::add(const BeadPiece& piece) {
+    while (changes_.size() < toolpath_.color_changes.size() &&
+           toolpath_.color_changes[changes_.size()].first_bead <= piece.bead)
+        changes_.push_back(static_cast<std::uint32_t>(beads_.size()));
+    const gcode::Bead& source = toolpath_.beads[piece.bead];
+    gcode::Bead bead = source;
+    bead.width = piece.width;
+    const gcode::PlanPoint start = onPath(toolpath_, source, piece.from);
+    const gcode::PlanPoint end = onPath(toolpath_, source, piece.to);
+    bead.x0 = start.x;
+    bead.y0 = start.y;
+    bead.z0 = heightAt(source, piece.from, piece.drop0);
+    bead.x1 = end.x;
+    bead.y1 = end.y;
+    bead.z1 = heightAt(source, piece.to, piece.drop1);
+    if (source.arc >= 0) {
+        gcode::Arc arc = toolpath_.arcs[static_cast<std::size_t>(source.arc)];
+        if (piece.to > piece.from) {
+            arc.sweep *= piece.to - piece.from;
+            bead.arc = static_cast<std::int32_t>(arcs_.size());
+            arcs_.push_back(arc);
+        } else {
+            bead.arc = -static_cast<std::int32_t>(std::min(arc.line, std::uint32_t{0x7fffffff}));
         }
-        beads.push_back(bead);
-        if (!toolpath.flow.empty()) flow.push_back(piece.flow);
-        if (!toolpath.timing.empty()) timing.push_back(piece.timing);
     }
-    for (; change != toolpath.color_changes.end(); ++change)
-        change->first_bead = static_cast<std::uint32_t>(beads.size());
-    toolpath.beads = std::move(beads);
-    toolpath.arcs = std::move(arcs);
-    toolpath.flow = std::move(flow);
-    toolpath.timing = std::move(timing);
+    beads_.push_back(bead);
+    if (with_flow_) flow_.push_back(piece.flow);
+    if (!toolpath_.timing.empty()) timing_.push_back(piece.timing);
+}
+
+void BeadCutter::finish() {
+    for (std::size_t n = 0; n < toolpath_.color_changes.size(); ++n)
+        toolpath_.color_changes[n].first_bead =
+            n < changes_.size() ? changes_[n] : static_cast<std::uint32_t>(beads_.size());
+    toolpath_.beads = std::move(beads_);
+    toolpath_.arcs = std::move(arcs_);
+    toolpath_.flow = std::move(flow_);
+    toolpath_.timing = std::move(timing_);
 }
 
 }  // namespace stratum::deposit

@@ -1,5 +1,8 @@
 #include "deposit/bead_support.h"
 
+#include "base/parallel_for.h"
+
+#include <tbb/enumerable_thread_specific.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,9 +19,11 @@ constexpr double kJoined = 1e-6;            // mm between two parts that are one
 constexpr std::size_t kMergedAfter = 64;    // parts
 
 // Of BeadSupport::below_
-constexpr std::uint32_t kUnknown = 0xffffffff;
-constexpr std::uint32_t kNone = 0xfffffffe;
-constexpr std::uint32_t kWhole = 0xfffffffd;
+constexpr std::uint32_t kNone = 0xffffffff;
+constexpr std::uint32_t kWhole = 0xfffffffe;
+constexpr std::size_t kSearchBlock = 4096;  // beads that one thread searches below of at a time
+
+constexpr std::uint32_t kNoBead = 0xffffffff;
 
 bool isSupportMaterial(gcode::Feature feature) {
     return feature == gcode::Feature::support || feature == gcode::Feature::support_interface;
@@ -56,8 +61,7 @@ BeadSupport::BeadSupport(const gcode::Toolpath& toolpath) : toolpath_(toolpath) 
     }
     setGrid();
     fillGrid();
-    asked_.resize(level_.size());
-    below_.assign(level_.size(), kUnknown);
+    searchBelowAll();
 }
 
 bool BeadSupport::usable(const gcode::Bead& bead) const {
@@ -169,7 +173,7 @@ void BeadSupport::fillGrid() {
     const std::size_t cells = static_cast<std::size_t>(columns_ * rows_);
     starts_.assign(cells + 1, 0);
     // Chords of an arc share cells.
-    std::vector<std::uint32_t> last(cells, kUnknown);
+    std::vector<std::uint32_t> last(cells, kNoBead);
     for (const std::uint32_t n : by_top)
         visitCells(toolpath_.beads[n], [&](std::size_t cell) {
             if (last[cell] != n) ++starts_[cell + 1];
@@ -178,7 +182,7 @@ void BeadSupport::fillGrid() {
     for (std::size_t cell = 1; cell < starts_.size(); ++cell) starts_[cell] += starts_[cell - 1];
     entries_.resize(starts_.back());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    last.assign(cells, kUnknown);
+    last.assign(cells, kNoBead);
     for (const std::uint32_t n : by_top) {
         const auto top = static_cast<float>(toolpath_.beads[n].z0);
         visitCells(toolpath_.beads[n], [&](std::size_t cell) {
@@ -188,16 +192,18 @@ void BeadSupport::fillGrid() {
     }
 }
 
-// Collects in `candidates` the level beads with their tops in this range that share a cell with a bead and are
+// Collects in search.candidates the level beads with their tops in this range that share a cell with a bead and are
 // accepted, each once; returns false past one of the bounds.
 template <typename Accept>
 bool BeadSupport::gather(std::uint32_t bead, double lowest, double highest, const Accept& accept,
-                         std::vector<std::uint32_t>& candidates) {
+                         Search& search) const {
     const double rounding = 1e-6 * (1 + std::max(std::abs(lowest), std::abs(highest)));  // of a float's top
     const auto low = static_cast<float>(lowest - rounding);
     const auto high = static_cast<float>(highest + rounding);
+    std::vector<std::uint32_t>& candidates = search.candidates;
     candidates.clear();
-    ++searches_;
+    if (search.asked.empty()) search.asked.resize(level_.size());
+    ++search.searches;
     bool few = true;
     visitCells(toolpath_.beads[bead], [&](std::size_t cell) {
         if (!few) return;
@@ -207,8 +213,8 @@ bool BeadSupport::gather(std::uint32_t bead, double lowest, double highest, cons
         const auto last = std::upper_bound(first, end, high, [](float top, const Entry& one) { return top < one.top; });
         few = static_cast<std::size_t>(last - first) <= kMostInCell;
         for (auto entry = first; few && entry != last; ++entry) {
-            if (asked_[entry->bead] == searches_) continue;
-            asked_[entry->bead] = searches_;
+            if (search.asked[entry->bead] == search.searches) continue;
+            search.asked[entry->bead] = search.searches;
             if (accept(entry->bead)) candidates.push_back(entry->bead);
             few = candidates.size() <= kMostDistances;
         }
@@ -241,59 +247,75 @@ void BeadSupport::unite(const BeadPath& path, const std::vector<std::uint32_t>& 
     mergeParts(parts);
 }
 
-void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts) {
+void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const {
     const gcode::Bead& upper = toolpath_.beads[bead];
     const BeadPath path(toolpath_, upper);
     const double height = static_cast<double>(toolpath_.runOf(upper).height);
     const double lowest = upper.z0 - height - std::max(kSupportClearance, touching(height));
     const auto carries = [&](std::uint32_t lower) { return below(toolpath_.beads[lower], upper); };
-    if (everywhere(upper) || !gather(bead, lowest, upper.z0 - kLeastBurial * height, carries, lower_)) {
+    if (everywhere(upper) || !gather(bead, lowest, upper.z0 - kLeastBurial * height, carries, search)) {
         parts.push_back({0, path.length()});
         return;
     }
-    unite(path, lower_, parts, [&](std::uint32_t n) {
+    unite(path, search.candidates, parts, [&](std::uint32_t n) {
         const gcode::Bead& lower = toolpath_.beads[n];
         return path.partsNear(BeadPath(toolpath_, lower), reach(lower, upper), parts);
     });
 }
 
-void BeadSupport::fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) {
-    parts.clear();
-    const std::uint32_t known = below_[bead];
-    if (known == kNone) return;
-    if (known == kWhole) {
-        parts.push_back({0, BeadPath(toolpath_, toolpath_.beads[bead]).length()});
-    } else if (known == kUnknown) {
-        searchBelow(bead, parts);
-        if (parts.empty()) {
-            below_[bead] = kNone;
-        } else if (covers(parts, BeadPath(toolpath_, toolpath_.beads[bead]).length())) {
-            below_[bead] = kWhole;
-        } else {
-            below_[bead] = static_cast<std::uint32_t>(below_parts_.size());
-            below_parts_.insert(below_parts_.end(), parts.begin(), parts.end());
-            below_parts_.push_back({1, 0});
+void BeadSupport::searchBelowAll() {
+    below_.resize(level_.size());
+    below_parts_.resize((level_.size() + kSearchBlock - 1) / kSearchBlock);
+    tbb::enumerable_thread_specific<Search> searches;
+    parallelFor(below_parts_.size(), 1, [&](std::size_t first, std::size_t last) {
+        Search& search = searches.local();
+        std::vector<PathPart> parts;
+        for (auto bead = static_cast<std::uint32_t>(first * kSearchBlock);
+             bead < std::min(last * kSearchBlock, level_.size()); ++bead) {
+            if (!level_[bead]) continue;
+            parts.clear();
+            searchBelow(bead, parts, search);
+            std::vector<PathPart>& kept = below_parts_[bead / kSearchBlock];
+            if (parts.empty()) {
+                below_[bead] = kNone;
+            } else if (covers(parts, BeadPath(toolpath_, toolpath_.beads[bead]).length())) {
+                below_[bead] = kWhole;
+            } else {
+                below_[bead] = static_cast<std::uint32_t>(kept.size());
+                kept.insert(kept.end(), parts.begin(), parts.end());
+                kept.push_back({1, 0});
+            }
         }
-    } else {
-        for (auto part = below_parts_.begin() + known; part->from <= part->to; ++part) parts.push_back(*part);
-    }
+    });
 }
 
-void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts) {
+void BeadSupport::fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) const {
+    parts.clear();
+    const std::uint32_t found = below_[bead];
+    if (found == kNone) return;
+    if (found == kWhole) {
+        parts.push_back({0, BeadPath(toolpath_, toolpath_.beads[bead]).length()});
+        return;
+    }
+    for (auto part = below_parts_[bead / kSearchBlock].begin() + found; part->from <= part->to; ++part)
+        parts.push_back(*part);
+}
+
+void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const {
     fromBelow(bead, parts);
     const gcode::Bead& middle = toolpath_.beads[bead];
     const BeadPath path(toolpath_, middle);
     if (covers(parts, path.length())) return;
     const auto neighbours = [&](std::uint32_t n) { return n != bead && holds(toolpath_.beads[n], middle); };
-    if (!gather(bead, middle.z0 - kTouchingRounding, middle.z0 + kTouchingRounding, neighbours, beside_)) {
+    if (!gather(bead, middle.z0 - kTouchingRounding, middle.z0 + kTouchingRounding, neighbours, search)) {
         parts.assign(1, {0, path.length()});
         return;
     }
-    unite(path, beside_, parts, [&](std::uint32_t n) {
-        fromBelow(n, neighbour_parts_);
+    unite(path, search.candidates, parts, [&](std::uint32_t n) {
+        fromBelow(n, search.neighbour_parts);
         std::size_t distances = 0;
         const gcode::Bead& neighbour = toolpath_.beads[n];
-        for (const PathPart& held : neighbour_parts_)
+        for (const PathPart& held : search.neighbour_parts)
             distances += path.partsBeside(BeadPath(toolpath_, neighbour), held, reachBeside(neighbour, middle), parts);
         return distances;
     });

@@ -41,9 +41,19 @@ constexpr std::size_t kMostInCell = 2048;
 /// most 774 in the test prints, 3625 in those with arcs, which are walked along:
 constexpr std::size_t kMostDistances = 6000;
 
-/// Finds the supports of the beads of a toolpath, which must stay as it is meanwhile.
+/// Finds the supports of the beads of a toolpath, which must stay as it is meanwhile. Once made, it is used by any
+/// number of threads, each with a Search of its own.
 class BeadSupport {
 public:
+    /// What one thread uses for its searches.
+    struct Search {
+        std::vector<std::uint32_t> asked;  // by bead: the last search that met it
+        std::uint32_t searches = 0;
+        std::vector<std::uint32_t> candidates;
+        std::vector<PathPart> neighbour_parts;
+    };
+
+    /// Searches below all level beads, on all threads.
     explicit BeadSupport(const gcode::Toolpath& toolpath);
 
     /// Whether it is level and has usable coordinates and sizes. Others carry nothing and are not looked up.
@@ -53,11 +63,11 @@ public:
     /// those beside (BeadPath::partsBeside) a bead that has support from below there, for the outer line of an
     /// overhanging wall is glued to the inner one. This goes one bead far, so that bridges hang: their lines next to a
     /// supported perimeter are held along it, but hold no others. Print order and features make no difference.
-    void find(std::uint32_t bead, std::vector<PathPart>& parts);
+    void find(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const;
 
     /// The same, from below alone. Layer 0 (prime lines), the lowest layer, beads on the bed, and ironing, which runs
     /// in a finished surface, are supported everywhere.
-    void fromBelow(std::uint32_t bead, std::vector<PathPart>& parts);
+    void fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) const;
 
     /// The rule in z alone: whether `lower` can carry `upper` where their paths are near enough.
     bool below(const gcode::Bead& lower, const gcode::Bead& upper) const;
@@ -84,12 +94,12 @@ private:
     template <typename Visit>
     void visitCells(const gcode::Bead& bead, const Visit& visit) const;
     template <typename Accept>
-    bool gather(std::uint32_t bead, double lowest, double highest, const Accept& accept,
-                std::vector<std::uint32_t>& candidates);
+    bool gather(std::uint32_t bead, double lowest, double highest, const Accept& accept, Search& search) const;
     template <typename Append>
     static void unite(const BeadPath& path, const std::vector<std::uint32_t>& candidates, std::vector<PathPart>& parts,
                       const Append& append);
-    void searchBelow(std::uint32_t bead, std::vector<PathPart>& parts);
+    void searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const;
+    void searchBelowAll();
 
     const gcode::Toolpath& toolpath_;
     std::uint32_t lowest_layer_ = 0;
@@ -100,15 +110,10 @@ private:
     long columns_ = 0, rows_ = 0;
     std::vector<std::size_t> starts_;
     std::vector<Entry> entries_;
-    std::vector<std::uint32_t> asked_;  // by bead: the last search that met it
-    std::uint32_t searches_ = 0;
-    std::vector<std::uint32_t> lower_;   // below one bead
-    std::vector<std::uint32_t> beside_;  // with the top of one bead
-    // What fromBelow() found, by bead: kUnknown, kNone, kWhole, or the first of its parts in below_parts_, up to one
-    // with from > to.
+    // What is below, by bead: kNone, kWhole, or the first of its parts in below_parts_[bead / kSearchBlock], up to one with
+    // from > to.
     std::vector<std::uint32_t> below_;
-    std::vector<PathPart> below_parts_;
-    std::vector<PathPart> neighbour_parts_;
+    std::vector<std::vector<PathPart>> below_parts_;
 };
 
 }  // namespace stratum::deposit

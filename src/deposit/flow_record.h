@@ -1,4 +1,4 @@
-// What a simulated flow lays: parts of beads and spots, as volumes; apply_flow.h makes beads of them.
+// What a simulated flow lays: parts of beads and spots, as volumes; lay_flow.h makes beads of them.
 #pragma once
 
 #include <cstdint>

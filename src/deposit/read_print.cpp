@@ -25,15 +25,28 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);
     }
-    if (flow) {
-        print.flow = applyFlow(flow->finish(), print.toolpath);
-        print.flow->lag = *deposit.flow_lag;
-        if (print.toolpath.empty())
-            throw InputError(
-                fmt::format("{}: nothing flows out with a lag of {:g} s; is the lag longer than the print?", name,
-                            *deposit.flow_lag));
+    if (!flow) {
+        if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);
+        return print;
     }
-    if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);
+    const FlowRecord record = flow->finish();
+    std::optional<Sag> sag;
+    if (deposit.sag > 0) {
+        sag.emplace(print.toolpath, deposit.sag);
+        print.sag = sag->report();
+    }
+    BeadCutter cutter(print.toolpath, true, record.parts.size() + record.spots.size());
+    print.flow = layFlow(record, print.toolpath, [&](const BeadPiece& piece) {
+        if (sag)
+            sag->lay(piece, cutter);
+        else
+            cutter.add(piece);
+    });
+    print.flow->lag = *deposit.flow_lag;
+    cutter.finish();
+    if (print.toolpath.empty())
+        throw InputError(fmt::format("{}: nothing flows out with a lag of {:g} s; is the lag longer than the print?",
+                                     name, *deposit.flow_lag));
     return print;
 }
 

@@ -1,7 +1,7 @@
 // Bytes -> Toolpath of what the plastic does: the reader, and the effects that DepositModel asks for.
 #pragma once
 
-#include "deposit/apply_flow.h"
+#include "deposit/lay_flow.h"
 #include "deposit/sag.h"
 #include "gcode/reader.h"
 #include "motion/print_times.h"
@@ -19,7 +19,7 @@ struct PrintRead {
 };
 
 /// Reads a program; plans its motion only if `timed` or if the flow is simulated. Throws what readToolpath() throws.
-/// Single-threaded, re-entrant.
+/// The search for what sags runs on all threads, the rest on one. Re-entrant.
 PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed);
 
 }  // namespace stratum::deposit

@@ -21,11 +21,15 @@ TEST(BeadCutter, PiecesMeetAndKeepTheirLine) {
     gcode::Toolpath toolpath = lineAndArc();
     toolpath.color_changes.push_back({.first_bead = 1, .tool = 0, .color = {1, 2, 3}});
     toolpath.color_changes.push_back({.first_bead = 2, .tool = 0, .color = {4, 5, 6}});
-    cutBeads(toolpath, std::vector<BeadPiece>{{.bead = 0, .from = 0, .to = 0.25, .width = 0.4F},
-                                              {.bead = 0, .from = 0.25, .to = 1, .width = 0.6F, .drop1 = 0.1},
-                                              {.bead = 1, .from = 0, .to = 0.5, .width = 0.5F},
-                                              {.bead = 1, .from = 0.5, .to = 1, .width = 0.3F},
-                                              {.bead = 1, .from = 1, .to = 1, .width = 0.9F}});
+    BeadCutter cutter(toolpath, false, 5);
+    for (const BeadPiece& piece :
+         std::vector<BeadPiece>{{.bead = 0, .from = 0, .to = 0.25, .width = 0.4F},
+                                {.bead = 0, .from = 0.25, .to = 1, .width = 0.6F, .drop1 = 0.1},
+                                {.bead = 1, .from = 0, .to = 0.5, .width = 0.5F},
+                                {.bead = 1, .from = 0.5, .to = 1, .width = 0.3F},
+                                {.bead = 1, .from = 1, .to = 1, .width = 0.9F}})
+        cutter.add(piece);
+    cutter.finish();
     ASSERT_EQ(toolpath.beads.size(), 5U);
     for (const std::size_t first : {0U, 2U, 3U}) {
         EXPECT_EQ(double{toolpath.beads[first].x1}, double{toolpath.beads[first + 1].x0});

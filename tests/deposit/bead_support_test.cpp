@@ -165,12 +165,13 @@ TEST(BeadSupport, AgreesWithBruteForce) {
     for (unsigned seed = 0; seed < 3; ++seed) {
         const RandomLayers layers(seed);
         const gcode::Toolpath& toolpath = layers.toolpath;
-        BeadSupport support(toolpath);
+        const BeadSupport support(toolpath);
+        BeadSupport::Search search;
         std::vector<PathPart> below;
         std::vector<PathPart> all;
         for (std::uint32_t n = 30; n < toolpath.beads.size(); ++n) {
             const gcode::Bead& upper = toolpath.beads[n];
-            support.find(n, all);
+            support.find(n, all, search);
             support.fromBelow(n, below);
             const BeadPath path(toolpath, upper);
             expectApart(below, path.length());
@@ -272,9 +273,10 @@ struct Overhang {
     }
     // mm
     double supported(std::uint32_t bead) const {
-        BeadSupport support(toolpath);
+        const BeadSupport support(toolpath);
+        BeadSupport::Search search;
         std::vector<PathPart> parts;
-        support.find(bead, parts);
+        support.find(bead, parts, search);
         double length = 0;
         for (const PathPart& part : parts) length += part.to - part.from;
         return length;
@@ -358,9 +360,10 @@ gcode::Toolpath piledUnderOne(int count) {
 TEST(BeadSupport, PilesCarryEverywhere) {
     for (const int count : {110, 130, 2100}) {
         const gcode::Toolpath toolpath = piledUnderOne(count);
-        BeadSupport support(toolpath);
+        const BeadSupport support(toolpath);
+        BeadSupport::Search search;
         std::vector<PathPart> parts;
-        support.find(static_cast<std::uint32_t>(toolpath.beads.size() - 1), parts);
+        support.find(static_cast<std::uint32_t>(toolpath.beads.size() - 1), parts, search);
         EXPECT_EQ(parts.size(), count == 110 ? 50U : 1U);
         EXPECT_EQ(parts.back().to, count == 110 ? parts.back().to : 100);
     }
@@ -380,9 +383,10 @@ TEST(BeadSupport, PilesTakeLittleTime) {
                     {.x0 = x0, .y0 = y, .z0 = z, .x1 = 5, .y1 = y, .z1 = z, .width = 0.2F, .run = layer, .arc = -1});
             }
         const auto start = std::chrono::steady_clock::now();
-        BeadSupport support(toolpath);
+        const BeadSupport support(toolpath);
+        BeadSupport::Search search;
         std::vector<PathPart> parts;
-        for (std::uint32_t n = kCount; n < 2 * kCount; ++n) support.find(n, parts);
+        for (std::uint32_t n = kCount; n < 2 * kCount; ++n) support.find(n, parts, search);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         RecordProperty("seconds", std::to_string(seconds.count()));
         EXPECT_LT(seconds.count(), 20);  // a sanitizer's build
@@ -403,10 +407,11 @@ TEST(BeadSupport, BedFirstLayerAndIroningCarryAllOfABead) {
     add(0.2, 2);  // on the bed
     add(9, 3);
     add(9, 2);
-    BeadSupport support(toolpath);
+    const BeadSupport support(toolpath);
+    BeadSupport::Search search;
     std::vector<PathPart> parts;
     for (std::uint32_t n = 0; n < 5; ++n) {
-        support.find(n, parts);
+        support.find(n, parts, search);
         ASSERT_EQ(parts.size(), n < 4 ? 1U : 0U);
         if (n == 4) continue;
         EXPECT_EQ(parts[0].from, 0);

@@ -1,11 +1,8 @@
-#include "deposit/apply_flow.h"
-
-#include "deposit/bead_cutter.h"
+#include "deposit/lay_flow.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace stratum::deposit {
 namespace {
@@ -37,10 +34,9 @@ double endVolume(double width, double height) {
 
 class FlowPieces {
 public:
-    FlowPieces(const FlowRecord& record, const gcode::Toolpath& toolpath)
-        : record_(record), toolpath_(toolpath), scale_(filamentScale(record, toolpath)) {
-        pieces_.reserve(record.parts.size() + record.spots.size());
-    }
+    FlowPieces(const FlowRecord& record, const gcode::Toolpath& toolpath,
+               const std::function<void(const BeadPiece&)>& lay)
+        : record_(record), toolpath_(toolpath), lay_(lay), scale_(filamentScale(record, toolpath)) {}
 
     void run() {
         for (const FlowPart& part : record_.parts) {
@@ -56,7 +52,6 @@ public:
         report_.beads = toolpath_.beads.size();
     }
 
-    const std::vector<BeadPiece>& pieces() const { return pieces_; }
     const FlowReport& report() const { return report_; }
 
 private:
@@ -101,7 +96,7 @@ private:
         piece.flow.widening = static_cast<float>(widening);
         const float speed = part.seconds > 0 ? static_cast<float>(length / part.seconds) : 0;
         piece.timing = {part.start, static_cast<float>(part.seconds), speed, speed, speed};
-        pieces_.push_back(piece);
+        lay_(piece);
         report_.in_parts += volume;
         ++report_.parts;
     }
@@ -148,15 +143,15 @@ private:
         piece.width = static_cast<float>(2 * (discRadius(half, std::max(beyond, 0.0) / height, spot.inside) + rounded));
         piece.flow.volume = static_cast<float>(volume);
         piece.timing.start = spot.time;
-        pieces_.push_back(piece);
+        lay_(piece);
         report_.in_discs += volume;
         ++report_.discs;
     }
 
     const FlowRecord& record_;
     const gcode::Toolpath& toolpath_;
+    const std::function<void(const BeadPiece&)>& lay_;
     const double scale_;
-    std::vector<BeadPiece> pieces_;
     FlowReport report_;
     std::size_t next_spot_ = 0;
     double carried_ = 0;     // mm^3, of threads too thin
@@ -183,11 +178,10 @@ double discRadius(double half_width, double area, bool inside) {
     return 0.5 * (low + high);
 }
 
-FlowReport applyFlow(const FlowRecord& record, gcode::Toolpath& toolpath) {
-    FlowPieces pieces(record, toolpath);
+FlowReport layFlow(const FlowRecord& record, const gcode::Toolpath& toolpath,
+                   const std::function<void(const BeadPiece&)>& lay) {
+    FlowPieces pieces(record, toolpath, lay);
     pieces.run();
-    toolpath.flow.resize(toolpath.beads.size());
-    cutBeads(toolpath, pieces.pieces());
     return pieces.report();
 }
 

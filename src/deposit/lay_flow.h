@@ -1,10 +1,12 @@
-// FlowRecord -> beads: parts get widths, spots become discs.
+// FlowRecord -> pieces of beads: parts get widths, spots become discs.
 #pragma once
 
+#include "deposit/bead_cutter.h"
 #include "deposit/flow_record.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <cstddef>
+#include <functional>
 
 namespace stratum::deposit {
 
@@ -30,9 +32,10 @@ constexpr double kMostInDisc = 10;
 /// place inside a path, beside it.
 double discRadius(double half_width, double area, bool inside);
 
-/// Replaces the beads of the file by those that flow out. Open paths end a little earlier than in the file, so that the
-/// half discs at their ends add nothing to what was fed. Sets Toolpath::flow. Widths are finite and positive; a round
-/// thread thinner than 0.05 mm is laid with what follows it.
-FlowReport applyFlow(const FlowRecord& record, gcode::Toolpath& toolpath);
+/// Lays the beads that flow out instead of those of the file, as pieces of them. Open paths end a little earlier than
+/// in the file, so that the half discs at their ends add nothing to what was fed. Widths are finite and positive; a
+/// round thread thinner than 0.05 mm is laid with what follows it.
+FlowReport layFlow(const FlowRecord& record, const gcode::Toolpath& toolpath,
+                   const std::function<void(const BeadPiece&)>& lay);
 
 }  // namespace stratum::deposit
