@@ -121,7 +121,7 @@ private:
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const {
         return !as_mesh_ && !culls() && attributes_.empty() && o_.snapshots.empty() && !o_.interior_distance &&
-               !o_.forecast && !o_.usda && !(settles() && !o_.common.stats.empty());
+               !o_.forecast && !(settles() && !o_.common.stats.empty());
     }
     bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
@@ -229,6 +229,7 @@ private:
         {
             const ProgressNote note("writing", o_.common.quiet);
             numbers.counted = file.finish();
+            writeUsda({empty}, job);
         }
         seconds_.write += watch_.lap();
         numbers.transform = empty->transformPtr();
@@ -301,6 +302,10 @@ private:
         exporter::describe(*grid, lattice_, provenance_);
         grids.insert(grids.begin(), grid);
         exporter::writeVdb(grids, job.path, o_.file);
+        writeUsda(grids, job);
+    }
+
+    void writeUsda(const openvdb::GridPtrVec& grids, const Job& job) const {
         if (o_.usda)
             exporter::writeUsda(grids, job.path, usdaOf(job.path),
                                 {0.001 * voxelize::millimetresIn(o_.unit), o_.up == "y"});

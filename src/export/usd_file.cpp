@@ -29,6 +29,14 @@ std::string field(const openvdb::GridBase& grid, const std::string& file) {
     return text + "    }\n";
 }
 
+// Of a grid that went to its file without being in memory, its metadata tell.
+openvdb::CoordBBox activeBoxOf(const openvdb::GridBase& grid) {
+    const auto low = grid.getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
+    const auto high = grid.getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
+    if (!grid.empty() || !low || !high) return grid.evalActiveVoxelBoundingBox();
+    return {openvdb::Coord(low->value()), openvdb::Coord(high->value())};
+}
+
 }  // namespace
 
 void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vdb, const std::filesystem::path& usda,
@@ -38,9 +46,10 @@ void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vd
     if (name.find('@') != std::string::npos)
         throw OutputError(fmt::format("{}: a .usda can't name a file with @ in it; choose another -o", name));
     openvdb::BBoxd box;
-    for (const auto& grid : grids)
-        box.expand(grid->transform().indexToWorld(openvdb::BBoxd(grid->evalActiveVoxelBoundingBox().min().asVec3d(),
-                                                                 grid->evalActiveVoxelBoundingBox().max().asVec3d())));
+    for (const auto& grid : grids) {
+        const openvdb::CoordBBox active = activeBoxOf(*grid);
+        box.expand(grid->transform().indexToWorld(openvdb::BBoxd(active.min().asVec3d(), active.max().asVec3d())));
+    }
     const auto low = box.min();
     const auto high = box.max();
     std::string text = fmt::format(
