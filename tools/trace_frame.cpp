@@ -149,8 +149,11 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
     seconds.total = frame.load_seconds + frame.build_seconds + seconds.render + seconds.denoise + seconds.write;
 
     const shade::RayCounts& rays = result.rays;
-    const std::string piece =
-        o.shard.pieces ? fmt::format("{} x {} of ", result.film.width(), result.film.height()) : std::string();
+    std::string piece;
+    if (options.samples)
+        piece = fmt::format("samples {} to {} of ", options.samples->first, options.samples->end - 1);
+    else if (o.shard.pieces)
+        piece = fmt::format("{} x {} of ", result.film.width(), result.film.height());
     say(o.common,
         fmt::format("  {}: {}{} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", output, piece,
                     o.render.width, o.render.height, result.mean_spp, humanCount(static_cast<double>(rays.total())),

@@ -278,11 +278,11 @@ void addShardOptions(CLI::App& app, TraceCommand& o) {
                        "array. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
             ->type_name("I/N|slurm")
             ->group(machines);
-    app.add_option(
-           "--shard-by", o.shard.by,
-           "tiles: a piece of each picture, or frames: whole pictures of a series (default: frames of a series, "
-           "tiles of one picture)")
-        ->check(oneOf({"tiles", "frames"}))
+    app.add_option("--shard-by", o.shard.by,
+                   "tiles: a piece of each picture, samples: some of the samples of all its pixels, or frames: whole "
+                   "pictures of "
+                   "a series (default: frames of a series, tiles of one picture)")
+        ->check(oneOf({"tiles", "samples", "frames"}))
         ->needs(shard)
         ->type_name("NAME")
         ->group(machines);

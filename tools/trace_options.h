@@ -24,7 +24,8 @@ struct ShardCommand {
     std::string text, by;  // as given
     bool resume = false;
     std::optional<shade::Shard> shard;
-    bool pieces = false;              // traces a piece of each picture; else whole pictures
+    bool pieces = false;              // traces a part of each picture; else whole pictures
+    bool samples = false;             // that part is a share of the samples; else a piece of the picture
     std::vector<bool> made;           // which pictures are this process's; empty: all
     std::vector<std::string> scenes;  // hashes of what each picture is of, for pieces and resume
 };

@@ -34,10 +34,10 @@ std::string recordOf(const TraceCommand& command);
 /// Notes there that picture n is written. Throws OutputError.
 void recordPicture(const TraceCommand& command, std::size_t n);
 
-/// The render options of this process: of its piece, if it traces one.
+/// The render options of this process: of its piece or its samples, if it traces some.
 shade::RenderOptions renderOptionsOf(const TraceCommand& command);
 
-/// Writes the piece of picture n with all that a merge needs.
+/// Writes the part of picture n with all that a merge needs.
 /// @param metadata  of the finished picture
 /// @param legend    of the finished picture; may be null
 void writePiece(shade::PictureFile& file, const TraceCommand& command, std::size_t n, const shade::RenderResult& result,

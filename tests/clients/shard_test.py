@@ -1,4 +1,4 @@
-"""Pictures and films in shards: the bytes of one process, whatever is killed, and no half of a picture."""
+"""Pictures and films in shards, by tiles, samples and frames: the bytes of one process, whatever is killed, and no half of a picture."""
 
 import os
 import re
@@ -94,6 +94,35 @@ for what, name, options in PICTURES:
         for part in parts(stem, count):
             os.remove(path(part))
 
+# --- shares of the samples: the same table ----------------------------------------------------------------------------------
+SAMPLES = (
+    ("path, denoised, shares of the samples", "path.png", ["--spp", "8"]),
+    ("layers, shares of the samples", "layers.exr", ["--spp", "7", "--aov", "normal,depth,albedo,mask,variance,samples,layer,feature"]),
+    ("depth of field, a crop, denoised, shares of the samples", "lens.png",
+     ["--spp", "9", "--f-number", "2", "--view", "front", "--crop", "30,20,130,100"]),
+    ("depth, shares of the samples", "depth.exr", ["--spp", "7", "--integrator", "depth", "--seed", "3"]),
+)
+for what, name, options in SAMPLES:
+    whole = "whole_" + name
+    trace(whole, *options)
+    for count in (1, 2, 7):
+        stem, ending = os.path.splitext(name)
+        for index in range(count):
+            trace(name, *options, "--shard-by", "samples", *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
+        does(VDBMERGE, name, *reversed(parts(stem, count)), "--quiet")
+        check(same(name, whole), f"| {what} | {name} | {count} | the same bytes |")
+        os.remove(path(name))
+        for part in parts(stem, count):
+            os.remove(path(part))
+
+# --- many pieces: one tile each -------------------------------------------------------------------------------------------
+MANY = [VDBTRACE, TILE, "--size", "256x256", "--voxels-per-layer", "2", "--spp", "2", "--quiet"]
+does(*MANY, "-o", "whole_many.png")
+for index in range(64):
+    does(*MANY, "-o", "many.png", "--shard", f"{index}/64")
+does(VDBMERGE, "many.png", *parts("many", 64), "--quiet")
+check(same("many.png", "whole_many.png"), "| path, denoised | many.png | 64 | the same bytes |")
+
 # --- pieces of every picture of a series ----------------------------------------------------------------------------------
 TURN = ["--spp", "2", "--turntable", "2"]
 trace("turn.png", *TURN)
@@ -138,6 +167,18 @@ refused(2, ["the parts are of an .exr"], VDBMERGE, "no.png", *parts("linear", 3)
 refused(2, ["no.jpg"], VDBMERGE, "no.jpg", *P)
 refused(2, ["is an input"], VDBMERGE, P[0], *P)
 
+for index in range(2):
+    trace("share.png", *BASE, "--shard-by", "samples", shard=f"{index}/2")
+refused(3, ["p.1of2.exr: is a piece of the picture, not a share of the samples", "shard 1 of 2 is missing"],
+        VDBMERGE, "no.png", "share.0of2.exr", "p.1of2.exr")
+refused(3, ["share.1of2.exr: is a share of the samples, not a piece of the picture"], VDBMERGE, "no.png", "p.0of2.exr",
+        "share.1of2.exr")
+refused(3, ["shard 0 of 2 is missing"], VDBMERGE, "no.png", "share.1of2.exr")
+SHARE = [VDBTRACE, TILE, *SMALL[:-1], "-o", "share.png", *BASE, "--shard", "1/2", "--resume"]
+check("skipped" in does(*SHARE, "--shard-by", "samples").stdout, "a share of the samples that is there is skipped")
+check("skipped" not in does(*SHARE).stdout, "  but is no piece of the picture")
+check("skipped" not in does(*SHARE, "--shard-by", "samples").stdout, "  nor the other way round")
+
 # --- what a shard refuses ---------------------------------------------------------------------------------------------------
 for shard, fragment in (("3/3", "must be from 0 to 2"), ("-1/3", "must be from 0 to 2"), ("0/0", "N must be from 1"),
                         ("1", "expected I/N"), ("a/b", "expected I/N"), ("0/3x", "expected I/N"), ("0/21", "has 20 tiles")):
@@ -145,6 +186,11 @@ for shard, fragment in (("3/3", "must be from 0 to 2"), ("-1/3", "must be from 0
 refused(2, ["series has 5 pictures"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--turntable", "5", "--shard", "0/6")
 refused(2, ["standard output"], VDBTRACE, TILE, *SMALL, "-o", "-", "--shard", "0/2")
 refused(2, ["--time"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--time", "1", "--shard", "0/2")
+BY_SAMPLES = [VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "0/4", "--shard-by", "samples"]
+refused(2, ["--shard-by samples", "--noise decides by all samples"], *BY_SAMPLES, "--noise", "0.2")
+refused(2, ["--shard-by samples", "--checkpoint keeps finished pixels"], *BY_SAMPLES, "--checkpoint", "no.state")
+refused(2, ["--time"], *BY_SAMPLES, "--time", "1")
+refused(2, ["4 shards, but 3 samples a pixel"], *BY_SAMPLES, "--spp", "3")
 refused(2, ["--resume requires --shard"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--resume")
 refused(2, ["SLURM_ARRAY_TASK_ID"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=SLURM)
 GAPS = dict(SLURM, SLURM_ARRAY_TASK_ID="5", SLURM_ARRAY_TASK_MIN="1", SLURM_ARRAY_TASK_MAX="9", SLURM_ARRAY_TASK_COUNT="3")
@@ -159,6 +205,11 @@ for task in range(4, 7):
 check(sorted(name for name in os.listdir(FOLDER) if name.startswith("film_")) == [f"film_00{n}.png" for n in range(3)], "film.sh")
 does(VDBMERGE, "slurm.png", *parts("slurm", 3), "--quiet")
 check(same("slurm.png", "whole.png"), "tasks 4 to 6 of an array are the shards 0 to 2")
+for task in range(2):
+    array = dict(SLURM, SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_MIN="0", SLURM_ARRAY_TASK_MAX="1", SLURM_ARRAY_TASK_COUNT="2")
+    does("bash", os.path.join(SCRIPTS, "picture.sh"), TILE, *SMALL[:-1], "-o", "slurm.png", *BASE, "--shard-by", "samples", env=array)
+does(VDBMERGE, "slurm.png", *parts("slurm", 2), "--quiet")
+check(same("slurm.png", "whole.png"), "picture.sh by samples")
 
 # --- resumed: only what is there, whole, and of this scene is skipped -----------------------------------------------------
 def resumed(*options, shard="1/3"):

@@ -1,7 +1,19 @@
 #include "shade/film/exr_buffer.h"
 
+#include "base/error.h"
+
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -27,6 +39,35 @@ Imf::FrameBuffer exrBufferOf(const Film& film) {
                 Imf::Slice::Make(Imf::FLOAT, const_cast<float*>(layer.values.data()) + c, place, pixel, pixel * row));
     }
     return buffer;
+}
+
+void writeExrChannels(const std::filesystem::path& path, const Film& film, const Imf::FrameBuffer& buffer,
+                      const std::map<std::string, std::string>& metadata) {
+    const PixelBox& region = film.region();
+    // Inclusive corners.
+    const Imath::Box2i display(Imath::V2i(0, 0), Imath::V2i(film.frameWidth() - 1, film.frameHeight() - 1));
+    const Imath::Box2i data(Imath::V2i(region.x0, region.y0), Imath::V2i(region.x1 - 1, region.y1 - 1));
+    Imf::Header header(display, data, 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    Imf::addChromaticities(header, Imf::Chromaticities());
+    for (const auto& [name, text] : metadata) {
+        if (name.empty() || header.find(name.c_str()) != header.end() || name == "channels")
+            throw std::invalid_argument(fmt::format("'{}' can't be the name of an EXR attribute of ours", name));
+        header.insert(name.c_str(), Imf::StringAttribute(text));
+    }
+
+    for (auto i = buffer.begin(); i != buffer.end(); ++i)
+        header.channels().insert(i.name(), Imf::Channel(i.slice().type));
+    try {
+        // The bytes don't depend on the number of threads.
+        const auto threads =
+            static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+        Imf::OutputFile file(path.c_str(), header, threads);
+        file.setFrameBuffer(buffer);
+        file.writePixels(film.height());
+    } catch (const std::exception& error) {
+        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+    }
 }
 
 }  // namespace stratum::shade

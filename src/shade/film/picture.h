@@ -7,6 +7,7 @@
 #include "shade/film/tonemap.h"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -27,6 +28,8 @@ public:
     /// @param legend  drawn into a PNG's upper left corner, if given
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
                const Legend* legend = nullptr);
+    /// Commits a file that `writer` writes under the name that it is given. Throws what it throws, and OutputError.
+    void write(const std::function<void(const std::filesystem::path& to)>& writer) { file_.write(writer); }
 
 private:
     bool exr_;

@@ -84,10 +84,32 @@ std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixe
     return layers;
 }
 
+std::vector<bool> idSums(const std::vector<Aov>& aovs) {
+    std::vector<bool> ids;
+    for (const Aov aov : aovs)
+        if (geometric(aov)) ids.insert(ids.end(), kindOf(aov).channels.size(), labelOf(aov).has_value());
+    return ids;
+}
+
+void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t first,
+               const PixelStatistics& statistics, std::vector<FilmLayer>& layers, std::size_t pixel) {
+    for (std::size_t n = 0; n < aovs.size(); ++n) {
+        const std::size_t channels = layers[n].channels.size();
+        float* out = &layers[n].values[pixel * channels];
+        if (aovs[n] == Aov::variance)
+            *out = static_cast<float>(statistics.variance);
+        else if (aovs[n] == Aov::samples)
+            *out = static_cast<float>(statistics.samples);
+        else if (labelOf(aovs[n]))
+            *out = static_cast<float>(sums.value(first++) - 1.0);
+        else
+            for (std::size_t c = 0; c < channels; ++c)
+                out[c] = static_cast<float>(sums.value(first++) / statistics.samples);
+    }
+}
+
 AovRecorder::AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs)
     : surfaces_(scene, print), aovs_(std::move(aovs)) {
-    for (const Aov aov : aovs_)
-        if (geometric(aov)) size_ += kindOf(aov).channels.size();
     if (std::find(aovs_.begin(), aovs_.end(), Aov::shading) != aovs_.end()) {
         const trace::Box box = print.bounds();
         const glm::dvec3 middle = 0.5 * (box.min + box.max);
@@ -96,10 +118,11 @@ AovRecorder::AovRecorder(const SceneDescription& scene, const trace::Intersector
     }
 }
 
-void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const {
-    if (size_ == 0 || !std::isfinite(point.t)) return;
-    const auto add3 = [&sums](const glm::dvec3& v) {
-        for (int k = 0; k < 3; ++k) *sums++ += v[k];
+void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const {
+    if (aovs_.empty() || !std::isfinite(point.t)) return;
+    const auto add1 = [&](double value) { sums.add(at++, value); };
+    const auto add3 = [&](const glm::dvec3& v) {
+        for (int k = 0; k < 3; ++k) add1(v[k]);
     };
     const double share = 1.0 - static_cast<double>(surfaces_.fade(point));
     for (const Aov aov : aovs_) {
@@ -108,7 +131,7 @@ void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, do
                 add3(share * point.normal);
                 break;
             case Aov::depth:
-                *sums++ += share * point.t;
+                add1(share * point.t);
                 break;
             case Aov::position:
                 add3(share * point.position);
@@ -118,42 +141,26 @@ void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, do
                 break;
             case Aov::shading: {
                 const glm::dvec3 mirror = direction - 2.0 * glm::dot(direction, point.normal) * point.normal;
-                *sums++ += share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal)));
-                *sums++ += share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror)));
+                add1(share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal))));
+                add1(share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror))));
                 break;
             }
             case Aov::mask:
-                *sums++ += point.bed ? 0.0 : 1.0;
+                add1(point.bed ? 0.0 : 1.0);
                 break;
             case Aov::layer:
             case Aov::tool:
             case Aov::feature: {
                 // Stored one higher, so that 0 means "not set".
                 const float value = point.labels[static_cast<std::size_t>(*labelOf(aov))];
-                if (*sums == 0.0 && value >= 0.0f) *sums = static_cast<double>(value) + 1.0;
-                ++sums;
+                const bool first = sums.value(at) == 0.0 && value >= 0.0f;
+                add1(first ? static_cast<double>(value) + 1.0 : 0.0);
                 break;
             }
             case Aov::variance:
             case Aov::samples:
                 break;
         }
-    }
-}
-
-void AovRecorder::store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
-                        std::size_t pixel) const {
-    for (std::size_t n = 0; n < aovs_.size(); ++n) {
-        const std::size_t channels = layers[n].channels.size();
-        float* out = &layers[n].values[pixel * channels];
-        if (aovs_[n] == Aov::variance)
-            *out = static_cast<float>(statistics.variance);
-        else if (aovs_[n] == Aov::samples)
-            *out = static_cast<float>(statistics.samples);
-        else if (labelOf(aovs_[n]))
-            *out = static_cast<float>(*sums++ - 1.0);
-        else
-            for (std::size_t c = 0; c < channels; ++c) out[c] = static_cast<float>(*sums++ / statistics.samples);
     }
 }
 

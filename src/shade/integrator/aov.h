@@ -1,11 +1,14 @@
 // Arbitrary output variables (AOVs): layers of a film beside its color, for compositing, denoising and computer vision.
 #pragma once
 
+#include "shade/film/exact_sums.h"
 #include "shade/film/film.h"
 #include "shade/integrator/bare_light.h"
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/surface.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,28 +43,33 @@ std::vector<Label> labelsOf(const std::vector<Aov>& aovs);
 /// Empty layers of a film of this many pixels.
 std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
 
+/// The sums of one pixel that these layers need, in their order: true for each that is an id plus 1, or 0 for none,
+/// which the first sample that has one sets.
+std::vector<bool> idSums(const std::vector<Aov>& aovs);
+
+/// Values of a pixel that the renderer supplies.
+struct PixelStatistics {
+    double variance = 0.0;
+    std::uint32_t samples = 0;
+};
+
+/// Writes the means of one pixel, whose sums begin at `first`, into the film's layers.
+void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t first,
+               const PixelStatistics& statistics, std::vector<FilmLayer>& layers, std::size_t pixel);
+
 /// Records the first hits of camera rays. Immutable; shared by all threads.
 class AovRecorder {
 public:
     AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs);
-    /// Numbers that one pixel needs: those of all geometric layers.
-    std::size_t size() const { return size_; }
-    /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to size() sums.
-    void add(const SurfacePoint& point, const glm::dvec3& direction, double* sums) const;
-    /// Values that the renderer supplies.
-    struct PixelStatistics {
-        double variance = 0.0;
-        std::uint32_t samples = 0;
-    };
-    /// Writes the means of one pixel into the film's layers.
-    void store(const double* sums, const PixelStatistics& statistics, std::vector<FilmLayer>& layers,
-               std::size_t pixel) const;
+    const std::vector<Aov>& aovs() const { return aovs_; }
+    /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to the sums of a pixel
+    /// from `at` on.
+    void add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const;
 
 private:
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
     std::optional<BareLight> bare_light_;  // only for Aov::shading
-    std::size_t size_ = 0;
 };
 
 }  // namespace stratum::shade

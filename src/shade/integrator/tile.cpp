@@ -28,32 +28,17 @@ PixelBox wholeTiles(const PixelBox& region, int width, int height) {
             std::min(up(region.y1), height)};
 }
 
-void Tile::Sums::add(const Pixel& sample) {
-    rgb += glm::dvec3(sample.rgb);
-    alpha += static_cast<double>(sample.alpha);
-    const auto y = static_cast<double>(shade::luminance(sample.rgb));
-    luminance += y;
-    square += y * y;
-}
-
-/// Variance of the mean luminance of `count` samples as if they were independent.
-double Tile::Sums::variance(int count) const {
-    const double n = count;
-    const double mean = luminance / n;
-    return std::max(0.0, square / n - mean * mean) / std::max(n - 1.0, 1.0);
-}
-
-Tile::Tile(const PixelBox& box, const AovRecorder& recorder)
+Tile::Tile(const PixelBox& box, const AovRecorder& recorder, int first)
     : box_(box),
-      sums_(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height())),
-      layer_size_(recorder.size()),
-      layers_(sums_.size() * recorder.size(), 0.0) {}
+      sums_(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), recorder.aovs()),
+      first_(first),
+      end_(first) {}
 
 void Tile::sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                   const PixelFilter& filter, TileWorker& worker) {
     // The integrator gets the samples in streams, pixel by pixel; they are summed in that order.
-    const auto each = static_cast<std::size_t>(target - samples_);
-    const std::size_t most = std::min(kStream, sums_.size() * each);
+    const auto each = static_cast<std::size_t>(target - end_);
+    const std::size_t most = std::min(kStream, sums_.pixels() * each);
     worker.positions.resize(most);
     worker.rays.resize(most);
     worker.samplers.resize(most, worker.sampler);
@@ -69,8 +54,7 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
                                   *worker.tracer, rays_, std::span(worker.points).first(waiting),
                                   std::span(worker.pixels).first(waiting));
         for (std::size_t n = 0; n < waiting; ++n) {
-            sums_[pixel].add(worker.pixels[n]);
-            recorder.add(worker.points[n], worker.rays[n].direction, layers_.data() + pixel * layer_size_);
+            sums_.add(pixel, worker.pixels[n], recorder, worker.points[n], worker.rays[n].direction);
             if (++taken < each) continue;
             taken = 0;
             ++pixel;
@@ -80,37 +64,39 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
     for (int y = box_.y0; y < box_.y1; ++y)
         for (int x = box_.x0; x < box_.x1; ++x) {
             Sampler sampler = worker.sampler;
-            sampler.start(x, y, static_cast<std::uint32_t>(samples_));
-            for (int s = samples_; s < target; ++s, sampler.startNext()) {
+            sampler.start(x, y, static_cast<std::uint32_t>(end_));
+            for (int s = end_; s < target; ++s, sampler.startNext()) {
                 worker.samplers[waiting] = sampler;
                 worker.positions[waiting] = {x, y};
                 if (++waiting == kStream) flush();
             }
         }
     flush();
-    samples_ = target;
+    end_ = target;
 }
 
 double Tile::error() const {
     double sum = 0.0;
-    for (const Sums& s : sums_) {
-        const double mean = s.luminance / samples_;
-        sum += s.variance(samples_) / (mean * mean + 0.01);
+    for (std::size_t n = 0; n < pixels(); ++n) {
+        const double mean = sums_.luminance(n, samples());
+        sum += sums_.variance(n, samples()) / (mean * mean + 0.01);
     }
-    return std::sqrt(sum / static_cast<double>(sums_.size()));
+    return std::sqrt(sum / static_cast<double>(pixels()));
 }
 
-void Tile::store(Film& film, const AovRecorder& recorder) const {
-    const auto width = static_cast<std::size_t>(box_.width());
-    for (std::size_t n = 0; n < sums_.size(); ++n) {
-        const int x = box_.x0 + static_cast<int>(n % width);
-        const int y = box_.y0 + static_cast<int>(n / width);
-        film.at(x, y) = {Color(sums_[n].rgb / static_cast<double>(samples_)),
-                         static_cast<float>(sums_[n].alpha / samples_)};
-        recorder.store(layers_.data() + n * layer_size_,
-                       {sums_[n].variance(samples_), static_cast<std::uint32_t>(samples_)}, film.layers(),
-                       film.index(x, y));
-    }
+void Tile::store(Film& film) const {
+    std::size_t n = 0;
+    for (int y = box_.y0; y < box_.y1; ++y)
+        for (int x = box_.x0; x < box_.x1; ++x) sums_.store(n++, samples(), film, x, y);
+}
+
+void Tile::addTo(PixelSums& sums, const PixelBox& region) const {
+    std::size_t n = 0;
+    for (int y = box_.y0; y < box_.y1; ++y)
+        for (int x = box_.x0; x < box_.x1; ++x) {
+            const auto row = static_cast<std::size_t>(y - region.y0) * static_cast<std::size_t>(region.width());
+            sums.add(row + static_cast<std::size_t>(x - region.x0), sums_, n++);
+        }
 }
 
 }  // namespace stratum::shade

@@ -5,6 +5,7 @@
 #include "shade/camera/sampler.h"
 #include "shade/integrator/aov.h"
 #include "shade/integrator/integrator.h"
+#include "shade/integrator/pixel_sums.h"
 
 #include <cstdint>
 #include <memory>
@@ -31,36 +32,29 @@ struct TileWorker {
 /// thread.
 class Tile {
 public:
-    /// @param recorder  of the layers; only its size is stored
-    Tile(const PixelBox& box, const AovRecorder& recorder);
+    /// @param recorder  of the layers; only their names are stored
+    /// @param first     the number of the first sample of each pixel
+    Tile(const PixelBox& box, const AovRecorder& recorder, int first = 0);
 
-    /// Adds samples samples() to target - 1 of every pixel.
+    /// Adds samples to every pixel, from the one after its last to target - 1.
     void sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                 const PixelFilter& filter, TileWorker& worker);
     /// Root mean square over the pixels of the relative standard error of luminance, as RenderOptions::noise counts it.
     double error() const;
     /// Writes the means into the film and its layers.
-    void store(Film& film, const AovRecorder& recorder) const;
+    void store(Film& film) const;
+    /// Adds its sums to those of a region, of the same layers. Not for two threads at once.
+    void addTo(PixelSums& sums, const PixelBox& region) const;
 
     const PixelBox& box() const { return box_; }
-    std::size_t pixels() const { return sums_.size(); }
-    int samples() const { return samples_; }  ///< of each pixel
+    std::size_t pixels() const { return sums_.pixels(); }
+    int samples() const { return end_ - first_; }  ///< of each pixel
     const RayCounts& rays() const { return rays_; }
 
 private:
-    struct Sums {
-        glm::dvec3 rgb{0.0};
-        double alpha = 0.0;
-        double luminance = 0.0, square = 0.0;  // sums of luminance and of its square
-        void add(const Pixel& sample);
-        double variance(int count) const;
-    };
-
     PixelBox box_;
-    std::vector<Sums> sums_;
-    std::size_t layer_size_;
-    std::vector<double> layers_;  // layer_size_ sums a pixel
-    int samples_ = 0;
+    PixelSums sums_;
+    int first_, end_;  // samples [first, end) are summed
     RayCounts rays_;
 };
 

@@ -1,6 +1,7 @@
 #include "shade/parts/merge.h"
 
 #include "base/error.h"
+#include "shade/parts/part_sums.h"
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
@@ -23,15 +24,10 @@ constexpr std::size_t kMostNamed = 20;  // of problems, so that a message stays 
     throw InputError(fmt::format("{}\nnothing is written", fmt::join(problems, "\n")));
 }
 
-struct Found {
-    std::filesystem::path path;
-    Part part;
-};
-
 /// By number, all of one picture, each once.
-std::vector<Found> readParts(const std::vector<std::filesystem::path>& paths) {
+std::vector<PartFile> readParts(const std::vector<std::filesystem::path>& paths) {
     std::vector<std::string> problems;
-    std::vector<Found> read;
+    std::vector<PartFile> read;
     for (const std::filesystem::path& path : paths) {
         try {
             read.push_back({path, readPart(path)});
@@ -40,16 +36,16 @@ std::vector<Found> readParts(const std::vector<std::filesystem::path>& paths) {
         }
     }
     if (read.empty()) refuse(problems);
-    const Found& first = read.front();
-    std::vector<const Found*> places(static_cast<std::size_t>(first.part.whole.shards));
-    for (const Found& found : read) {
+    const PartFile& first = read.front();
+    std::vector<const PartFile*> places(static_cast<std::size_t>(first.part.whole.shards));
+    for (const PartFile& found : read) {
         const std::string difference = differenceOf(found.part, first.part);
         if (!difference.empty()) {
             problems.push_back(
                 fmt::format("{}: is {}, compared with {}", found.path.string(), difference, first.path.string()));
             continue;
         }
-        const Found*& place = places[static_cast<std::size_t>(found.part.index)];
+        const PartFile*& place = places[static_cast<std::size_t>(found.part.index)];
         if (place)
             problems.push_back(fmt::format("{}: is shard {} of {}, as {} is; name each once", found.path.string(),
                                            found.part.index, places.size(), place->path.string()));
@@ -61,18 +57,23 @@ std::vector<Found> readParts(const std::vector<std::filesystem::path>& paths) {
             problems.push_back(fmt::format("shard {} of {} is missing; trace it with --shard {}/{}", n, places.size(),
                                            n, places.size()));
     if (!problems.empty()) refuse(problems);
-    std::vector<Found> sorted;
+    std::vector<PartFile> sorted;
     sorted.reserve(places.size());
-    for (const Found* place : places) sorted.push_back(*place);
+    for (const PartFile* place : places) sorted.push_back(*place);
     return sorted;
 }
 
-Film assemble(const std::vector<Found>& parts) {
+Film assemble(const std::vector<PartFile>& parts) {
     const Part& any = parts.front().part;
     Film film(any.whole.width, any.whole.height, any.whole.region, any.content);
     addLayers(any, film);
+    if (any.whole.spp > 0) {
+        const std::vector<std::string> problems = addUp(parts, film);
+        if (!problems.empty()) refuse(problems);
+        return film;
+    }
     std::vector<std::string> problems;
-    for (const Found& found : parts) {
+    for (const PartFile& found : parts) {
         try {
             readPixels(found.path, found.part, film);
         } catch (const InputError& error) {
@@ -87,7 +88,7 @@ Film assemble(const std::vector<Found>& parts) {
 
 MergedPicture mergeParts(const std::filesystem::path& output, const std::vector<std::filesystem::path>& paths) {
     PictureFile picture(output);
-    const std::vector<Found> parts = readParts(paths);
+    const std::vector<PartFile> parts = readParts(paths);
     const Part& any = parts.front().part;
     if (picture.linear() != any.whole.linear)
         throw UsageError(fmt::format(
@@ -100,10 +101,11 @@ MergedPicture mergeParts(const std::filesystem::path& output, const std::vector<
     }
     std::uint64_t samples = 0;
     std::uint64_t pixels = 0;
-    for (const Found& found : parts) {
+    for (const PartFile& found : parts) {
         samples += found.part.samples;
         pixels += found.part.pixels;
     }
+    if (any.whole.spp > 0) pixels = any.pixels;  // all have the same
     const double mean_spp = static_cast<double>(samples) / static_cast<double>(pixels);
     Metadata metadata = any.metadata;
     metadata[kMeanSamples] = fmt::format("{:g}", mean_spp);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shade/film/film.h"
+#include "shade/integrator/render.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -38,5 +39,8 @@ std::vector<PixelBox> piecesOf(const PixelBox& region, int count);
 
 /// The share of a shard of `count` things in a row: first and end. Throws UsageError if there are fewer than shards.
 std::pair<std::size_t, std::size_t> chunkOf(std::size_t count, const Shard& shard);
+
+/// The share of a shard of the samples of a pixel. Throws UsageError if there are fewer than shards.
+SampleRange samplesOf(int spp, const Shard& shard);
 
 }  // namespace stratum::shade

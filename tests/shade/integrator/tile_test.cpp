@@ -34,7 +34,7 @@ TEST(Tile, SamplesInTwoGoesAreThoseInOne) {
         EXPECT_GT(tile.error(), 0.0);
         shade::Film film(20, 20, {0, 0, 20, 20});
         film.layers() = shade::makeLayers(shade::parseAovs("normal,variance,samples"), 400);
-        tile.store(film, recorder);
+        tile.store(film);
         return film;
     };
     const shade::Film once = filmOf({32});

@@ -1,0 +1,58 @@
+#include "shade/integrator/pixel_sums.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace stratum::shade {
+namespace {
+
+// The sums of a pixel, before those of its layers.
+enum Sum : std::size_t { kRed, kGreen, kBlue, kAlpha, kLuminance, kSquare, kOwn };
+
+}  // namespace
+
+PixelSums::PixelSums(std::size_t pixels, std::vector<Aov> aovs)
+    : aovs_(std::move(aovs)), ids_(idSums(aovs_)), pixels_(pixels), each_(kOwn + ids_.size()), sums_(pixels * each_) {}
+
+void PixelSums::add(std::size_t pixel, const Pixel& sample, const AovRecorder& recorder, const SurfacePoint& point,
+                    const glm::dvec3& direction) {
+    const std::size_t at = pixel * each_;
+    sums_.add(at + kRed, static_cast<double>(sample.rgb.r));
+    sums_.add(at + kGreen, static_cast<double>(sample.rgb.g));
+    sums_.add(at + kBlue, static_cast<double>(sample.rgb.b));
+    sums_.add(at + kAlpha, static_cast<double>(sample.alpha));
+    const auto y = static_cast<double>(shade::luminance(sample.rgb));
+    sums_.add(at + kLuminance, y);
+    sums_.add(at + kSquare, y * y);
+    recorder.add(point, direction, sums_, at + kOwn);
+}
+
+void PixelSums::add(std::size_t pixel, const PixelSums& later, std::size_t its_pixel) {
+    const std::size_t at = pixel * each_;
+    const std::size_t from = its_pixel * each_;
+    for (std::size_t n = 0; n < each_; ++n) {
+        const bool known = n >= kOwn && ids_[n - kOwn] && sums_.value(at + n) != 0.0;
+        if (!known) sums_.add(at + n, later.sums_, from + n);
+    }
+}
+
+double PixelSums::luminance(std::size_t pixel, int count) const {
+    return sums_.value(pixel * each_ + kLuminance) / count;
+}
+
+double PixelSums::variance(std::size_t pixel, int count) const {
+    const double n = count;
+    const double mean = luminance(pixel, count);
+    return std::max(0.0, sums_.value(pixel * each_ + kSquare) / n - mean * mean) / std::max(n - 1.0, 1.0);
+}
+
+void PixelSums::store(std::size_t pixel, int count, Film& film, int x, int y) const {
+    const std::size_t at = pixel * each_;
+    const auto mean = [&](std::size_t n) { return static_cast<float>(sums_.value(at + n) / count); };
+    film.at(x, y) = {Color(mean(kRed), mean(kGreen), mean(kBlue)), mean(kAlpha)};
+    storeAovs(aovs_, sums_, at + kOwn, {variance(pixel, count), static_cast<std::uint32_t>(count)}, film.layers(),
+              film.index(x, y));
+}
+
+}  // namespace stratum::shade
