@@ -14,6 +14,7 @@
 #include "export/surface_mesh.h"
 #include "export/usd_file.h"
 #include "export/vdb_file.h"
+#include "export/vdb_stream.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
@@ -22,6 +23,7 @@
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/attributes.h"
+#include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/interior_distance.h"
 #include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
@@ -29,6 +31,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -115,6 +118,11 @@ private:
     };
 
     bool culls() const { return interior_ == voxelize::Interior::cull; }
+    // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
+    bool streams() const {
+        return !as_mesh_ && !culls() && attributes_.empty() && o_.snapshots.empty() && !o_.interior_distance &&
+               !o_.forecast && !o_.usda && !(settles() && !o_.common.stats.empty());
+    }
     bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
         if (!o_.common.quiet) fmt::print(stderr, "gcode2vdb: {}\n", text);
@@ -185,6 +193,7 @@ private:
         options.placement = placementFor(o_, bounds_);
         options.placement.up_y = o_.up == "y";
         options.interior = interior_;
+        options.in_memory = !streams();
         if (showsProgress(o_.common.quiet))
             options.progress = [this](double fraction) {
                 if (bar_) bar_->show(fraction);
@@ -195,6 +204,42 @@ private:
     // One output, from its voxels to its lines of the report.
     void make(voxelize::Voxelizer& voxelizer, const Job& job) {
         watch_.lap();
+        provenance_.snapshot = job.label;
+        const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
+        provenance_.part = voxelize::placed(voxelize::partBounds(toolpath_, printed), placement_);
+        if (streams())
+            makeStreamed(voxelizer, job);
+        else
+            makeInMemory(voxelizer, job);
+    }
+
+    // Nobody would read it otherwise.
+    bool checks() const { return !o_.common.quiet || !o_.common.stats.empty(); }
+
+    void makeStreamed(voxelize::Voxelizer& voxelizer, const Job& job) {
+        const openvdb::FloatGrid::Ptr empty = voxelizer.emptyGrid();
+        exporter::describe(*empty, lattice_, provenance_);
+        bar_.emplace("voxelizing", o_.common.quiet);
+        const voxelize::LeafBounds bounds = voxelizer.leafBounds();
+        exporter::VdbStream file(empty, job.path, o_.file, bounds);
+        const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks());
+        bar_.reset();
+        seconds_.voxelize += watch_.lap();
+        GridNumbers numbers;
+        {
+            const ProgressNote note("writing", o_.common.quiet);
+            numbers.counted = file.finish();
+        }
+        seconds_.write += watch_.lap();
+        numbers.transform = empty->transformPtr();
+        numbers.enclosed_mm3 = made.volume_voxels * std::pow(lattice_.voxel_size, 3);
+        numbers.enclosed_of_leaves = made.measured;
+        if (checks()) check(job, numbers);
+        tellOutput(voxelizer, job, numbers);
+        if (checks()) describeWhole(voxelizer, numbers, 0);
+    }
+
+    void makeInMemory(voxelize::Voxelizer& voxelizer, const Job& job) {
         bar_.emplace("voxelizing", o_.common.quiet);
         openvdb::FloatGrid::Ptr grid = voxelizer.printUntil(job.end);
         if (!attributes_.empty()) bar_.emplace("grids", o_.common.quiet);
@@ -208,29 +253,33 @@ private:
         }
         seconds_.voxelize += watch_.lap();
         seconds_.cull += voxelizer.report().exterior_seconds;
-        provenance_.snapshot = job.label;
         std::optional<exporter::SurfaceMesh> mesh;
         if (as_mesh_)
             mesh = writeMesh(*grid, grids, job);
         else
             writeGrids(grid, grids, job);
         seconds_.write += watch_.lap();
-        // Nobody would read it otherwise.
-        const bool checks = !o_.common.quiet || !o_.common.stats.empty();
-        if (checks) check(job, *grid);
-        tellOutput(voxelizer, job, *grid, mesh);
-        if (checks && job.label.empty()) describeWhole(voxelizer, *grid);
+        GridNumbers numbers = numbersOf(*grid);
+        if (checks()) {
+            const ProgressNote note("measuring", o_.common.quiet);
+            numbers.enclosed_mm3 = enclosedMm3(*grid, lattice_);
+            numbers.enclosed_of_leaves = std::min<std::size_t>(numbers.counted.leaves, voxelize::kVolumeSample);
+            check(job, numbers);
+        }
+        tellOutput(voxelizer, job, numbers);
+        if (mesh) tellMesh(*mesh, *grid);
+        if (!checks() || !job.label.empty()) return;
+        const bool exact = settles() && !o_.common.stats.empty();
+        describeWhole(voxelizer, numbers, exact ? enclosedMm3(*grid, lattice_, true) : 0);
+        if (!o_.common.stats.empty() && o_.forecast && !culls())
+            grid_["cull_would_save"] = describeCull(voxelizer, *grid);
     }
 
     // Whether the level set holds what its beads lay.
-    void check(const Job& job, const openvdb::FloatGrid& grid) {
+    void check(const Job& job, GridNumbers& numbers) {
         const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
-        deposited_ = voxelize::depositedVolume(toolpath_, printed);
-        {
-            const ProgressNote note("measuring", o_.common.quiet);
-            enclosed_ = enclosedMm3(grid, lattice_);
-        }
-        const std::string doubt = doubtOf(enclosed_, deposited_, provenance_.culled);
+        numbers.deposited_mm3 = voxelize::depositedVolume(toolpath_, printed);
+        const std::string doubt = doubtOf(numbers.enclosed_mm3, numbers.deposited_mm3, provenance_.culled);
         if (!doubt.empty()) warn(fmt::format("{}: {}", file_.name(), doubt));
         seconds_.check += watch_.lap();
     }
@@ -248,8 +297,6 @@ private:
     }
 
     void writeGrids(const openvdb::FloatGrid::Ptr& grid, openvdb::GridPtrVec& grids, const Job& job) {
-        const auto printed = std::span<const std::uint32_t>(selection_).first(job.beads);
-        provenance_.part = voxelize::placed(voxelize::partBounds(toolpath_, printed), placement_);
         const ProgressNote note("writing", o_.common.quiet);
         exporter::describe(*grid, lattice_, provenance_);
         grids.insert(grids.begin(), grid);
@@ -259,36 +306,37 @@ private:
                                 {0.001 * voxelize::millimetresIn(o_.unit), o_.up == "y"});
     }
 
-    void tellOutput(const voxelize::Voxelizer& voxelizer, const Job& job, const openvdb::FloatGrid& grid,
-                    const std::optional<exporter::SurfaceMesh>& mesh) {
+    void tellOutput(const voxelize::Voxelizer& voxelizer, const Job& job, const GridNumbers& grid) {
         const auto bytes = isStandardOutput(job.path) ? 0 : fs::file_size(job.path);
-        const auto active = grid.activeVoxelCount();
+        const exporter::GridStatistics& counted = grid.counted.statistics;
         files_.push_back({{"path", job.path.string()},
                           {"snapshot", job.label},
                           {"bytes", bytes},
                           {"beads", job.beads},
-                          {"active_voxels", active},
+                          {"active_voxels", counted.active_voxels},
                           {"leaves_evaluated", voxelizer.report().leaves_evaluated},
                           {"leaves_reused", voxelizer.report().leaves_reused}});
-        if (mesh) files_.back()["mesh"] = describeMesh(*mesh, grid, lattice_);
         say(o_.common,
             fmt::format("  {}: {} active voxels, {} in memory, {} on disk", job.path.string(),
-                        humanCount(static_cast<double>(active)), humanBytes(static_cast<double>(grid.memUsage())),
-                        humanBytes(static_cast<double>(bytes))));
-        if (mesh) say(o_.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh->triangleCount()))));
+                        humanCount(static_cast<double>(counted.active_voxels)),
+                        humanBytes(static_cast<double>(counted.memory_bytes)), humanBytes(static_cast<double>(bytes))));
     }
 
-    // Reports that cost time: only of the whole print, and only if somebody reads them.
-    void describeWhole(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {
+    void tellMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid) {
+        files_.back()["mesh"] = describeMesh(mesh, grid, lattice_);
+        say(o_.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh.triangleCount()))));
+    }
+
+    // Reports that cost time: only of the whole print, and only if somebody reads them. `surface_mm3`: what the level
+    // set of settled beads encloses, if that is asked for.
+    void describeWhole(const voxelize::Voxelizer& voxelizer, const GridNumbers& grid, double surface_mm3) {
         const bool stats = !o_.common.stats.empty();
         if (settles() && (stats || o_.summary)) {
             const voxelize::DepositBalance balance = voxelizer.balance();
             if (o_.summary) say(o_.common, depositLines(balance));
-            if (stats) deposit_ = describeDeposit(toolpath_.deposit, balance, enclosedMm3(grid, lattice_, true));
+            if (stats) deposit_ = describeDeposit(toolpath_.deposit, balance, surface_mm3);
         }
-        if (!stats) return;
-        grid_ = describeGrid(grid, lattice_, enclosed_, deposited_);
-        if (o_.forecast && !culls()) grid_["cull_would_save"] = describeCull(voxelizer, grid);
+        if (stats) grid_ = describeGrid(grid, lattice_);
     }
 
     Json skipped(const voxelize::VoxelizeReport& built) const {
@@ -315,6 +363,8 @@ private:
         if (attributes_.empty())
             skip("attribute grids", "none asked for (--grids)",
                  "a nearest-bead search and four bytes a voxel for each");
+        if (streams())
+            skip("the grid in memory", "only its file is wanted", "a leaf of 2 kB for each that is in the file");
         if (!o_.forecast && !culls())
             skip("what --interior cull would save", "not asked for (--forecast)",
                  "a flood through all leaves, about a third of a build");
@@ -381,7 +431,6 @@ private:
     std::optional<ProgressBar> bar_;
     Json files_ = Json::array();
     Json grid_, deposit_;
-    double enclosed_ = 0, deposited_ = 0;  // mm^3, of the last output
 };
 
 }  // namespace

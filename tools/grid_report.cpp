@@ -15,27 +15,34 @@ namespace stratum::tools {
 
 using Json = nlohmann::ordered_json;
 
-Json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, double volume_mm3,
-                  double deposited_mm3) {
-    const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-    const openvdb::Vec3d a = grid.indexToWorld(box.min());
-    const openvdb::Vec3d b = grid.indexToWorld(box.max());
+GridNumbers numbersOf(const openvdb::FloatGrid& grid) {
+    GridNumbers numbers;
+    numbers.transform = grid.transformPtr();
+    numbers.counted.leaves = grid.tree().leafCount();
+    numbers.counted.statistics = {grid.evalActiveVoxelBoundingBox(), grid.activeVoxelCount(), grid.memUsage()};
+    return numbers;
+}
+
+Json describeGrid(const GridNumbers& grid, const voxelize::Lattice& lattice) {
+    const exporter::GridStatistics& counted = grid.counted.statistics;
+    const openvdb::Vec3d a = grid.transform->indexToWorld(counted.active_box.min());
+    const openvdb::Vec3d b = grid.transform->indexToWorld(counted.active_box.max());
     const openvdb::Vec3d low = openvdb::math::minComponent(a, b);
     const openvdb::Vec3d high = openvdb::math::maxComponent(a, b);
-    const double unit = grid.voxelSize()[0] / lattice.voxel_size;
+    const double unit = grid.transform->voxelSize()[0] / lattice.voxel_size;
     return {
         {"voxel_size_mm", lattice.voxel_size},
         {"half_width", lattice.half_width},
         {"layer_height_mm", lattice.layer_height},
         {"aligned_share", lattice.aligned_share},
         {"choice", lattice.reason},
-        {"active_voxels", grid.activeVoxelCount()},
-        {"leaves", grid.tree().leafCount()},
-        {"bytes", grid.memUsage()},
+        {"active_voxels", counted.active_voxels},
+        {"leaves", grid.counted.leaves},
+        {"bytes", counted.memory_bytes},
         {"bbox_mm", {{low[0] / unit, low[1] / unit, low[2] / unit}, {high[0] / unit, high[1] / unit, high[2] / unit}}},
-        {"volume_mm3", volume_mm3},
-        {"volume_leaves", std::min<std::size_t>(grid.tree().leafCount(), voxelize::kVolumeSample)},
-        {"deposited_mm3", deposited_mm3}};
+        {"volume_mm3", grid.enclosed_mm3},
+        {"volume_leaves", grid.enclosed_of_leaves},
+        {"deposited_mm3", grid.deposited_mm3}};
 }
 
 Json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "export/surface_mesh.h"
+#include "export/vdb_stream.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -12,9 +13,18 @@
 
 namespace stratum::tools {
 
-/// The grid's section. `volume_mm3` and `deposited_mm3`: see below; `volume_leaves` says of how many leaves.
-nlohmann::ordered_json describeGrid(const openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, double volume_mm3,
-                                    double deposited_mm3);
+/// A level set in numbers, whether it was in memory or went to the disk leaf by leaf.
+struct GridNumbers {
+    exporter::WrittenGrid counted;
+    openvdb::math::Transform::ConstPtr transform;
+    double enclosed_mm3 = 0;             ///< volume inside
+    std::size_t enclosed_of_leaves = 0;  ///< that it was measured in
+    double deposited_mm3 = 0;            ///< volume of the beads
+};
+GridNumbers numbersOf(const openvdb::FloatGrid& grid);
+
+/// The grid's section.
+nlohmann::ordered_json describeGrid(const GridNumbers& grid, const voxelize::Lattice& lattice);
 /// What --interior cull would save of it: floods it.
 nlohmann::ordered_json describeCull(const voxelize::Voxelizer& voxelizer, const openvdb::FloatGrid& grid);
 /// What of the beads their layers have room for; `surface_mm3` is what the level set encloses.

@@ -2,21 +2,109 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
+#include "export/vdb_archive.h"
 #include "voxelize/beads/settling.h"
 
 #include <fmt/format.h>
+#include <openvdb/io/io.h>
+#include <openvdb/tree/LeafManager.h>
 
-#include <fstream>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace stratum::exporter {
 namespace {
 
-// openvdb::io::File writes the same bytes, but ignores write errors of its own stream: on a full disk it would leave a
-// truncated file without an error.
-class CheckedArchive : public openvdb::io::Archive {
-public:
-    void writeTo(std::ostream& stream, const openvdb::GridPtrVec& grids) const { write(stream, grids, true); }
-};
+// Types of which OpenVDB lists the leaves.
+using WritableGrids = openvdb::TypeList<openvdb::Int32Grid, openvdb::Int64Grid, openvdb::FloatGrid, openvdb::DoubleGrid,
+                                        openvdb::Vec3IGrid, openvdb::Vec3SGrid, openvdb::Vec3DGrid>;
+
+constexpr std::size_t kPackedAtOnce = 8192;  // leaves, about 10 MB
+constexpr std::size_t kPackedByOne = 64;
+
+// Writes the leaves of a tree from places.leaves on; sets places.end. One batch is packed while the one before is
+// written.
+template <typename TreeType>
+void writeLeaves(const TreeType& tree, const LeafFormat& format, PositionedFile& file, GridPlaces& places,
+                 LeafList& list) {
+    const openvdb::tree::LeafManager<const TreeType> leaves(tree);
+    struct Part {
+        std::vector<char> bytes;
+        std::vector<PackedLeaf> leaves;
+    };
+    std::vector<Part> packing(kPackedAtOnce / kPackedByOne);
+    std::vector<Part> writing(packing.size());
+    places.end = places.leaves;
+    const auto write = [&] {
+        const std::uint64_t from = places.end;
+        std::vector<iovec> bytes;
+        for (Part& part : writing) {
+            if (!part.bytes.empty()) bytes.push_back({part.bytes.data(), part.bytes.size()});
+            places.end += part.bytes.size();
+            for (const PackedLeaf leaf : part.leaves) list.add(leaf);
+        }
+        file.write(from, bytes);
+        file.startFlush(from, places.end);
+    };
+    const auto background = tree.background();
+    list.reserve(leaves.leafCount());
+    for (std::size_t batch = 0; batch < leaves.leafCount(); batch += kPackedAtOnce) {
+        parallelFor(packing.size() + 1, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t n = first; n < last; ++n) {
+                if (n == 0) {
+                    write();
+                    continue;
+                }
+                Part& part = packing[n - 1];
+                part.bytes.clear();
+                part.leaves.clear();
+                PackingStream stream(format, &background, part.bytes);
+                const std::size_t end = std::min(batch + n * kPackedByOne, leaves.leafCount());
+                for (std::size_t k = batch + (n - 1) * kPackedByOne; k < end; ++k) {
+                    const std::size_t begin = part.bytes.size();
+                    leaves.leaf(k).writeBuffers(stream, format.half);
+                    part.leaves.push_back(leafWritten(format, part.bytes, begin, sizeof(typename TreeType::ValueType)));
+                }
+            }
+        });
+        std::swap(packing, writing);
+    }
+    write();
+}
+
+// Writes a grid from `at` on, and returns where it ends.
+std::uint64_t writeGrid(const VdbArchive& archive, openvdb::GridBase& grid, PositionedFile& file, std::uint64_t at,
+                        std::string& identity) {
+    const LeafFormat format = archive.formatOf(grid);
+    const auto described = grid.copyGrid();        // shares the tree
+    described->setTransform(grid.transformPtr());  // copies of transforms are simplified
+    described->addStatsMetadata();
+    described->insertMeta(openvdb::GridBase::META_FILE_COMPRESSION,
+                          openvdb::StringMetadata(openvdb::io::compressionToString(format.compression)));
+    GridPlaces places;
+    places.head = at;
+    LeafList list(format);
+    const bool known = grid.apply<WritableGrids>([&](const auto& typed) {
+        const auto& tree = typed.constTree();
+        places.topology =
+            places.head + headBytes(archive, *described, grid.getName(), LeafList::mostBytes(tree.leafCount()));
+        PositionedStream topology(file, places.topology);
+        openvdb::io::setDataCompression(topology, format.compression);
+        tree.writeTopology(topology, format.half);
+        topology.writeOut();
+        places.leaves = topology.at();
+        writeLeaves(tree, format, file, places, list);
+    });
+    if (!known)
+        throw OutputError(
+            fmt::format("the grid {} has values of a type ({}) that can't be written; numbers and vectors can",
+                        grid.getName(), grid.valueType()));
+    writeHead(file, archive, *described, grid.getName(), places, list);
+    identity += identityOf(*described, list);
+    return places.end;
+}
 
 std::string beadModel(const gcode::DepositModel& deposit) {
     std::string text = deposit.stadium()
@@ -67,25 +155,24 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
     grid.addStatsMetadata();
 }
 
+std::uint32_t compressionFlags(Compression compression) {
+    if (compression == Compression::blosc) return openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
+    if (compression == Compression::zip) return openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK;
+    return openvdb::io::COMPRESS_NONE;
+}
+
 void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options) {
     AtomicFile output(path);
-    for (const openvdb::GridBase::Ptr& grid : grids) grid->setSaveFloatAsHalf(options.half);
-    try {
-        CheckedArchive archive;
-        std::uint32_t flags = openvdb::io::COMPRESS_NONE;
-        // Inactive voxels are not stored: they have the background value.
-        if (options.compression == Compression::blosc)
-            flags = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
-        if (options.compression == Compression::zip)
-            flags = openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK;
-        archive.setCompression(flags);
-        std::ofstream stream(output.temporary(), std::ios::binary);
-        archive.writeTo(stream, grids);
-        stream.close();
-        if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
-    } catch (const openvdb::Exception& error) {
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+    const VdbArchive archive(compressionFlags(options.compression));
+    PositionedFile file(output.temporary(), path);
+    std::string identity;
+    std::uint64_t at = archive.header(grids.size(), identity).size();
+    for (const openvdb::GridBase::Ptr& grid : grids) {
+        grid->setSaveFloatAsHalf(options.half);
+        at = writeGrid(archive, *grid, file, at, identity);
     }
+    file.write(0, archive.header(grids.size(), identity));
+    file.finish(at);
     output.commit();
 }
 

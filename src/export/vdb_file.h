@@ -42,8 +42,12 @@ struct FileOptions {
 /// "largest_slope" where values change faster than distance, "program", creator, and OpenVDB's own file statistics.
 void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const Provenance& provenance);
 
-/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Throws OutputError; the old
-/// file then stays.
+/// openvdb::io::COMPRESS_*. Inactive voxels are not stored: they have the background value.
+std::uint32_t compressionFlags(Compression compression);
+
+/// Writes the grids to `path`, in the given order, each with OpenVDB's file statistics. Leaves are packed on all
+/// threads; OpenVDB reads the same grids as from a file of its own writer. Grids of numbers and vectors; no names
+/// twice. Throws OutputError; the old file then stays.
 void writeVdb(const openvdb::GridPtrVec& grids, const std::filesystem::path& path, const FileOptions& options = {});
 
 }  // namespace stratum::exporter

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scratch_folder.h"
 #include "toolpaths.h"
+#include "vdb_bytes.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <gtest/gtest.h>
@@ -42,6 +43,38 @@ TEST_F(VdbFile, KeepsEveryValueWithEveryCompression) {
         const auto accessor = back->getConstAccessor();
         for (auto it = grid->cbeginValueAll(); it; ++it) ASSERT_EQ(accessor.getValue(it.getCoord()), *it);
     }
+}
+
+TEST_F(VdbFile, TreesHaveTheBytesOfOpenVdbsWriter) {
+    gcode::Toolpath toolpath;
+    for (int n = 0; n < 30; ++n)
+        test::addBead(toolpath, 0, n, 0.2 + 0.2 * (n % 3), 20, n - 3.0, 0.2 + 0.2 * (n % 3), 0.5, 0.2);
+    voxelize::Lattice lattice;
+    lattice.voxel_size = 0.08;
+    lattice.layer_height = 0.2;
+    const std::vector<std::uint32_t> beads = test::allBeads(toolpath);
+    voxelize::Voxelizer voxelizer(toolpath, beads, lattice);
+    const auto grid = voxelizer.printAll();
+    describe(*grid, lattice, {});
+    openvdb::GridPtrVec grids{grid};
+    // Integers, floats and vectors; their inactive voxels have a value of their own.
+    const std::vector<voxelize::Attribute> wanted{voxelize::Attribute::layer, voxelize::Attribute::width,
+                                                  voxelize::Attribute::color};
+    for (const auto& attribute : voxelizer.attributes(wanted)) grids.push_back(attribute);
+    auto odd = openvdb::FloatGrid::create(1);
+    odd->setName("odd");
+    for (int n = 0; n < 512; ++n) odd->tree().setValueOff({n / 64, n / 8 % 8, n % 8}, static_cast<float>(n % 5));
+    for (int n = 0; n < 40; ++n) odd->tree().setValueOn({n, 3 * n, 5 * n}, static_cast<float>(n));
+    odd->tree().addTile(2, {5000, 0, 0}, 7, true);
+    grids.push_back(odd);
+    grids.push_back(openvdb::FloatGrid::create(2));  // without a leaf
+    grids.back()->setName("empty");
+    for (const Compression compression : {Compression::blosc, Compression::zip, Compression::none})
+        for (const bool half : {false, true}) {
+            writeVdb(grids, path_, {half, compression});
+            test::OpenVdbArchive::writeFile(grids, folder_ / "theirs.vdb", compressionFlags(compression));
+            test::expectSameContents(path_, folder_ / "theirs.vdb");
+        }
 }
 
 TEST_F(VdbFile, SaysWhereItCameFrom) {

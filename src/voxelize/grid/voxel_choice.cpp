@@ -64,7 +64,8 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
     LeafColumn column(toolpath, stack, lattice, 1);
     std::size_t leaves = 0;
     for (std::size_t c = 0; c < bins.size(); ++c)
-        if (!bins[c].empty()) leaves += column.countLeaves(bins[c]);
+        for (const LeafRange& range : column.bounds(bins[c]))
+            leaves += static_cast<std::size_t>(range.second - range.first) + 1;
     return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes()) + kBytesOfTree;
 }
 

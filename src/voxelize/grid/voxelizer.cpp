@@ -8,6 +8,7 @@
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/grid/exterior.h"
+#include "voxelize/grid/progress_meter.h"
 #include "voxelize/leaf/leaf_column.h"
 
 #include <fmt/format.h>
@@ -21,31 +22,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 namespace stratum::voxelize {
 namespace {
-
-// Calls back at most once a percent, one thread at a time.
-class ProgressMeter {
-public:
-    ProgressMeter(std::size_t total, const std::function<void(double)>& report) : total_(total), report_(report) {}
-    void advance(std::size_t count) {
-        if (!report_) return;
-        const std::size_t done = done_.fetch_add(count, std::memory_order_relaxed) + count;
-        if (done * 100 / total_ == (done - count) * 100 / total_) return;
-        const std::scoped_lock lock(mutex_);
-        report_(static_cast<double>(done) / static_cast<double>(total_));
-    }
-
-private:
-    const std::size_t total_;
-    const std::function<void(double)>& report_;
-    std::atomic<std::size_t> done_{0};
-    std::mutex mutex_;
-};
 
 // With culling, in voxels: the masks cover only the neighbouring leaves.
 constexpr double kDeepestBand = 8;
@@ -65,7 +46,7 @@ double estimateMargin(Interior interior) { return interior == Interior::keep ? 3
 LayerStack stackIfItFits(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                          const Lattice& lattice, const VoxelizeOptions& options, double estimate) {
     const auto limit = static_cast<double>(memoryLimit(options));
-    if (estimate > estimateMargin(options.interior) * limit)
+    if (options.in_memory && estimate > estimateMargin(options.interior) * limit)
         throw UsageError(
             fmt::format("voxel size {:g} mm needs about {:.3g} GB, {:.3g} GB are free; choose a larger voxel "
                         "(half the layer height is {:g} mm), --memory-budget, fewer layers or features{}",
@@ -88,10 +69,14 @@ struct Voxelizer::State {
           bins(toolpath, stack, lattice, memoryLimit(options) / 4),
           scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
-          grid(openvdb::FloatGrid::create(background)) {
-        grid->setTransform(makeTransform(lattice, options.placement));
-        grid->setGridClass(openvdb::GRID_LEVEL_SET);
-        grid->setName("surface");
+          grid(emptyGrid()) {}
+
+    openvdb::FloatGrid::Ptr emptyGrid() const {
+        const auto empty = openvdb::FloatGrid::create(background);
+        empty->setTransform(makeTransform(lattice, options.placement));
+        empty->setGridClass(openvdb::GRID_LEVEL_SET);
+        empty->setName("surface");
+        return empty;
     }
 
     void refuseIfTooLarge();
@@ -116,24 +101,18 @@ struct Voxelizer::State {
 };
 
 void Voxelizer::State::refuseIfTooLarge() {
+    if (!options.in_memory) return;
     // Culling builds a fraction that is unknown before the flood. Grids that clearly fit are not counted.
     if (options.interior == Interior::cull) return;
     if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
-    std::atomic<std::size_t> leaf_bound{0};
-    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = scratch.local();
-        std::size_t count = 0;
-        for (std::size_t c = first; c != last; ++c)
-            if (!bins[c].empty()) count += column.countLeaves(bins[c]);
-        leaf_bound.fetch_add(count, std::memory_order_relaxed);
-    });
-    const double bytes = static_cast<double>(leaf_bound.load()) * kBytesPerLeaf;
+    const auto leaf_bound = static_cast<double>(boundLeaves(bins, columnSource()).leaves);
+    const double bytes = leaf_bound * kBytesPerLeaf;
     const auto limit = static_cast<double>(memoryLimit(options));
     if (bytes > limit)
         throw UsageError(
             fmt::format("voxel size {:g} mm needs up to {:.1f} GB ({:.3g} leaves), {:.1f} GB are free; choose a larger "
                         "voxel, --memory-budget, fewer layers or features, or --interior cull",
-                        lattice.voxel_size, bytes * 1e-9, static_cast<double>(leaf_bound.load()), limit * 1e-9));
+                        lattice.voxel_size, bytes * 1e-9, leaf_bound, limit * 1e-9));
 }
 
 void Voxelizer::State::buildTouched(std::uint32_t end) {
@@ -225,6 +204,20 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
     state_->report.build_seconds = secondsSince(start);
     return state_->grid;
 }
+
+LeafBounds Voxelizer::leafBounds() const { return boundLeaves(state_->bins, state_->columnSource()); }
+
+LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure) {
+    const auto start = Clock::now();
+    const LeafStreamReport streamed =
+        streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure, state_->options.progress);
+    VoxelizeReport& report = state_->report;
+    report.leaf_positions = report.leaves_evaluated = streamed.evaluated;
+    report.build_seconds = secondsSince(start);
+    return streamed;
+}
+
+openvdb::FloatGrid::Ptr Voxelizer::emptyGrid() const { return state_->emptyGrid(); }
 
 CullForecast Voxelizer::forecastCull() const {
     State& s = *state_;

@@ -6,6 +6,7 @@
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
 #include "voxelize/grid/deposit_balance.h"
+#include "voxelize/grid/leaf_stream.h"
 
 #include <openvdb/openvdb.h>
 
@@ -29,6 +30,8 @@ enum class Interior : std::uint8_t {
 struct VoxelizeOptions {
     Placement placement;
     Interior interior = Interior::keep;
+    /// Whether a grid will be built; stream() alone needs no memory for one.
+    bool in_memory = true;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
     /// Called from time to time with the fraction done, 0..1, from any of the working threads, one call at a time.
@@ -74,6 +77,14 @@ public:
     /// belongs to this object and changes with the next step.
     openvdb::FloatGrid::Ptr printUntil(std::uint32_t end);
     openvdb::FloatGrid::Ptr printAll() { return printUntil(0xffffffff); }
+
+    /// The leaves of the selected beads before index `end` of the toolpath, one after the other instead of as a grid;
+    /// only with Interior::keep. The values and masks are those of printUntil() of a new Voxelizer. `bounds`:
+    /// leafBounds().
+    LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure);
+    LeafBounds leafBounds() const;
+    /// Name, class, transform and background of the grid, without a voxel.
+    openvdb::FloatGrid::Ptr emptyGrid() const;
 
     /// Attribute grids over the active voxels of the current grid, in the given order. Progress restarts at 0.
     std::vector<openvdb::GridBase::Ptr> attributes(std::span<const Attribute> wanted) const;

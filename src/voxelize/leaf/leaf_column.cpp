@@ -49,7 +49,7 @@ void LeafColumn::mergeRanges() {
     ranges_.resize(kept);
 }
 
-std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
+std::span<const LeafRange> LeafColumn::bounds(std::span<const std::uint32_t> ranks) {
     ranges_.clear();
     std::uint32_t previous = std::numeric_limits<std::uint32_t>::max();
     for (const std::uint32_t rank : ranks) {
@@ -63,9 +63,7 @@ std::size_t LeafColumn::countLeaves(std::span<const std::uint32_t> ranks) {
         }
     }
     mergeRanges();
-    std::size_t count = 0;
-    for (const LeafRange& range : ranges_) count += static_cast<std::size_t>(range.second - range.first) + 1;
-    return count;
+    return ranges_;
 }
 
 void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end) {
@@ -348,11 +346,15 @@ std::unique_ptr<Leaf> LeafColumn::makeLeaf() const {
     auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), origin, background, false);
     leaf->allocate();
     std::uint64_t mask[Leaf::NodeMaskType::WORD_COUNT];
-    storeLeaf(phi_, leaf->buffer().data());
-    maskWithin(leaf->buffer().data(), background, mask);
+    storeValues(std::span<float, Leaf::SIZE>(leaf->buffer().data(), Leaf::SIZE), mask);
     for (openvdb::Index w = 0; w < Leaf::NodeMaskType::WORD_COUNT; ++w)
         leaf->getValueMask().getWord<openvdb::Index64>(w) = mask[w];
     return leaf;
+}
+
+void LeafColumn::storeValues(std::span<float, Leaf::SIZE> values, std::span<std::uint64_t, 8> active) const {
+    storeLeaf(phi_, values.data());
+    maskWithin(values.data(), static_cast<float>(band_ * scale_), active.data());
 }
 
 }  // namespace stratum::voxelize

@@ -40,8 +40,9 @@ public:
     /// next call.
     std::span<const LeafRange> touched(std::uint32_t begin = 0);
 
-    /// An upper bound on the leaves of a column, from z extents alone; does not open it.
-    std::size_t countLeaves(std::span<const std::uint32_t> ranks);
+    /// An upper bound on the leaves of a column, from z extents alone: ascending and disjoint. Does not open it; valid
+    /// until the next call.
+    std::span<const LeafRange> bounds(std::span<const std::uint32_t> ranks);
 
     /// Evaluates a leaf of the open column: its eight planes, or with `planes` = kMostPlanes also the plane above.
     /// `leaf_k` must ascend from call to call until the next open().
@@ -49,6 +50,8 @@ public:
 
     /// A new leaf with the values of the last evaluate(), which must have returned LeafContent::surface.
     std::unique_ptr<Leaf> makeLeaf() const;
+    /// The same values in leaf order and the mask of the active ones, without a leaf.
+    void storeValues(std::span<float, Leaf::SIZE> values, std::span<std::uint64_t, 8> active) const;
     /// The values of evaluate(), clamped to the background, world units.
     const LeafPlanes& planes() const { return phi_; }
 

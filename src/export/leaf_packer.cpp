@@ -1,0 +1,122 @@
+#include "export/leaf_packer.h"
+
+#include "voxelize/leaf/leaf_kernels.h"
+
+#include <blosc.h>
+#include <openvdb/io/io.h>
+
+#include <bit>
+#include <cstring>
+
+namespace stratum::exporter {
+namespace {
+
+static_assert(sizeof(LeafMask) == 64, "a mask is its words");
+
+constexpr std::uint32_t kBloscOfActive = openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK;
+
+void append(const void* bytes, std::size_t count, std::vector<char>& out) {
+    out.insert(out.end(), static_cast<const char*>(bytes), static_cast<const char*>(bytes) + count);
+}
+
+// As io::bloscToStream() of OpenVDB does it, but straight into `out`.
+void appendBlosc(const void* values, std::size_t bytes, std::vector<char>& out) {
+    const std::size_t at = out.size();
+    out.resize(at + sizeof(std::int64_t) + bytes + BLOSC_MAX_OVERHEAD);
+    char* const packed = out.data() + at + sizeof(std::int64_t);
+    const int count = blosc_compress_ctx(9, 1, sizeof(float), bytes, values, packed, bytes + BLOSC_MAX_OVERHEAD,
+                                         BLOSC_LZ4_COMPNAME, bytes, 1);
+    // A negative length says that the values are as they are.
+    std::int64_t length = count;
+    if (count <= 0) {
+        length = -static_cast<std::int64_t>(bytes);
+        std::memcpy(packed, values, bytes);
+    }
+    std::memcpy(out.data() + at, &length, sizeof length);
+    out.resize(at + sizeof length + static_cast<std::size_t>(length < 0 ? -length : length));
+}
+
+void appendActive(const float* values, const LeafMask& active, std::vector<char>& out) {
+    float chosen[LeafMask::SIZE];
+    std::size_t count = 0;
+    for (openvdb::Index32 word = 0; word < LeafMask::WORD_COUNT; ++word)
+        for (std::uint64_t rest = active.getWord<std::uint64_t>(word); rest != 0; rest &= rest - 1)
+            chosen[count++] = values[64 * word + static_cast<openvdb::Index32>(std::countr_zero(rest))];
+    appendBlosc(chosen, count * sizeof(float), out);
+}
+
+// Any format, through OpenVDB.
+PackedLeaf packByOpenVdb(const LeafFormat& format, const float* values, const LeafMask& active, float background,
+                         std::vector<char>& out) {
+    const std::size_t first = out.size();
+    PackingStream stream(format, &background, out);
+    active.save(stream);
+    // The signature takes changeable values, and changes none.
+    openvdb::io::writeCompressedValues(stream, const_cast<float*>(values), LeafMask::SIZE, active, LeafMask(),
+                                       format.half);
+    return leafWritten(format, out, first, sizeof(float));
+}
+
+}  // namespace
+
+PackingStream::PackingStream(const LeafFormat& format, const void* background, std::vector<char>& out)
+    : std::ostream(this), out_(out) {
+    openvdb::io::setDataCompression(*this, format.compression);
+    openvdb::io::setGridBackgroundValuePtr(*this, background);
+}
+
+std::streambuf::int_type PackingStream::overflow(std::streambuf::int_type c) {
+    out_.push_back(std::char_traits<char>::to_char_type(c));
+    return c;
+}
+
+std::streamsize PackingStream::xsputn(const char* bytes, std::streamsize count) {
+    out_.insert(out_.end(), bytes, bytes + count);
+    return count;
+}
+
+PackedLeaf leafWritten(const LeafFormat& format, const std::vector<char>& out, std::size_t first,
+                       std::size_t value_bytes) {
+    using namespace openvdb::io;
+    PackedLeaf leaf;
+    leaf.kind = out[first + sizeof(LeafMask)];
+    std::size_t before = sizeof(LeafMask) + 1;
+    if (leaf.kind == NO_MASK_AND_ONE_INACTIVE_VAL || leaf.kind == MASK_AND_ONE_INACTIVE_VAL) before += value_bytes;
+    if (leaf.kind == MASK_AND_TWO_INACTIVE_VALS) before += 2 * value_bytes;
+    if (leaf.kind == MASK_AND_NO_INACTIVE_VALS || leaf.kind == MASK_AND_ONE_INACTIVE_VAL ||
+        leaf.kind == MASK_AND_TWO_INACTIVE_VALS)
+        before += sizeof(LeafMask);
+    if (format.sized()) leaf.size = static_cast<std::uint32_t>(out.size() - first - before);
+    return leaf;
+}
+
+PackedLeaf packClampedLeaf(const LeafFormat& format, const float* values, const LeafMask& active, float background,
+                           std::vector<char>& out) {
+    if (format.half || format.compression != kBloscOfActive)
+        return packByOpenVdb(format, values, active, background, out);
+    LeafMask outside;
+    voxelize::maskFrom(values, background, &outside.getWord<std::uint64_t>(0));
+    bool any_outside = false;
+    bool any_inside = false;
+    for (openvdb::Index32 word = 0; word < LeafMask::WORD_COUNT; ++word) {
+        const std::uint64_t off = ~active.getWord<std::uint64_t>(word);
+        std::uint64_t& out_of_it = outside.getWord<std::uint64_t>(word);
+        out_of_it &= off;
+        any_outside = any_outside || out_of_it != 0;
+        any_inside = any_inside || (off & ~out_of_it) != 0;
+    }
+    PackedLeaf leaf;
+    leaf.kind = openvdb::io::NO_MASK_OR_INACTIVE_VALS;
+    if (any_inside)
+        leaf.kind = any_outside ? openvdb::io::MASK_AND_NO_INACTIVE_VALS : openvdb::io::NO_MASK_AND_MINUS_BG;
+    append(&active, sizeof active, out);
+    append(&leaf.kind, 1, out);
+    // Of the two inactive values the second is the background.
+    if (any_inside && any_outside) append(&outside, sizeof outside, out);
+    const std::size_t first = out.size();
+    appendActive(values, active, out);
+    leaf.size = static_cast<std::uint32_t>(out.size() - first);
+    return leaf;
+}
+
+}  // namespace stratum::exporter

@@ -1,0 +1,156 @@
+#include "export/vdb_stream.h"
+
+#include "base/error.h"
+
+#include <openvdb/io/io.h>
+
+#include <bit>
+#include <cstring>
+#include <utility>
+
+namespace stratum::exporter {
+namespace {
+
+constexpr int kLowerVoxels = 128;
+constexpr int kLeafVoxels = 8;
+
+// The box of a leaf's active voxels: bits of a word are y and z, words are x.
+openvdb::CoordBBox activeBox(const openvdb::Coord& origin, const LeafMask& active) {
+    std::uint32_t in_x = 0;
+    std::uint64_t any = 0;
+    for (openvdb::Index32 x = 0; x < LeafMask::WORD_COUNT; ++x) {
+        const std::uint64_t plane = active.getWord<std::uint64_t>(x);
+        any |= plane;
+        in_x |= (plane != 0 ? 1U : 0U) << x;
+    }
+    std::uint64_t in_z = any | any >> 32;
+    in_z |= in_z >> 16;
+    in_z |= in_z >> 8;
+    const auto z = static_cast<std::uint32_t>(in_z & 0xffU);
+    const auto first = [](auto bits) { return std::countr_zero(bits); };
+    const auto last = [](auto bits) { return std::bit_width(bits) - 1; };
+    return {origin.offsetBy(first(in_x), first(any) / kLeafVoxels, first(z)),
+            origin.offsetBy(static_cast<int>(last(in_x)), static_cast<int>(last(any)) / kLeafVoxels,
+                            static_cast<int>(last(z)))};
+}
+
+// Leaves of one column mostly lie one behind the other.
+void append(std::string_view bytes, std::vector<iovec>& parts) {
+    char* const first = const_cast<char*>(bytes.data());  // pwritev() only reads
+    if (!parts.empty() && static_cast<char*>(parts.back().iov_base) + parts.back().iov_len == first)
+        parts.back().iov_len += bytes.size();
+    else
+        parts.push_back({first, bytes.size()});
+}
+
+}  // namespace
+
+VdbStream::VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
+                     const voxelize::LeafBounds& bounds)
+    : output_(path),
+      file_(output_.temporary(), path),
+      archive_(compressionFlags(options.compression)),
+      grid_(std::move(grid)),
+      format_([&] {
+          grid_->setSaveFloatAsHalf(options.half);
+          return archive_.formatOf(*grid_);
+      }()),
+      background_(grid_->background()),
+      list_(format_) {
+    // Statistics have their final size already.
+    insertStatistics(*grid_, {}, format_);
+    places_.head = archive_.header(1, {}).size();
+    places_.leaves = places_.head + headBytes(archive_, *grid_, grid_->getName(), LeafList::mostBytes(bounds.leaves)) +
+                     LevelSetNodes::mostBytes(format_, bounds.leaves, bounds.lower_nodes, bounds.upper_nodes);
+    places_.end = places_.leaves;
+}
+
+void VdbStream::open(const openvdb::Coord& origin) {
+    open_.origin = origin;
+    open_.any = true;
+}
+
+void VdbStream::leaf(std::size_t column, const openvdb::Coord& origin, const float* values,
+                     const std::uint64_t* active) {
+    Column& to = open_.columns[column];
+    Leaf& leaf = to.leaves.emplace_back();
+    leaf.z = origin[2];
+    std::memcpy(&leaf.active.getWord<std::uint64_t>(0), active, sizeof leaf.active);
+    std::vector<char>& packing = packing_.local();
+    packing.clear();
+    leaf.packed = packClampedLeaf(format_, values, leaf.active, background_, packing);
+    leaf.bytes = open_.bytes.local().keep(packing);
+    leaf.signs = {values[0] < 0, values[LeafMask::SIZE - 1] < 0};
+    to.active_voxels += leaf.active.countOn();
+    to.active_box.expand(activeBox(origin, leaf.active));
+}
+
+void VdbStream::close() { std::swap(open_, closed_); }
+
+void VdbStream::workOnClosed() {
+    if (!closed_.any) return;
+    writeBlock(closed_);
+    closed_.any = false;
+}
+
+// The leaves of a lower node are those of its columns, one column after the other.
+void VdbStream::writeBlock(Block& block) {
+    std::vector<std::size_t> next(block.columns.size());  // leaf, by column
+    std::vector<iovec> parts;
+    std::vector<EndSigns> signs;
+    std::uint64_t bytes = 0;
+    for (int z = block.origin[2]; z < block.origin[2] + voxelize::kSlabVoxels; z += kLowerVoxels) {
+        LowerNode node;
+        node.origin = {block.origin[0], block.origin[1], z};
+        signs.clear();
+        for (std::size_t c = 0; c < block.columns.size(); ++c) {
+            Column& column = block.columns[c];
+            for (; next[c] < column.leaves.size() && column.leaves[next[c]].z < z + kLowerVoxels; ++next[c]) {
+                const Leaf& leaf = column.leaves[next[c]];
+                node.children.setOn(static_cast<openvdb::Index>(c) * LowerMask::DIM +
+                                    static_cast<openvdb::Index>((leaf.z - z) / kLeafVoxels));
+                node.leaves.push_back(leaf.active);
+                signs.push_back(leaf.signs);
+                list_.add(leaf.packed);
+                append(leaf.bytes, parts);
+                bytes += leaf.bytes.size();
+            }
+        }
+        if (signs.empty()) continue;
+        node.leaves.shrink_to_fit();
+        node.flood(signs);
+        nodes_.add(std::move(node));
+    }
+    file_.write(places_.end, parts);
+    file_.startFlush(places_.end, places_.end + bytes);
+    places_.end += bytes;
+    for (Column& column : block.columns) {
+        statistics_.active_voxels += column.active_voxels;
+        statistics_.active_box.expand(column.active_box);
+        column.active_voxels = 0;
+        column.active_box.reset();
+        column.leaves.clear();
+    }
+    for (ByteArena& arena : block.bytes) arena.clear();
+}
+
+WrittenGrid VdbStream::finish() {
+    workOnClosed();
+    for (Block* block : {&open_, &closed_}) block->bytes.clear();
+    nodes_.flood();
+    statistics_.memory_bytes = nodes_.memoryBytes();
+    insertStatistics(*grid_, statistics_, format_);
+    // The topology ends where the leaves begin, so its length is needed first; that of the masks is known.
+    places_.topology = places_.leaves - nodes_.writtenBytes(format_, background_);
+    PositionedStream topology(file_, places_.topology);
+    openvdb::io::setDataCompression(topology, format_.compression);
+    nodes_.write(topology, background_, format_.half);
+    topology.writeOut();
+    writeHead(file_, archive_, *grid_, grid_->getName(), places_, list_);
+    file_.write(0, archive_.header(1, identityOf(*grid_, list_)));
+    file_.finish(places_.end);
+    output_.commit();
+    return {statistics_, nodes_.leafCount()};
+}
+
+}  // namespace stratum::exporter

@@ -1,0 +1,83 @@
+// Leaves of a print -> .vdb, without a grid: the level set goes to the disk while it is made.
+#pragma once
+
+#include "base/atomic_file.h"
+#include "export/byte_arena.h"
+#include "export/level_set_nodes.h"
+#include "export/vdb_archive.h"
+#include "export/vdb_file.h"
+#include "voxelize/grid/leaf_stream.h"
+
+#include <openvdb/openvdb.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace stratum::exporter {
+
+/// What was written of a grid; of an openvdb::FloatGrid the same would be counted.
+struct WrittenGrid {
+    GridStatistics statistics;
+    std::size_t leaves = 0;
+};
+
+/// Writes one level set. Leaves are packed by the threads that make them; a block of them is in memory while it is
+/// made, another one while it is written, and 67 bytes of every leaf until the end. OpenVDB reads the file to the grid
+/// that Voxelizer::printAll() makes; the bytes of tree and leaves are those of its own writer, behind metadata with the
+/// unused bytes that vdb_archive.h tells of. Errors throw OutputError, and the old file stays.
+class VdbStream : public voxelize::LeafReceiver {
+public:
+    /// `grid`: Voxelizer::emptyGrid() with the metadata of describe().
+    VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
+              const voxelize::LeafBounds& bounds);
+
+    void open(const openvdb::Coord& origin) override;
+    void leaf(std::size_t column, const openvdb::Coord& origin, const float* values,
+              const std::uint64_t* active) override;
+    void workOnClosed() override;
+    void close() override;
+
+    /// All leaves have come: the file gets its head and its name.
+    WrittenGrid finish();
+
+private:
+    struct Leaf {
+        int z = 0;  // voxels
+        std::string_view bytes;
+        PackedLeaf packed;
+        EndSigns signs;
+        LeafMask active;
+    };
+    struct Column {
+        std::vector<Leaf> leaves;
+        std::size_t active_voxels = 0;
+        openvdb::CoordBBox active_box;
+    };
+    struct Block {
+        openvdb::Coord origin;
+        bool any = false;
+        std::vector<Column> columns{voxelize::kBlockColumns};
+        tbb::enumerable_thread_specific<ByteArena> bytes;  // of the leaves
+    };
+
+    void writeBlock(Block& block);
+
+    AtomicFile output_;
+    PositionedFile file_;
+    const VdbArchive archive_;
+    openvdb::FloatGrid::Ptr grid_;
+    const LeafFormat format_;
+    const float background_;
+    LeafList list_;
+    LevelSetNodes nodes_;
+    GridStatistics statistics_;
+    GridPlaces places_;
+    tbb::enumerable_thread_specific<std::vector<char>> packing_;  // of one leaf
+    Block open_, closed_;
+};
+
+}  // namespace stratum::exporter

@@ -1,0 +1,220 @@
+#include "voxelize/grid/leaf_stream.h"
+
+#include "base/parallel_for.h"
+#include "voxelize/grid/cell_volume.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/progress_meter.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+#include <vector>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr std::size_t kBoundGrain = 16;              // columns
+constexpr int kSlabLeaves = kSlabVoxels / kLeafDim;  // along each axis of an upper node
+constexpr int kBlockLeaves = kBlockVoxels / kLeafDim;
+
+int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+// Columns of the bins that lie in one block; also of the blocks that lie in one upper node.
+struct Rectangle {
+    int first_i, last_i, first_j, last_j;  // inclusive, in leaves from index 0
+};
+
+Rectangle rectangleOf(const PlanBins& bins) {
+    const int i = bins.originI(0) / kLeafDim;
+    const int j = bins.originJ(0) / kLeafDim;
+    return {i, i + static_cast<int>(bins.columnsI()) - 1, j, j + static_cast<int>(bins.columnsJ()) - 1};
+}
+
+// The cells of a lattice of this edge that a rectangle meets, clipped to it: visit(x, y, clipped), by x, then y.
+template <typename Visit>
+void forEachCell(const Rectangle& all, int edge, const Visit& visit) {
+    for (int x = floorDivide(all.first_i, edge); x <= floorDivide(all.last_i, edge); ++x)
+        for (int y = floorDivide(all.first_j, edge); y <= floorDivide(all.last_j, edge); ++y)
+            visit(x, y,
+                  Rectangle{std::max(all.first_i, x * edge), std::min(all.last_i, (x + 1) * edge - 1),
+                            std::max(all.first_j, y * edge), std::min(all.last_j, (y + 1) * edge - 1)});
+}
+
+std::size_t cellsMet(int first, int last, int edge) {
+    return static_cast<std::size_t>(floorDivide(last, edge) - floorDivide(first, edge) + 1);
+}
+
+// Makes the leaves of one block after the other.
+class Blocks {
+public:
+    Blocks(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const LeafBounds& bounds,
+           LeafReceiver& receiver, bool measure, const std::function<void(double)>& progress)
+        : bins_(bins),
+          columns_(columns),
+          end_(end),
+          bounds_(bounds),
+          receiver_(receiver),
+          measure_(measure),
+          all_(rectangleOf(bins)),
+          meter_(std::max<std::size_t>(bins.entryCount(), 1), progress) {}
+
+    // The part of a pile of leaf columns in [first_k, last_k].
+    void run(const Rectangle& block, int x, int y, int first_k, int last_k) {
+        std::vector<Column> columns;
+        for (int i = block.first_i; i <= block.last_i; ++i)
+            for (int j = block.first_j; j <= block.last_j; ++j) {
+                const std::size_t bin = static_cast<std::size_t>(j - all_.first_j) * bins_.columnsI() +
+                                        static_cast<std::size_t>(i - all_.first_i);
+                if (bounds_.columns[bin].first <= last_k && bounds_.columns[bin].second >= first_k)
+                    columns.push_back({bin, static_cast<std::size_t>((i - x * kBlockLeaves) * kBlockLeaves +
+                                                                     (j - y * kBlockLeaves))});
+            }
+        if (columns.empty()) return;
+        receiver_.open({x * kBlockVoxels, y * kBlockVoxels, floorDivide(first_k, kSlabLeaves) * kSlabVoxels});
+        // Output of the block before is one more item.
+        parallelFor(columns.size() + 1, 1, [&](std::size_t first, std::size_t last) {
+            for (std::size_t n = first; n < last; ++n) {
+                if (n == 0) {
+                    receiver_.workOnClosed();
+                    continue;
+                }
+                Column& column = columns[n - 1];
+                make(column, first_k, last_k);
+            }
+        });
+        receiver_.close();
+        for (const Column& column : columns) {
+            inside_leaves_ += column.inside;
+            sampled_voxels_ += column.sampled_voxels;
+            report_.measured += column.sampled;
+            report_.evaluated += column.evaluated;
+            report_.leaves += column.leaves;
+        }
+    }
+
+    LeafStreamReport report() const {
+        LeafStreamReport report = report_;
+        if (report.measured > 0)
+            report.volume_voxels =
+                sampled_voxels_ * static_cast<double>(report.leaves) / static_cast<double>(report.measured);
+        report.volume_voxels += static_cast<double>(inside_leaves_) * Leaf::SIZE;
+        return report;
+    }
+
+private:
+    // One column of the block; what was found there is added in the order of the columns.
+    struct Column {
+        std::size_t bin, place;
+        std::size_t evaluated = 0, leaves = 0, sampled = 0;
+        std::size_t inside = 0;  // leaf positions that are all inside
+        double sampled_voxels = 0;
+    };
+
+    void make(Column& to, int first_k, int last_k) {
+        LeafColumn& column = columns_();
+        const std::span<const std::uint32_t> ranks = bins_[to.bin];
+        const int i = bins_.originI(to.bin);
+        const int j = bins_.originJ(to.bin);
+        column.open(i, j, ranks, end_);
+        std::array<float, Leaf::SIZE> values;
+        std::array<std::uint64_t, 8> active;
+        for (const LeafRange& range : column.touched())
+            for (int k = std::max(range.first, first_k); k <= std::min(range.second, last_k); ++k) {
+                ++to.evaluated;
+                const LeafContent content = column.evaluate(k);
+                if (content == LeafContent::inside) ++to.inside;
+                if (content != LeafContent::surface) continue;
+                column.storeValues(values, active);
+                receiver_.leaf(to.place, {i, j, k * kLeafDim}, values.data(), active.data());
+                ++to.leaves;
+                if (!measure_ || !takes(to.bin, k)) continue;
+                column.evaluate(k, kMostPlanes);
+                ++to.sampled;
+                to.sampled_voxels += insideOf(column.planes());
+            }
+        if (bounds_.columns[to.bin].second <= last_k) meter_.advance(ranks.size());
+    }
+
+    bool takes(std::size_t bin, int k) const {
+        const std::uint64_t place = bin << 24 ^ static_cast<std::uint32_t>(k);
+        return bounds_.leaves <= kVolumeSample || scattered(place) % bounds_.leaves < kVolumeSample;
+    }
+
+    static double insideOf(const LeafPlanes& phi) {
+        LeafSamples samples{};
+        for (int x = 0; x < kLeafDim; ++x)
+            for (int y = 0; y < kLeafDim; ++y)
+                for (std::size_t z = 0; z < kMostPlanes; ++z) samples.v[x][y][z] = phi.plane[z].v[x * kLeafDim + y];
+        constexpr int kOwn = kLeafDim - 1;  // cells along x and y that need no other column
+        return insideCells(samples, kOwn) * (kLeafDim * kLeafDim) / (kOwn * kOwn);
+    }
+
+    const PlanBins& bins_;
+    const ColumnSource& columns_;
+    const std::uint32_t end_;
+    const LeafBounds& bounds_;
+    LeafReceiver& receiver_;
+    const bool measure_;
+    const Rectangle all_;
+    ProgressMeter meter_;
+    LeafStreamReport report_;
+    std::size_t inside_leaves_ = 0;
+    double sampled_voxels_ = 0;
+};
+
+}  // namespace
+
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns) {
+    LeafBounds all;
+    constexpr LeafRange kNone{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    all.columns.assign(bins.size(), kNone);
+    std::atomic<std::size_t> leaves{0};
+    parallelFor(bins.size(), kBoundGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = columns();
+        std::size_t count = 0;
+        for (std::size_t c = first; c != last; ++c) {
+            if (bins[c].empty()) continue;
+            const std::span<const LeafRange> ranges = column.bounds(bins[c]);
+            for (const LeafRange& range : ranges) count += static_cast<std::size_t>(range.second - range.first) + 1;
+            all.columns[c] = {ranges.front().first, ranges.back().second};
+        }
+        leaves.fetch_add(count, std::memory_order_relaxed);
+    });
+    all.leaves = leaves;
+    if (all.leaves == 0) return {};
+    all.first_k = kNone.first;
+    all.last_k = kNone.second;
+    for (const LeafRange& column : all.columns) {
+        all.first_k = std::min(all.first_k, column.first);
+        all.last_k = std::max(all.last_k, column.second);
+    }
+    const Rectangle plan = rectangleOf(bins);
+    const auto nodes = [&](int edge) {
+        return cellsMet(plan.first_i, plan.last_i, edge) * cellsMet(plan.first_j, plan.last_j, edge) *
+               cellsMet(all.first_k, all.last_k, edge);
+    };
+    all.lower_nodes = nodes(kBlockLeaves);
+    all.upper_nodes = nodes(kSlabLeaves);
+    return all;
+}
+
+LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
+                              const std::function<void(double)>& progress) {
+    if (bounds.leaves == 0) return {};
+    Blocks blocks(bins, columns, end, bounds, receiver, measure, progress);
+    const int first_slab = floorDivide(bounds.first_k, kSlabLeaves);
+    const int last_slab = floorDivide(bounds.last_k, kSlabLeaves);
+    forEachCell(rectangleOf(bins), kSlabLeaves, [&](int, int, const Rectangle& upper) {
+        for (int slab = first_slab; slab <= last_slab; ++slab) {
+            const int first_k = std::max(bounds.first_k, slab * kSlabLeaves);
+            const int last_k = std::min(bounds.last_k, (slab + 1) * kSlabLeaves - 1);
+            forEachCell(upper, kBlockLeaves,
+                        [&](int x, int y, const Rectangle& block) { blocks.run(block, x, y, first_k, last_k); });
+        }
+    });
+    return blocks.report();
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,39 @@
+// LayerStack -> leaves in the order of a .vdb file, without a grid.
+#pragma once
+
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/grid/leaf_receiver.h"
+#include "voxelize/leaf/leaf_positions.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace stratum::voxelize {
+
+/// What a print has at most, from z extents alone.
+struct LeafBounds {
+    std::size_t leaves = 0;
+    std::size_t lower_nodes = 0, upper_nodes = 0;  ///< of OpenVDB's tree
+    int first_k = 0, last_k = -1;                  ///< in leaves from index 0
+    std::vector<LeafRange> columns;                ///< the same by column of the bins; empty ones have first > second
+};
+/// Parallel.
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns);
+
+struct LeafStreamReport {
+    std::size_t evaluated = 0;  ///< leaf positions
+    std::size_t leaves = 0;     ///< with something active
+    double volume_voxels = 0;   ///< inside; 0 unless `measure`
+    std::size_t measured = 0;   ///< leaves in which that was measured
+};
+
+/// Makes all leaves of the beads with an index in the toolpath below `end`, with the bits of Voxelizer::printUntil(),
+/// and gives them to `receiver`. Columns that reach into more than one of OpenVDB's upper nodes are opened once for
+/// each. Parallel; calls and their order do not depend on the number of threads.
+LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
+                              const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
+                              const std::function<void(double)>& progress);
+
+}  // namespace stratum::voxelize
