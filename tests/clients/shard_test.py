@@ -313,11 +313,13 @@ def convert(output, *options, shard=None, env=None):
     return does(GCODE2VDB, TILE, "-o", output, *options, *(["--shard", shard] if shard else []), env=env)
 
 
-VOXEL = ["--voxel-size", "0.05", "--quiet"]
-for what, options in (("a print", []), ("--precision half --compression zip", ["--precision", "half", "--compression", "zip"]),
-                      ("--up y --origin center --beads settled", ["--up", "y", "--origin", "center", "--beads", "settled"])):
+VOXEL = ["--voxel-size", "0.1", "--quiet"]
+for what, counts, options in (
+        ("a print", (1, 2, 7, 64), []),
+        ("`--precision half --compression zip`", (3,), ["--precision", "half", "--compression", "zip"]),
+        ("`--up y --origin center --beads settled`", (3,), ["--up", "y", "--origin", "center", "--beads", "settled"])):
     convert("whole.vdb", *VOXEL, *options)
-    for count in (1, 2, 7, 64):
+    for count in counts:
         for index in range(count):
             convert("part.vdb", *VOXEL, *options, *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
         check(not os.path.exists(path("part.vdb")), "a shard writes its part alone")

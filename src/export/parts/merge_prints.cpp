@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,7 +53,7 @@ void appendPart(const PartFile& part, LevelSetOutput& output) {
         iovec piece{const_cast<char*>(bytes.data()), bytes.size()};  // pwritev() only reads
         output.append({&piece, 1});
     }
-    if (checksum != part.part.checksum) damagedPart(part.path, "the checksum of its leaves is wrong");
+    if (checksum != part.part.checksum) throw InputError(damageOf(part.path, "the checksum of its leaves is wrong"));
 }
 
 }  // namespace
@@ -69,8 +67,12 @@ MergedPrint mergePrint(const std::filesystem::path& path, const std::vector<std:
     for (const PartFile& part : parts) {
         try {
             appendPart(part, output);
+        } catch (const OutputError&) {
+            throw;
         } catch (const InputError& error) {
             problems.emplace_back(error.what());
+        } catch (const openvdb::Exception& error) {
+            problems.push_back(damageOf(part.path, error.what()));
         }
     }
     if (!problems.empty()) refuseParts(std::move(problems));

@@ -15,7 +15,7 @@ struct MergedPrint {
 };
 
 /// Copies the leaves of the parts one behind the other, as they are, some megabytes at a time; in memory are the nodes,
-/// 67 bytes of every leaf. Throws InputError that names each missing, doubled, foreign or damaged part, and
+/// about 80 bytes of every leaf. Throws InputError that names each missing, doubled, foreign or damaged part, and
 /// OutputError; nothing is written then.
 MergedPrint mergePrint(const std::filesystem::path& output, const std::vector<std::filesystem::path>& paths);
 

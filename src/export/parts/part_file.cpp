@@ -87,8 +87,8 @@ void readGrid(std::string_view bytes, PartFile& file) {
 
 }  // namespace
 
-void damagedPart(const std::filesystem::path& path, std::string_view why) {
-    throw InputError(fmt::format("{}: is damaged ({}); make this shard again", path.string(), why));
+std::string damageOf(const std::filesystem::path& path, std::string_view why) {
+    return fmt::format("{}: is damaged ({}); make this shard again", path.string(), why);
 }
 
 PartFile readPartFile(const std::filesystem::path& path) {
@@ -104,7 +104,7 @@ PartFile readPartFile(const std::filesystem::path& path) {
         readGrid(mapped.bytes(), file);
         return file;
     } catch (const std::exception& error) {
-        damagedPart(path, error.what());
+        throw InputError(damageOf(path, error.what()));
     }
 }
 
@@ -125,14 +125,15 @@ std::vector<LowerNode> nodesOf(const PartFile& file) {
             for (auto tile = lower->cbeginChildOff(); tile; ++tile)
                 if (*tile < 0) node.inside.setOn(tile.pos());
             for (auto leaf = lower->cbeginChildOn(); leaf; ++leaf) node.leaves.push_back(leaf->getValueMask());
-            if (nodes.size() > file.part.signs.size()) damagedPart(file.path, "it has more nodes than signs");
+            if (nodes.size() > file.part.signs.size())
+                throw InputError(damageOf(file.path, "it has more nodes than signs"));
             node.ends = file.part.signs[nodes.size() - 1];
         }
     return nodes;
 }
 
 PackedLeaf leafOf(const PartFile& file, std::size_t n) {
-    if (!file.list) damagedPart(file.path, "it has no list of its leaves");
+    if (!file.list) throw InputError(damageOf(file.path, "it has no list of its leaves"));
     return {file.list->getMask(n),
             file.format.sized() ? static_cast<std::uint32_t>(file.list->getCompressedSize(n)) : 0};
 }

@@ -36,8 +36,8 @@ std::vector<LowerNode> nodesOf(const PartFile& file);
 /// What its list says of a leaf.
 PackedLeaf leafOf(const PartFile& file, std::size_t n);
 
-/// Throws InputError that says so.
-[[noreturn]] void damagedPart(const std::filesystem::path& path, std::string_view why);
+/// What to say of a damaged part.
+std::string damageOf(const std::filesystem::path& path, std::string_view why);
 
 /// Whether there is such a file, and it is that shard's part of that scene by that version, undamaged.
 bool isPartOfPrint(const std::filesystem::path& path, const std::string& version, const std::string& scene,

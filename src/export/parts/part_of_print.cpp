@@ -7,6 +7,7 @@ namespace {
 
 using openvdb::MetaMap;
 
+constexpr int kMostParts = 1'000'000;  // as parseShard() allows
 constexpr const char* kIndex = "shard_index";
 constexpr const char* kCount = "shard_count";
 constexpr const char* kVersion = "shard_version";
@@ -52,7 +53,7 @@ void insertPart(MetaMap& metadata, const PartOfPrint& part) {
 PartOfPrint takePart(MetaMap& metadata) {
     PartOfPrint part;
     part.shard = {take<std::int32_t>(metadata, kIndex), take<std::int32_t>(metadata, kCount)};
-    if (part.shard.index < 0 || part.shard.index >= part.shard.count)
+    if (part.shard.index < 0 || part.shard.index >= part.shard.count || part.shard.count > kMostParts)
         throw std::runtime_error("its number is impossible");
     part.version = take<std::string>(metadata, kVersion);
     part.scene = take<std::string>(metadata, kScene);
