@@ -1,5 +1,6 @@
 #include "conversion.h"
 
+#include "convert_shard.h"
 #include "grid_report.h"
 #include "print_options.h"
 #include "progress.h"
@@ -11,6 +12,7 @@
 #include "base/mapped_file.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
+#include "export/parts/part_file.h"
 #include "export/surface_mesh.h"
 #include "export/usd_file.h"
 #include "export/vdb_file.h"
@@ -37,6 +39,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::tools {
@@ -90,8 +93,14 @@ bool needsTimes(const ConvertCommand& o) {
 /// One input, step by step: each method needs what those before it found.
 class Conversion {
 public:
-    Conversion(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run)
-        : o_(command), input_(input), output_(output), files_of_run_(files_of_run), file_(input) {}
+    Conversion(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run,
+               std::optional<exporter::PartOfPrint> part)
+        : o_(command),
+          input_(input),
+          output_(output),
+          files_of_run_(files_of_run),
+          part_(std::move(part)),
+          file_(input) {}
 
     Json run(int threads) {
         read();
@@ -121,7 +130,7 @@ private:
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const {
         return !as_mesh_ && !culls() && attributes_.empty() && o_.snapshots.empty() && !o_.interior_distance &&
-               !o_.forecast && !(settles() && !o_.common.stats.empty());
+               !o_.forecast && (part_ || !(settles() && !o_.common.stats.empty()));
     }
     bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
@@ -162,6 +171,11 @@ private:
         attributes_ = voxelize::parseGrids(o_.grids);
         colors_ = gcode::distinctColors(toolpath_, selection_);
         if (colors_.size() > 1 && o_.grids.empty() && !as_mesh_) {
+            if (part_)
+                throw UsageError(fmt::format(
+                    "--shard: the print has {} colors of filament, and a color grid is made of the whole print; leave "
+                    "it out with --grids surface, or make it without --shard",
+                    colors_.size()));
             attributes_.push_back(voxelize::Attribute::color);
             say(o_.common,
                 fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", colors_.size()));
@@ -213,16 +227,21 @@ private:
             makeInMemory(voxelizer, job);
     }
 
-    // Nobody would read it otherwise.
-    bool checks() const { return !o_.common.quiet || !o_.common.stats.empty(); }
+    // Nobody would read it otherwise; and a part does not hold what all beads lay.
+    bool checks() const { return !part_ && (!o_.common.quiet || !o_.common.stats.empty()); }
 
     void makeStreamed(voxelize::Voxelizer& voxelizer, const Job& job) {
         const openvdb::FloatGrid::Ptr empty = voxelizer.emptyGrid();
         exporter::describe(*empty, lattice_, provenance_);
         bar_.emplace("voxelizing", o_.common.quiet);
         const voxelize::LeafBounds bounds = voxelizer.leafBounds();
-        exporter::VdbStream file(empty, job.path, o_.file, bounds);
-        const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks());
+        voxelize::LeafShare share{{}, bounds};
+        if (part_) {
+            part_->print = bounds;
+            share = voxelizer.shareOf(bounds, part_->shard);
+        }
+        exporter::VdbStream file(empty, job.path, o_.file, share.bounds, part_);
+        const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks(), share.blocks);
         bar_.reset();
         seconds_.voxelize += watch_.lap();
         GridNumbers numbers;
@@ -416,6 +435,7 @@ private:
     const std::string& input_;
     const fs::path& output_;
     RunFiles& files_of_run_;
+    std::optional<exporter::PartOfPrint> part_;  // if the output is one shard's
     Stopwatch total_, watch_;
     Seconds seconds_;
     const gcode::InputBytes file_;
@@ -446,7 +466,13 @@ Json convert(const ConvertCommand& command, const std::string& input, const fs::
              int threads) {
     // Unwritable places are found before the work, not after it.
     { const AtomicFile probe(output); }
-    return Conversion(command, input, output, files_of_run).run(threads);
+    std::optional<exporter::PartOfPrint> part;
+    if (command.shard.shard) part = partOf(command, input);
+    if (part && command.shard.resume && exporter::isPartOfPrint(output, part->version, part->scene, part->shard)) {
+        say(command.common, fmt::format("  {}: is this shard of this scene already, skipped", output.string()));
+        return {{"input", {{"path", input}}}, {"files", {{{"path", output.string()}, {"skipped", true}}}}};
+    }
+    return Conversion(command, input, output, files_of_run, std::move(part)).run(threads);
 }
 
 }  // namespace stratum::tools

@@ -4,16 +4,26 @@
 #include "command_line.h"
 #include "run_files.h"
 
+#include "base/shard.h"
 #include "export/vdb_file.h"
 #include "voxelize/grid/print_options.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace stratum::tools {
+
+/// --shard, and what follows from it (convert_shard.h).
+struct ConvertShard {
+    std::string text;  // as given
+    std::string said;  // the options that are given
+    bool resume = false;
+    std::optional<Shard> shard;
+};
 
 /// As the command line gives it.
 struct ConvertCommand {
@@ -33,6 +43,7 @@ struct ConvertCommand {
     std::string snapshots;
     std::string unit = "mm", origin = "bed";
     exporter::FileOptions file;
+    ConvertShard shard;
 };
 
 /// The .usda beside a .vdb.

@@ -3,9 +3,11 @@
 #include "choices.h"
 #include "command_line.h"
 #include "conversion.h"
+#include "convert_shard.h"
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
+#include "shard_option.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
@@ -40,6 +42,7 @@ Examples:
   gcode2vdb part.gcode --grids layer,color          what each voxel was printed as
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
+  gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
 
 void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
@@ -67,6 +70,19 @@ void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
         ->group(writing);
+}
+
+void addShardOptions(CLI::App& app, tools::ConvertCommand& o) {
+    const char* machines = "Several machines";
+    auto* shard =
+        app.add_option("--shard", o.shard.text,
+                       "The share I of N, I from 0, of a level set; slurm takes both from a task of its array. "
+                       "vdbmerge puts the parts, OUT.IofN.vdb, together")
+            ->type_name("I/N|slurm")
+            ->group(machines);
+    app.add_flag("--resume", o.shard.resume, "Skips a part that is there and says that it is of this scene and shard")
+        ->needs(shard)
+        ->group(machines);
 }
 
 void addOptions(CLI::App& app, tools::ConvertCommand& o) {
@@ -114,6 +130,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->type_name("LIST")
         ->group(what);
     addWritingOptions(app, o);
+    addShardOptions(app, o);
     tools::addCommonOptions(app, o.common,
                             {"--output",
                              "--voxel-size",
@@ -197,8 +214,10 @@ void refuseEqualNames(const tools::ConvertCommand& o, const std::vector<fs::path
 }
 
 void run(tools::ConvertCommand& o) {
-    const std::vector<fs::path> outputs = outputsOf(o);
+    std::vector<fs::path> outputs = outputsOf(o);
     check(o, outputs);
+    const bool folder = !o.output.empty() && outputs.front() != o.output;
+    tools::divide(o, outputs);
     refuseEqualNames(o, outputs);
     tools::RunFiles files;
     for (const std::string& input : o.inputs) files.reads(input);
@@ -208,7 +227,7 @@ void run(tools::ConvertCommand& o) {
     }
     files.writes(o.dump_toolpath, "--dump-toolpath");
     files.writes(o.common.stats, "--stats");
-    if (!o.output.empty() && outputs.front() != o.output) tools::makeFolder(o.output);
+    if (folder) tools::makeFolder(o.output);
     o.common.output_on_stdout = isStandardOutput(outputs.front()) || o.dump_toolpath == "-";
 
     const tools::ThreadLimit limit(o.common.threads);
@@ -232,6 +251,7 @@ int main(int argc, char** argv) {
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {
         tools::useHugePages(argv);
+        options.shard.said = tools::saidOf(app);
         run(options);
     });
 }

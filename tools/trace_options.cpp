@@ -359,19 +359,6 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     o = std::move(over);
 }
 
-std::string saidOf(const CLI::App& app) {
-    // Where the picture goes, who waits for it, on how many threads and machines changes nothing of it.
-    constexpr std::array<std::string_view, 9> kOther = {"output", "checkpoint", "threads",  "stats", "quiet",
-                                                        "IN",     "shard",      "shard-by", "resume"};
-    std::string said;
-    for (const CLI::Option* option : app.get_options()) {
-        const std::string name = option->get_single_name();
-        if (option->count() == 0 || std::find(kOther.begin(), kOther.end(), name) != kOther.end()) continue;
-        said += fmt::format("{} {}\n", name, fmt::join(option->results(), " "));
-    }
-    return said;
-}
-
 std::string sourceOf(const TraceCommand& o, const std::string& files) {
     std::string text = fmt::format("vdbtrace {}\n{}{}\n", STRATUM_VERSION, o.said, files);
     for (const std::string& name : {o.scene.brdf, o.scene.env}) text += assemble::identityOf(name) + "\n";

@@ -23,7 +23,7 @@ namespace stratum::tools {
 struct ShardCommand {
     std::string text, by;  // as given
     bool resume = false;
-    std::optional<shade::Shard> shard;
+    std::optional<Shard> shard;
     bool pieces = false;              // traces a part of each picture; else whole pictures
     bool samples = false;             // that part is a share of the samples; else a piece of the picture
     std::vector<bool> made;           // which pictures are this process's; empty: all
@@ -61,9 +61,6 @@ void addTraceOptions(CLI::App& app, TraceCommand& command);
 /// If the input is a scene, its values become the defaults and the command line is read once more over them. Throws
 /// UsageError or InputError.
 void readScene(TraceCommand& command, int argc, char** argv);
-
-/// The options that were given and may change a picture, as text: the same for any order of them.
-std::string saidOf(const CLI::App& app);
 
 /// A hash of what a picture is made from: those options, the input files (`files` says what they hold), and the files
 /// that the options name.

@@ -1,5 +1,6 @@
 #include "trace_shard.h"
 
+#include "shard_option.h"
 #include "trace_frame.h"
 
 #include "base/atomic_file.h"
@@ -10,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,17 +20,6 @@ namespace stratum::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string environment(const char* name) {
-    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread
-    return value ? value : "";
-}
-
-shade::Shard shardOf(const std::string& text) {
-    if (text != "slurm") return shade::parseShard(text);
-    return shade::shardOf({environment("SLURM_ARRAY_TASK_ID"), environment("SLURM_ARRAY_TASK_MIN"),
-                           environment("SLURM_ARRAY_TASK_MAX"), environment("SLURM_ARRAY_TASK_COUNT")});
-}
 
 void refuse(const TraceCommand& o, bool pieces) {
     if (!o.bricks.picture.empty())
@@ -60,9 +49,7 @@ class Contents {
 public:
     const std::string& of(const std::string& path) {
         const auto [found, fresh] = hashes_.try_emplace(path);
-        std::error_code missing;
-        if (fresh && fs::is_regular_file(path, missing))
-            found->second = sha256Hex(MappedFile(path, Access::sequential).bytes());
+        if (fresh) found->second = contentHash(path);
         return found->second;
     }
 
@@ -102,7 +89,7 @@ std::size_t pictures(const TraceCommand& o) {
 
 std::string outputOf(const TraceCommand& o, std::size_t n) {
     const std::string name = numbered(o.output, n, pictures(o));
-    return o.shard.pieces ? shade::shardName(name, *o.shard.shard, ".exr").string() : name;
+    return o.shard.pieces ? shardName(name, *o.shard.shard, ".exr").string() : name;
 }
 
 bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() || o.shard.made[n]; }
@@ -110,7 +97,7 @@ bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() |
 void divide(std::vector<TraceCommand>& commands) {
     if (commands.empty() || commands.front().shard.text.empty()) return;
     const ShardCommand& given = commands.front().shard;
-    const shade::Shard shard = shardOf(given.text);
+    const Shard shard = givenShard(given.text);
     std::size_t count = 0;
     for (const TraceCommand& o : commands) count += pictures(o);
     const bool series = count > 1 || commands.front().each;
@@ -123,7 +110,7 @@ void divide(std::vector<TraceCommand>& commands) {
         o.shard.shard = shard;
         o.shard.pieces = pieces;
         if (pieces) {
-            if (!o.render.checkpoint.empty()) o.render.checkpoint = shade::shardName(o.render.checkpoint, shard);
+            if (!o.render.checkpoint.empty()) o.render.checkpoint = shardName(o.render.checkpoint, shard);
             continue;
         }
         for (std::size_t n = 0; n < pictures(o); ++n, ++number)
@@ -155,7 +142,7 @@ void identify(TraceCommand& o) {
 
 std::string recordOf(const TraceCommand& o) {
     if (!o.shard.resume || o.shard.pieces) return {};
-    return shade::shardName(o.output, *o.shard.shard, ".done").string();
+    return shardName(o.output, *o.shard.shard, ".done").string();
 }
 
 void recordPicture(const TraceCommand& o, std::size_t n) {

@@ -3,6 +3,7 @@
 #include "command_line.h"
 #include "output_names.h"
 #include "run_files.h"
+#include "shard_option.h"
 #include "trace_options.h"
 #include "trace_series.h"
 #include "trace_shard.h"

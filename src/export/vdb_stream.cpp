@@ -1,9 +1,5 @@
 #include "export/vdb_stream.h"
 
-#include "base/error.h"
-
-#include <openvdb/io/io.h>
-
 #include <bit>
 #include <cstring>
 #include <utility>
@@ -46,24 +42,11 @@ void append(std::string_view bytes, std::vector<iovec>& parts) {
 }  // namespace
 
 VdbStream::VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
-                     const voxelize::LeafBounds& bounds)
-    : output_(path),
-      file_(output_.temporary(), path),
-      archive_(compressionFlags(options.compression)),
-      grid_(std::move(grid)),
-      format_([&] {
-          grid_->setSaveFloatAsHalf(options.half);
-          return archive_.formatOf(*grid_);
-      }()),
-      background_(grid_->background()),
-      list_(format_) {
-    // Statistics have their final size already.
-    insertStatistics(*grid_, {}, format_);
-    places_.head = archive_.header(1, {}).size();
-    places_.leaves = places_.head + headBytes(archive_, *grid_, grid_->getName(), LeafList::mostBytes(bounds.leaves)) +
-                     LevelSetNodes::mostBytes(format_, bounds.leaves, bounds.lower_nodes, bounds.upper_nodes);
-    places_.end = places_.leaves;
-}
+                     const voxelize::NodeBounds& bounds, const std::optional<PartOfPrint>& part)
+    : background_(grid->background()), output_([&] {
+          grid->setSaveFloatAsHalf(options.half);
+          return LevelSetOutput(std::move(grid), path, compressionFlags(options.compression), bounds, part);
+      }()) {}
 
 void VdbStream::open(const openvdb::Coord& origin) {
     open_.origin = origin;
@@ -78,7 +61,7 @@ void VdbStream::leaf(std::size_t column, const openvdb::Coord& origin, const flo
     std::memcpy(&leaf.active.getWord<std::uint64_t>(0), active, sizeof leaf.active);
     std::vector<char>& packing = packing_.local();
     packing.clear();
-    leaf.packed = packClampedLeaf(format_, values, leaf.active, background_, packing);
+    leaf.packed = packClampedLeaf(output_.format(), values, leaf.active, background_, packing);
     leaf.bytes = open_.bytes.local().keep(packing);
     leaf.signs = {values[0] < 0, values[LeafMask::SIZE - 1] < 0};
     to.active_voxels += leaf.active.countOn();
@@ -98,7 +81,6 @@ void VdbStream::writeBlock(Block& block) {
     std::vector<std::size_t> next(block.columns.size());  // leaf, by column
     std::vector<iovec> parts;
     std::vector<EndSigns> signs;
-    std::uint64_t bytes = 0;
     for (int z = block.origin[2]; z < block.origin[2] + voxelize::kSlabVoxels; z += kLowerVoxels) {
         LowerNode node;
         node.origin = {block.origin[0], block.origin[1], z};
@@ -111,22 +93,18 @@ void VdbStream::writeBlock(Block& block) {
                                     static_cast<openvdb::Index>((leaf.z - z) / kLeafVoxels));
                 node.leaves.push_back(leaf.active);
                 signs.push_back(leaf.signs);
-                list_.add(leaf.packed);
+                output_.add(leaf.packed);
                 append(leaf.bytes, parts);
-                bytes += leaf.bytes.size();
             }
         }
         if (signs.empty()) continue;
         node.leaves.shrink_to_fit();
         node.flood(signs);
-        nodes_.add(std::move(node));
+        output_.add(std::move(node));
     }
-    file_.write(places_.end, parts);
-    file_.startFlush(places_.end, places_.end + bytes);
-    places_.end += bytes;
+    output_.append(parts);
     for (Column& column : block.columns) {
-        statistics_.active_voxels += column.active_voxels;
-        statistics_.active_box.expand(column.active_box);
+        output_.count(column.active_voxels, column.active_box);
         column.active_voxels = 0;
         column.active_box.reset();
         column.leaves.clear();
@@ -137,20 +115,7 @@ void VdbStream::writeBlock(Block& block) {
 WrittenGrid VdbStream::finish() {
     workOnClosed();
     for (Block* block : {&open_, &closed_}) block->bytes.clear();
-    nodes_.flood();
-    statistics_.memory_bytes = nodes_.memoryBytes();
-    insertStatistics(*grid_, statistics_, format_);
-    // The topology ends where the leaves begin, so its length is needed first; that of the masks is known.
-    places_.topology = places_.leaves - nodes_.writtenBytes(format_, background_);
-    PositionedStream topology(file_, places_.topology);
-    openvdb::io::setDataCompression(topology, format_.compression);
-    nodes_.write(topology, background_, format_.half);
-    topology.writeOut();
-    writeHead(file_, archive_, *grid_, grid_->getName(), places_, list_);
-    file_.write(0, archive_.header(1, identityOf(*grid_, list_)));
-    file_.finish(places_.end);
-    output_.commit();
-    return {statistics_, nodes_.leafCount()};
+    return output_.finish();
 }
 
 }  // namespace stratum::exporter

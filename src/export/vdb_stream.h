@@ -1,12 +1,10 @@
 // Leaves of a print -> .vdb, without a grid: the level set goes to the disk while it is made.
 #pragma once
 
-#include "base/atomic_file.h"
 #include "export/byte_arena.h"
-#include "export/level_set_nodes.h"
-#include "export/vdb_archive.h"
+#include "export/level_set_output.h"
 #include "export/vdb_file.h"
-#include "voxelize/grid/leaf_stream.h"
+#include "voxelize/grid/leaf_receiver.h"
 
 #include <openvdb/openvdb.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -14,16 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace stratum::exporter {
-
-/// What was written of a grid; of an openvdb::FloatGrid the same would be counted.
-struct WrittenGrid {
-    GridStatistics statistics;
-    std::size_t leaves = 0;
-};
 
 /// Writes one level set. Leaves are packed by the threads that make them; a block of them is in memory while it is
 /// made, another one while it is written, and 67 bytes of every leaf until the end. OpenVDB reads the file to the grid
@@ -31,9 +24,10 @@ struct WrittenGrid {
 /// unused bytes that vdb_archive.h tells of. Errors throw OutputError, and the old file stays.
 class VdbStream : public voxelize::LeafReceiver {
 public:
-    /// `grid`: Voxelizer::emptyGrid() with the metadata of describe().
+    /// `grid`: Voxelizer::emptyGrid() with the metadata of describe(). `bounds`: of the leaves that will come.
+    /// `part`: if they are one shard's, what the file is a part of.
     VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
-              const voxelize::LeafBounds& bounds);
+              const voxelize::NodeBounds& bounds, const std::optional<PartOfPrint>& part = {});
 
     void open(const openvdb::Coord& origin) override;
     void leaf(std::size_t column, const openvdb::Coord& origin, const float* values,
@@ -66,16 +60,8 @@ private:
 
     void writeBlock(Block& block);
 
-    AtomicFile output_;
-    PositionedFile file_;
-    const VdbArchive archive_;
-    openvdb::FloatGrid::Ptr grid_;
-    const LeafFormat format_;
     const float background_;
-    LeafList list_;
-    LevelSetNodes nodes_;
-    GridStatistics statistics_;
-    GridPlaces places_;
+    LevelSetOutput output_;
     tbb::enumerable_thread_specific<std::vector<char>> packing_;  // of one leaf
     Block open_, closed_;
 };

@@ -1,4 +1,4 @@
-"""Pictures and films in shards, by tiles, samples and frames: the bytes of one process, whatever is killed, and no half of a picture."""
+"""Pictures, films and prints in shards: the bytes of one process, whatever is killed, and no half of a picture."""
 
 import os
 import re
@@ -13,6 +13,7 @@ from run_tools import BIN, SOURCE, check, gcode
 FOLDER = tempfile.mkdtemp(prefix="stratum_shard_")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBMERGE = os.path.join(BIN, "vdbmerge")
+GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 SCRIPTS = os.path.join(SOURCE, "scripts", "slurm")
 TILE = gcode("tile.gcode")
 SMALL = ["--size", "160x120", "--voxels-per-layer", "2", "--quiet"]
@@ -58,8 +59,8 @@ def same(one, other):
         return a.read() == b.read()
 
 
-def parts(stem, count):
-    return [f"{stem}.{n}of{count}.exr" for n in range(count)]
+def parts(stem, count, ending="exr"):
+    return [f"{stem}.{n}of{count}.{ending}" for n in range(count)]
 
 
 def trace(output, *options, shard=None, env=None):
@@ -306,5 +307,76 @@ with open(path("again_004.png"), "wb") as file:
     file.write(b"something else")
 check(does(*SHARDS[1]).stdout.count("skipped") == 2 and same("film_004.png", "again_004.png"), "a changed picture is made again")
 check(does(*SHARDS[1], "--seed", "4").stdout.count("skipped") == 0, "another scene is made again")
+
+# --- the level set of a print -----------------------------------------------------------------------------------------------
+def convert(output, *options, shard=None, env=None):
+    return does(GCODE2VDB, TILE, "-o", output, *options, *(["--shard", shard] if shard else []), env=env)
+
+
+VOXEL = ["--voxel-size", "0.1", "--quiet"]
+for what, counts, options in (
+        ("a print", (1, 2, 7, 64), []),
+        ("`--precision half --compression zip`", (3,), ["--precision", "half", "--compression", "zip"]),
+        ("`--up y --origin center --beads settled`", (3,), ["--up", "y", "--origin", "center", "--beads", "settled"])):
+    convert("whole.vdb", *VOXEL, *options)
+    for count in counts:
+        for index in range(count):
+            convert("part.vdb", *VOXEL, *options, *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
+        check(not os.path.exists(path("part.vdb")), "a shard writes its part alone")
+        does(VDBMERGE, "part.vdb", *reversed(parts("part", count, "vdb")), "--quiet")
+        check(same("part.vdb", "whole.vdb"), f"| {what} | part.vdb | {count} | the same bytes |")
+        for name in ["part.vdb", *parts("part", count, "vdb")]:
+            os.remove(path(name))
+
+convert("whole.vdb", *VOXEL)
+for index in range(3):
+    convert("part.vdb", *VOXEL, shard=f"{index}/3")
+convert("other.vdb", *VOXEL, "--layers", "1:3", shard="1/3")
+P = parts("part", 3, "vdb")
+refused(3, ["shard 1 of 3 is missing; make it with --shard 1/3"], VDBMERGE, "no.vdb", P[0], P[2])
+refused(3, ["part.0of3.vdb: is shard 0 of 3", "name each once"], VDBMERGE, "no.vdb", *P, P[0])
+refused(3, ["other.1of3.vdb: is of another scene", "shard 1 of 3 is missing"], VDBMERGE, "no.vdb", P[0], "other.1of3.vdb", P[2])
+refused(3, ["whole.vdb: is no part of a print"], VDBMERGE, "no.vdb", *P, "whole.vdb")
+refused(3, ["is no OpenEXR"], VDBMERGE, "no.png", *P)
+refused(2, ["is an input"], VDBMERGE, P[0], *P)
+with open(path(P[1]), "rb") as file:
+    part = file.read()
+with open(path("cut.vdb"), "wb") as file:
+    file.write(part[: len(part) // 2])
+with open(path("leaf.vdb"), "wb") as file:
+    file.write(part[:-5] + bytes([part[-5] ^ 1]) + part[-4:])
+refused(3, ["cut.vdb: is"], VDBMERGE, "no.vdb", P[0], "cut.vdb", P[2])
+refused(3, ["leaf.vdb: is damaged"], VDBMERGE, "no.vdb", P[0], "leaf.vdb", P[2])
+
+SHARE = [GCODE2VDB, TILE, *VOXEL[:-1], "-o", "part.vdb", "--shard", "1/3", "--resume"]
+check("skipped" in does(*SHARE).stdout and "skipped" in does(*SHARE, "--threads", "1").stdout, "a part that is there is skipped")
+for bad in ("cut.vdb", "leaf.vdb", "other.1of3.vdb", P[0]):
+    shutil.copy(path(bad), path(P[1]))
+    check("skipped" not in does(*SHARE).stdout, f"{bad} in its place is made again")
+    with open(path(P[1]), "rb") as file:
+        check(file.read() == part, "  to the same bytes")
+
+for fragment, *options in (("is a mesh", "-o", "no.stl"), ("standard output", "-o", "-"), ("--grids", "--grids", "layer"),
+                           ("--snapshots", "--snapshots", "50%"), ("--interior cull", "--interior", "cull"),
+                           ("--interior-distance", "--interior-distance"), ("--forecast", "--forecast"), ("--usda", "--usda"),
+                           ("--dump-toolpath", "--dump-toolpath", "no.csv")):
+    place = [] if "-o" in options else ["-o", "no.vdb"]
+    refused(2, ["--shard: ", fragment], GCODE2VDB, TILE, *VOXEL, *place, *options, "--shard", "0/2")
+refused(2, ["must be from 0 to 2"], GCODE2VDB, TILE, *VOXEL, "-o", "no.vdb", "--shard", "3/3")
+refused(2, ["--resume requires --shard"], GCODE2VDB, TILE, *VOXEL, "-o", "no.vdb", "--resume")
+
+kills = 0
+for task in range(4, 7):
+    array = dict(SLURM, SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_MIN="4", SLURM_ARRAY_TASK_MAX="6", SLURM_ARRAY_TASK_COUNT="3",
+                 STRATUM_BIN=BIN)
+    command = ["bash", os.path.join(SCRIPTS, "print.sh"), TILE, *VOXEL[:-1], "-o", "killed.vdb"]
+    for delay in (0.02, 0.05, 0.1):
+        process = subprocess.Popen(command, cwd=FOLDER, env=array)
+        time.sleep(delay)
+        process.send_signal(signal.SIGKILL)
+        kills += process.wait() == -signal.SIGKILL
+    does(*command, env=array)
+does(VDBMERGE, "killed.vdb", *parts("killed", 3, "vdb"), "--quiet")
+check(kills > 0 and same("killed.vdb", "whole.vdb"), f"print.sh, tasks 4 to 6 of an array, {kills} kills: the same level set")
 
 shutil.rmtree(FOLDER)

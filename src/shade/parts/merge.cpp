@@ -1,13 +1,12 @@
 #include "shade/parts/merge.h"
 
 #include "base/error.h"
+#include "base/part_set.h"
 #include "shade/parts/part_sums.h"
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,52 +14,18 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::size_t kMostNamed = 20;  // of problems, so that a message stays readable
-
-[[noreturn]] void refuse(std::vector<std::string> problems) {
-    const std::size_t more = problems.size() - std::min(problems.size(), kMostNamed);
-    problems.resize(problems.size() - more);
-    if (more > 0) problems.push_back(fmt::format("and {} more", more));
-    throw InputError(fmt::format("{}\nnothing is written", fmt::join(problems, "\n")));
-}
-
 /// By number, all of one picture, each once.
 std::vector<PartFile> readParts(const std::vector<std::filesystem::path>& paths) {
-    std::vector<std::string> problems;
-    std::vector<PartFile> read;
-    for (const std::filesystem::path& path : paths) {
-        try {
-            read.push_back({path, readPart(path)});
-        } catch (const InputError& error) {
-            problems.emplace_back(error.what());
-        }
-    }
-    if (read.empty()) refuse(problems);
-    const PartFile& first = read.front();
-    std::vector<const PartFile*> places(static_cast<std::size_t>(first.part.whole.shards));
-    for (const PartFile& found : read) {
-        const std::string difference = differenceOf(found.part, first.part);
-        if (!difference.empty()) {
-            problems.push_back(
-                fmt::format("{}: is {}, compared with {}", found.path.string(), difference, first.path.string()));
-            continue;
-        }
-        const PartFile*& place = places[static_cast<std::size_t>(found.part.index)];
-        if (place)
-            problems.push_back(fmt::format("{}: is shard {} of {}, as {} is; name each once", found.path.string(),
-                                           found.part.index, places.size(), place->path.string()));
-        else
-            place = &found;
-    }
-    for (std::size_t n = 0; n < places.size(); ++n)
-        if (!places[n])
-            problems.push_back(fmt::format("shard {} of {} is missing; trace it with --shard {}/{}", n, places.size(),
-                                           n, places.size()));
-    if (!problems.empty()) refuse(problems);
-    std::vector<PartFile> sorted;
-    sorted.reserve(places.size());
-    for (const PartFile* place : places) sorted.push_back(*place);
-    return sorted;
+    return wholeSet<PartFile>(
+        paths,
+        [](const std::filesystem::path& path) {
+            return PartFile{path, readPart(path)};
+        },
+        [](const PartFile& file) {
+            return Shard{file.part.index, file.part.whole.shards};
+        },
+        [](const PartFile& file, const PartFile& first) { return differenceOf(file.part, first.part); },
+        "trace it with");
 }
 
 Film assemble(const std::vector<PartFile>& parts) {
@@ -69,7 +34,7 @@ Film assemble(const std::vector<PartFile>& parts) {
     addLayers(any, film);
     if (any.whole.spp > 0) {
         const std::vector<std::string> problems = addUp(parts, film);
-        if (!problems.empty()) refuse(problems);
+        if (!problems.empty()) refuseParts(problems);
         return film;
     }
     std::vector<std::string> problems;
@@ -80,7 +45,7 @@ Film assemble(const std::vector<PartFile>& parts) {
             problems.emplace_back(error.what());
         }
     }
-    if (!problems.empty()) refuse(problems);
+    if (!problems.empty()) refuseParts(problems);
     return film;
 }
 

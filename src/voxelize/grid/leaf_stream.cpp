@@ -3,6 +3,7 @@
 #include "base/parallel_for.h"
 #include "voxelize/grid/cell_volume.h"
 #include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/leaf_blocks.h"
 #include "voxelize/grid/progress_meter.h"
 
 #include <algorithm>
@@ -14,64 +15,28 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::size_t kBoundGrain = 16;              // columns
-constexpr int kSlabLeaves = kSlabVoxels / kLeafDim;  // along each axis of an upper node
-constexpr int kBlockLeaves = kBlockVoxels / kLeafDim;
-
-int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
-
-// Columns of the bins that lie in one block; also of the blocks that lie in one upper node.
-struct Rectangle {
-    int first_i, last_i, first_j, last_j;  // inclusive, in leaves from index 0
-};
-
-Rectangle rectangleOf(const PlanBins& bins) {
-    const int i = bins.originI(0) / kLeafDim;
-    const int j = bins.originJ(0) / kLeafDim;
-    return {i, i + static_cast<int>(bins.columnsI()) - 1, j, j + static_cast<int>(bins.columnsJ()) - 1};
-}
-
-// The cells of a lattice of this edge that a rectangle meets, clipped to it: visit(x, y, clipped), by x, then y.
-template <typename Visit>
-void forEachCell(const Rectangle& all, int edge, const Visit& visit) {
-    for (int x = floorDivide(all.first_i, edge); x <= floorDivide(all.last_i, edge); ++x)
-        for (int y = floorDivide(all.first_j, edge); y <= floorDivide(all.last_j, edge); ++y)
-            visit(x, y,
-                  Rectangle{std::max(all.first_i, x * edge), std::min(all.last_i, (x + 1) * edge - 1),
-                            std::max(all.first_j, y * edge), std::min(all.last_j, (y + 1) * edge - 1)});
-}
-
-std::size_t cellsMet(int first, int last, int edge) {
-    return static_cast<std::size_t>(floorDivide(last, edge) - floorDivide(first, edge) + 1);
-}
+constexpr std::size_t kBoundGrain = 16;  // columns
 
 // Makes the leaves of one block after the other.
 class Blocks {
 public:
     Blocks(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const LeafBounds& bounds,
-           LeafReceiver& receiver, bool measure, const std::function<void(double)>& progress)
+           LeafReceiver& receiver, bool measure, std::size_t entries, const std::function<void(double)>& progress)
         : bins_(bins),
           columns_(columns),
           end_(end),
           bounds_(bounds),
           receiver_(receiver),
           measure_(measure),
-          all_(rectangleOf(bins)),
-          meter_(std::max<std::size_t>(bins.entryCount(), 1), progress) {}
+          meter_(std::max<std::size_t>(entries, 1), progress) {}
 
-    // The part of a pile of leaf columns in [first_k, last_k].
-    void run(const Rectangle& block, int x, int y, int first_k, int last_k) {
+    void run(const LeafBlock& block) {
         std::vector<Column> columns;
-        for (int i = block.first_i; i <= block.last_i; ++i)
-            for (int j = block.first_j; j <= block.last_j; ++j) {
-                const std::size_t bin = static_cast<std::size_t>(j - all_.first_j) * bins_.columnsI() +
-                                        static_cast<std::size_t>(i - all_.first_i);
-                if (bounds_.columns[bin].first <= last_k && bounds_.columns[bin].second >= first_k)
-                    columns.push_back({bin, static_cast<std::size_t>((i - x * kBlockLeaves) * kBlockLeaves +
-                                                                     (j - y * kBlockLeaves))});
-            }
+        forEachColumnOf(block, bins_, [&](std::size_t bin, std::size_t place) {
+            if (leavesIn(block, bounds_.columns[bin]) > 0) columns.push_back({bin, place});
+        });
         if (columns.empty()) return;
-        receiver_.open({x * kBlockVoxels, y * kBlockVoxels, floorDivide(first_k, kSlabLeaves) * kSlabVoxels});
+        receiver_.open(block.origin());
         // Output of the block before is one more item.
         parallelFor(columns.size() + 1, 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t n = first; n < last; ++n) {
@@ -80,7 +45,7 @@ public:
                     continue;
                 }
                 Column& column = columns[n - 1];
-                make(column, first_k, last_k);
+                make(column, block.first_k, block.last_k);
             }
         });
         receiver_.close();
@@ -156,7 +121,6 @@ private:
     const LeafBounds& bounds_;
     LeafReceiver& receiver_;
     const bool measure_;
-    const Rectangle all_;
     ProgressMeter meter_;
     LeafStreamReport report_;
     std::size_t inside_leaves_ = 0;
@@ -189,7 +153,7 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns) {
         all.first_k = std::min(all.first_k, column.first);
         all.last_k = std::max(all.last_k, column.second);
     }
-    const Rectangle plan = rectangleOf(bins);
+    const LeafRectangle plan = rectangleOf(bins);
     const auto nodes = [&](int edge) {
         return cellsMet(plan.first_i, plan.last_i, edge) * cellsMet(plan.first_j, plan.last_j, edge) *
                cellsMet(all.first_k, all.last_k, edge);
@@ -201,18 +165,19 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns) {
 
 LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress) {
+                              const std::function<void(double)>& progress, const BlockRange& share) {
     if (bounds.leaves == 0) return {};
-    Blocks blocks(bins, columns, end, bounds, receiver, measure, progress);
-    const int first_slab = floorDivide(bounds.first_k, kSlabLeaves);
-    const int last_slab = floorDivide(bounds.last_k, kSlabLeaves);
-    forEachCell(rectangleOf(bins), kSlabLeaves, [&](int, int, const Rectangle& upper) {
-        for (int slab = first_slab; slab <= last_slab; ++slab) {
-            const int first_k = std::max(bounds.first_k, slab * kSlabLeaves);
-            const int last_k = std::min(bounds.last_k, (slab + 1) * kSlabLeaves - 1);
-            forEachCell(upper, kBlockLeaves,
-                        [&](int x, int y, const Rectangle& block) { blocks.run(block, x, y, first_k, last_k); });
-        }
+    std::size_t entries = 0;
+    forEachBlock(bins, bounds, [&](std::size_t number, const LeafBlock& block) {
+        if (!share.has(number)) return;
+        forEachColumnOf(block, bins, [&](std::size_t bin, std::size_t) {
+            const LeafRange& column = bounds.columns[bin];
+            if (leavesIn(block, column) > 0 && column.second <= block.last_k) entries += bins[bin].size();
+        });
+    });
+    Blocks blocks(bins, columns, end, bounds, receiver, measure, entries, progress);
+    forEachBlock(bins, bounds, [&](std::size_t number, const LeafBlock& block) {
+        if (share.has(number)) blocks.run(block);
     });
     return blocks.report();
 }

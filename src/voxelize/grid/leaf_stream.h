@@ -12,15 +12,26 @@
 
 namespace stratum::voxelize {
 
-/// What a print has at most, from z extents alone.
-struct LeafBounds {
+/// What a tree of OpenVDB has at most.
+struct NodeBounds {
     std::size_t leaves = 0;
-    std::size_t lower_nodes = 0, upper_nodes = 0;  ///< of OpenVDB's tree
-    int first_k = 0, last_k = -1;                  ///< in leaves from index 0
-    std::vector<LeafRange> columns;                ///< the same by column of the bins; empty ones have first > second
+    std::size_t lower_nodes = 0, upper_nodes = 0;
+    bool operator==(const NodeBounds&) const = default;
+};
+
+/// What a print has at most, from z extents alone.
+struct LeafBounds : NodeBounds {
+    int first_k = 0, last_k = -1;    ///< in leaves from index 0
+    std::vector<LeafRange> columns;  ///< the same by column of the bins; empty ones have first > second
 };
 /// Parallel.
 LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns);
+
+/// Blocks of LeafReceiver that lie one behind the other, by their number among all of the print's rectangle.
+struct BlockRange {
+    std::size_t first = 0, end = static_cast<std::size_t>(-1);
+    bool has(std::size_t number) const { return number >= first && number < end; }
+};
 
 struct LeafStreamReport {
     std::size_t evaluated = 0;  ///< leaf positions
@@ -31,9 +42,10 @@ struct LeafStreamReport {
 
 /// Makes all leaves of the beads with an index in the toolpath below `end`, with the bits of Voxelizer::printUntil(),
 /// and gives them to `receiver`. Columns that reach into more than one of OpenVDB's upper nodes are opened once for
-/// each. Parallel; calls and their order do not depend on the number of threads.
+/// each. `share`: only the leaves of these blocks. Parallel; calls and their order do not depend on the number of
+/// threads.
 LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress);
+                              const std::function<void(double)>& progress, const BlockRange& share = {});
 
 }  // namespace stratum::voxelize

@@ -207,14 +207,19 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
 
 LeafBounds Voxelizer::leafBounds() const { return boundLeaves(state_->bins, state_->columnSource()); }
 
-LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure) {
+LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
+                                   const BlockRange& share) {
     const auto start = Clock::now();
-    const LeafStreamReport streamed =
-        streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure, state_->options.progress);
+    const LeafStreamReport streamed = streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure,
+                                                   state_->options.progress, share);
     VoxelizeReport& report = state_->report;
     report.leaf_positions = report.leaves_evaluated = streamed.evaluated;
     report.build_seconds = secondsSince(start);
     return streamed;
+}
+
+LeafShare Voxelizer::shareOf(const LeafBounds& bounds, const Shard& shard) const {
+    return voxelize::shareOf(state_->bins, bounds, shard);
 }
 
 openvdb::FloatGrid::Ptr Voxelizer::emptyGrid() const { return state_->emptyGrid(); }

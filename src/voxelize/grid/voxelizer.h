@@ -6,6 +6,7 @@
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
 #include "voxelize/grid/deposit_balance.h"
+#include "voxelize/grid/leaf_share.h"
 #include "voxelize/grid/leaf_stream.h"
 
 #include <openvdb/openvdb.h>
@@ -81,8 +82,11 @@ public:
     /// The leaves of the selected beads before index `end` of the toolpath, one after the other instead of as a grid;
     /// only with Interior::keep. The values and masks are those of printUntil() of a new Voxelizer. `bounds`:
     /// leafBounds().
-    LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure);
+    LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
+                            const BlockRange& share = {});
     LeafBounds leafBounds() const;
+    /// The share of one of several processes, for stream().
+    LeafShare shareOf(const LeafBounds& bounds, const Shard& shard) const;
     /// Name, class, transform and background of the grid, without a voxel.
     openvdb::FloatGrid::Ptr emptyGrid() const;
 

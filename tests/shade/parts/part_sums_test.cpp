@@ -36,7 +36,7 @@ shade::RenderResult traced(const shade::RenderOptions& options) {
     return shade::render(print, shade::makeScene({}, print, options.width, options.height), options);
 }
 
-fs::path writeShare(const test::ScratchFolder& folder, shade::RenderOptions options, const shade::Shard& shard) {
+fs::path writeShare(const test::ScratchFolder& folder, shade::RenderOptions options, const Shard& shard) {
     options.samples = shade::samplesOf(options.spp, shard);
     const shade::RenderResult result = traced(options);
     shade::Part part;
@@ -46,7 +46,7 @@ fs::path writeShare(const test::ScratchFolder& folder, shade::RenderOptions opti
     part.samples = result.samples;
     part.pixels = result.pixels;
     part.metadata = {{"Software", "test"}, {shade::kMeanSamples, std::to_string(result.mean_spp)}};
-    const fs::path path = shade::shardName(folder / "p.exr", shard);
+    const fs::path path = shardName(folder / "p.exr", shard);
     shade::PictureFile file(path);
     shade::writePart(file, result.film, result.sums, part);
     return path;

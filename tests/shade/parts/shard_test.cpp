@@ -55,29 +55,6 @@ TEST(Shard, PiecesAreBalanced) {
     for (const PixelBox& piece : shade::piecesOf(region, 15)) EXPECT_EQ(piece.width(), 1280);
 }
 
-TEST(Shard, ReadsItsShare) {
-    EXPECT_EQ(shade::parseShard("0/1"), (shade::Shard{0, 1}));
-    EXPECT_EQ(shade::parseShard("7/64"), (shade::Shard{7, 64}));
-    for (const char* bad : {"", "1", "1/", "/1", "1/1", "-1/2", "0/0", "0/-1", "0x/2", "0/2 ", "0/1/2", "0/9999999"})
-        EXPECT_THROW(shade::parseShard(bad), UsageError) << bad;
-}
-
-TEST(Shard, IsATaskOfAnArray) {
-    EXPECT_EQ(shade::shardOf({"5", "4", "7", "4"}), (shade::Shard{1, 4}));
-    EXPECT_EQ(shade::shardOf({"0", "0", "", "3"}), (shade::Shard{0, 3}));
-    EXPECT_THROW(shade::shardOf({"", "", "", ""}), UsageError);
-    EXPECT_THROW(shade::shardOf({"6", "0", "6", "4"}), UsageError);  // --array=0-6:2
-    EXPECT_THROW(shade::shardOf({"2", "0", "6", "4"}), UsageError);
-    EXPECT_THROW(shade::shardOf({"1", "2", "3", "2"}), UsageError);
-    EXPECT_THROW(shade::shardOf({"0", "0", "0", "0"}), UsageError);
-}
-
-TEST(Shard, NamesItsFile) {
-    EXPECT_EQ(shade::shardName("a/part.png", {2, 7}, ".exr"), "a/part.2of7.exr");
-    EXPECT_EQ(shade::shardName("part.state", {0, 1}), "part.0of1.state");
-    EXPECT_EQ(shade::shardName("state", {0, 1}), "state.0of1");
-}
-
 TEST(Shard, ChunksAreInOrderAndLeaveNothingOut) {
     for (std::size_t count = 1; count < 40; ++count)
         for (int shards = 1; shards <= static_cast<int>(count); ++shards) {

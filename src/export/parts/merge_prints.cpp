@@ -1,0 +1,82 @@
+#include "export/parts/merge_prints.h"
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "base/part_set.h"
+#include "export/parts/checksum.h"
+#include "export/parts/part_file.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace stratum::exporter {
+namespace {
+
+constexpr std::size_t kCopied = std::size_t{4} << 20;  // at once
+
+// Why two parts can't be of one print; empty if they can.
+std::string differenceOf(const PartFile& one, const PartFile& other) {
+    if (one.part.version != other.part.version)
+        return fmt::format("made by version {}, not {}", one.part.version, other.part.version);
+    if (one.part.shard.count != other.part.shard.count)
+        return fmt::format("one of {} shards, not of {}", one.part.shard.count, other.part.shard.count);
+    if (one.part.scene != other.part.scene) return "of another scene: the input files or the options differ";
+    const auto voxel = [](const PartFile& file) { return file.grid->metaValue<double>("voxel_size_mm"); };
+    if (voxel(one) != voxel(other))
+        return fmt::format(
+            "of voxels of {:g} mm, not of {:g} mm; give all --voxel-size, as the default minds free memory", voxel(one),
+            voxel(other));
+    if (static_cast<const openvdb::MetaMap&>(*one.grid) != static_cast<const openvdb::MetaMap&>(*other.grid) ||
+        one.grid->transform() != other.grid->transform() || one.grid->background() != other.grid->background() ||
+        one.format.compression != other.format.compression || one.part.print != other.part.print)
+        return "of another print of the same scene";
+    return {};
+}
+
+void appendPart(const PartFile& part, LevelSetOutput& output) {
+    std::size_t leaf = 0;
+    for (LowerNode& node : nodesOf(part)) {
+        for (std::size_t n = 0; n < node.leaves.size(); ++n) output.add(leafOf(part, leaf++));
+        output.add(std::move(node));
+    }
+    if (leaf > 0) output.count(part.statistics.active_voxels, part.statistics.active_box);
+    const MappedFile mapped(part.path, Access::sequential);
+    std::string_view left = mapped.bytes().substr(part.places.leaves);
+    std::uint32_t checksum = 0;
+    while (!left.empty()) {
+        const std::string_view bytes = left.substr(0, kCopied);
+        left.remove_prefix(bytes.size());
+        checksum = checksumOf(bytes, checksum);
+        iovec piece{const_cast<char*>(bytes.data()), bytes.size()};  // pwritev() only reads
+        output.append({&piece, 1});
+    }
+    if (checksum != part.part.checksum) throw InputError(damageOf(part.path, "the checksum of its leaves is wrong"));
+}
+
+}  // namespace
+
+MergedPrint mergePrint(const std::filesystem::path& path, const std::vector<std::filesystem::path>& paths) {
+    const auto parts = wholeSet<PartFile>(
+        paths, readPartFile, [](const PartFile& file) { return file.part.shard; }, differenceOf, "make it with");
+    const PartFile& any = parts.front();
+    LevelSetOutput output(any.grid, path, any.format.compression, any.part.print);
+    std::vector<std::string> problems;
+    for (const PartFile& part : parts) {
+        try {
+            appendPart(part, output);
+        } catch (const OutputError&) {
+            throw;
+        } catch (const InputError& error) {
+            problems.emplace_back(error.what());
+        } catch (const openvdb::Exception& error) {
+            problems.push_back(damageOf(part.path, error.what()));
+        }
+    }
+    if (!problems.empty()) refuseParts(std::move(problems));
+    return {output.finish(), static_cast<int>(parts.size())};
+}
+
+}  // namespace stratum::exporter
