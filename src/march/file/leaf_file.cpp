@@ -76,6 +76,9 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
         const auto first = static_cast<std::uint64_t>(grid->leaves);
         const auto end = static_cast<std::uint64_t>(grid->end);
         if (end > file->file_.bytes().size() || first > end) cursor.fail("places of other leaves");
+        // Each leaf has two masks in the file: a damaged list can't ask for more memory than that.
+        file->leaves_.reserve(static_cast<std::size_t>(
+            std::min<std::uint64_t>(grid->listed.value_or(0), file->file_.bytes().size() / (2 * kLeafMaskBytes))));
         TreeReader reader(*file, cursor);
         walkVdbTree(cursor, file->format_, reader);
         if (cursor.offset() != first) cursor.fail("places of other leaves");
@@ -98,9 +101,9 @@ VdbCursor LeafFile::cursorAt(std::uint64_t offset) const {
 
 void LeafFile::placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid,
                            const std::vector<std::string_view>& masks) {
-    std::optional<LeafPlaces> places = listedLeafPlaces(grid, format_, first, masks);
+    VdbCursor cursor = cursorAt(first);
+    std::optional<LeafPlaces> places = listedLeafPlaces(cursor, grid, format_, masks);
     if (!places) {
-        VdbCursor cursor = cursorAt(first);
         places = walkLeafPlaces(cursor, format_, masks);
         if (cursor.offset() != end) cursor.fail("places of other leaves");
     }

@@ -15,9 +15,9 @@ using LeafPlaces = std::vector<std::uint64_t>;
 
 /// By the sizes that the file lists (io::DelayedLoadMetadata), without touching the leaves. Nothing if it has no such
 /// list, or one that does not end where the grid ends.
-/// @param first  offset of the first leaf
+/// @param cursor  at the first leaf
 /// @param masks  of the leaves below each lower node, as VdbTreeVisitor has them
-std::optional<LeafPlaces> listedLeafPlaces(const VdbGrid& grid, const VdbValueFormat& format, std::uint64_t first,
+std::optional<LeafPlaces> listedLeafPlaces(const VdbCursor& cursor, const VdbGrid& grid, const VdbValueFormat& format,
                                            const std::vector<std::string_view>& masks);
 
 /// By walking through all leaves. Throws InputError unless they are whole and have the masks of the upper levels; what

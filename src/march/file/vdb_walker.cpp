@@ -29,12 +29,9 @@ void requireBlosc(const VdbCursor& cursor, std::string_view packed, std::uint64_
 /// The list of the leaves' sizes, io::DelayedLoadMetadata::readValue(). Returns how many they are.
 std::uint64_t checkLeafSizes(VdbCursor value, std::uint32_t compression) {
     const std::uint64_t count = value.read<std::uint32_t>();
-    // OpenVDB's compression::bloscCompress() fills up short arrays with zeros and leaves the shortest as they are.
-    constexpr std::uint64_t kShortest = 48;
-    constexpr std::uint64_t kFilledUp = 128;
     const auto checkArray = [&](std::uint32_t packed, std::uint64_t length) {
         if (packed > 0)
-            requireBlosc(value, value.take(packed), length > kShortest && length < kFilledUp ? kFilledUp : length);
+            requireBlosc(value, value.take(packed), listedArrayBytes(length));
         else
             (void)value.take(length);
     };
@@ -173,6 +170,12 @@ void VdbCursor::fail(std::string_view why) const {
 void VdbCursor::moveTo(std::int64_t offset) {
     if (offset < 0 || static_cast<std::uint64_t>(offset) > bytes_.size()) fail("a place beyond its end");
     offset_ = static_cast<std::size_t>(offset);
+}
+
+std::uint64_t listedArrayBytes(std::uint64_t length) {
+    constexpr std::uint64_t kShortest = 48;
+    constexpr std::uint64_t kFilledUp = 128;
+    return length > kShortest && length < kFilledUp ? kFilledUp : length;
 }
 
 VdbHeads walkVdbHeads(VdbCursor& cursor) {

@@ -71,6 +71,10 @@ struct VdbHeads {
 /// is in the file and fits together.
 VdbHeads walkVdbHeads(VdbCursor& cursor);
 
+/// What a packed array of VdbGrid::sizes unpacks to, of so many bytes: OpenVDB's compression::bloscCompress() fills up
+/// short arrays with zeros and leaves the shortest as they are.
+std::uint64_t listedArrayBytes(std::uint64_t length);
+
 /// As OpenVDB reads it.
 openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid);
 

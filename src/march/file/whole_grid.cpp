@@ -171,12 +171,12 @@ private:
     }
 
     void readLeaves(std::uint64_t first) {
-        const auto listed = listedLeafPlaces(in_file_, format_, first, levels_.masks);
+        VdbCursor cursor = cursorAt(first);
+        const auto listed = listedLeafPlaces(cursor, in_file_, format_, levels_.masks);
         std::exception_ptr failure;
         if (listed) failure = readLeavesAt(*listed);
         if (listed && !failure) return;
         // Without a list, or with one of other leaves: OpenVDB reads such a file one leaf after the other, too.
-        VdbCursor cursor = cursorAt(first);
         const LeafPlaces walked = walkLeafPlaces(cursor, format_, levels_.masks);
         if (!listed || walked != *listed) failure = readLeavesAt(walked);
         if (failure) std::rethrow_exception(failure);
