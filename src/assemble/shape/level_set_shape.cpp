@@ -22,22 +22,22 @@
 namespace stratum::assemble {
 namespace {
 
-/// A level set before it is laid out: leaf by leaf in its file, or whole in memory.
+/// A level set before it is laid out: leaf by leaf in its file, whole in memory, or both.
 struct LevelSet {
     std::shared_ptr<const march::LeafFile> file;
-    openvdb::FloatGrid::ConstPtr grid;  // null if there is `file`
+    openvdb::FloatGrid::ConstPtr grid;  // null if `file` is enough
 
     const openvdb::FloatGrid& head() const { return file ? file->head() : *grid; }
     std::uint64_t activeVoxelCount() const { return file ? file->activeVoxelCount() : grid->activeVoxelCount(); }
 };
 
-// Bricks are laid out lazily from the file, unless the whole grid is needed.
+// Bricks are laid out lazily from the file, where it can be read so: also beside the grid that smooth normals look
+// values up in, because rays come to a part of the bricks only.
 LevelSet open(const ObjectOptions& object, const TracingOptions& options) {
     const Step step(options.events, "loading");
     LevelSet level_set;
-    if (marchesBricks(options.march) && !options.smooth_normals)
-        level_set.file = march::openLevelSet(object.vdb, object.grid);
-    if (!level_set.file) level_set.grid = march::readLevelSet(object.vdb, object.grid);
+    if (marchesBricks(options.march)) level_set.file = march::openLevelSet(object.vdb, object.grid);
+    if (!level_set.file || options.smooth_normals) level_set.grid = march::readLevelSet(object.vdb, object.grid);
     return level_set;
 }
 
@@ -47,7 +47,7 @@ void describe(const ObjectOptions& object, const LevelSet& level_set, Shape& sha
     shape.report = {{"path", object.vdb},
                     {"grid", head.getName()},
                     {"active_voxels", active},
-                    {"bytes", level_set.file ? 0 : level_set.grid->memUsage()}};
+                    {"bytes", level_set.grid ? level_set.grid->memUsage() : 0}};
     shape.line = fmt::format("{}: {} active voxels of {:g} {}", object.vdb, humanCount(static_cast<double>(active)),
                              head.voxelSize()[0], unitOf(head));
     shape.y_up = upOf(head) == "y";

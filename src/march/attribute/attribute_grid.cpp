@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "march/file/vdb_check.h"
+#include "march/file/whole_grid.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -100,10 +101,7 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
         for (auto it = file.beginName(); it != file.endName(); ++it) seen += (seen.empty() ? "" : ", ") + it.gridName();
         if (file.hasGrid(name)) {
             grid = file.readGridMetadata(name);
-            if (visit(*grid, [](const auto&) {})) {
-                checkVdb(mapped.bytes(), VdbDepth::leaves, name, path.string());
-                grid = file.readGrid(name);
-            }
+            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(file, name, *grid, mapped.bytes());
         }
     } catch (const InputError&) {
         throw;

@@ -1,18 +1,15 @@
 #include "march/file/leaf_file.h"
 
 #include "base/error.h"
+#include "march/file/leaf_places.h"
+#include "march/file/vdb_values.h"
 
-#include <blosc.h>
 #include <fmt/format.h>
-#include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstring>
-#include <sstream>
-#include <type_traits>
+#include <optional>
 
 namespace stratum::march {
 namespace {
@@ -23,21 +20,13 @@ float floatOf(std::string_view bytes) {
     return value;
 }
 
-openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid) {
-    std::istringstream in{std::string(grid.transform)};
-    in.exceptions(std::ios::badbit | std::ios::failbit);
-    openvdb::io::setVersion(in, {}, heads.format);
-    auto transform = openvdb::math::Transform::createLinearTransform();
-    transform->read(in);
-    return transform;
-}
-
 }  // namespace
 
 // Takes from the upper levels what samples need.
 class LeafFile::TreeReader final : public VdbTreeVisitor {
 public:
-    explicit TreeReader(LeafFile& file) : file_(file) {}
+    TreeReader(LeafFile& file, const VdbCursor& cursor) : file_(file), cursor_(cursor) {}
+    const std::vector<std::string_view>& masks() const { return masks_; }
 
 private:
     void background(std::string_view value) override {
@@ -49,19 +38,22 @@ private:
         if (active) file_.active_tiles_.expand(openvdb::CoordBBox::createCube(origin, kEdge));
     }
     void upper(const VdbNode& node) override { takeTiles(node, file_.upper_[node.origin]); }
-    void lower(const VdbNode& node, std::string_view /*leaf_masks*/) override {
+    void lower(const VdbNode& node, std::string_view leaf_masks) override {
+        masks_.push_back(leaf_masks);
         takeTiles(node, file_.lower_[node.origin]);
         forEachOn(node.children, [&](std::size_t leaf) { file_.leaves_.push_back({node.originOf(leaf), 0}); });
     }
     void takeTiles(const VdbNode& node, std::vector<float>& values) {
         values.resize(node.active.size() * 8);
-        file_.expand(node.values, node.active, values.data());
+        unpackVdbValues(cursor_, node.values, file_.format_, node.active, file_.background(), values.data());
         forEachOn(node.active, [&](std::size_t tile) {
             file_.active_tiles_.expand(openvdb::CoordBBox::createCube(node.originOf(tile), 1 << node.child_log2));
         });
     }
 
     LeafFile& file_;
+    const VdbCursor& cursor_;
+    std::vector<std::string_view> masks_;  // of the leaves below each lower node
 };
 
 std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path, const std::string& name,
@@ -73,22 +65,24 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
         const auto grid = std::find_if(heads.grids.begin(), heads.grids.end(), [&name](const VdbGrid& g) {
             return openvdb::io::GridDescriptor::stripSuffix(g.name) == name;
         });
-        if (grid == heads.grids.end() || grid->type != openvdb::FloatGrid::gridType() || !grid->parent.empty() ||
-            grid->half || (grid->compression & kVdbZip) != 0)
+        if (grid == heads.grids.end() || grid->type != openvdb::FloatGrid::gridType() || !grid->parent.empty())
             return nullptr;
         file->head_ = openvdb::FloatGrid::create();
         file->head_->setTransform(transformOf(heads, *grid));
         file->head_->insertMeta(metadata);
         file->name_ = file->head_->getName();
-        file->format_.compression = grid->compression;
+        file->format_ = *valueFormatOf(*grid);
         VdbCursor cursor = file->cursorAt(grid->tree);
         const auto first = static_cast<std::uint64_t>(grid->leaves);
         const auto end = static_cast<std::uint64_t>(grid->end);
         if (end > file->file_.bytes().size() || first > end) cursor.fail("places of other leaves");
-        TreeReader reader(*file);
+        // Each leaf has two masks in the file: a damaged list can't ask for more memory than that.
+        file->leaves_.reserve(static_cast<std::size_t>(
+            std::min<std::uint64_t>(grid->listed.value_or(0), file->file_.bytes().size() / (2 * kLeafMaskBytes))));
+        TreeReader reader(*file, cursor);
         walkVdbTree(cursor, file->format_, reader);
         if (cursor.offset() != first) cursor.fail("places of other leaves");
-        file->placeLeaves(first, end, *grid);
+        file->placeLeaves(first, end, *grid, reader.masks());
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -105,71 +99,22 @@ VdbCursor LeafFile::cursorAt(std::uint64_t offset) const {
     return cursor;
 }
 
-// io::readCompressedValues(), of what was walked through.
-void LeafFile::expand(const VdbValues& values, std::string_view active, float* out) const {
-    const std::size_t count = active.size() * 8;
-    const float background = head_->background();
-    float inactive[2] = {values.kind == VdbValues::kBackground ? background : -background, background};
-    std::memcpy(inactive, values.inactive.data(), values.inactive.size());
-    std::array<float, LeafSource::kLeafSamples> near;
-    std::vector<float> far;
-    float* to = out;
-    if (values.stored != count) {
-        if (values.stored > near.size()) far.resize(values.stored);
-        to = far.empty() ? near.data() : far.data();
-    }
-    if (!values.packed)
-        std::memcpy(to, values.data.data(), values.data.size());
-    else if (const auto length = static_cast<std::int64_t>(values.length);
-             blosc_decompress_ctx(values.data.data(), to, values.length, 1) != length)
-        cursorAt(static_cast<std::uint64_t>(values.data.data() - file_.bytes().data())).fail("packed data");
-    if (values.stored == count) return;
-    const float* next = to;
-    for (std::size_t word = 0; word < count / 64; ++word) {
-        const std::uint64_t mask = wordOf(active, word);
-        const std::uint64_t which = values.chosen.empty() ? 0 : wordOf(values.chosen, word);
-        for (std::size_t row = 0; row < 64; row += 8) {
-            const std::uint64_t on = mask >> row & 0xff;
-            float* const row_to = out + 64 * word + row;
-            if (on == 0xff) {
-                std::memcpy(row_to, next, 8 * sizeof(float));
-                next += 8;
-                continue;
-            }
-            for (std::size_t bit = 0; bit < 8; ++bit) row_to[bit] = inactive[which >> (row + bit) & 1];
-            for (std::uint64_t rest = on; rest != 0; rest &= rest - 1) row_to[std::countr_zero(rest)] = *next++;
-        }
-    }
-}
-
-void LeafFile::placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid) {
-    if (grid.listed && (grid.compression & kVdbBlosc) != 0 && (grid.compression & kVdbActiveOnly) != 0) {
-        openvdb::io::DelayedLoadMetadata sizes;
-        std::istringstream in{std::string(grid.sizes)};
-        in.exceptions(std::ios::badbit | std::ios::failbit);
-        sizes.read(in);
-        std::uint64_t offset = first;
-        for (std::size_t n = 0; n < leaves_.size(); ++n) {
-            leaves_[n].offset = offset;
-            const std::int8_t kind = sizes.getMask(n);
-            offset += kLeafMaskBytes + 1 + VdbValues::inactiveOf(kind) * sizeof(float) +
-                      (VdbValues::hasMask(kind) ? kLeafMaskBytes : 0) +
-                      static_cast<std::uint64_t>(sizes.getCompressedSize(n));
-        }
-        if (offset == end) return;
-    }
+void LeafFile::placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid,
+                           const std::vector<std::string_view>& masks) {
     VdbCursor cursor = cursorAt(first);
-    for (Leaf& leaf : leaves_) {
-        leaf.offset = cursor.offset();
-        (void)walkVdbValues(cursor, format_, cursor.take(kLeafMaskBytes));
+    std::optional<LeafPlaces> places = listedLeafPlaces(cursor, grid, format_, masks);
+    if (!places) {
+        places = walkLeafPlaces(cursor, format_, masks);
+        if (cursor.offset() != end) cursor.fail("places of other leaves");
     }
-    if (cursor.offset() != end) cursor.fail("places of other leaves");
+    for (std::size_t n = 0; n < leaves_.size(); ++n) leaves_[n].offset = (*places)[n];
 }
 
 const float* LeafFile::samples(std::size_t leaf, float* scratch) const {
     VdbCursor cursor = cursorAt(leaves_[leaf].offset);
     const std::string_view active = cursor.take(kLeafMaskBytes);
-    expand(walkVdbValues(cursor, format_, active), active, scratch);
+    const VdbValues values = walkVdbValues(cursor, format_, active);
+    unpackVdbValues(cursor, values, format_, active, background(), scratch);
     return scratch;
 }
 

@@ -24,8 +24,7 @@ namespace stratum::march {
 class LeafFile final : public LeafSource {
 public:
     /// Opens the grid of that name, which must be the only one of the name; its samples are floats, its metadata was
-    /// read before. Returns null for a file that only OpenVDB itself reads: half floats, zip compression, an
-    /// instance of another grid. Throws InputError for a missing or damaged file.
+    /// read before. Returns null for an instance of another grid. Throws InputError for a missing or damaged file.
     static std::shared_ptr<const LeafFile> open(const std::filesystem::path& path, const std::string& name,
                                                 const openvdb::MetaMap& metadata);
 
@@ -52,8 +51,8 @@ private:
 
     explicit LeafFile(const std::filesystem::path& path) : file_(path), where_(path.string()) {}
     VdbCursor cursorAt(std::uint64_t offset) const;
-    void placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid);
-    void expand(const VdbValues& values, std::string_view active, float* out) const;
+    void placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid,
+                     const std::vector<std::string_view>& masks);
     std::string_view activeOf(const Leaf& leaf) const;
 
     MappedFile file_;

@@ -4,6 +4,7 @@
 #include "base/mapped_file.h"
 #include "march/file/grid_axes.h"
 #include "march/file/vdb_check.h"
+#include "march/file/whole_grid.h"
 
 #include <fmt/format.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -71,9 +73,9 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     return {wanted, head};
 }
 
-// Calls `read` with the opened file and the selected grid, which has been checked to that depth.
+// Calls `read` with the opened file, the selected grid, whose tree has not been checked, and the file's bytes.
 template <typename Read>
-auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDepth depth, const Read& read) {
+auto withGrid(const std::filesystem::path& path, const std::string& name, const Read& read) {
     const std::string where = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
@@ -84,9 +86,7 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDep
         openvdb::io::File file(where);
         // Without OpenVDB's delayed loading, which copies the file and builds the whole tree nevertheless.
         file.open(/*delayLoad=*/false);
-        const Choice choice = chooseGrid(file, name);
-        checkVdb(mapped.bytes(), depth, choice.name, where);
-        return read(file, choice);
+        return read(file, chooseGrid(file, name), mapped.bytes());
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -98,15 +98,16 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, VdbDep
 }  // namespace
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto grid = withGrid(path, name, VdbDepth::leaves, [](openvdb::io::File& file, const Choice& choice) {
-        return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(choice.name));
+    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice, std::string_view bytes) {
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(file, choice.name, *choice.head, bytes));
     });
     requireTraceable(*grid, path.string());
     return grid;
 }
 
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto file = withGrid(path, name, VdbDepth::nodes, [&path](openvdb::io::File&, const Choice& choice) {
+    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice, std::string_view bytes) {
+        checkVdb(bytes, VdbDepth::nodes, choice.name, path.string());
         return LeafFile::open(path, choice.name, *choice.head);
     });
     if (file) requireTraceable(file->head(), file->leafCount(), path.string());

@@ -1,5 +1,6 @@
 #include "march/file/vdb_check.h"
 
+#include "march/file/leaf_places.h"
 #include "march/file/vdb_walker.h"
 
 #include <fmt/format.h>
@@ -14,14 +15,6 @@ namespace {
 /// A name without the number that tells it from others of the same name.
 std::string plainName(const std::string& name) { return name.substr(0, name.find_first_of("\x1e[")); }
 
-/// Nothing for values that are not looked at.
-std::optional<VdbValueFormat> formatOf(const VdbGrid& grid) {
-    if (grid.type == "Tree_float_5_4_3") return VdbValueFormat{4, grid.half ? 2U : 0U, grid.compression};
-    if (grid.type == "Tree_int32_5_4_3") return VdbValueFormat{4, 0, grid.compression};
-    if (grid.type == "Tree_vec3s_5_4_3") return VdbValueFormat{12, grid.half ? 6U : 0U, grid.compression};
-    return std::nullopt;
-}
-
 class TreeCheck final : public VdbTreeVisitor {
 public:
     TreeCheck(VdbCursor& cursor, const VdbGrid& grid, const VdbValueFormat& format)
@@ -31,14 +24,7 @@ public:
         cursor_.moveTo(static_cast<std::int64_t>(grid_.tree));
         walkVdbTree(cursor_, format_, *this);
         if (grid_.listed && *grid_.listed != leaves_) cursor_.fail("a list of other leaves");
-        if (!leaves) return;
-        // Their masks are there twice, and OpenVDB counts a leaf's values by the first.
-        for (std::string_view masks : masks_)
-            for (; !masks.empty(); masks.remove_prefix(kLeafMaskBytes)) {
-                const std::string_view mask = cursor_.take(kLeafMaskBytes);
-                if (mask != masks.substr(0, kLeafMaskBytes)) cursor_.fail("a leaf with two masks");
-                (void)walkVdbValues(cursor_, format_, mask);
-            }
+        if (leaves) (void)walkLeafPlaces(cursor_, format_, masks_);
     }
 
 private:
@@ -64,7 +50,7 @@ void checkVdb(std::string_view bytes, VdbDepth depth, const std::string& name, c
     for (const VdbGrid& grid : grids)
         if (wanted.contains(plainName(grid.name)) && !grid.parent.empty()) wanted.insert(plainName(grid.parent));
     for (const VdbGrid& grid : grids) {
-        const std::optional<VdbValueFormat> format = formatOf(grid);
+        const std::optional<VdbValueFormat> format = valueFormatOf(grid);
         if (!wanted.contains(plainName(grid.name)) || !grid.parent.empty()) continue;
         if (!format) cursor.fail(fmt::format("a grid of type {}", grid.type));
         TreeCheck(cursor, grid, *format).run(depth == VdbDepth::leaves);

@@ -7,7 +7,9 @@
 
 #include <array>
 #include <cmath>
+#include <ios>
 #include <limits>
+#include <sstream>
 
 namespace stratum::march {
 namespace {
@@ -27,12 +29,9 @@ void requireBlosc(const VdbCursor& cursor, std::string_view packed, std::uint64_
 /// The list of the leaves' sizes, io::DelayedLoadMetadata::readValue(). Returns how many they are.
 std::uint64_t checkLeafSizes(VdbCursor value, std::uint32_t compression) {
     const std::uint64_t count = value.read<std::uint32_t>();
-    // OpenVDB's compression::bloscCompress() fills up short arrays with zeros and leaves the shortest as they are.
-    constexpr std::uint64_t kShortest = 48;
-    constexpr std::uint64_t kFilledUp = 128;
     const auto checkArray = [&](std::uint32_t packed, std::uint64_t length) {
         if (packed > 0)
-            requireBlosc(value, value.take(packed), length > kShortest && length < kFilledUp ? kFilledUp : length);
+            requireBlosc(value, value.take(packed), listedArrayBytes(length));
         else
             (void)value.take(length);
     };
@@ -173,6 +172,12 @@ void VdbCursor::moveTo(std::int64_t offset) {
     offset_ = static_cast<std::size_t>(offset);
 }
 
+std::uint64_t listedArrayBytes(std::uint64_t length) {
+    constexpr std::uint64_t kShortest = 48;
+    constexpr std::uint64_t kFilledUp = 128;
+    return length > kShortest && length < kFilledUp ? kFilledUp : length;
+}
+
 VdbHeads walkVdbHeads(VdbCursor& cursor) {
     VdbHeads heads;
     heads.format = checkHeader(cursor);
@@ -191,6 +196,27 @@ VdbHeads walkVdbHeads(VdbCursor& cursor) {
     return heads;
 }
 
+openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid) {
+    std::istringstream in{std::string(grid.transform)};
+    in.exceptions(std::ios::badbit | std::ios::failbit);
+    openvdb::io::setVersion(in, {}, heads.format);
+    auto transform = openvdb::math::Transform::createLinearTransform();
+    transform->read(in);
+    return transform;
+}
+
+std::uint64_t VdbValueFormat::storedOf(int kind, std::string_view active) const {
+    const bool some = (compression & kVdbActiveOnly) != 0 && kind != VdbValues::kAllStored;
+    return some ? countOn(active) : active.size() * 8;
+}
+
+std::optional<VdbValueFormat> valueFormatOf(const VdbGrid& grid) {
+    if (grid.type == "Tree_float_5_4_3") return VdbValueFormat{4, grid.half ? 2U : 0U, grid.compression};
+    if (grid.type == "Tree_int32_5_4_3") return VdbValueFormat{4, 0, grid.compression};
+    if (grid.type == "Tree_vec3s_5_4_3") return VdbValueFormat{12, grid.half ? 6U : 0U, grid.compression};
+    return std::nullopt;
+}
+
 VdbValues walkVdbValues(VdbCursor& cursor, const VdbValueFormat& format, std::string_view active) {
     VdbValues values;
     values.kind = cursor.read<std::uint8_t>();
@@ -199,11 +225,10 @@ VdbValues walkVdbValues(VdbCursor& cursor, const VdbValueFormat& format, std::st
     const std::string_view before = cursor.take(inactive + (VdbValues::hasMask(values.kind) ? active.size() : 0));
     values.inactive = before.substr(0, inactive);
     values.chosen = before.substr(inactive);
-    const bool some = (format.compression & kVdbActiveOnly) != 0 && values.kind != VdbValues::kAllStored;
-    values.stored = some ? countOn(active) : active.size() * 8;
+    values.stored = format.storedOf(values.kind, active);
     // OpenVDB writes nothing for no halves, but a length for no floats.
     if (format.half != 0 && values.stored == 0) return values;
-    values.length = values.stored * (format.half != 0 ? format.half : format.whole);
+    values.length = format.bytesOf(values.stored);
     if ((format.compression & (kVdbZip | kVdbBlosc)) == 0) {
         values.data = cursor.take(values.length);
         return values;

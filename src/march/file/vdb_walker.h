@@ -71,6 +71,13 @@ struct VdbHeads {
 /// is in the file and fits together.
 VdbHeads walkVdbHeads(VdbCursor& cursor);
 
+/// What a packed array of VdbGrid::sizes unpacks to, of so many bytes: OpenVDB's compression::bloscCompress() fills up
+/// short arrays with zeros and leaves the shortest as they are.
+std::uint64_t listedArrayBytes(std::uint64_t length);
+
+/// As OpenVDB reads it.
+openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid);
+
 // --- values ----------------------------------------------------------------------------------------------------------
 
 /// How the values of a grid are stored.
@@ -78,7 +85,17 @@ struct VdbValueFormat {
     std::size_t whole = 0;  ///< bytes of a value
     std::size_t half = 0;   ///< bytes of one as halves; 0: they are not stored as halves
     std::uint32_t compression = 0;
+
+    /// How many values of a node are stored, of one whose inactive values are stored in that way.
+    /// @param kind  a VdbValues::Kind
+    /// @param active  a bit a value
+    std::uint64_t storedOf(int kind, std::string_view active) const;
+    /// Their bytes, unpacked.
+    std::uint64_t bytesOf(std::uint64_t stored) const { return stored * (half != 0 ? half : whole); }
 };
+
+/// Of floats, int32 and Vec3f; nothing for other values.
+std::optional<VdbValueFormat> valueFormatOf(const VdbGrid& grid);
 
 /// The values of a node, as they are stored.
 struct VdbValues {

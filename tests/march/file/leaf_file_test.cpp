@@ -9,9 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 namespace stratum::march {
 namespace {
@@ -45,6 +47,7 @@ protected:
 
 constexpr std::uint32_t kMask = openvdb::io::COMPRESS_ACTIVE_MASK;
 constexpr std::uint32_t kBlosc = openvdb::io::COMPRESS_BLOSC;
+constexpr std::uint32_t kZip = openvdb::io::COMPRESS_ZIP;
 
 TEST_F(LeafFileTest, HasWhatOpenVdbReads) {
     const auto first = withTiles();
@@ -119,15 +122,40 @@ TEST_F(LeafFileTest, LazyBricksHaveTheSameHits) {
     }
 }
 
-TEST_F(LeafFileTest, LeavesToOpenVdbWhatItAloneReads) {
-    const auto grid = test::rubble(0.1F, false);
-    // OpenVDB never zips level sets, but it may find other grids zipped.
-    const auto unclassed = grid->deepCopy();
-    unclassed->setGridClass(openvdb::GRID_UNKNOWN);
-    EXPECT_EQ(LeafFile::open(write({unclassed}, kMask | openvdb::io::COMPRESS_ZIP), "surface", *grid), nullptr);
+TEST_F(LeafFileTest, HalvesAndZip) {
+    const auto grid = test::rubble(0.1F, true);
     const auto half = grid->deepCopy();
     half->setSaveFloatAsHalf(true);
-    EXPECT_EQ(openLevelSet(write({half}, kMask | kBlosc)), nullptr);
+    // OpenVDB never zips level sets, but it may find them zipped.
+    const auto unclassed = grid->deepCopy();
+    unclassed->setGridClass(openvdb::GRID_UNKNOWN);
+    for (const auto& [written, compression] :
+         {std::pair{half, kMask | kBlosc}, std::pair{half, kMask}, std::pair{unclassed, kMask | kZip}}) {
+        const fs::path path = write({written}, compression);
+        const auto file = LeafFile::open(path, "surface", *grid);
+        ASSERT_NE(file, nullptr);
+        openvdb::io::File whole(path.string());
+        whole.open(/*delayLoad=*/false);
+        const auto read = openvdb::gridPtrCast<openvdb::FloatGrid>(whole.readGrid("surface"));
+        ASSERT_EQ(file->leafCount(), read->tree().leafCount());
+        std::vector<float> scratch(LeafSource::kLeafSamples);
+        for (std::size_t n = 0; n < file->leafCount(); ++n) {
+            const auto* leaf = read->tree().probeConstLeaf(file->origin(n));
+            ASSERT_NE(leaf, nullptr) << n;
+            const float* samples = file->samples(n, scratch.data());
+            ASSERT_TRUE(std::equal(samples, samples + LeafSource::kLeafSamples, leaf->buffer().data()));
+        }
+    }
+}
+
+TEST_F(LeafFileTest, LeavesInstancesToOpenVdb) {
+    const auto grid = test::rubble(0.1F, false);
+    const auto twin = grid->copy();
+    twin->setName("twin");
+    const fs::path path = write({grid, twin}, kMask | kBlosc);
+    EXPECT_NE(openLevelSet(path), nullptr);
+    EXPECT_EQ(openLevelSet(path, "twin"), nullptr);
+    EXPECT_EQ(readLevelSet(path, "twin")->tree().leafCount(), grid->tree().leafCount());
 }
 
 TEST_F(LeafFileTest, RefusesDamage) {
