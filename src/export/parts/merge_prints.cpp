@@ -1,21 +1,22 @@
 #include "export/parts/merge_prints.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "base/part_set.h"
 #include "export/parts/checksum.h"
 #include "export/parts/part_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
 #include <string>
-#include <string_view>
 #include <utility>
 
 namespace stratum::exporter {
 namespace {
 
-constexpr std::size_t kCopied = std::size_t{4} << 20;  // at once
+constexpr std::size_t kCopied = std::size_t{1} << 20;  // bytes at once, which the cache of a core holds
 
 // Why two parts can't be of one print; empty if they can.
 std::string differenceOf(const PartFile& one, const PartFile& other) {
@@ -43,15 +44,18 @@ void appendPart(const PartFile& part, LevelSetOutput& output) {
         output.add(std::move(node));
     }
     if (leaf > 0) output.count(part.statistics.active_voxels, part.statistics.active_box);
-    const MappedFile mapped(part.path, Access::sequential);
-    std::string_view left = mapped.bytes().substr(part.places.leaves);
+    std::ifstream leaves(part.path, std::ios::binary);
+    leaves.seekg(static_cast<std::streamoff>(part.places.leaves));
+    std::vector<char> bytes(kCopied);
     std::uint32_t checksum = 0;
-    while (!left.empty()) {
-        const std::string_view bytes = left.substr(0, kCopied);
-        left.remove_prefix(bytes.size());
-        checksum = checksumOf(bytes, checksum);
-        iovec piece{const_cast<char*>(bytes.data()), bytes.size()};  // pwritev() only reads
+    for (std::uint64_t left = part.places.end - part.places.leaves; left > 0;) {
+        const std::size_t count = std::min<std::uint64_t>(left, bytes.size());
+        if (!leaves.read(bytes.data(), static_cast<std::streamsize>(count)))
+            throw InputError(damageOf(part.path, "it ends early"));
+        checksum = checksumOf({bytes.data(), count}, checksum);
+        iovec piece{bytes.data(), count};
         output.append({&piece, 1});
+        left -= count;
     }
     if (checksum != part.part.checksum) throw InputError(damageOf(part.path, "the checksum of its leaves is wrong"));
 }
