@@ -46,7 +46,7 @@ struct Answers {
 };
 
 /// Returns seconds.
-double trace(trace::Tracer& tracer, const bench::RaySet& set, Answers& answers) {
+double seconds(trace::Tracer& tracer, const bench::RaySet& set, Answers& answers) {
     answers.hits.resize(set.any ? 0 : set.rays.size());
     answers.blocked.resize(set.any ? set.rays.size() : 0);
     const auto begin = std::chrono::steady_clock::now();
@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
                 std::vector<double> other;
                 std::vector<double> ratios;
                 for (int run = 0; run < runs; ++run) {
-                    one.push_back(trace(*loop, set, a));
-                    other.push_back(trace(*tree, set, b));
+                    one.push_back(seconds(*loop, set, a));
+                    other.push_back(seconds(*tree, set, b));
                     ratios.push_back(one.back() / other.back());
                 }
                 if (!same(a, b)) {
