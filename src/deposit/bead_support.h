@@ -110,8 +110,8 @@ private:
     long columns_ = 0, rows_ = 0;
     std::vector<std::size_t> starts_;
     std::vector<Entry> entries_;
-    // What is below, by bead: kNone, kWhole, or the first of its parts in below_parts_[bead / kSearchBlock], up to one with
-    // from > to.
+    // What is below, by bead: kNone, kWhole, or the first of its parts in below_parts_[bead / kSearchBlock], up to one
+    // with from > to.
     std::vector<std::uint32_t> below_;
     std::vector<std::vector<PathPart>> below_parts_;
 };
