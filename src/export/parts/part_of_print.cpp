@@ -20,7 +20,7 @@ constexpr const char* kChecksum = "shard_checksum";
 
 template <typename T>
 T take(MetaMap& metadata, const char* name) {
-    const T value = metadata.metaValue<T>(name);
+    T value = metadata.metaValue<T>(name);
     metadata.removeMeta(name);
     return value;
 }

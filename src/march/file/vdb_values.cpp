@@ -62,7 +62,7 @@ void unpackStored(const VdbCursor& cursor, const VdbValues& values, const VdbVal
         return;
     }
     if constexpr (!std::is_integral_v<T>) {
-        constexpr std::size_t kComponents = sizeof(T) / sizeof(float);
+        constexpr std::size_t kComponents = openvdb::VecTraits<T>::Size;
         const std::size_t count = kComponents * static_cast<std::size_t>(values.stored);
         Scratch<std::array<std::uint16_t, kComponents>> halves(static_cast<std::size_t>(values.stored));
         unpackBytes(cursor, values, format.compression, halves.data());

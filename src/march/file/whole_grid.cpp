@@ -9,6 +9,7 @@
 #include <openvdb/io/GridDescriptor.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cstring>
@@ -43,6 +44,15 @@ std::exception_ptr firstFailure(std::size_t count, std::size_t grain, const Body
         }
     });
     return failure;
+}
+
+// NaN is like itself, and the two zeros differ.
+template <typename Value>
+bool sameBits(const Value& a, const Value& b) {
+    std::array<std::array<char, sizeof(Value)>, 2> bits;
+    std::memcpy(bits[0].data(), &a, sizeof a);
+    std::memcpy(bits[1].data(), &b, sizeof b);
+    return bits[0] == bits[1];
 }
 
 /// Keeps the upper levels as they are in the file.
@@ -136,11 +146,11 @@ private:
 
     // With its leaves, which have no values yet.
     std::unique_ptr<Lower> makeLower(std::size_t number) {
-        const auto& [node, parent, first_leaf] = levels_.lowers[number];
+        const VdbNode& node = levels_.lowers[number].node;
         auto lower = std::make_unique<Lower>(openvdb::PartialCreate(), node.origin, background_);
         takeTiles(node, *lower);
         std::string_view masks = levels_.masks[number];
-        std::size_t leaf_number = first_leaf;
+        std::size_t leaf_number = levels_.lowers[number].first_leaf;
         forEachOn(node.children, [&](std::size_t child) {
             auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), node.originOf(child), background_);
             typename Leaf::NodeMaskType mask;
@@ -164,7 +174,7 @@ private:
                 const std::size_t tile = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
                 const bool on = (active >> (tile & 63) & 1) != 0;
                 // By their bits: a zero and a NaN have several. Most are as the node was made.
-                if (on || std::memcmp(&values[tile], &background_, sizeof(Value)) != 0)
+                if (on || !sameBits(values[tile], background_))
                     node.addTile(static_cast<openvdb::Index>(tile), values[tile], on);
             }
         }

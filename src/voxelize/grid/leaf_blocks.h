@@ -31,7 +31,7 @@ inline LeafRectangle rectangleOf(const PlanBins& bins) {
 
 /// The cells of a lattice of this edge that an interval meets.
 inline std::size_t cellsMet(int first, int last, int edge) {
-    return static_cast<std::size_t>(floorDivide(last, edge) - floorDivide(first, edge) + 1);
+    return static_cast<std::size_t>(floorDivide(last, edge)) - static_cast<std::size_t>(floorDivide(first, edge)) + 1;
 }
 
 /// The part of a pile of columns that lies in one upper node and in the rectangle of the bins.
@@ -86,7 +86,8 @@ void forEachColumnOf(const LeafBlock& block, const PlanBins& bins, const Visit& 
         for (int j = block.plan.first_j; j <= block.plan.last_j; ++j)
             visit(
                 static_cast<std::size_t>(j - all.first_j) * bins.columnsI() + static_cast<std::size_t>(i - all.first_i),
-                static_cast<std::size_t>((i - block.x * kBlockLeaves) * kBlockLeaves + (j - block.y * kBlockLeaves)));
+                static_cast<std::size_t>(i - block.x * kBlockLeaves) * kBlockLeaves +
+                    static_cast<std::size_t>(j - block.y * kBlockLeaves));
 }
 
 }  // namespace stratum::voxelize

@@ -72,7 +72,7 @@ struct Voxelizer::State {
           grid(emptyGrid()) {}
 
     openvdb::FloatGrid::Ptr emptyGrid() const {
-        const auto empty = openvdb::FloatGrid::create(background);
+        auto empty = openvdb::FloatGrid::create(background);
         empty->setTransform(makeTransform(lattice, options.placement));
         empty->setGridClass(openvdb::GRID_LEVEL_SET);
         empty->setName("surface");
