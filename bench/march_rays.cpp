@@ -15,7 +15,7 @@ using trace::Hit;
 using trace::Ray;
 
 constexpr int kTile = 32;
-constexpr int kBlock = 4;  // pixels; packets of 16 rays are most alike in squares
+constexpr int kBlock = 4;     // pixels; packets of 16 rays are most alike in squares
 constexpr double kShort = 5;  // mm
 
 std::vector<Ray> primaryRays(const trace::Box& box, int side) {

@@ -1,141 +1,206 @@
 #include "march/brick/beam.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 namespace stratum::march {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kFewRays = 64;  // for fewer rays beams cost more than they save
-constexpr double kSteepest = 8;       // slope against the main axis; rays that differ more have no axis in common
+constexpr double kRaysPerBeam = 4;
+constexpr int kBrick = BrickGrid::kBrickEdge;
+constexpr int kMacro = BrickGrid::kMacroEdge;
+constexpr int kPart = kBrick / 2;  // cells of a block
+// Depths end so much before a block, in cells: a ray begins in the empty space before it, as if it had come from there.
+constexpr double kBefore = 0x1p-6;
+
+// The bricks of a macro cell that lie in one of its four slabs across an axis.
+constexpr std::uint64_t slabMask(int axis, int slab) {
+    std::uint64_t mask = 0;
+    for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b) {
+            const int x = axis == 0 ? slab : a;
+            const int y = axis == 1 ? slab : (axis == 0 ? a : b);
+            const int z = axis == 2 ? slab : b;
+            mask |= std::uint64_t{1} << Mask64::bit(x, y, z);
+        }
+    return mask;
+}
+constexpr std::uint64_t kSlabMask[3][4] = {{slabMask(0, 0), slabMask(0, 1), slabMask(0, 2), slabMask(0, 3)},
+                                           {slabMask(1, 0), slabMask(1, 1), slabMask(1, 2), slabMask(1, 3)},
+                                           {slabMask(2, 0), slabMask(2, 1), slabMask(2, 2), slabMask(2, 3)}};
+
+// Against the rounding of rays' positions: a few 2^-52 of their way and of the grid's size, at most 2^24 cells.
+double marginAt(double depth) { return 0x1p-20 + depth * 0x1p-44; }
+
+// How far along its main axis a fan comes to [from, to), and leaves it.
+struct Depths {
+    double near, far;
+};
+Depths depthsOf(const RayFan& fan, int from, int to) {
+    const double eye = fan.eye[fan.main];
+    return {std::max(fan.forth ? from - eye : eye - to, 0.0), fan.forth ? to - eye : eye - from};
+}
 
 }  // namespace
 
-std::span<const double> Beams::starts(std::span<const trace::Ray> rays) {
-    const std::size_t count = rays.size();
-    if (count < kFewRays || count > kMostRays) return {};
-    const trace::Ray& first = rays[0];
-    if (rays[1].origin != first.origin || rays[count / 2].origin != first.origin ||
-        rays[count - 1].origin != first.origin)
-        return {};
-    eye_ = map_.to_cells * first.origin + map_.origin;
-    const glm::dvec3 ahead = map_.to_cells * rays[count / 2].direction;
-    main_ = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (std::abs(ahead[axis]) > std::abs(ahead[main_])) main_ = axis;
-    forth_ = ahead[main_] > 0;
-    const int axes[2] = {(main_ + 1) % 3, (main_ + 2) % 3};
-    const glm::dmat3 rows = glm::transpose(map_.to_cells);
-    const glm::dvec3 row_main = rows[main_];
-    const glm::dvec3 row_u = rows[axes[0]];
-    const glm::dvec3 row_v = rows[axes[1]];
-
-    Bounds all;
-    bool common = true;
-    for (std::size_t n = 0; n < count; ++n) {
-        const trace::Ray& ray = rays[n];
-        const double inverse = 1 / glm::dot(row_main, ray.direction);
-        const double u = glm::dot(row_u, ray.direction) * inverse;
-        const double v = glm::dot(row_v, ray.direction) * inverse;
-        // Written so that rays with NaN fail the test.
-        common &= ray.origin == first.origin && (inverse > 0) == forth_ && std::abs(u) < kSteepest &&
-                  std::abs(v) < kSteepest && std::abs(inverse) < kInfinity;
-        slope_[0][n] = u;
-        slope_[1][n] = v;
-        slope_[2][n] = inverse;
-        all.low[0] = std::min(all.low[0], u);
-        all.high[0] = std::max(all.high[0], u);
-        all.low[1] = std::min(all.low[1], v);
-        all.high[1] = std::max(all.high[1], v);
-    }
-    if (!common || !std::isfinite(eye_.x + eye_.y + eye_.z)) return {};
-
-    std::array<Bounds, std::size_t{kSide} * kSide> beams;
-    double scale[2];
-    for (std::size_t k = 0; k < 2; ++k) {
-        const double width = all.high[k] - all.low[k];
-        scale[k] = width > 0 ? kSide * (1 - 1e-9) / width : 0;
-    }
-    for (std::size_t n = 0; n < count; ++n) {
-        const double u = slope_[0][n];
-        const double v = slope_[1][n];
-        const int beam =
-            static_cast<int>((u - all.low[0]) * scale[0]) * kSide + static_cast<int>((v - all.low[1]) * scale[1]);
-        beam_[n] = static_cast<std::uint8_t>(beam);
-        Bounds& b = beams[static_cast<std::size_t>(beam)];
-        b.low[0] = std::min(b.low[0], u);
-        b.high[0] = std::max(b.high[0], u);
-        b.low[1] = std::min(b.low[1], v);
-        b.high[1] = std::max(b.high[1], v);
-    }
-    std::array<double, std::size_t{kSide} * kSide> way;  // along the main axis
-    for (std::size_t n = 0; n < beams.size(); ++n)
-        way[n] = beams[n].low[0] <= beams[n].high[0] ? firstPlane(beams[n]) - eye_[main_] : 0;
-    for (std::size_t n = 0; n < count; ++n) start_[n] = way[beam_[n]] * slope_[2][n];
-    return {start_.data(), count};
+void Beams::begin(const RayFan& fan, std::size_t rays) {
+    fan_ = fan;
+    const double width = fan.high[0] - fan.low[0];
+    const double height = fan.high[1] - fan.low[1];
+    const double beams = static_cast<double>(rays) / kRaysPerBeam;
+    const double columns = width > 0 ? (height > 0 ? std::sqrt(beams * width / height) : beams) : 1;
+    count_[0] = static_cast<int>(std::clamp(columns, 1.0, double{kMostSide}));
+    count_[1] = static_cast<int>(std::clamp(height > 0 ? beams / count_[0] : 1, 1.0, double{kMostSide}));
+    // A little less, so that the greatest slope is in the last beam.
+    scale_[0] = width > 0 ? count_[0] * (1 - 1e-9) / width : 0;
+    scale_[1] = height > 0 ? count_[1] * (1 - 1e-9) / height : 0;
+    open_.fill(0);
 }
 
-// The plane across the main axis that a beam reaches before any brick, one cell earlier; infinitely far ahead if there
-// is none.
-double Beams::firstPlane(const Bounds& slopes) const {
-    const std::array<int, 3>& size = grid_.size();
-    const int axes[3] = {main_, (main_ + 1) % 3, (main_ + 2) % 3};
-    const auto sizeOf = [&](int axis) { return size[static_cast<std::size_t>(axis)]; };
-    // The box of cells that the beam has in [from, to] of the main axis, widened by one cell against rounding; false if
-    // it has none in the grid.
-    int low[3];
-    int high[3];  // inclusive
-    const auto cover = [&](int from, int to) {
-        low[main_] = from;
-        high[main_] = to - 1;
-        const double near = std::min(std::abs(from - eye_[main_]), std::abs(to - eye_[main_]));
-        const double far = std::max(std::abs(from - eye_[main_]), std::abs(to - eye_[main_]));
-        for (std::size_t k = 0; k < 2; ++k) {
-            const int axis = axes[k + 1];
-            const double sign = forth_ ? 1 : -1;  // slopes are against the axis, not along the way
-            const double a = std::min(sign * slopes.low[k], sign * slopes.high[k]);
-            const double b = std::max(sign * slopes.low[k], sign * slopes.high[k]);
-            const double least = eye_[axis] + std::min(a * near, a * far) - 1;
-            const double most = eye_[axis] + std::max(b * near, b * far) + 1;
-            if (!(most >= 0 && least < sizeOf(axis))) return false;
-            low[axis] = static_cast<int>(std::max(least, 0.0));
-            high[axis] = static_cast<int>(std::min(most, sizeOf(axis) - 1.0));
-        }
-        return true;
-    };
-    constexpr int kSlab = BrickGrid::kMacroEdge;
-    constexpr int kThin = BrickGrid::kBrickEdge;
-    const int slabs = sizeOf(main_) / kSlab;
-    // Slabs behind the eye are skipped; the eye's own slab counts as a whole.
-    const double at = eye_[main_] / kSlab;
-    const int begin = forth_ ? static_cast<int>(std::clamp(at, 0.0, slabs - 1.0))
-                             : static_cast<int>(std::clamp(std::ceil(at), 1.0, static_cast<double>(slabs))) - 1;
-    for (int n = begin; forth_ ? n < slabs : n >= 0; n += forth_ ? 1 : -1) {
-        const bool eye_within = eye_[main_] > n * kSlab && eye_[main_] < (n + 1) * kSlab;
-        if (eye_within) return eye_[main_];
-        if (!cover(n * kSlab, (n + 1) * kSlab)) continue;
-        bool any = false;
-        for (int x = low[0] / kSlab; x <= high[0] / kSlab && !any; ++x)
-            for (int y = low[1] / kSlab; y <= high[1] / kSlab && !any; ++y)
-                for (int z = low[2] / kSlab; z <= high[2] / kSlab && !any; ++z)
-                    any = grid_.macroCell(x, y, z).bricks != 0;
-        if (!any) continue;
-        for (int thin = 0; thin < kSlab; thin += kThin) {
-            const int from = n * kSlab + (forth_ ? thin : kSlab - kThin - thin);
-            if (cover(from, from + kThin) && occupied(low, high)) return forth_ ? from - 1 : from + kThin + 1;
-        }
-    }
-    return forth_ ? kInfinity : -kInfinity;
+void Beams::findDepths() {
+    depths_.fill(kInfinity);
+    const int slabs = grid_.size()[static_cast<std::size_t>(fan_.main)] / kMacro;
+    // Slabs are counted along the way; those behind the eye are left out.
+    const double at = fan_.eye[fan_.main] / kMacro;
+    const int begin =
+        static_cast<int>(std::clamp(std::floor(fan_.forth ? at : slabs - at), 0.0, static_cast<double>(slabs)));
+    for (int slab = begin; slab < slabs && shrink(); ++slab) meetMacros(fan_.forth ? slab : slabs - 1 - slab);
 }
 
-// Whether there is a brick among these cells.
-bool Beams::occupied(const int (&low)[3], const int (&high)[3]) const {
-    for (int x = low[0] >> 3; x <= high[0] >> 3; ++x)
-        for (int y = low[1] >> 3; y <= high[1] >> 3; ++y)
-            for (int z = low[2] >> 3; z <= high[2] >> 3; ++z)
-                if ((grid_.macroCell(x >> 2, y >> 2, z >> 2).bricks >> Mask64::bit(x & 3, y & 3, z & 3) & 1) != 0)
-                    return true;
-    return false;
+// The slopes of the beams that are open; false if there is none.
+bool Beams::shrink() {
+    std::uint32_t columns = 0;
+    int first = count_[1];
+    int last = -1;
+    for (int row = 0; row < count_[1]; ++row) {
+        if (open_[static_cast<std::size_t>(row)] == 0) continue;
+        columns |= open_[static_cast<std::size_t>(row)];
+        first = std::min(first, row);
+        last = row;
+    }
+    if (columns == 0) return false;
+    const int firsts[2] = {std::countr_zero(columns), first};
+    const int lasts[2] = {31 - std::countl_zero(columns), last};
+    for (int k = 0; k < 2; ++k) {
+        low_[k] = scale_[k] > 0 ? fan_.low[k] + firsts[k] / scale_[k] : fan_.low[k];
+        high_[k] = scale_[k] > 0 ? fan_.low[k] + (lasts[k] + 1) / scale_[k] : fan_.high[k];
+    }
+    return true;
+}
+
+// The cells that open beams have in [from, to) of the main axis; false if they have none in the grid.
+bool Beams::cover(int from, int to, Box& box) const {
+    const Depths depths = depthsOf(fan_, from, to);
+    const double margin = marginAt(depths.far);
+    const auto main = static_cast<std::size_t>(fan_.main);
+    box.low[main] = from;
+    box.high[main] = to - 1;
+    for (int k = 0; k < 2; ++k) {
+        const int axis = (fan_.main + 1 + k) % 3;
+        const auto a = static_cast<std::size_t>(axis);
+        const double least = fan_.eye[axis] + std::min(low_[k] * depths.near, low_[k] * depths.far) - margin;
+        const double most = fan_.eye[axis] + std::max(high_[k] * depths.near, high_[k] * depths.far) + margin;
+        const double size = grid_.size()[a];
+        if (!(most >= 0 && least < size)) return false;
+        box.low[a] = static_cast<int>(std::max(least, 0.0));
+        box.high[a] = static_cast<int>(std::min(most, size - 1.0));
+    }
+    return true;
+}
+
+template <typename Visit>
+static void forEachMacro(const std::array<int, 3>& low, const std::array<int, 3>& high, const Visit& visit) {
+    for (int x = low[0] / kMacro; x <= high[0] / kMacro; ++x)
+        for (int y = low[1] / kMacro; y <= high[1] / kMacro; ++y)
+            for (int z = low[2] / kMacro; z <= high[2] / kMacro; ++z) visit(x, y, z);
+}
+
+// A slab of macro cells.
+void Beams::meetMacros(int slab) {
+    Box box;
+    if (!cover(slab * kMacro, (slab + 1) * kMacro, box)) return;
+    std::uint64_t any = 0;
+    forEachMacro(box.low, box.high, [&](int x, int y, int z) { any |= grid_.macroCell(x, y, z).bricks; });
+    for (int n = 0; n < kMacro / kBrick; ++n) {
+        const int thin = fan_.forth ? n : kMacro / kBrick - 1 - n;
+        const std::uint64_t among = any & kSlabMask[fan_.main][thin];
+        const int from = slab * kMacro + thin * kBrick;
+        if (among == 0 || !cover(from, from + kBrick, box)) continue;
+        for (int half = 0; half < 2; ++half) {  // blocks of a half have one depth
+            const int layer = fan_.forth ? half : 1 - half;
+            const int block = from + layer * kPart;
+            const double depth = depthsOf(fan_, block, block + kPart).near - kBefore;
+            forEachMacro(box.low, box.high, [&](int x, int y, int z) {
+                const MacroCell& macro = grid_.macroCell(x, y, z);
+                if ((macro.bricks & among) != 0)
+                    meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, layer, depth);
+            });
+        }
+    }
+}
+
+// One layer of blocks, of some bricks of a macro cell.
+void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int layer,
+                       double depth) {
+    for (; among != 0; among &= among - 1) {
+        const int bit = std::countr_zero(among);
+        const int x = bit >> 4;
+        const int y = bit >> 2 & 3;
+        const int z = bit & 3;
+        const std::array<int, 3> brick = {corner[0] + x * kBrick, corner[1] + y * kBrick, corner[2] + z * kBrick};
+        Rectangle beams;
+        if (!project(brick, kBrick, beams) || !anyOpen(beams)) continue;
+        const std::size_t index = BrickGrid::brickIndex(macro, x, y, z);
+        for (int part = 0; part < 8; ++part) {
+            const std::array<int, 3> at = {part >> 2, part >> 1 & 1, part & 1};
+            if (at[static_cast<std::size_t>(fan_.main)] != layer ||
+                grid_.surface(index, static_cast<std::size_t>(part)) == 0)
+                continue;
+            if (project({brick[0] + at[0] * kPart, brick[1] + at[1] * kPart, brick[2] + at[2] * kPart}, kPart, beams))
+                meet(beams, depth);
+        }
+    }
+}
+
+// The beams that a cube of cells is in; false if there is none.
+bool Beams::project(const std::array<int, 3>& corner, int edge, Rectangle& beams) const {
+    const int from = corner[static_cast<std::size_t>(fan_.main)];
+    const Depths depths = depthsOf(fan_, from, from + edge);
+    const double margin = marginAt(depths.far);
+    const double per_near = depths.near > 0 ? 1 / depths.near : kInfinity;
+    const double per_far = 1 / depths.far;
+    for (int k = 0; k < 2; ++k) {
+        const int axis = (fan_.main + 1 + k) % 3;
+        const double least = corner[static_cast<std::size_t>(axis)] - fan_.eye[axis] - margin;
+        const double most = least + edge + 2 * margin;
+        const double low = least * (least < 0 ? per_near : per_far);
+        const double high = most * (most > 0 ? per_near : per_far);
+        if (!(high >= fan_.low[k] && low <= fan_.high[k])) return false;
+        // All beams are in one row if there is one slope: the scale is 0, and infinite slopes must not meet it.
+        const double first = low > fan_.low[k] ? (low - fan_.low[k]) * scale_[k] : 0;
+        const double last = high < fan_.high[k] ? (high - fan_.low[k]) * scale_[k] : count_[k] - 1;
+        beams.first[k] = static_cast<int>(first);
+        beams.last[k] = std::min(static_cast<int>(last), count_[k] - 1);
+    }
+    return true;
+}
+
+bool Beams::anyOpen(const Rectangle& beams) const {
+    std::uint32_t open = 0;
+    for (int row = beams.first[1]; row <= beams.last[1]; ++row) open |= open_[static_cast<std::size_t>(row)];
+    return (open & beams.columns()) != 0;
+}
+
+void Beams::meet(const Rectangle& beams, double depth) {
+    const std::uint32_t columns = beams.columns();
+    for (auto row = static_cast<std::size_t>(beams.first[1]); row <= static_cast<std::size_t>(beams.last[1]); ++row) {
+        for (std::uint32_t met = open_[row] & columns; met != 0; met &= met - 1)
+            depths_[row * kMostSide + static_cast<std::size_t>(std::countr_zero(met))] = depth;
+        open_[row] &= ~columns;
+    }
 }
 
 }  // namespace stratum::march

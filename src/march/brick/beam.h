@@ -1,48 +1,75 @@
-// Beams of rays from one eye: finds how much empty space before the first brick they can skip together.
+// A small depth buffer for the rays of one eye: how much empty space before the first surface they can skip.
 //
-// After the beam optimization of Laine and Karras, "Efficient Sparse Voxel Octrees" (I3D 2010): the rays of a stream
-// are sorted by direction into small beams, and each beam advances from slab to slab until it contains a brick.
+// After the beam optimization of Laine and Karras, "Efficient Sparse Voxel Octrees" (I3D 2010): rays are sorted by
+// direction into small beams, and each beam gets a depth before which it meets nothing. Here the depths of all beams
+// are found at once, as a rasterizer would: blocks of 4^3 cells with surface are projected, from near to far, until
+// every beam has met one.
 #pragma once
 
-#include "march/brick/brick_walk.h"
-#include "trace/intersector.h"
+#include "march/brick/brick_grid.h"
+
+#include <glm/vec3.hpp>
 
 #include <array>
 #include <cstddef>
-#include <span>
-#include <vector>
+#include <cstdint>
 
 namespace stratum::march {
 
+/// Of rays from one eye that all move along the same axis. All in cells.
+struct RayFan {
+    glm::dvec3 eye{0.0};
+    int main = 0;       ///< that axis; `across` are (main + 1) % 3 and (main + 2) % 3
+    bool forth = true;  ///< whether the rays ascend along it
+    /// Least and greatest slopes: cells across for a cell along the main axis.
+    double low[2] = {0, 0}, high[2] = {0, 0};
+};
+
+/// Beams are the cells of a raster over the slopes of a fan.
 class Beams {
 public:
-    /// The most rays of one call.
-    static constexpr std::size_t kMostRays = 1024;
+    static constexpr int kMostSide = 32;  ///< beams along each axis of slopes
 
-    Beams(const BrickGrid& grid, const CellMap& map) : grid_(grid), map_(map) {}
-    /// For up to kMostRays rays. If they have one origin and similar directions, returns for each a t before which it
-    /// reaches no brick, at least a cell's width before the first one; infinite if it reaches none. Empty otherwise.
-    /// Valid until the next call.
-    std::span<const double> starts(std::span<const trace::Ray> rays);
+    explicit Beams(const BrickGrid& grid) : grid_(grid) {}
+
+    /// Chooses the raster for so many rays. No beam has rays yet.
+    void begin(const RayFan& fan, std::size_t rays);
+    /// Column (k = 0) or row (k = 1) of a slope is the integer below (slope - fan.low[k]) * scale(k).
+    double scale(int k) const { return scale_[k]; }
+    /// The beam in this column and row has rays.
+    void open(int column, int row) { open_[static_cast<std::size_t>(row)] |= 1U << column; }
+    /// Finds the depths of the beams that have rays.
+    void findDepths();
+    /// By row * kMostSide + column: how far along the main axis the beam meets no surface cell; infinite if it meets
+    /// none at all. A small part of a cell before the first block that may have one.
+    const double* depths() const { return depths_.data(); }
 
 private:
-    static constexpr int kSide = 4;  // beams along each axis of directions
-
-    // Slopes of rays against their main axis.
-    struct Bounds {
-        double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+    struct Box {
+        std::array<int, 3> low, high;  // cells, inclusive
     };
-    double firstPlane(const Bounds& slopes) const;
-    bool occupied(const int (&low)[3], const int (&high)[3]) const;
+    // Beams, from the first to the last.
+    struct Rectangle {
+        int first[2], last[2];
+        std::uint32_t columns() const { return ~0U >> (31 - last[0]) & ~0U << first[0]; }
+    };
+
+    bool shrink();
+    bool cover(int from, int to, Box& box) const;
+    void meetMacros(int slab);
+    void meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int layer,
+                    double depth);
+    bool project(const std::array<int, 3>& corner, int edge, Rectangle& beams) const;
+    bool anyOpen(const Rectangle& beams) const;
+    void meet(const Rectangle& beams, double depth);
 
     const BrickGrid& grid_;
-    const CellMap& map_;
-    int main_ = 0;
-    bool forth_ = true;
-    glm::dvec3 eye_{0.0};
-    std::array<std::array<double, kMostRays>, 3> slope_;  // of the other two axes, and 1 / d of the main one
-    std::array<std::uint8_t, kMostRays> beam_;
-    std::array<double, kMostRays> start_;
+    RayFan fan_;
+    double low_[2], high_[2];  // slopes of the beams that have met nothing yet
+    int count_[2];             // columns and rows
+    double scale_[2];
+    std::array<std::uint32_t, kMostSide> open_;  // by row, a bit for each column: beams that have met nothing yet
+    std::array<double, std::size_t{kMostSide} * kMostSide> depths_;
 };
 
 }  // namespace stratum::march

@@ -16,6 +16,7 @@
 #include "march/brick/cell_lanes-inl.h"
 #include "march/brick/hit_lanes-inl.h"
 #include "march/brick/lanes-inl.h"
+#include "march/brick/packet_lanes-inl.h"
 #include "march/brick/ray_queue_lanes-inl.h"
 #include "trace/intersector.h"
 

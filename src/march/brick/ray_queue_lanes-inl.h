@@ -2,9 +2,6 @@
 //
 // Rays wait in a queue, already clipped to the box. A packet holds as many rays as a vector has lanes; a lane whose ray
 // ends takes the next from the queue.
-//
-// In lanes all directions are positive: for an axis with a negative direction, origin and direction are negated, which
-// is exact, and cell c becomes ~c, so that all lanes advance alike and aligned blocks stay aligned.
 #if defined(STRATUM_RAY_QUEUE_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_RAY_QUEUE_LANES_INL_H
 #undef STRATUM_RAY_QUEUE_LANES_INL_H
@@ -12,9 +9,8 @@
 #define STRATUM_RAY_QUEUE_LANES_INL_H
 #endif
 
-#include "march/brick/beam.h"
-#include "march/brick/brick_walk.h"
-#include "march/brick/lanes-inl.h"
+#include "march/brick/fan_rays-inl.h"
+#include "march/brick/packet_lanes-inl.h"
 #include "trace/intersector.h"
 
 #include <hwy/cache_control.h>
@@ -26,6 +22,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #if STRATUM_WIDE_LANES
 HWY_BEFORE_NAMESPACE();
@@ -35,50 +32,18 @@ namespace HWY_NAMESPACE {
 constexpr int kRefill = kLanes / 4;  // lanes without a ray that make a refill worthwhile
 constexpr int kQueue = 8 * kLanes;   // rays
 
-/// The state of a lane; one array each. Cells and flips are whole numbers.
-enum Field {
-    kO,  // from here on with positive directions, see above
-    kD = kO + 3,
-    kInverse = kD + 3,  // infinite along axes along which the ray doesn't move
-    kCell = kInverse + 3,
-    kFlip = kCell + 3,  // -1 where the direction is negative, or 0: cell ^ flip is the real cell
-    kEnd = kFlip + 3,
-    kStart,
-    kIndex,
-    kT,               // from the entry into the box on
-    kQueued,          // fields that a ray in the queue has
-    kFace = kQueued,  // axis of the face that the cell was entered by, or -1
-    // By Marcher::look(): in a brick, the word of clearCells(), and -1; elsewhere, 0, and how far the empty block
-    // reaches: over all cells that differ in the low bits only, and so many more ahead.
-    kPart,
-    kLowBits,
-    kBeyond,
-    kFields
+/// Instead of FanRays where no ray comes from an eye.
+struct NoFan {
+    NoFan(const BrickGrid& /*grid*/, const CellMap& /*map*/, const RayBox& /*box*/) {}
+    static constexpr std::size_t left() { return 0; }
 };
 
-struct Packet {
-    HWY_ALIGN double field[kFields][kLanes];
-    HWY_ALIGN std::int64_t sample[kLanes] = {};  // of a waiting lane: index of its cell's first corner
-    unsigned alive = 0, waiting = 0;
-};
-
-HWY_INLINE V load(const Packet& p, int field) { return hn::Load(D(), p.field[field]); }
-HWY_INLINE void store(Packet& p, int field, V v) { hn::Store(v, D(), p.field[field]); }
-HWY_INLINE VI loadWhole(const Packet& p, int field) { return hn::BitCast(DI(), load(p, field)); }
-HWY_INLINE void storeWhole(Packet& p, int field, VI v) { store(p, field, hn::BitCast(D(), v)); }
-
-/// With kBeams, for rays that may all begin at one eye: then Beam finds where they start.
-template <bool kBeams>
+/// With kFans, for rays that may come from one eye.
+template <bool kFans>
 class RayQueue {
 public:
     RayQueue(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays)
-        : map_(map), rays_(rays), beams_(grid, map) {
-        for (int axis = 0; axis < 3; ++axis) {
-            whole_size_[axis] = grid.size()[static_cast<std::size_t>(axis)];
-            size_[axis] = static_cast<double>(whole_size_[axis]);
-            last_position_[axis] = std::nextafter(size_[axis], 0.0);
-        }
-    }
+        : box_(grid, map), rays_(rays), fan_(grid, map, box_) {}
 
     /// Gives rays to the lanes that have none, once there are enough of them.
     HWY_INLINE void refill(Packet& p) {
@@ -88,11 +53,11 @@ public:
 private:
     void refillNow(Packet& p) {
         const D d;
-        if (tail_ - head_ < kLanes && next_ < rays_.size()) {
+        if (tail_ - head_ < kLanes && anyLeft()) {
             for (int n = 0; n < kQueued; ++n) hn::Store(hn::LoadU(d, queue_[n] + head_), d, queue_[n]);
             tail_ -= head_;
             head_ = 0;
-            while (tail_ + kLanes <= kQueue && next_ < rays_.size()) enqueue();
+            while (tail_ + kLanes <= kQueue && anyLeft()) enqueue();
         }
         if (head_ == tail_) return;
         unsigned idle = kAllLanes & ~p.alive;
@@ -108,87 +73,17 @@ private:
         head_ += std::popcount(idle);
     }
 
-    // Rays in cells: origin, direction and its inverse; a direction too small to invert is 0, its inverse infinite.
-    struct LaneRays {
-        V o[3], dir[3], inverse[3];
-    };
-
-    HWY_INLINE void toCells(const V in[8], LaneRays& lanes) const {
-        const V infinity = constant(std::numeric_limits<double>::infinity());
-        const V largest = constant(std::numeric_limits<double>::max());
-        for (int axis = 0; axis < 3; ++axis) {
-            const V mx = constant(map_.to_cells[0][axis]);
-            const V my = constant(map_.to_cells[1][axis]);
-            const V mz = constant(map_.to_cells[2][axis]);
-            lanes.o[axis] = mx * in[0] + my * in[1] + mz * in[2] + constant(map_.origin[axis]);
-            lanes.dir[axis] = mx * in[3] + my * in[4] + mz * in[5];
-            lanes.inverse[axis] = constant(1) / lanes.dir[axis];
-            const M finite = hn::Le(hn::Abs(lanes.inverse[axis]), largest);
-            lanes.dir[axis] = hn::IfThenElseZero(finite, lanes.dir[axis]);
-            lanes.inverse[axis] = hn::IfThenElse(finite, lanes.inverse[axis], infinity);
-        }
-    }
-
-    // The part of the rays in the grid's box, and which rays have one.
-    HWY_INLINE void clip(const LaneRays& lanes, V& start, V& end, M& good) const {
-        const V zero = hn::Zero(D());
-        for (int axis = 0; axis < 3; ++axis) {
-            const V extent = constant(size_[axis]);
-            const M still = hn::Eq(lanes.dir[axis], zero);
-            const M between = hn::And(hn::Ge(lanes.o[axis], zero), hn::Le(lanes.o[axis], extent));
-            const V a = hn::Neg(lanes.o[axis]) * lanes.inverse[axis];
-            const V b = (extent - lanes.o[axis]) * lanes.inverse[axis];
-            const M swap = hn::Gt(a, b);
-            const V near = hn::IfThenElse(swap, b, a);
-            const V far = hn::IfThenElse(swap, a, b);
-            good = hn::And(good, hn::Or(hn::And(still, between), hn::AndNot(still, hn::Le(near, far))));
-            // std::max and std::min keep their first argument unless the second is beyond it.
-            start = hn::IfThenElse(hn::AndNot(still, hn::Lt(start, near)), near, start);
-            end = hn::IfThenElse(hn::AndNot(still, hn::Lt(far, end)), far, end);
-        }
-    }
-
-    // Position, direction and cell at the start, mirrored so that every direction ascends.
-    HWY_INLINE void placeInCells(const LaneRays& lanes, V start, V out[kQueued]) const {
-        const D d;
-        const V zero = hn::Zero(d);
-        for (int axis = 0; axis < 3; ++axis) {
-            const M still = hn::Eq(lanes.dir[axis], zero);
-            const V at = lanes.o[axis] + start * lanes.dir[axis];
-            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
-            const V sign = hn::And(lanes.dir[axis], constant(-0.0));
-            const VI flip = hn::BroadcastSignBit(hn::BitCast(DI(), hn::IfThenZeroElse(still, sign)));
-            const V back = hn::And(hn::BitCast(d, flip), constant(-0.0));
-            out[kO + axis] = hn::Xor(within, back);
-            out[kD + axis] = hn::Abs(lanes.dir[axis]);
-            out[kInverse + axis] = hn::Abs(lanes.inverse[axis]);
-            out[kFlip + axis] = hn::BitCast(d, flip);
-            const VI size = whole(whole_size_[axis]);
-            const VI least = hn::Neg(hn::And(flip, size));
-            const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
-            out[kCell + axis] = hn::BitCast(d, hn::Min(hn::Max(cell, least), least + size - whole(1)));
-        }
-    }
+    bool anyLeft() const { return next_ < rays_.size() || fan_.left() > 0; }
 
     // Walk's constructor and Walk::enter() for the next rays, as many as there are lanes.
     void enqueue() {
+        if constexpr (kFans) {
+            if (next_ == tried_ && fan_.left() == 0) tryFan();
+            if (fan_.left() > 0) return enqueueFan();
+            if (next_ == tried_) return;
+        }
         const D d;
-        if (next_ == looked_at_) {
-            const auto ahead = std::min(rays_.size() - next_, Beams::kMostRays);
-            if constexpr (kBeams) starts_ = beams_.starts(rays_.subspan(next_, ahead));
-            looked_from_ = next_;
-            looked_at_ += ahead;
-        }
-        const double* starts = starts_.empty() ? nullptr : starts_.data() + (next_ - looked_from_);
-        const auto left = looked_at_ - next_;
-        if (starts != nullptr) {
-            const auto some = std::min<std::size_t>(left, kLanes);
-            if (std::none_of(starts, starts + some, [](double t) { return t < std::numeric_limits<double>::max(); })) {
-                next_ += some;
-                return;
-            }
-        }
-        const auto count = std::min<std::size_t>(left, kLanes);
+        const auto count = std::min<std::size_t>((kFans ? tried_ : rays_.size()) - next_, kLanes);
         const VI lane = hn::Iota(DI(), 0);
         const VI last = whole(static_cast<std::int64_t>(count) - 1);
         static_assert(sizeof(trace::Ray) == 8 * sizeof(double));
@@ -199,48 +94,56 @@ private:
             hwy::Prefetch(&rays_[n]);
         V in[8];
         for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, base, row + whole(n));
-        const V zero = hn::Zero(d);
-        const V infinity = constant(std::numeric_limits<double>::infinity());
         LaneRays lanes;
-        toCells(in, lanes);
+        box_.toCells(in, lanes);
         V start = in[6];
         V end = in[7];
-        M good = hn::Not(toDouble(hn::Gt(lane, last)));
-        clip(lanes, start, end, good);
-        good = hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
+        const M good = hn::AndNot(toDouble(hn::Gt(lane, last)), box_.clip(lanes, start, end));
         V out[kQueued];
         out[kEnd] = end - start;
-        out[kT] = zero;
-        if (starts != nullptr) {
-            // The skipped part is empty; starting in empty space changes neither the surface cells nor their entries.
-            HWY_ALIGN double from[kLanes] = {};
-            std::copy_n(starts, count, from);
-            out[kT] = hn::Max(hn::Load(d, from) - start, zero);
-            good = hn::And(good, hn::Lt(out[kT], out[kEnd]));
-        }
-        placeInCells(lanes, start, out);
+        out[kT] = hn::Zero(d);
         out[kStart] = start;
         out[kIndex] = toReal(lane + whole(static_cast<std::int64_t>(next_)));
+        next_ += count;
+        box_.placeInCells(lanes, start, out);
         const unsigned kept = bitsOf(good);
         if (kept != kAllLanes) {
             const auto table = tableIndices(kTable.source[kept]);
             for (V& v : out) v = hn::TableLookupLanes(v, table);
         }
-        for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], d, queue_[n] + tail_);
-        tail_ += std::popcount(kept);
-        next_ += count;
+        append(out, std::popcount(kept));
+    }
+    // The next rays, as many as can be, form a fan or are queued one by one.
+    void tryFan() {
+        const std::size_t ahead = std::min(rays_.size() - next_, FanRays::kMost);
+        tried_ += ahead;
+        if (!fan_.begin(rays_.subspan(next_, ahead))) return;
+        fan_from_ = next_;
+        next_ = tried_;
+    }
+    // The skipped part is empty; starting in empty space changes neither the surface cells nor their entries.
+    void enqueueFan() {
+        const auto count = static_cast<int>(std::min<std::size_t>(fan_.left(), kLanes));
+        const FanRays::Next n = fan_.next();
+        V out[kQueued];
+        out[kEnd] = n.length;
+        out[kT] = n.from;
+        out[kStart] = n.start;
+        out[kIndex] = n.index + constant(static_cast<double>(fan_from_));
+        box_.placeInCells(n.rays, n.start, out);
+        append(out, count);
+    }
+    HWY_INLINE void append(const V out[kQueued], int count) {
+        for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], D(), queue_[n] + tail_);
+        tail_ += count;
     }
 
-    const CellMap& map_;
+    const RayBox box_;
     const std::span<const trace::Ray> rays_;
-    double size_[3];
-    double last_position_[3];  // just below the box's far faces
-    std::int64_t whole_size_[3];
-    Beams beams_;
-    std::span<const double> starts_;  // of the rays from looked_from_ to looked_at_, or none
-    std::size_t looked_from_ = 0, looked_at_ = 0;
-    std::size_t next_ = 0;     // the first ray that hasn't been queued
-    int head_ = 0, tail_ = 0;  // of the queue
+    std::size_t next_ = 0;  // the first ray that hasn't been queued, nor given to fan_
+    std::conditional_t<kFans, FanRays, NoFan> fan_;
+    std::size_t tried_ = 0, fan_from_ = 0;  // rays before the first were tried as a fan; the fan's first one
+    int head_ = 0, tail_ = 0;               // of the queue
     HWY_ALIGN double queue_[kQueued][kQueue + 2 * kLanes];
 };
 

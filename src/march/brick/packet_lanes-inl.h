@@ -1,0 +1,159 @@
+// A packet of rays, one in each lane of a vector, for one Highway target at a time, hence the guard that toggles.
+//
+// In lanes all directions are positive: for an axis with a negative direction, origin and direction are negated, which
+// is exact, and cell c becomes ~c, so that all lanes advance alike and aligned blocks stay aligned.
+#if defined(STRATUM_PACKET_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STRATUM_PACKET_LANES_INL_H
+#undef STRATUM_PACKET_LANES_INL_H
+#else
+#define STRATUM_PACKET_LANES_INL_H
+#endif
+
+#include "march/brick/brick_grid.h"
+#include "march/brick/brick_walk.h"
+#include "march/brick/lanes-inl.h"
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#if STRATUM_WIDE_LANES
+HWY_BEFORE_NAMESPACE();
+namespace stratum::march {
+namespace HWY_NAMESPACE {
+
+/// The state of a lane; one array each. Cells and flips are whole numbers.
+enum Field {
+    kO,  // from here on with positive directions, see above
+    kD = kO + 3,
+    kInverse = kD + 3,  // infinite along axes along which the ray doesn't move
+    kCell = kInverse + 3,
+    kFlip = kCell + 3,  // -1 where the direction is negative, or 0: cell ^ flip is the real cell
+    kEnd = kFlip + 3,
+    kStart,
+    kIndex,
+    kT,               // from the entry into the box on
+    kQueued,          // fields that a ray in the queue has
+    kFace = kQueued,  // axis of the face that the cell was entered by, or -1
+    // By Marcher::look(): in a brick, the word of clearCells(), and -1; elsewhere, 0, and how far the empty block
+    // reaches: over all cells that differ in the low bits only, and so many more ahead.
+    kPart,
+    kLowBits,
+    kBeyond,
+    kFields
+};
+
+struct Packet {
+    HWY_ALIGN double field[kFields][kLanes];
+    HWY_ALIGN std::int64_t sample[kLanes] = {};  // of a waiting lane: index of its cell's first corner
+    unsigned alive = 0, waiting = 0;
+};
+
+HWY_INLINE V load(const Packet& p, int field) { return hn::Load(D(), p.field[field]); }
+HWY_INLINE void store(Packet& p, int field, V v) { hn::Store(v, D(), p.field[field]); }
+HWY_INLINE VI loadWhole(const Packet& p, int field) { return hn::BitCast(DI(), load(p, field)); }
+HWY_INLINE void storeWhole(Packet& p, int field, VI v) { store(p, field, hn::BitCast(D(), v)); }
+
+/// Rays in cells: origin, direction and its inverse; a direction too small to invert is 0, its inverse infinite.
+struct LaneRays {
+    V o[3], dir[3], inverse[3];
+};
+/// Of such directions.
+HWY_INLINE V inverseOf(V direction) {
+    const V infinity = constant(std::numeric_limits<double>::infinity());
+    return hn::IfThenElse(hn::Eq(direction, hn::Zero(D())), infinity, constant(1) / direction);
+}
+
+/// From rays in the world to rays in the grid's box.
+class RayBox {
+public:
+    RayBox(const BrickGrid& grid, const CellMap& map) : map_(map) {
+        for (int axis = 0; axis < 3; ++axis) {
+            whole_size_[axis] = grid.size()[static_cast<std::size_t>(axis)];
+            size_[axis] = static_cast<double>(whole_size_[axis]);
+            last_position_[axis] = std::nextafter(size_[axis], 0.0);
+        }
+    }
+
+    /// `in`: the fields of trace::Ray.
+    HWY_INLINE void toCells(const V in[8], LaneRays& lanes) const {
+        for (int axis = 0; axis < 3; ++axis) lanes.o[axis] = across(axis, in) + constant(map_.origin[axis]);
+        turn(in + 3, lanes);
+    }
+    /// Directions alone.
+    HWY_INLINE void turn(const V direction[3], LaneRays& lanes) const {
+        const V infinity = constant(std::numeric_limits<double>::infinity());
+        const V largest = constant(std::numeric_limits<double>::max());
+        for (int axis = 0; axis < 3; ++axis) {
+            lanes.dir[axis] = across(axis, direction);
+            lanes.inverse[axis] = constant(1) / lanes.dir[axis];
+            const M finite = hn::Le(hn::Abs(lanes.inverse[axis]), largest);
+            lanes.dir[axis] = hn::IfThenElseZero(finite, lanes.dir[axis]);
+            lanes.inverse[axis] = hn::IfThenElse(finite, lanes.inverse[axis], infinity);
+        }
+    }
+
+    /// Shortens rays to their parts in the grid's box; returns which have one.
+    HWY_INLINE M clip(const LaneRays& lanes, V& start, V& end) const {
+        const V zero = hn::Zero(D());
+        M good = hn::Eq(zero, zero);
+        for (int axis = 0; axis < 3; ++axis) {
+            const V extent = constant(size_[axis]);
+            const M still = hn::Eq(lanes.dir[axis], zero);
+            const M between = hn::And(hn::Ge(lanes.o[axis], zero), hn::Le(lanes.o[axis], extent));
+            const V a = hn::Neg(lanes.o[axis]) * lanes.inverse[axis];
+            const V b = (extent - lanes.o[axis]) * lanes.inverse[axis];
+            const M swap = hn::Gt(a, b);
+            const V near = hn::IfThenElse(swap, b, a);
+            const V far = hn::IfThenElse(swap, a, b);
+            good = hn::And(good, hn::Or(hn::And(still, between), hn::AndNot(still, hn::Le(near, far))));
+            // std::max and std::min keep their first argument unless the second is beyond it.
+            start = hn::IfThenElse(hn::AndNot(still, hn::Lt(start, near)), near, start);
+            end = hn::IfThenElse(hn::AndNot(still, hn::Lt(far, end)), far, end);
+        }
+        const V infinity = constant(std::numeric_limits<double>::infinity());
+        return hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
+    }
+
+    /// Position, direction and cell at the start, mirrored so that every direction ascends.
+    HWY_INLINE void placeInCells(const LaneRays& lanes, V start, V out[kQueued]) const {
+        const D d;
+        const V zero = hn::Zero(d);
+        for (int axis = 0; axis < 3; ++axis) {
+            const M still = hn::Eq(lanes.dir[axis], zero);
+            const V at = lanes.o[axis] + start * lanes.dir[axis];
+            const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
+            const V sign = hn::And(lanes.dir[axis], constant(-0.0));
+            const VI flip = hn::BroadcastSignBit(hn::BitCast(DI(), hn::IfThenZeroElse(still, sign)));
+            const V back = hn::And(hn::BitCast(d, flip), constant(-0.0));
+            out[kO + axis] = hn::Xor(within, back);
+            out[kD + axis] = hn::Abs(lanes.dir[axis]);
+            out[kInverse + axis] = hn::Abs(lanes.inverse[axis]);
+            out[kFlip + axis] = hn::BitCast(d, flip);
+            const VI size = whole(whole_size_[axis]);
+            const VI least = hn::Neg(hn::And(flip, size));
+            const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
+            out[kCell + axis] = hn::BitCast(d, hn::Min(hn::Max(cell, least), least + size - whole(1)));
+        }
+    }
+
+private:
+    HWY_INLINE V across(int axis, const V v[3]) const {
+        return constant(map_.to_cells[0][axis]) * v[0] + constant(map_.to_cells[1][axis]) * v[1] +
+               constant(map_.to_cells[2][axis]) * v[2];
+    }
+
+    const CellMap& map_;
+    double size_[3];
+    double last_position_[3];  // just below the box's far faces
+    std::int64_t whole_size_[3];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace stratum::march
+HWY_AFTER_NAMESPACE();
+#endif  // STRATUM_WIDE_LANES
+
+#endif
