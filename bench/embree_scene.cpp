@@ -208,6 +208,25 @@ void beadOccluded(const RTCOccludedFunctionNArguments* args) {
     }
 }
 
+class CurveScene final : public Committed {
+public:
+    CurveScene(RTCGeometryType type, const std::vector<Piece>& pieces, float (*radius)(const Piece&)) {
+        RTCGeometry geometry = rtcNewGeometry(device_.handle, type);
+        auto* v = static_cast<std::array<float, 4>*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 2 * pieces.size()));
+        auto* first = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(std::uint32_t), pieces.size()));
+        for (std::size_t n = 0; n < pieces.size(); ++n) {
+            const Piece& p = pieces[n];
+            const float r = radius(p);
+            v[2 * n] = {p.x, p.y, p.zc, r};
+            v[2 * n + 1] = {p.x + p.length * p.ux, p.y + p.length * p.uy, p.zc, r};
+            first[n] = static_cast<std::uint32_t>(2 * n);
+        }
+        commit(geometry, pieces.size(), 0);
+    }
+};
+
 class BeadScene final : public Committed {
 public:
     explicit BeadScene(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
@@ -236,6 +255,19 @@ std::unique_ptr<EmbreeScene> triangleScene(std::span<const Corner> corners, std:
 
 std::unique_ptr<EmbreeScene> beadScene(const gcode::Toolpath& toolpath, double split) {
     return std::make_unique<BeadScene>(piecesOf(toolpath, split));
+}
+
+std::unique_ptr<EmbreeScene> roundScene(const gcode::Toolpath& toolpath) {
+    return std::make_unique<CurveScene>(RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE, piecesOf(toolpath, 0),
+                                        [](const Piece& p) {
+                                            const float pi = std::numbers::pi_v<float>;
+                                            return std::sqrt(p.radius * (p.radius + 4 * p.flat / pi));
+                                        });
+}
+
+std::unique_ptr<EmbreeScene> ribbonScene(const gcode::Toolpath& toolpath) {
+    return std::make_unique<CurveScene>(RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE, piecesOf(toolpath, 0),
+                                        [](const Piece& p) { return p.flat + p.radius; });
 }
 
 std::unique_ptr<EmbreeScene> prismScene(const gcode::Toolpath& toolpath, int corners, double split) {

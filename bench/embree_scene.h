@@ -44,6 +44,9 @@ std::unique_ptr<EmbreeScene> triangleScene(std::span<const Corner> corners, std:
 /// User geometry: level straight beads as plan capsules swept by a ball. Beads longer than `split` widths are cut; 0
 /// leaves them whole.
 std::unique_ptr<EmbreeScene> beadScene(const gcode::Toolpath& toolpath, double split);
+/// Embree's own curves: round ones with the area of the bead's section, and ribbons of its width that face the ray.
+std::unique_ptr<EmbreeScene> roundScene(const gcode::Toolpath& toolpath);
+std::unique_ptr<EmbreeScene> ribbonScene(const gcode::Toolpath& toolpath);
 /// Quads around sections of `corners` vertices on the bead's outline.
 std::unique_ptr<EmbreeScene> prismScene(const gcode::Toolpath& toolpath, int corners, double split);
 

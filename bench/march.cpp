@@ -134,6 +134,10 @@ void run(const Options& o) {
         const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), o.gcode);
         for (const double split : {0.0, 16.0, 8.0})
             if (wanted("beads")) peers.push_back(bench::embreeBeads(toolpath, split));
+        if (wanted("curves")) {
+            peers.push_back(bench::embreeRound(toolpath));
+            peers.push_back(bench::embreeRibbons(toolpath));
+        }
         for (const int corners : {4, 6, 10})
             if (wanted("prisms")) peers.push_back(bench::embreePrisms(toolpath, corners, 8));
     }
@@ -208,7 +212,7 @@ int main(int argc, char** argv) {
     app.add_option("GRID", o.grid, "A level set")->required();
     app.add_option("--gcode", o.gcode, "What it was made from: adds peers that trace beads");
     app.add_option("--peers", o.peers,
-                   "Only these of: brick scalar, brick, vdb, sphere, mesh, beads, prisms (default: all)")
+                   "Only these of: brick scalar, brick, vdb, sphere, mesh, beads, curves, prisms (default: all)")
         ->delimiter(',');
     app.add_option("--sets", o.sets, "Only these rays, by the names that are printed (default: all)");
     app.add_option("--side", o.side, "Pixels of the picture, a multiple of 32 (default 1024)");

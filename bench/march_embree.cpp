@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <ctime>
@@ -18,7 +20,8 @@ namespace {
 
 constexpr std::size_t kPacket = 16;
 
-// Rays in Embree's packets. Which form is best for them, packets of 16 or one by one, is tried out first.
+// Rays in Embree's packets. Which form is best for them, packets of 16, a stream of such packets or one by one, is
+// tried out first.
 class EmbreeRays final : public Prepared {
 public:
     EmbreeRays(RTCScene scene, std::span<const trace::Ray> rays, bool coherent) : scene_(scene), count_(rays.size()) {
@@ -40,42 +43,49 @@ public:
     }
 
     void nearest(std::size_t first, std::size_t last, double* t) override {
-        if (usePackets(
-                nearest_form_, [&] { nearestPackets(first, last, t); }, [&] { nearestSingle(first, last, t); })) {
-            nearestPackets(first, last, t);
-        } else {
-            nearestSingle(first, last, t);
-        }
+        traced(nearest_, [&](Form form) {
+            form == kPackets  ? nearestPackets(first, last, t)
+            : form == kStream ? nearestStream(first, last, t)
+                              : nearestSingle(first, last, t);
+        });
     }
     void any(std::size_t first, std::size_t last, std::uint8_t* blocked) override {
-        if (usePackets(
-                any_form_, [&] { anyPackets(first, last, blocked); }, [&] { anySingle(first, last, blocked); }))
-            anyPackets(first, last, blocked);
-        else
-            anySingle(first, last, blocked);
+        traced(any_, [&](Form form) {
+            form == kPackets  ? anyPackets(first, last, blocked)
+            : form == kStream ? anyStream(first, last, blocked)
+                              : anySingle(first, last, blocked);
+        });
     }
 
 private:
-    // While undecided (the warm-up round) every part is traced both ways and the clock votes.
-    template <typename A, typename B>
-    bool usePackets(std::atomic<std::int64_t>& form, const A& packets, const B& single) {
+    enum Form { kPackets, kStream, kSingle, kForms };
+    // CPU time that each form has taken so far.
+    struct Votes {
+        std::atomic<int> trials{0};
+        std::array<std::atomic<std::int64_t>, kForms> ns{};
+    };
+
+    // While undecided (the warm-up round) every part is traced in all forms and the clock votes.
+    template <typename Trace>
+    static void traced(Votes& votes, const Trace& trace) {
         constexpr int kTrials = 64;
-        const int trial = trials_.load();
-        if (trial < kTrials) {
+        if (votes.trials.load() < kTrials) {
             const auto clock = [] {  // of this thread alone: what others do must not decide
                 timespec t{};
                 clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
                 return std::int64_t{1000000000} * t.tv_sec + t.tv_nsec;
             };
-            const auto a = clock();
-            packets();
-            const auto b = clock();
-            single();
-            const auto c = clock();
-            form += (b - a) - (c - b);
-            ++trials_;
+            for (int form = 0; form < kForms; ++form) {
+                const std::int64_t start = clock();
+                trace(static_cast<Form>(form));
+                votes.ns[static_cast<std::size_t>(form)] += clock() - start;
+            }
+            ++votes.trials;
+            return;
         }
-        return form.load() < 0;
+        const auto best = std::min_element(votes.ns.begin(), votes.ns.end(),
+                                           [](const auto& a, const auto& b) { return a.load() < b.load(); });
+        trace(static_cast<Form>(best - votes.ns.begin()));
     }
 
     RTCIntersectContext context() const {
@@ -99,6 +109,44 @@ private:
                 t[n + k] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
                                                                            : static_cast<double>(packet.ray.tfar[k]);
         }
+    }
+    // The packets from `first` on, in one call; rays past the last have no length.
+    template <typename Packet, typename Init>
+    std::vector<Packet> streamOf(std::size_t first, std::size_t last, const Init& init) const {
+        std::vector<Packet> stream((last - first + kPacket - 1) / kPacket);
+        for (std::size_t n = 0; n < stream.size(); ++n) {
+            RTCRay16& ray = init(stream[n], packets_[first / kPacket + n]);
+            for (std::size_t k = 0; k < kPacket; ++k)
+                if (first + n * kPacket + k >= last) ray.tfar[k] = -1;
+        }
+        return stream;
+    }
+    void nearestStream(std::size_t first, std::size_t last, double* t) const {
+        auto stream = streamOf<RTCRayHit16>(first, last, [](RTCRayHit16& packet, const RTCRay16& rays) -> RTCRay16& {
+            packet.ray = rays;
+            std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+            return packet.ray;
+        });
+        RTCIntersectContext c = context();
+        rtcIntersectNM(scene_, &c, reinterpret_cast<RTCRayHitN*>(stream.data()), kPacket,
+                       static_cast<unsigned>(stream.size()), sizeof(RTCRayHit16));
+        for (std::size_t n = first; n < last; ++n) {
+            const RTCRayHit16& packet = stream[(n - first) / kPacket];
+            const std::size_t k = (n - first) % kPacket;
+            t[n] = packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<double>::infinity()
+                                                                   : static_cast<double>(packet.ray.tfar[k]);
+        }
+    }
+    void anyStream(std::size_t first, std::size_t last, std::uint8_t* blocked) const {
+        auto stream = streamOf<RTCRay16>(first, last, [](RTCRay16& packet, const RTCRay16& rays) -> RTCRay16& {
+            packet = rays;
+            return packet;
+        });
+        RTCIntersectContext c = context();
+        rtcOccludedNM(scene_, &c, reinterpret_cast<RTCRayN*>(stream.data()), kPacket,
+                      static_cast<unsigned>(stream.size()), sizeof(RTCRay16));
+        for (std::size_t n = first; n < last; ++n)
+            blocked[n] = stream[(n - first) / kPacket].tfar[(n - first) % kPacket] < 0 ? 1 : 0;
     }
     void nearestSingle(std::size_t first, std::size_t last, double* t) const {
         RTCIntersectContext c = context();
@@ -149,8 +197,7 @@ private:
     std::size_t count_;
     RTCIntersectContextFlags flags_;
     std::vector<RTCRay16> packets_;
-    std::atomic<int> trials_{0};
-    std::atomic<std::int64_t> nearest_form_{0}, any_form_{0};
+    Votes nearest_, any_;
 };
 
 class EmbreePeer final : public Peer {
@@ -194,6 +241,14 @@ std::unique_ptr<Peer> embreeMesh(const openvdb::FloatGrid& grid) {
 std::unique_ptr<Peer> embreeBeads(const gcode::Toolpath& toolpath, double split) {
     return timed(split > 0 ? fmt::format("embree beads, {:g}:1", split) : "embree beads, whole",
                  [&] { return beadScene(toolpath, split); });
+}
+
+std::unique_ptr<Peer> embreeRound(const gcode::Toolpath& toolpath) {
+    return timed("embree round curves", [&] { return roundScene(toolpath); });
+}
+
+std::unique_ptr<Peer> embreeRibbons(const gcode::Toolpath& toolpath) {
+    return timed("embree flat curves", [&] { return ribbonScene(toolpath); });
 }
 
 std::unique_ptr<Peer> embreePrisms(const gcode::Toolpath& toolpath, int corners, double split) {
