@@ -98,7 +98,8 @@ void addInputOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("FILE.vdb|FILE.gcode|SCENE.json");
     app.add_option(
            "-o,--output", o.output,
-           "A tone-mapped .png or a linear .exr; - is a PNG on standard output, -.exr an EXR; with --each a folder")
+           "A tone-mapped .png, .jpg or .webp, or a linear .exr; - is a PNG on standard output, -.exr an EXR; with "
+           "--each a folder")
         ->type_name("FILE|DIR");
     app.add_flag("--each", o.each, "Of several inputs, a picture each with a camera of its own, not a series");
     app.add_option("--grid", o.grid, "Which grid (default: surface, or the only level set)")->type_name("NAME");
@@ -137,14 +138,14 @@ void addPictureOptions(CLI::App& app, TraceCommand& o) {
         ->group(picture);
     app.add_flag_callback(
            "--denoise", [&o] { o.denoise = true; },
-           "Takes noise out of the finished picture, guided by its geometry (the default for .png)")
+           "Takes noise out of the finished picture, guided by its geometry (the default for all but .exr)")
         ->group(picture);
     app.add_flag_callback(
            "--no-denoise", [&o] { o.denoise = false; }, "The mean of the samples as it is (the default for .exr)")
         ->group(picture);
     app.add_option("--seed", o.render.seed, "Another seed, another noise")->type_name("N")->group(picture);
     app.add_option("--crop", o.crop, "Only these pixels of the same picture")->type_name("X0,Y0,X1,Y1")->group(picture);
-    app.add_option("--exposure", o.tone.exposure, "Stops, for .png (default: found from the light)")
+    app.add_option("--exposure", o.tone.exposure, "Stops, for pictures to look at (default: found from the light)")
         ->each([&o](const std::string&) { o.exposure_given = true; })
         ->type_name("EV")
         ->group(picture);
@@ -231,7 +232,7 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
               {"tool", "feature", "layer", "object", "speed", "width", "flow", "overfill", "time", "color"})
         ->type_name("NAME")
         ->group(kLight);
-    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the .png")->group(kLight);
+    app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the picture")->group(kLight);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
         ->check(oneOf({"geometric", "smooth"}))
         ->type_name("NAME")

@@ -86,8 +86,8 @@ int main(int argc, char** argv) {
         "vdbmerge");
     MergeCommand command;
     app.add_option("OUT", command.output,
-                   "The picture, of the ending that vdbtrace -o had: .png, denoised and exposed as one process would, "
-                   "or .exr; or the level set, a .vdb. The bytes are those of one process")
+                   "The picture, of the ending that vdbtrace -o had: .png, .jpg or .webp, denoised and exposed as one "
+                   "process would, or .exr; or the level set, a .vdb. The bytes are those of one process")
         ->required()
         ->type_name("FILE");
     app.add_option("PART", command.parts, "All parts, each once, in any order")

@@ -41,6 +41,7 @@ bool isLevelSet(const std::string& path) {
 // What is asked of the pictures fits together, and what is asked of G-code has some. Before the work.
 void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
     o.linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
+    shade::requirePictureSize(o.output, o.render.width, o.render.height);
     if (!o.render.aovs.empty() && !o.linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
     if (isStandardOutput(o.output) && tools::pictures(o) > 1)
@@ -52,7 +53,8 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
         throw UsageError("--progress-series is of one print alone");
     if (!o.bricks.picture.empty() && !o.bricks.picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.bricks.picture));
-    if (o.legend && o.linear) throw UsageError(fmt::format("--legend is drawn into a .png, not {}", o.output));
+    if (o.legend && o.linear)
+        throw UsageError(fmt::format("--legend is drawn into pictures to look at, e.g. a .png, not {}", o.output));
     if (given_of_prints.empty()) return;
     if (o.objects.empty()) {
         for (const std::string& input : o.inputs)

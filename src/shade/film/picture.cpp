@@ -3,35 +3,80 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "shade/film/exr_writer.h"
+#include "shade/film/jpeg_writer.h"
 #include "shade/film/png_writer.h"
+#include "shade/film/webp_writer.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
 
-/// Whether the name says EXR; throws if it says neither kind.
-bool isExr(const std::filesystem::path& path) {
-    if (path == "-") return false;
-    const std::string ending = lowerCase(path.extension().string());
-    if (ending == ".exr") return true;
-    if (ending == ".png") return false;
-    throw UsageError(fmt::format("{}: the name must end in .png (to look at) or .exr (linear)", path.string()));
+// No loss that can be seen at the size of the screen.
+constexpr int kJpegQuality = 92;
+constexpr int kWebpQuality = 90;
+
+void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
+    errno = 0;
+    std::ofstream out(path, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out)
+        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
+                                      errno != 0 ? std::strerror(errno) : "unknown error"));
 }
 
 }  // namespace
 
-PictureFile::PictureFile(const std::filesystem::path& path) : exr_(isExr(path)), file_(path) {}
+PictureKind pictureKindOf(const std::filesystem::path& path) {
+    if (path == "-") return PictureKind::png;
+    const std::string ending = lowerCase(path.extension().string());
+    if (ending == ".exr") return PictureKind::exr;
+    if (ending == ".png") return PictureKind::png;
+    if (ending == ".jpg" || ending == ".jpeg") return PictureKind::jpeg;
+    if (ending == ".webp") return PictureKind::webp;
+    throw UsageError(
+        fmt::format("{}: the name must end in .png, .jpg or .webp (to look at), or .exr (linear)", path.string()));
+}
+
+void requirePictureSize(const std::filesystem::path& path, int width, int height) {
+    const PictureKind kind = pictureKindOf(path);
+    const int most = kind == PictureKind::jpeg   ? kJpegMostSide
+                     : kind == PictureKind::webp ? kWebpMostSide
+                                                 : std::numeric_limits<int>::max();
+    if (std::max(width, height) > most)
+        throw UsageError(fmt::format("{}: pictures of this kind have at most {} pixels a side, not {} x {}; use .png",
+                                     path.string(), most, width, height));
+}
+
+PictureFile::PictureFile(const std::filesystem::path& path) : kind_(pictureKindOf(path)), file_(path) {}
 
 void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone, const Legend* legend) {
     file_.write([&](const std::filesystem::path& to) {
-        if (exr_) {
+        const int width = film.width();
+        const int height = film.height();
+        if (linear()) {
             writeExr(to, film, metadata);
             return;
         }
         std::vector<std::uint8_t> rgb = toDisplay(film, tone);
-        if (legend) draw(*legend, film.width(), film.height(), rgb);
-        writePng(to, film.width(), film.height(), rgb, metadata);
+        if (legend) draw(*legend, width, height, rgb);
+        switch (kind_) {
+            case PictureKind::jpeg:
+                return writeBytes(to, encodeJpeg(width, height, rgb, kJpegQuality, metadata));
+            case PictureKind::webp:
+                return writeBytes(to, encodeWebp(width, height, rgb, kWebpQuality));
+            case PictureKind::png:
+            case PictureKind::exr:
+                return writePng(to, width, height, rgb, metadata);
+        }
     });
 }
 

@@ -1,4 +1,4 @@
-// Writes a film as a file: a viewable PNG or a linear EXR, by the name's ending.
+// Writes a film as a file, of a kind that the name's ending says: pictures to look at, or a linear EXR.
 #pragma once
 
 #include "base/atomic_file.h"
@@ -6,6 +6,7 @@
 #include "shade/film/legend.h"
 #include "shade/film/tonemap.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -13,26 +14,34 @@
 
 namespace stratum::shade {
 
-/// Keyword -> text, written as PNG tEXt chunks or EXR string attributes.
+/// Keyword -> text, written as PNG tEXt chunks, comments of a JPEG or EXR string attributes; not in WebP.
 /// Keywords: 1 to 79 printable Latin-1 characters (PNG's rule).
 using Metadata = std::map<std::string, std::string>;
+
+enum class PictureKind : std::uint8_t { exr, png, jpeg, webp };
+
+/// By its ending, .exr, .png, .jpg or .jpeg, .webp; "-" is a PNG. Throws UsageError for others.
+PictureKind pictureKindOf(const std::filesystem::path& path);
+
+/// Throws UsageError if the kind has no pictures so large.
+void requirePictureSize(const std::filesystem::path& path, int width, int height);
 
 /// A picture file to be written. Construct it before rendering, so that a bad name fails at once.
 class PictureFile {
 public:
-    /// Standard output: "-" (PNG), "-.exr". Throws UsageError for other names than *.png and *.exr, and OutputError.
+    /// Standard output: "-" (PNG), "-.exr" and so on. Throws UsageError for names of no kind, and OutputError.
     explicit PictureFile(const std::filesystem::path& path);
     /// Whether it keeps linear values and layers: an EXR.
-    bool linear() const { return exr_; }
-    /// Writes the picture and commits the file. `tone` is for PNG only. Throws OutputError.
-    /// @param legend  drawn into a PNG's upper left corner, if given
+    bool linear() const { return kind_ == PictureKind::exr; }
+    /// Writes the picture and commits the file. `tone` is for pictures to look at. Throws OutputError.
+    /// @param legend  drawn into the upper left corner of such a picture, if given
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
                const Legend* legend = nullptr);
     /// Commits a file that `writer` writes under the name that it is given. Throws what it throws, and OutputError.
     void write(const std::function<void(const std::filesystem::path& to)>& writer) { file_.write(writer); }
 
 private:
-    bool exr_;
+    PictureKind kind_;
     AtomicFile file_;
 };
 

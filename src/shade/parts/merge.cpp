@@ -55,10 +55,12 @@ MergedPicture mergeParts(const std::filesystem::path& output, const std::vector<
     PictureFile picture(output);
     const std::vector<PartFile> parts = readParts(paths);
     const Part& any = parts.front().part;
+    requirePictureSize(output, any.whole.width, any.whole.height);
     if (picture.linear() != any.whole.linear)
         throw UsageError(fmt::format(
             "{}: the parts are of {}; give the merge such a name, or trace them again with -o {}", output.string(),
-            any.whole.linear ? "an .exr, linear" : "a .png, with its exposure and denoising", output.string()));
+            any.whole.linear ? "an .exr, linear" : "a picture to look at, e.g. a .png, with its exposure and denoising",
+            output.string()));
     Film film = assemble(parts);
     if (any.whole.denoised) {
         denoise(film);

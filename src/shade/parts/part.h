@@ -25,9 +25,9 @@ struct PartWhole {
     int width = 0, height = 0;
     PixelBox region;               ///< of all parts together: the frame, or a crop with the margin of the denoiser
     std::optional<PixelBox> crop;  ///< of the finished picture
-    bool linear = false;           ///< it is an .exr, else a .png
+    bool linear = false;           ///< it is an .exr, else a picture to look at
     bool denoised = false;
-    double exposure = 0.0;  ///< stops, of a .png
+    double exposure = 0.0;  ///< stops, of a picture to look at
     std::optional<Legend> legend;
     int shards = 1;
     int spp = 0;  ///< samples a pixel that the parts share; 0 if each has all samples of its piece

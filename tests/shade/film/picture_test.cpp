@@ -25,7 +25,21 @@ TEST(PictureFile, KindIsTheNamesEnding) {
     char magic[4] = {};
     std::ifstream(folder / "a.EXR", std::ios::binary).read(magic, 4);
     EXPECT_EQ(std::string(magic, 4), "v/1\x01");
-    for (const char* name : {"a.jpg", "a", "png"}) EXPECT_THROW(shade::PictureFile(folder / name), UsageError);
+    shade::PictureFile(folder / "a.jpeg").write(small(), {{"Software", "test"}});
+    shade::PictureFile(folder / "a.webp").write(small(), {{"Software", "test"}});
+    std::ifstream(folder / "a.jpeg", std::ios::binary).read(magic, 4);
+    EXPECT_EQ(std::string(magic, 3), "\xff\xd8\xff");
+    std::ifstream(folder / "a.webp", std::ios::binary).read(magic, 4);
+    EXPECT_EQ(std::string(magic, 4), "RIFF");
+    for (const char* name : {"a.gif", "a", "png"}) EXPECT_THROW(shade::PictureFile(folder / name), UsageError);
+}
+
+TEST(PictureFile, SizesThatAKindDoesNotHaveAreRefused) {
+    EXPECT_NO_THROW(shade::requirePictureSize("a.png", 1000000, 1));
+    EXPECT_NO_THROW(shade::requirePictureSize("a.jpg", 65500, 65500));
+    EXPECT_THROW(shade::requirePictureSize("a.jpg", 1, 65501), UsageError);
+    EXPECT_NO_THROW(shade::requirePictureSize("a.webp", 16383, 1));
+    EXPECT_THROW(shade::requirePictureSize("a.webp", 16384, 1), UsageError);
 }
 
 TEST(PictureFile, AppearsWholeOrNotAtAll) {
