@@ -18,7 +18,7 @@ install_packages() {
 }
 
 # What the tools are built with.
-BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
+BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev libdeflate-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
     libhwy-dev zlib1g-dev libzip-dev libstb-dev pkg-config)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
