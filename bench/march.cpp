@@ -37,7 +37,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::string grid, gcode, json;
-    std::vector<std::string> peers;
+    std::vector<std::string> peers, sets;
     int side = 1024, rounds = 7, threads = 2;
 };
 
@@ -151,6 +151,7 @@ void run(const Options& o) {
                 {"brick_cpu_seconds", quanta_cpu},
                 {"brick_floats_cpu_seconds", brick_cpu}};
     for (const bench::RaySet& set : sets) {
+        if (!o.sets.empty() && std::find(o.sets.begin(), o.sets.end(), set.name) == o.sets.end()) continue;
         std::vector<std::unique_ptr<bench::Prepared>> prepared;
         for (const auto& peer : peers) prepared.push_back(peer->prepare(set.rays, set.coherent));
         std::vector<Answers> answers(peers.size());
@@ -209,6 +210,7 @@ int main(int argc, char** argv) {
     app.add_option("--peers", o.peers,
                    "Only these of: brick scalar, brick, vdb, sphere, mesh, beads, prisms (default: all)")
         ->delimiter(',');
+    app.add_option("--sets", o.sets, "Only these rays, by the names that are printed (default: all)");
     app.add_option("--side", o.side, "Pixels of the picture, a multiple of 32 (default 1024)");
     app.add_option("--rounds", o.rounds, "Timed rounds (default 7)");
     app.add_option("--threads", o.threads, "Threads (default 2)");

@@ -15,6 +15,7 @@ using trace::Hit;
 using trace::Ray;
 
 constexpr int kTile = 32;
+constexpr int kBlock = 4;  // pixels; packets of 16 rays are most alike in squares
 constexpr double kShort = 5;  // mm
 
 std::vector<Ray> primaryRays(const trace::Box& box, int side) {
@@ -38,12 +39,15 @@ std::vector<Ray> primaryRays(const trace::Box& box, int side) {
     std::vector<Ray> rays;
     for (int ty = 0; ty < side; ty += kTile)
         for (int tx = 0; tx < side; tx += kTile)
-            for (int y = ty; y < ty + kTile; ++y)
-                for (int x = tx; x < tx + kTile; ++x) {
-                    const double u = half * (2 * (x + 0.5) / side - 1);
-                    const double v = half * (1 - 2 * (y + 0.5) / side);
-                    rays.push_back({eye, glm::normalize(forward + u * right + v * up)});
-                }
+            for (int n = 0; n < kTile * kTile; ++n) {
+                const int block = n / (kBlock * kBlock);
+                const int in_block = n % (kBlock * kBlock);
+                const int x = tx + block % (kTile / kBlock) * kBlock + in_block % kBlock;
+                const int y = ty + block / (kTile / kBlock) * kBlock + in_block / kBlock;
+                const double u = half * (2 * (x + 0.5) / side - 1);
+                const double v = half * (1 - 2 * (y + 0.5) / side);
+                rays.push_back({eye, glm::normalize(forward + u * right + v * up)});
+            }
     return rays;
 }
 

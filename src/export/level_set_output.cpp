@@ -72,16 +72,17 @@ WrittenGrid LevelSetOutput::finish() {
     openvdb::io::setDataCompression(topology, format_.compression);
     nodes_.write(topology, background, format_.half);
     topology.writeOut();
-    writeHead(file_, archive_, *grid_, grid_->getName(), places_, list_);
-    file_.write(0, archive_.header(1, identity()));
+    const std::string listed = list_.bytes();
+    writeHead(file_, archive_, *grid_, grid_->getName(), places_, listed);
+    file_.write(0, archive_.header(1, identity(listed)));
     file_.finish(places_.end);
     output_.commit();
     return {statistics_, nodes_.leafCount()};
 }
 
 // That of a part is a checksum of all that stands before its leaves.
-std::string LevelSetOutput::identity() const {
-    if (!part_) return identityOf(*grid_, list_);
+std::string LevelSetOutput::identity(std::string_view listed) const {
+    if (!part_) return identityOf(*grid_, listed);
     const MappedFile written(output_.temporary());
     return identityOfPart(written.bytes().substr(places_.head, places_.leaves - places_.head));
 }

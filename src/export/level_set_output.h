@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace stratum::exporter {
 
@@ -46,7 +47,7 @@ public:
     WrittenGrid finish();
 
 private:
-    std::string identity() const;
+    std::string identity(std::string_view listed) const;
 
     AtomicFile output_;
     PositionedFile file_;

@@ -126,23 +126,23 @@ std::size_t headBytes(const VdbArchive& archive, const GridBase& grid, const std
 }
 
 void writeHead(PositionedFile& file, const VdbArchive& archive, const GridBase& grid, const std::string& name,
-               const GridPlaces& places, const LeafList& list) {
-    const std::string bytes = list.bytes();
-    const std::size_t fixed = headBytes(archive, grid, name, bytes.empty() ? 0 : 1) - (bytes.empty() ? 0 : 1);
+               const GridPlaces& places, std::string_view list) {
+    const std::size_t listed = list.empty() ? 0 : 1;
+    const std::size_t fixed = headBytes(archive, grid, name, listed) - listed;
     const std::uint64_t room = places.topology - places.head - fixed;
     if (room > std::numeric_limits<std::uint32_t>::max())
         throw OutputError("a grid of more than four thousand million bytes of leaf list can't be written");
     const HeadParts parts = headAround(archive.formatOf(grid), grid, name, places, static_cast<std::uint32_t>(room));
     file.write(places.head, parts.before);
-    file.write(places.head + parts.before.size(), bytes);
+    file.write(places.head + parts.before.size(), list);
     file.write(places.topology - parts.after.size(), parts.after);
 }
 
-std::string identityOf(const GridBase& grid, const LeafList& list) {
+std::string identityOf(const GridBase& grid, std::string_view list) {
     std::ostringstream out(std::ios::binary);
     grid.writeMeta(out);
     grid.writeTransform(out);
-    return out.str() + list.bytes();
+    return out.str().append(list);
 }
 
 void insertStatistics(GridBase& grid, const GridStatistics& statistics, const LeafFormat& format) {

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::exporter {
@@ -61,12 +62,12 @@ struct GridPlaces {
 std::size_t headBytes(const VdbArchive& archive, const openvdb::GridBase& grid, const std::string& name,
                       std::size_t list_bytes);
 
-/// Writes a head between its places; it must fit.
+/// Writes a head between its places; it must fit. `list`: of LeafList::bytes().
 void writeHead(PositionedFile& file, const VdbArchive& archive, const openvdb::GridBase& grid, const std::string& name,
-               const GridPlaces& places, const LeafList& list);
+               const GridPlaces& places, std::string_view list);
 
-/// What distinguishes a grid's file from others, for VdbArchive::header().
-std::string identityOf(const openvdb::GridBase& grid, const LeafList& list);
+/// What distinguishes a grid's file from others, for VdbArchive::header(). `list`: of LeafList::bytes().
+std::string identityOf(const openvdb::GridBase& grid, std::string_view list);
 
 /// The metadata that production loaders look for: file_voxel_count and the others of GridBase::addStatsMetadata(), and
 /// file_compression.

@@ -80,9 +80,11 @@ std::uint64_t writeGrid(const VdbArchive& archive, openvdb::GridBase& grid, Posi
     const LeafFormat format = archive.formatOf(grid);
     const auto described = grid.copyGrid();        // shares the tree
     described->setTransform(grid.transformPtr());  // copies of transforms are simplified
-    described->addStatsMetadata();
-    described->insertMeta(openvdb::GridBase::META_FILE_COMPRESSION,
-                          openvdb::StringMetadata(openvdb::io::compressionToString(format.compression)));
+    insertStatistics(*described,
+                     {.active_box = grid.evalActiveVoxelBoundingBox(),
+                      .active_voxels = grid.activeVoxelCount(),
+                      .memory_bytes = grid.memUsage()},
+                     format);
     GridPlaces places;
     places.head = at;
     LeafList list(format);
@@ -101,8 +103,9 @@ std::uint64_t writeGrid(const VdbArchive& archive, openvdb::GridBase& grid, Posi
         throw OutputError(
             fmt::format("the grid {} has values of a type ({}) that can't be written; numbers and vectors can",
                         grid.getName(), grid.valueType()));
-    writeHead(file, archive, *described, grid.getName(), places, list);
-    identity += identityOf(*described, list);
+    const std::string listed = list.bytes();
+    writeHead(file, archive, *described, grid.getName(), places, listed);
+    identity += identityOf(*described, listed);
     return places.end;
 }
 
@@ -151,8 +154,6 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);
     if (provenance.deposit.settles()) number("largest_slope", voxelize::kSettledSlope);
-    // The file_* statistics that production loaders look for, e.g. file_mem_bytes.
-    grid.addStatsMetadata();
 }
 
 std::uint32_t compressionFlags(Compression compression) {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "base/stopwatch.h"
+#include "base/vdb_magic.h"
 #include "deposit/read_print.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/toolpath/warning_log.h"

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/vdb_magic.h"
 #include "march/file/grid_axes.h"
 
 #include <fmt/format.h>

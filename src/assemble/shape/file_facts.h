@@ -7,12 +7,8 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace stratum::assemble {
-
-/// How a .vdb begins.
-inline constexpr std::string_view kVdbMagic = " BDV";
 
 /// Whether a file holds an OpenVDB grid, by its first bytes; standard input ("-") doesn't. Throws InputError for one
 /// that can't be read or is empty.

@@ -4,6 +4,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/vdb_magic.h"
 #include "export/parts/checksum.h"
 #include "export/parts/view_stream.h"
 
@@ -47,8 +48,7 @@ GridPlaces placesIn(std::string_view bytes) {
 }
 
 bool saysPart(std::string_view bytes) {
-    constexpr std::string_view kMagic(" BDV\0\0\0\0", 8);
-    return bytes.starts_with(kMagic) && bytes.find("shard_scene") != std::string_view::npos;
+    return bytes.starts_with(kVdbMagic) && bytes.find("shard_scene") != std::string_view::npos;
 }
 
 void readGrid(std::string_view bytes, PartFile& file) {

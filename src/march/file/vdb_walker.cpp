@@ -1,6 +1,7 @@
 #include "march/file/vdb_walker.h"
 
 #include "base/error.h"
+#include "base/vdb_magic.h"
 
 #include <blosc.h>
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 namespace stratum::march {
 namespace {
 
-constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kOldest = 222, kNewest = 224;  // formats; 222 is of 2013
 constexpr std::int32_t kFarthest = 1 << 30;            // voxels: farther ones have neighbours that no int can count
 
@@ -101,7 +101,7 @@ std::string_view checkTransform(VdbCursor& cursor) {
 // --- the file -------------------------------------------------------------------------------------------------------
 
 std::uint32_t checkHeader(VdbCursor& cursor) {
-    if (cursor.read<std::int64_t>() != kMagic) cursor.fail("not a VDB file");
+    if (cursor.take(kVdbMagic.size()) != kVdbMagic) cursor.fail("not a VDB file");
     const auto version = cursor.read<std::uint32_t>();
     if (version < kOldest || version > kNewest)
         throw InputError(
