@@ -29,8 +29,30 @@ struct Parts {
     ColumnRange columns;
 };
 
+// The heights at which beads matter: as far as a layer's band reaches, and slightly farther, for welds to others.
+class BeadHeights {
+public:
+    BeadHeights(const LayerStack& stack, const Lattice& lattice) : stack_(stack), band_(lattice.background()) {
+        for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight());
+    }
+    HeightRange of(std::size_t rank) const {
+        if (rank >= stack_.first_direct) {
+            const Extent& extent = stack_.extentOf(static_cast<std::uint32_t>(rank));
+            return {extent.z_min - band_, extent.z_max + band_};
+        }
+        const double center = stack_.layers[stack_.layer[rank]].center_z;
+        const double reach = thickest_ * (1 + 2 * kWeldGap) + band_;
+        return {center - reach, center + reach};
+    }
+
+private:
+    const LayerStack& stack_;
+    const double band_;
+    double thickest_ = 0;
+};
+
 Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-                   const Footprints& footprints, const PlanTiles* only) {
+                   const Footprints& footprints, const BeadHeights& heights, const PlanTiles* only) {
     const std::size_t beads = stack.beads.size();
     Parts parts;
     parts.count = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
@@ -44,7 +66,7 @@ Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                 const double limit = footprints.limit(bead);
                 const ColumnRange range = footprints.range(bead, limit);
                 if (only != nullptr) {
-                    if (range.empty() || !only->meet(range)) continue;
+                    if (range.empty() || !only->meet(range, heights.of(rank))) continue;
                     parts.own[p].push_back(static_cast<std::uint32_t>(rank));
                 }
                 bounds[p] += mostColumns(toolpath, bead, limit, lattice);
@@ -76,7 +98,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     if (stack.beads.empty()) return;
     const Footprints footprints = columnFootprints(toolpath, lattice);
     const std::size_t beads = stack.beads.size();
-    const Parts found = boundEntries(toolpath, stack, lattice, footprints, only);
+    const BeadHeights heights(stack, lattice);
+    const Parts found = boundEntries(toolpath, stack, lattice, footprints, heights, only);
     const ColumnRange& all = found.columns;
     const double bound = found.bound;
     std::size_t parts = found.count;
@@ -104,6 +127,7 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     // several of them.
     const auto forEachEntry = [&](std::size_t p, const auto& visit) {
         const auto columnsOf = [&](std::size_t rank) {
+            const HeightRange height = only == nullptr ? HeightRange{} : heights.of(rank);
             const auto visitRow = [&](int i0, int i1, int j) {
                 for (std::size_t c = columnIndex(i0, j); i0 <= i1; ++i0, ++c) visit(rank, c);
             };
@@ -111,7 +135,7 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
                 if (only == nullptr)
                     visitRow(i0, i1, j);
                 else
-                    only->forEachIn(i0, i1, j, visitRow);
+                    only->forEachIn(i0, i1, j, height, visitRow);
             });
         };
         if (only == nullptr)

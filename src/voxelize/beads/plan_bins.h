@@ -33,8 +33,8 @@ class PlanBins {
 public:
     /// Bins every bead whose band reaches a column. Parallel; the result does not depend on the number of threads.
     /// Throws UsageError if that needs more than `memory_limit` bytes.
-    /// @param only  columns of other tiles are left empty, and beads that reach none of these cost next to nothing. Its
-    ///              rectangle is that of all beads
+    /// @param only  columns of other tiles are left empty, and so are others of beads that are above or below what is
+    ///              made there; such beads cost next to nothing. Its rectangle is that of all beads
     PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, std::size_t memory_limit,
              const PlanTiles* only = nullptr);
 

@@ -64,8 +64,11 @@ void addBead(const gcode::Toolpath& toolpath, const Footprints& footprints, cons
     constexpr double kMostPieces = 1e4;
     const double pieces = std::clamp(std::ceil(2 * length / tile), 1.0, kMostPieces);
     const auto weight = static_cast<std::uint64_t>(std::min(entries / pieces, 1e12));
-    const double z = 0.5 * (bead.z0 + bead.z1);
-    const int slab = floorDivide(leavesAround(lattice, z, z).second, kSlabLeaves);
+    // In all slabs that the bead reaches, e.g. the one below the bed: each has leaves of it.
+    const LeafRange leaves = leavesAround(lattice, std::min<double>(bead.z0, bead.z1) - toolpath.runOf(bead).height,
+                                          std::max<double>(bead.z0, bead.z1));
+    const int first_slab = floorDivide(leaves.first, kSlabLeaves);
+    const int last_slab = floorDivide(leaves.second, kSlabLeaves);
     for (double n = 0.5; n < pieces; n += 1) {
         double x = bead.x0 + n / pieces * dx;
         double y = bead.y0 + n / pieces * dy;
@@ -77,7 +80,7 @@ void addBead(const gcode::Toolpath& toolpath, const Footprints& footprints, cons
             x = arc->center_x + cosine * from_x - sine * from_y;
             y = arc->center_y + sine * from_x + cosine * from_y;
         }
-        weights.add(x / tile, y / tile, slab, weight);
+        for (int slab = first_slab; slab <= last_slab; ++slab) weights.add(x / tile, y / tile, slab, weight);
     }
 }
 
@@ -111,6 +114,12 @@ BlockWeights weigh(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     return std::move(weights.front());
 }
 
+// Of its samples, and a voxel more against rounding.
+HeightRange heightsOf(const LeafBlock& block, const Lattice& lattice) {
+    const auto height = [&](double k) { return lattice.origin_z + k * lattice.voxel_size; };
+    return {height(block.heights.first * double{kLeafDim} - 1), height((block.heights.second + 1) * double{kLeafDim})};
+}
+
 }  // namespace
 
 LeafShare shareOf(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
@@ -138,7 +147,7 @@ LeafShare shareOf(const gcode::Toolpath& toolpath, const LayerStack& stack, cons
         before += weight;
         if (owner < index) share.blocks.first = number + 1;
         if (owner <= index) share.blocks.end = number + 1;
-        if (owner == index) share.tiles.choose(block.x, block.y);
+        if (owner == index) share.tiles.choose(block.x, block.y, heightsOf(block, lattice));
     });
     return share;
 }

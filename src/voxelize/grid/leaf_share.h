@@ -20,7 +20,7 @@ struct BlockRange {
 
 struct LeafShare {
     BlockRange blocks;
-    PlanTiles tiles;  ///< of these blocks, for PlanBins
+    PlanTiles tiles;  ///< of these blocks, with their heights, for PlanBins
 };
 
 /// The shares of all shards are all blocks, in their order. Each has about the same number of entries of PlanBins, by a
