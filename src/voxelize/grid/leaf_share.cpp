@@ -23,10 +23,9 @@ public:
           last_x_(PlanTiles::tileOf(columns.i1)),
           last_y_(PlanTiles::tileOf(columns.j1)),
           last_slab_(floorDivide(heights.second, kSlabLeaves)),
-          count_y_(last_y_ - first_y_ + 1),
-          slabs_(last_slab_ - first_slab_ + 1),
-          weights_(static_cast<std::size_t>(last_x_ - first_x_ + 1) * static_cast<std::size_t>(count_y_) *
-                   static_cast<std::size_t>(slabs_)) {}
+          count_y_(static_cast<std::size_t>(last_y_ - first_y_) + 1),
+          slabs_(static_cast<std::size_t>(last_slab_ - first_slab_) + 1),
+          weights_((static_cast<std::size_t>(last_x_ - first_x_) + 1) * count_y_ * slabs_) {}
 
     std::uint64_t at(int x, int y, int slab) const { return weights_[placeOf(x, y, slab)]; }
     /// Places outside count as the nearest block.
@@ -43,11 +42,12 @@ private:
         return static_cast<int>(std::clamp(std::floor(tile), static_cast<double>(first), static_cast<double>(last)));
     }
     std::size_t placeOf(int x, int y, int slab) const {
-        return static_cast<std::size_t>(((x - first_x_) * count_y_ + (y - first_y_)) * slabs_ + (slab - first_slab_));
+        const auto from = [](int at, int first) { return static_cast<std::size_t>(at - first); };
+        return (from(x, first_x_) * count_y_ + from(y, first_y_)) * slabs_ + from(slab, first_slab_);
     }
 
     int first_x_, first_y_, first_slab_, last_x_, last_y_, last_slab_;
-    int count_y_, slabs_;
+    std::size_t count_y_, slabs_;
     std::vector<std::uint64_t> weights_;
 };
 
@@ -69,12 +69,13 @@ void addBead(const gcode::Toolpath& toolpath, const Footprints& footprints, cons
                                           std::max<double>(bead.z0, bead.z1));
     const int first_slab = floorDivide(leaves.first, kSlabLeaves);
     const int last_slab = floorDivide(leaves.second, kSlabLeaves);
-    for (double n = 0.5; n < pieces; n += 1) {
-        double x = bead.x0 + n / pieces * dx;
-        double y = bead.y0 + n / pieces * dy;
+    for (int n = 0; n < static_cast<int>(pieces); ++n) {
+        const double middle = (n + 0.5) / pieces;
+        double x = bead.x0 + middle * dx;
+        double y = bead.y0 + middle * dy;
         if (arc != nullptr) {
-            const double cosine = std::cos(n / pieces * arc->sweep);
-            const double sine = std::sin(n / pieces * arc->sweep);
+            const double cosine = std::cos(middle * arc->sweep);
+            const double sine = std::sin(middle * arc->sweep);
             const double from_x = bead.x0 - arc->center_x;
             const double from_y = bead.y0 - arc->center_y;
             x = arc->center_x + cosine * from_x - sine * from_y;
