@@ -15,13 +15,15 @@ takes, whatever else this machine does.
 
 The model: n nodes take  again + longest * work / n + merge.  `again` is what each shard does anew: it starts, loads,
 and makes bricks that another one makes too. `longest` is the longest share of the work by the mean one. All are those of
-the largest number of shards that was measured. More nodes than pieces (blocks, tiles, samples, pictures) are of no use.
+the largest number of shards that was measured; up to that number `longest` grows from 1 with the logarithm of n. More
+nodes than pieces (blocks, tiles, samples, pictures) are of no use.
 """
 
 import argparse
 import datetime
 import glob
 import json
+import math
 import os
 import platform
 import shlex
@@ -150,7 +152,8 @@ def modelled(case, nodes):
     if nodes == 1:
         return p["again"] + p["work"] + (p["merge"] if case["kind"] in ("picture", "samples") else 0.0)
     pieces = min(nodes, case["pieces"] or nodes)
-    return p["again"] + min(p["uneven"] / pieces, 1.0) * p["work"] + p["merge"]
+    uneven = 1 + (p["uneven"] - 1) * min(math.log(pieces) / math.log(p["count"]), 1.0)
+    return p["again"] + uneven / pieces * p["work"] + p["merge"]
 
 
 def spread(values, form="{:.2f}"):
@@ -190,7 +193,7 @@ def plot(out, cases):
     import matplotlib.pyplot as plt
     matplotlib.rcParams["svg.hashsalt"] = "stratum"
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    nodes = [10 ** (k / 30) for k in range(91)]
+    nodes = [1, *(2 * 500 ** (k / 80) for k in range(81))]
     for n, case in enumerate(cases):
         axis.plot(nodes, [modelled(case, x) for x in nodes], color=f"C{n}", label=case["name"])
         found = {1: statistics.median(case["one"])}
@@ -204,7 +207,7 @@ def plot(out, cases):
     axis.grid(True, which="both", lw=0.3)
     axis.legend(fontsize=8)
     figure.tight_layout()
-    figure.savefig(out, metadata={"Date": None})
+    figure.savefig(out, metadata={"Date": None} if out.endswith(".svg") else None)
 
 
 def main():
