@@ -118,7 +118,9 @@ public:
                 if (o_.usda) files_of_run_.writes(usdaOf(job.path).string(), "--usda");
             }
         for (const Job& job : jobs) make(voxelizer, job);
-        return report(voxelizer, threads);
+        const double total = total_.lap();
+        say(o_.common, fmt::format("  done in {:.2f} s", total));
+        return o_.common.stats.empty() ? Json() : report(voxelizer, threads, total);
     }
 
 private:
@@ -151,6 +153,8 @@ private:
 
     void tell() const {
         for (const gcode::Warning& warning : toolpath_.warnings) warn(gcode::describe(warning, file_.name()));
+        if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
+        if (o_.common.quiet) return;
         say(o_.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3",
                                    file_.name(), toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer,
                                    toolpath_.layer_count, toolpath_.beads.size(), toolpath_.arcs.size(),
@@ -158,7 +162,6 @@ private:
         if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, toolpath_.stated));
         if (o_.summary && flow_) say(o_.common, flowLine(*flow_));
         if (o_.summary && sag_) say(o_.common, sagLine(*sag_));
-        if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     }
 
     // Beads, grids and the lattice.
@@ -208,6 +211,7 @@ private:
         options.placement.up_y = o_.up == "y";
         options.interior = interior_;
         options.in_memory = !streams();
+        if (part_) options.shard = part_->shard;
         if (showsProgress(o_.common.quiet))
             options.progress = [this](double fraction) {
                 if (bar_) bar_->show(fraction);
@@ -235,13 +239,12 @@ private:
         exporter::describe(*empty, lattice_, provenance_);
         bar_.emplace("voxelizing", o_.common.quiet);
         const voxelize::LeafBounds bounds = voxelizer.leafBounds();
-        voxelize::LeafShare share{{}, bounds};
         if (part_) {
-            part_->print = bounds;
-            share = voxelizer.shareOf(bounds, part_->shard);
+            part_->blocks = voxelizer.blocks();
+            part_->print = bounds.print;
         }
-        exporter::VdbStream file(empty, job.path, o_.file, share.bounds, part_);
-        const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks(), share.blocks);
+        exporter::VdbStream file(empty, job.path, o_.file, bounds, part_);
+        const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks());
         bar_.reset();
         seconds_.voxelize += watch_.lap();
         GridNumbers numbers;
@@ -399,12 +402,10 @@ private:
         return skipped;
     }
 
-    Json report(const voxelize::Voxelizer& voxelizer, int threads) {
+    Json report(const voxelize::Voxelizer& voxelizer, int threads, double total) {
         const Json left_out = skipped(voxelizer.report());
         Json toolpath_report = describeToolpath(toolpath_);
         toolpath_report["selected_bbox_mm"] = {bounds_.min, bounds_.max};
-        const double total = total_.lap();
-        say(o_.common, fmt::format("  done in {:.2f} s", total));
         return {{"input",
                  {{"path", input_},
                   {"bytes", file_.bytes().size()},

@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
+#include <deque>
 #include <ostream>
 #include <vector>
 
@@ -59,7 +60,7 @@ private:
         std::size_t first_lower = 0;
     };
 
-    std::vector<LowerNode> lower_;
+    std::deque<LowerNode> lower_;  // which moves none of them when it grows
     std::vector<UpperNode> upper_;
     std::vector<openvdb::Coord> inside_tiles_;  // of the root
     std::size_t leaves_ = 0;

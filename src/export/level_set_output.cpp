@@ -1,5 +1,6 @@
 #include "export/level_set_output.h"
 
+#include "base/checksum.h"
 #include "base/mapped_file.h"
 #include "export/parts/checksum.h"
 

@@ -70,6 +70,15 @@ HeadParts headAround(const LeafFormat& format, const GridBase& grid, const std::
     return parts;
 }
 
+// OpenVDB (10, DelayedLoadMetadata.cc) reserves memory for a packed list by a float, which is too small for some long
+// ones: then it refuses the file. It reads any list that is not packed.
+constexpr std::size_t kMostPackedLeaves = std::size_t{1} << 24;
+
+template <typename T>
+void append(std::string& bytes, const T* values, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
 }  // namespace
 
 std::string VdbArchive::header(std::size_t grids, const std::string& identity) const {
@@ -102,6 +111,7 @@ void LeafList::add(PackedLeaf leaf) {
 
 std::string LeafList::bytes() const {
     if (kinds_.empty()) return {};
+    if (kinds_.size() > kMostPackedLeaves) return plainBytes();
     openvdb::io::DelayedLoadMetadata list;
     list.resizeMask(kinds_.size());
     for (std::size_t n = 0; n < kinds_.size(); ++n) list.setMask(n, kinds_[n]);
@@ -112,6 +122,24 @@ std::string LeafList::bytes() const {
     std::ostringstream out(std::ios::binary);
     list.write(out);
     return out.str().substr(sizeof(std::uint32_t));  // without its length
+}
+
+// As DelayedLoadMetadata::write() writes what it can't pack.
+std::string LeafList::plainBytes() const {
+    if (mostBytes(kinds_.size()) > std::numeric_limits<std::uint32_t>::max())
+        throw OutputError(
+            fmt::format("{} leaves are more than the .vdb format can list; choose a larger voxel", kinds_.size()));
+    const auto count = static_cast<std::uint32_t>(kinds_.size());
+    constexpr std::uint32_t kPlain = 0;
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::string bytes;
+    bytes.reserve(mostBytes(kinds_.size()));
+    append(bytes, &count, 1);
+    append(bytes, &kPlain, 1);
+    append(bytes, kinds_.data(), kinds_.size());
+    append(bytes, format_.sized() ? &kPlain : &kNone, 1);
+    for (const std::int64_t size : sizes_) append(bytes, &size, 1);
+    return bytes;
 }
 
 std::size_t LeafList::mostBytes(std::size_t leaves) {

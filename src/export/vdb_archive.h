@@ -45,6 +45,8 @@ public:
     static std::size_t mostBytes(std::size_t leaves);
 
 private:
+    std::string plainBytes() const;
+
     LeafFormat format_;
     std::vector<std::int8_t> kinds_;
     std::vector<std::uint16_t> sizes_;

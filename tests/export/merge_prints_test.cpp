@@ -49,21 +49,18 @@ protected:
         lattice.layer_height = 0.2;
         voxelize::VoxelizeOptions voxelize_options;
         voxelize_options.in_memory = false;
+        voxelize_options.shard = shard;
         voxelize::Voxelizer voxelizer(toolpath, beads, lattice, voxelize_options);
         const auto grid = voxelizer.emptyGrid();
         describe(*grid, lattice, {});
         const voxelize::LeafBounds bounds = voxelizer.leafBounds();
-        voxelize::LeafShare share{{}, bounds};
         std::optional<PartOfPrint> part;
-        if (shard) {
-            part = PartOfPrint{*shard, version, scene, bounds, {}, 0};
-            share = voxelizer.shareOf(bounds, *shard);
-        }
+        if (shard) part = PartOfPrint{*shard, version, scene, voxelizer.blocks(), bounds.print, {}, 0};
         const fs::path path = shard ? shardName(folder_ / name, *shard) : folder_ / name;
-        VdbStream file(grid, path, options, share.bounds, part);
-        voxelizer.stream(0xffffffff, bounds, file, false, share.blocks);
+        VdbStream file(grid, path, options, bounds, part);
+        voxelizer.stream(0xffffffff, bounds, file, false);
         const WrittenGrid written = file.finish();
-        EXPECT_LE(written.leaves, share.bounds.leaves);
+        EXPECT_LE(written.leaves, bounds.leaves);
         return path;
     }
 

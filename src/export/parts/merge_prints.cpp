@@ -1,8 +1,8 @@
 #include "export/parts/merge_prints.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
 #include "base/part_set.h"
-#include "export/parts/checksum.h"
 #include "export/parts/part_file.h"
 
 #include <fmt/format.h>
@@ -32,9 +32,30 @@ std::string differenceOf(const PartFile& one, const PartFile& other) {
             voxel(other));
     if (static_cast<const openvdb::MetaMap&>(*one.grid) != static_cast<const openvdb::MetaMap&>(*other.grid) ||
         one.grid->transform() != other.grid->transform() || one.grid->background() != other.grid->background() ||
-        one.format.compression != other.format.compression || one.part.print != other.part.print)
+        one.format.compression != other.format.compression ||
+        one.part.print.lower_nodes != other.part.print.lower_nodes ||
+        one.part.print.upper_nodes != other.part.print.upper_nodes)
         return "of another print of the same scene";
     return {};
+}
+
+// What all parts together have at most. Throws InputError if they leave blocks out, or share them.
+voxelize::NodeBounds boundsOf(const std::vector<PartFile>& parts) {
+    voxelize::NodeBounds print = parts.front().part.print;
+    print.leaves = 0;
+    std::size_t next = 0;  // block
+    std::vector<std::string> problems;
+    for (const PartFile& file : parts) {
+        if (file.part.blocks.first != next)
+            problems.push_back(
+                fmt::format("{}: begins with block {}, but the shards before it end before block {}; make all on "
+                            "machines of one kind",
+                            file.path.string(), file.part.blocks.first, next));
+        next = file.part.blocks.end;
+        print.leaves += file.part.print.leaves;
+    }
+    if (!problems.empty()) refuseParts(std::move(problems));
+    return print;
 }
 
 void appendPart(const PartFile& part, LevelSetOutput& output) {
@@ -66,7 +87,7 @@ MergedPrint mergePrint(const std::filesystem::path& path, const std::vector<std:
     const auto parts = wholeSet<PartFile>(
         paths, readPartFile, [](const PartFile& file) { return file.part.shard; }, differenceOf, "make it with");
     const PartFile& any = parts.front();
-    LevelSetOutput output(any.grid, path, any.format.compression, any.part.print);
+    LevelSetOutput output(any.grid, path, any.format.compression, boundsOf(parts));
     std::vector<std::string> problems;
     for (const PartFile& part : parts) {
         try {

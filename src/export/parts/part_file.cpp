@@ -1,6 +1,7 @@
 #include "export/parts/part_file.h"
 
 #include "base/byte_cursor.h"
+#include "base/checksum.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "base/vdb_magic.h"

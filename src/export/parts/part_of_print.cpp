@@ -12,7 +12,9 @@ constexpr const char* kIndex = "shard_index";
 constexpr const char* kCount = "shard_count";
 constexpr const char* kVersion = "shard_version";
 constexpr const char* kScene = "shard_scene";
-constexpr const char* kLeaves = "shard_print_leaves";
+constexpr const char* kFirstBlock = "shard_first_block";
+constexpr const char* kEndBlock = "shard_end_block";
+constexpr const char* kLeaves = "shard_leaves";
 constexpr const char* kLowerNodes = "shard_print_lower_nodes";
 constexpr const char* kUpperNodes = "shard_print_upper_nodes";
 constexpr const char* kSigns = "shard_signs";
@@ -40,6 +42,8 @@ void insertPart(MetaMap& metadata, const PartOfPrint& part) {
     metadata.insertMeta(kCount, openvdb::Int32Metadata(part.shard.count));
     metadata.insertMeta(kVersion, openvdb::StringMetadata(part.version));
     metadata.insertMeta(kScene, openvdb::StringMetadata(part.scene));
+    insertNumber(metadata, kFirstBlock, part.blocks.first);
+    insertNumber(metadata, kEndBlock, part.blocks.end);
     insertNumber(metadata, kLeaves, part.print.leaves);
     insertNumber(metadata, kLowerNodes, part.print.lower_nodes);
     insertNumber(metadata, kUpperNodes, part.print.upper_nodes);
@@ -57,6 +61,7 @@ PartOfPrint takePart(MetaMap& metadata) {
         throw std::runtime_error("its number is impossible");
     part.version = take<std::string>(metadata, kVersion);
     part.scene = take<std::string>(metadata, kScene);
+    part.blocks = {takeNumber(metadata, kFirstBlock), takeNumber(metadata, kEndBlock)};
     part.print = {takeNumber(metadata, kLeaves), takeNumber(metadata, kLowerNodes), takeNumber(metadata, kUpperNodes)};
     for (const char digit : take<std::string>(metadata, kSigns))
         part.signs.push_back({((digit - '0') & 1) != 0, ((digit - '0') & 2) != 0});

@@ -18,7 +18,9 @@ struct PartOfPrint {
     Shard shard;                  ///< "shard_index", "shard_count"
     std::string version;          ///< "shard_version": of the program
     std::string scene;            ///< "shard_scene": hash of the input files and of the options that matter
-    voxelize::NodeBounds print;   ///< "shard_print_leaves", ..: of the whole print
+    voxelize::BlockRange blocks;  ///< "shard_first_block", "shard_end_block"
+    /// "shard_leaves", "shard_print_lower_nodes", ..: its leaves, whose sum is that of the print, and the print's nodes
+    voxelize::NodeBounds print;
     std::vector<EndSigns> signs;  ///< "shard_signs": of its lower nodes, a digit each
     std::uint32_t checksum = 0;   ///< "shard_checksum": of the bytes of its leaves
 };

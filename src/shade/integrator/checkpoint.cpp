@@ -1,11 +1,11 @@
 #include "shade/integrator/checkpoint.h"
 
 #include "base/atomic_file.h"
+#include "base/checksum.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <cstring>
 #include <fstream>
@@ -15,10 +15,6 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::string_view kMagic = "stratum checkpoint 1\n";
-
-std::uint32_t crcOf(std::string_view bytes) {
-    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
 
 /// Goes through all that a file holds, in its order: for writing and for reading.
 template <typename State, typename Block>
@@ -53,7 +49,7 @@ bool Checkpoint::read(RenderState& state) const {
     if (bytes.size() < kMagic.size() + sizeof crc) refuse("is a damaged checkpoint (cut off)");
     std::memcpy(&crc, bytes.data() + bytes.size() - sizeof crc, sizeof crc);
     bytes.remove_suffix(sizeof crc);
-    if (crc != crcOf(bytes)) refuse("is a damaged checkpoint (its checksum is wrong)");
+    if (crc != checksumOf(bytes)) refuse("is a damaged checkpoint (its checksum is wrong)");
     bytes.remove_prefix(kMagic.size());
     if (!bytes.starts_with(identity_))
         refuse("is a checkpoint of another picture: the print, the scene, the seed or the options differ");
@@ -82,7 +78,7 @@ std::string Checkpoint::bytesOf(const RenderState& state) const {
     const Totals totals{state.rays, state.samples};
     append(&totals, sizeof totals);
     eachBlock(state, [&](const auto& block) { append(block.data(), block.size() * sizeof block[0]); });
-    const std::uint32_t crc = crcOf(bytes);
+    const std::uint32_t crc = checksumOf(bytes);
     append(&crc, sizeof crc);
     return bytes;
 }

@@ -1,6 +1,7 @@
 #include "shade/parts/merge.h"
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/part_set.h"
 #include "shade/parts/part_sums.h"
 #include "shade/post/denoise.h"
@@ -37,14 +38,17 @@ Film assemble(const std::vector<PartFile>& parts) {
         if (!problems.empty()) refuseParts(problems);
         return film;
     }
-    std::vector<std::string> problems;
-    for (const PartFile& found : parts) {
-        try {
-            readPixels(found.path, found.part, film);
-        } catch (const InputError& error) {
-            problems.emplace_back(error.what());
+    std::vector<std::string> problems(parts.size());
+    parallelFor(parts.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            try {
+                readPixels(parts[n].path, parts[n].part, film);
+            } catch (const InputError& error) {
+                problems[n] = error.what();
+            }
         }
-    }
+    });
+    std::erase(problems, "");
     if (!problems.empty()) refuseParts(problems);
     return film;
 }

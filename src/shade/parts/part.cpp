@@ -1,5 +1,6 @@
 #include "shade/parts/part.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "shade/film/exr_buffer.h"
@@ -12,7 +13,6 @@
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
-#include <zlib.h>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -94,20 +94,16 @@ Json layersOf(const std::vector<FilmLayer>& layers) {
     return json;
 }
 
-std::uint32_t crcOf(uLong before, const Film& film) {
-    uLong crc = before;
-    const auto add = [&crc](const auto& values) {
-        crc = ::crc32_z(crc, reinterpret_cast<const unsigned char*>(values.data()), values.size() * sizeof values[0]);
-    };
-    add(film.pixels());
-    for (const FilmLayer& layer : film.layers()) add(layer.values);
-    return static_cast<std::uint32_t>(crc);
+std::uint32_t crcOf(std::uint32_t before, const Film& film) {
+    std::uint32_t crc = checksumOf(film.pixels().data(), film.pixels().size(), before);
+    for (const FilmLayer& layer : film.layers()) crc = checksumOf(layer.values.data(), layer.values.size(), crc);
+    return crc;
 }
 
 std::uint32_t crcOf(const Json& json, const Metadata& metadata) {
     std::string text = textOf(json);
     for (const auto& [name, value] : metadata) text += fmt::format("\n{}\n{}", name, value);
-    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+    return checksumOf(text);
 }
 
 [[noreturn]] void damaged(const std::filesystem::path& path, std::string_view why) {

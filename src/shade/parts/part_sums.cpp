@@ -1,15 +1,17 @@
 #include "shade/parts/part_sums.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
 
 #include <ImfInputFile.h>
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <exception>
+#include <utility>
 
 namespace stratum::shade {
 namespace {
@@ -18,13 +20,12 @@ namespace {
 // them open.
 constexpr int kRows = 32;
 
-/// The shares of one picture, read from top to bottom.
+/// One share, read by rows, in any order and by any thread.
 class SumsReader {
 public:
-    explicit SumsReader(const PartFile& file) : file_(file), crc_(file.part.head), aovs_(aovsOf(file.part)) {}
+    explicit SumsReader(const PartFile& file) : file_(file), aovs_(aovsOf(file.part)) {}
 
-    /// The sums of the next rows.
-    PixelSums read(const PixelBox& rows) {
+    PixelSums read(const PixelBox& rows) const {
         const auto pixels = static_cast<std::size_t>(rows.width()) * static_cast<std::size_t>(rows.height());
         PixelSums sums(pixels, aovs_);
         sums.sums().growTo(file_.part.planes);
@@ -36,19 +37,24 @@ public:
             throw InputError(
                 fmt::format("{}: is damaged ({}); trace this shard again", file_.path.string(), error.what()));
         }
-        crc_ = crcOf(crc_, sums, rows);
         return sums;
     }
-    /// When all are read. Throws InputError.
-    void check() const {
-        if (crc_ != file_.part.crc)
+    /// `crcs`: of the rows of each band. Throws InputError.
+    void check(const std::vector<PixelBox>& bands, const std::vector<std::uint32_t>& crcs) const {
+        std::uint32_t crc = file_.part.head;
+        for (std::size_t n = 0; n < bands.size(); ++n) {
+            const PixelSums one(1, aovs_);
+            const auto pixels =
+                static_cast<std::uint64_t>(bands[n].width()) * static_cast<std::uint64_t>(bands[n].height());
+            crc = checksumOfBoth(crc, crcs[n], pixels * one.each() * file_.part.planes * sizeof(double));
+        }
+        if (crc != file_.part.crc)
             throw InputError(
                 fmt::format("{}: is damaged (its checksum is wrong); trace this shard again", file_.path.string()));
     }
 
 private:
     const PartFile& file_;
-    std::uint32_t crc_;
     std::vector<Aov> aovs_;
 };
 
@@ -87,52 +93,71 @@ Imf::FrameBuffer exrBufferOf(const PixelSums& sums, const PixelBox& rows) {
 }
 
 std::uint32_t crcOf(std::uint32_t before, const PixelSums& sums, const PixelBox& rows) {
-    uLong crc = before;
+    std::uint32_t crc = before;
     const std::size_t row = sums.each() * static_cast<std::size_t>(rows.width());
     for (std::size_t y = 0; y < static_cast<std::size_t>(rows.height()); ++y)
         for (std::size_t plane = 0; plane < sums.sums().planes(); ++plane)
-            crc = ::crc32_z(crc, reinterpret_cast<const unsigned char*>(sums.sums().plane(plane).data() + y * row),
-                            row * sizeof(double));
-    return static_cast<std::uint32_t>(crc);
+            crc = checksumOf(sums.sums().plane(plane).data() + y * row, row, crc);
+    return crc;
 }
 
 std::vector<std::string> addUp(const std::vector<PartFile>& parts, Film& film) {
+    const std::vector<SumsReader> readers(parts.begin(), parts.end());
+    const std::vector<PixelBox> bands = bandsOf(film.region());
+    const int spp = parts.front().part.whole.spp;
+    std::vector<std::vector<std::uint32_t>> crcs(parts.size(), std::vector<std::uint32_t>(bands.size()));
+    // By part and band; mostly empty.
+    std::vector<std::vector<std::string>> found(parts.size(), std::vector<std::string>(bands.size()));
+    parallelFor(bands.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t band = first; band < last; ++band) {
+            const PixelBox& rows = bands[band];
+            PixelSums all;
+            bool sound = true;
+            for (std::size_t n = 0; n < parts.size(); ++n) {
+                try {
+                    PixelSums share = readers[n].read(rows);
+                    crcs[n][band] = crcOf(0, share, rows);
+                    if (all.pixels() == 0) {
+                        all = std::move(share);
+                        continue;
+                    }
+                    for (std::size_t pixel = 0; pixel < all.pixels(); ++pixel) all.add(pixel, share, pixel);
+                } catch (const InputError& error) {
+                    found[n][band] = error.what();
+                    sound = false;
+                }
+            }
+            if (!sound) continue;
+            std::size_t pixel = 0;
+            for (int y = rows.y0; y < rows.y1; ++y)
+                for (int x = rows.x0; x < rows.x1; ++x) all.store(pixel++, spp, film, x, y);
+        }
+    });
     std::vector<std::string> problems;
-    std::vector<SumsReader> readers(parts.begin(), parts.end());
-    std::vector<bool> sound(parts.size(), true);
-    const auto attempt = [&](std::size_t n, const auto& work) {
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+        const auto problem =
+            std::find_if(found[n].begin(), found[n].end(), [](const std::string& text) { return !text.empty(); });
         try {
-            if (sound[n]) work();
+            if (problem != found[n].end())
+                problems.push_back(*problem);
+            else
+                readers[n].check(bands, crcs[n]);
         } catch (const InputError& error) {
             problems.emplace_back(error.what());
-            sound[n] = false;
         }
-    };
-    const int spp = parts.front().part.whole.spp;
-    for (const PixelBox& rows : bandsOf(film.region())) {
-        PixelSums all;
-        for (std::size_t n = 0; n < parts.size(); ++n)
-            attempt(n, [&] {
-                PixelSums share = readers[n].read(rows);
-                if (all.pixels() == 0) {
-                    all = std::move(share);
-                    return;
-                }
-                for (std::size_t pixel = 0; pixel < all.pixels(); ++pixel) all.add(pixel, share, pixel);
-            });
-        std::size_t pixel = 0;
-        if (!problems.empty()) continue;  // only to find what else is damaged
-        for (int y = rows.y0; y < rows.y1; ++y)
-            for (int x = rows.x0; x < rows.x1; ++x) all.store(pixel++, spp, film, x, y);
     }
-    for (std::size_t n = 0; n < parts.size(); ++n) attempt(n, [&] { readers[n].check(); });
     return problems;
 }
 
 void checkSums(const PartFile& share) {
-    SumsReader reader(share);
-    for (const PixelBox& rows : bandsOf(share.part.piece)) (void)reader.read(rows);
-    reader.check();
+    const SumsReader reader(share);
+    const std::vector<PixelBox> bands = bandsOf(share.part.piece);
+    std::vector<std::uint32_t> crcs(bands.size());
+    parallelFor(bands.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t band = first; band < last; ++band)
+            crcs[band] = crcOf(0, reader.read(bands[band]), bands[band]);
+    });
+    reader.check(bands, crcs);
 }
 
 }  // namespace stratum::shade

@@ -29,8 +29,8 @@ struct PartFile {
     Part part;
 };
 
-/// Adds up the shares, in the order of their samples, some rows at a time, and writes the means into `film`, which has
-/// their layers. Returns what is wrong with any of them.
+/// Adds up the shares, in the order of their samples, and writes the means into `film`, which has their layers. Each
+/// thread has some rows of two shares in memory. Returns what is wrong with any of them. Parallel.
 std::vector<std::string> addUp(const std::vector<PartFile>& parts, Film& film);
 
 /// Reads all sums of a share and throws InputError if it is damaged.

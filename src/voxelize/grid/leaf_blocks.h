@@ -2,8 +2,9 @@
 #pragma once
 
 #include "voxelize/beads/plan_bins.h"
+#include "voxelize/beads/plan_tiles.h"
 #include "voxelize/grid/leaf_receiver.h"
-#include "voxelize/grid/leaf_stream.h"
+#include "voxelize/leaf/leaf_column.h"
 
 #include <openvdb/openvdb.h>
 
@@ -14,6 +15,7 @@ namespace stratum::voxelize {
 
 constexpr int kSlabLeaves = kSlabVoxels / kLeafDim;  ///< along each axis of an upper node
 constexpr int kBlockLeaves = kBlockVoxels / kLeafDim;
+static_assert(PlanTiles::kTileColumns == kBlockLeaves);
 
 inline int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -38,18 +40,18 @@ inline std::size_t cellsMet(int first, int last, int edge) {
 struct LeafBlock {
     int x = 0, y = 0;  ///< in blocks
     LeafRectangle plan{};
-    int first_k = 0, last_k = 0;
+    LeafRange heights;
 
     /// Its first voxel.
     openvdb::Coord origin() const {
-        return {x * kBlockVoxels, y * kBlockVoxels, floorDivide(first_k, kSlabLeaves) * kSlabVoxels};
+        return {x * kBlockVoxels, y * kBlockVoxels, floorDivide(heights.first, kSlabLeaves) * kSlabVoxels};
     }
 };
 
-/// What of a column may lie in a block, leaves.
-inline std::size_t leavesIn(const LeafBlock& block, const LeafRange& column) {
-    const int first = std::max(column.first, block.first_k);
-    const int last = std::min(column.second, block.last_k);
+/// What of a column lies between these heights, leaves.
+inline std::size_t leavesIn(const LeafRange& heights, const LeafRange& column) {
+    const int first = std::max(column.first, heights.first);
+    const int last = std::min(column.second, heights.second);
     return first <= last ? static_cast<std::size_t>(last - first) + 1 : 0;
 }
 
@@ -63,17 +65,19 @@ void forEachCell(const LeafRectangle& all, int edge, const Visit& visit) {
                                 std::max(all.first_j, y * edge), std::min(all.last_j, (y + 1) * edge - 1)});
 }
 
-/// visit(number, block), empty ones too.
+/// visit(number, block) of all blocks between these heights, empty ones too.
 template <typename Visit>
-void forEachBlock(const PlanBins& bins, const LeafBounds& bounds, const Visit& visit) {
-    if (bounds.leaves == 0) return;
+void forEachBlock(const LeafRectangle& all, const LeafRange& heights, const Visit& visit) {
     std::size_t number = 0;
-    forEachCell(rectangleOf(bins), kSlabLeaves, [&](int, int, const LeafRectangle& upper) {
-        for (int slab = floorDivide(bounds.first_k, kSlabLeaves); slab <= floorDivide(bounds.last_k, kSlabLeaves);
+    forEachCell(all, kSlabLeaves, [&](int, int, const LeafRectangle& upper) {
+        for (int slab = floorDivide(heights.first, kSlabLeaves); slab <= floorDivide(heights.second, kSlabLeaves);
              ++slab)
             forEachCell(upper, kBlockLeaves, [&](int x, int y, const LeafRectangle& plan) {
-                visit(number++, LeafBlock{x, y, plan, std::max(bounds.first_k, slab * kSlabLeaves),
-                                          std::min(bounds.last_k, (slab + 1) * kSlabLeaves - 1)});
+                visit(number++, LeafBlock{x,
+                                          y,
+                                          plan,
+                                          {std::max(heights.first, slab * kSlabLeaves),
+                                           std::min(heights.second, (slab + 1) * kSlabLeaves - 1)}});
             });
     });
 }

@@ -10,6 +10,8 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -33,7 +35,7 @@ public:
     void run(const LeafBlock& block) {
         std::vector<Column> columns;
         forEachColumnOf(block, bins_, [&](std::size_t bin, std::size_t place) {
-            if (leavesIn(block, bounds_.columns[bin]) > 0) columns.push_back({bin, place});
+            if (leavesIn(block.heights, bounds_.columns[bin]) > 0) columns.push_back({bin, place});
         });
         if (columns.empty()) return;
         receiver_.open(block.origin());
@@ -45,7 +47,7 @@ public:
                     continue;
                 }
                 Column& column = columns[n - 1];
-                make(column, block.first_k, block.last_k);
+                make(column, block.heights);
             }
         });
         receiver_.close();
@@ -76,7 +78,7 @@ private:
         double sampled_voxels = 0;
     };
 
-    void make(Column& to, int first_k, int last_k) {
+    void make(Column& to, const LeafRange& heights) {
         LeafColumn& column = columns_();
         const std::span<const std::uint32_t> ranks = bins_[to.bin];
         const int i = bins_.originI(to.bin);
@@ -85,7 +87,7 @@ private:
         std::array<float, Leaf::SIZE> values;
         std::array<std::uint64_t, 8> active;
         for (const LeafRange& range : column.touched())
-            for (int k = std::max(range.first, first_k); k <= std::min(range.second, last_k); ++k) {
+            for (int k = std::max(range.first, heights.first); k <= std::min(range.second, heights.second); ++k) {
                 ++to.evaluated;
                 const LeafContent content = column.evaluate(k);
                 if (content == LeafContent::inside) ++to.inside;
@@ -98,7 +100,7 @@ private:
                 ++to.sampled;
                 to.sampled_voxels += insideOf(column.planes());
             }
-        if (bounds_.columns[to.bin].second <= last_k) meter_.advance(ranks.size());
+        if (bounds_.columns[to.bin].second <= heights.second) meter_.advance(ranks.size());
     }
 
     bool takes(std::size_t bin, int k) const {
@@ -129,9 +131,17 @@ private:
 
 }  // namespace
 
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns) {
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights,
+                       const BlockRange& share) {
     LeafBounds all;
     constexpr LeafRange kNone{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    if (bins.size() == 0) return all;
+    const LeafRectangle plan = rectangleOf(bins);
+    // Blocks of the share by tile; mostly one.
+    std::map<std::pair<int, int>, std::vector<LeafRange>> own;
+    forEachBlock(plan, heights, [&](std::size_t number, const LeafBlock& block) {
+        if (share.has(number)) own[{block.x, block.y}].push_back(block.heights);
+    });
     all.columns.assign(bins.size(), kNone);
     std::atomic<std::size_t> leaves{0};
     parallelFor(bins.size(), kBoundGrain, [&](std::size_t first, std::size_t last) {
@@ -139,27 +149,30 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns) {
         std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c) {
             if (bins[c].empty()) continue;
+            const auto blocks =
+                own.find({floorDivide(bins.originI(c), kBlockVoxels), floorDivide(bins.originJ(c), kBlockVoxels)});
+            if (blocks == own.end()) continue;
             const std::span<const LeafRange> ranges = column.bounds(bins[c]);
-            for (const LeafRange& range : ranges) count += static_cast<std::size_t>(range.second - range.first) + 1;
+            for (const LeafRange& slab : blocks->second)
+                for (const LeafRange& range : ranges) count += leavesIn(slab, range);
             all.columns[c] = {ranges.front().first, ranges.back().second};
         }
         leaves.fetch_add(count, std::memory_order_relaxed);
     });
     all.leaves = leaves;
-    if (all.leaves == 0) return {};
-    all.first_k = kNone.first;
-    all.last_k = kNone.second;
-    for (const LeafRange& column : all.columns) {
-        all.first_k = std::min(all.first_k, column.first);
-        all.last_k = std::max(all.last_k, column.second);
-    }
-    const LeafRectangle plan = rectangleOf(bins);
+    all.heights = heights;
     const auto nodes = [&](int edge) {
         return cellsMet(plan.first_i, plan.last_i, edge) * cellsMet(plan.first_j, plan.last_j, edge) *
-               cellsMet(all.first_k, all.last_k, edge);
+               cellsMet(heights.first, heights.second, edge);
     };
-    all.lower_nodes = nodes(kBlockLeaves);
-    all.upper_nodes = nodes(kSlabLeaves);
+    all.print = {all.leaves, nodes(kBlockLeaves), nodes(kSlabLeaves)};
+    all.lower_nodes = all.upper_nodes = 0;
+    for (const auto& [tile, slabs] : own)
+        for (const LeafRange& slab : slabs) {
+            all.lower_nodes += cellsMet(slab.first, slab.second, kBlockLeaves);
+            all.upper_nodes += 1;
+        }
+    all.upper_nodes = std::min(all.upper_nodes, all.print.upper_nodes);
     return all;
 }
 
@@ -167,16 +180,18 @@ LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
                               const std::function<void(double)>& progress, const BlockRange& share) {
     if (bounds.leaves == 0) return {};
+    const LeafRectangle plan = rectangleOf(bins);
     std::size_t entries = 0;
-    forEachBlock(bins, bounds, [&](std::size_t number, const LeafBlock& block) {
+    forEachBlock(plan, bounds.heights, [&](std::size_t number, const LeafBlock& block) {
         if (!share.has(number)) return;
         forEachColumnOf(block, bins, [&](std::size_t bin, std::size_t) {
             const LeafRange& column = bounds.columns[bin];
-            if (leavesIn(block, column) > 0 && column.second <= block.last_k) entries += bins[bin].size();
+            if (leavesIn(block.heights, column) > 0 && column.second <= block.heights.second)
+                entries += bins[bin].size();
         });
     });
     Blocks blocks(bins, columns, end, bounds, receiver, measure, entries, progress);
-    forEachBlock(bins, bounds, [&](std::size_t number, const LeafBlock& block) {
+    forEachBlock(plan, bounds.heights, [&](std::size_t number, const LeafBlock& block) {
         if (share.has(number)) blocks.run(block);
     });
     return blocks.report();

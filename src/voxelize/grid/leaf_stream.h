@@ -3,6 +3,7 @@
 
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/grid/leaf_receiver.h"
+#include "voxelize/grid/leaf_share.h"
 #include "voxelize/leaf/leaf_positions.h"
 
 #include <cstddef>
@@ -19,19 +20,15 @@ struct NodeBounds {
     bool operator==(const NodeBounds&) const = default;
 };
 
-/// What a print has at most, from z extents alone.
+/// What a print, or some blocks of it, has at most, from z extents alone.
 struct LeafBounds : NodeBounds {
-    int first_k = 0, last_k = -1;    ///< in leaves from index 0
-    std::vector<LeafRange> columns;  ///< the same by column of the bins; empty ones have first > second
+    LeafRange heights{0, -1};        ///< of all blocks
+    std::vector<LeafRange> columns;  ///< of these blocks, by column of the bins; empty ones have first > second
+    NodeBounds print;                ///< its leaves are those of these blocks alone, its nodes those of all
 };
-/// Parallel.
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns);
-
-/// Blocks of LeafReceiver that lie one behind the other, by their number among all of the print's rectangle.
-struct BlockRange {
-    std::size_t first = 0, end = static_cast<std::size_t>(-1);
-    bool has(std::size_t number) const { return number >= first && number < end; }
-};
+/// Parallel. `heights`: of all beads. The bounds of leaves of disjoint blocks add up to that of all.
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights,
+                       const BlockRange& share = {});
 
 struct LeafStreamReport {
     std::size_t evaluated = 0;  ///< leaf positions
@@ -42,8 +39,8 @@ struct LeafStreamReport {
 
 /// Makes all leaves of the beads with an index in the toolpath below `end`, with the bits of Voxelizer::printUntil(),
 /// and gives them to `receiver`. Columns that reach into more than one of OpenVDB's upper nodes are opened once for
-/// each. `share`: only the leaves of these blocks. Parallel; calls and their order do not depend on the number of
-/// threads.
+/// each. `share`: only the leaves of these blocks, which `bounds` are of. Parallel; calls and their order do not depend
+/// on the number of threads.
 LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
                               const std::function<void(double)>& progress, const BlockRange& share = {});

@@ -63,10 +63,15 @@ struct Voxelizer::State {
         : toolpath(the_toolpath),
           lattice(the_lattice),
           options(std::move(the_options)),
-          estimated_bytes(estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) *
-                          kBytesPerActiveVoxel),
+          estimated_bytes(options.in_memory
+                              ? estimateActiveVoxels(toolpath, selection, lattice.voxel_size, lattice.half_width) *
+                                    kBytesPerActiveVoxel
+                              : 0),
           stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
-          bins(toolpath, stack, lattice, memoryLimit(options) / 4),
+          share(options.shard && !stack.beads.empty()
+                    ? std::optional(voxelize::shareOf(toolpath, stack, lattice, *options.shard))
+                    : std::nullopt),
+          bins(toolpath, stack, lattice, memoryLimit(options) / 4, share ? &share->tiles : nullptr),
           scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
           grid(emptyGrid()) {}
@@ -83,6 +88,11 @@ struct Voxelizer::State {
     void buildTouched(std::uint32_t end);
     void buildReached(std::uint32_t end);
     ExteriorRule exteriorRule() const;
+    BlockRange blocks() const { return share ? share->blocks : BlockRange{}; }
+    LeafBounds bounds() {
+        if (stack.beads.empty()) return {};
+        return boundLeaves(bins, columnSource(), leavesAround(lattice, stack), blocks());
+    }
     ColumnSource columnSource() {
         return [this]() -> LeafColumn& { return scratch.local(); };
     }
@@ -92,6 +102,7 @@ struct Voxelizer::State {
     const VoxelizeOptions options;
     const double estimated_bytes;
     const LayerStack stack;
+    const std::optional<LeafShare> share;
     const PlanBins bins;
     tbb::enumerable_thread_specific<LeafColumn> scratch;
     const float background;
@@ -105,7 +116,7 @@ void Voxelizer::State::refuseIfTooLarge() {
     // Culling builds a fraction that is unknown before the flood. Grids that clearly fit are not counted.
     if (options.interior == Interior::cull) return;
     if (estimated_bytes * estimateMargin(options.interior) * 2 < static_cast<double>(memoryLimit(options))) return;
-    const auto leaf_bound = static_cast<double>(boundLeaves(bins, columnSource()).leaves);
+    const auto leaf_bound = static_cast<double>(bounds().leaves);
     const double bytes = leaf_bound * kBytesPerLeaf;
     const auto limit = static_cast<double>(memoryLimit(options));
     if (bytes > limit)
@@ -205,21 +216,18 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
     return state_->grid;
 }
 
-LeafBounds Voxelizer::leafBounds() const { return boundLeaves(state_->bins, state_->columnSource()); }
+LeafBounds Voxelizer::leafBounds() const { return state_->bounds(); }
 
-LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                                   const BlockRange& share) {
+BlockRange Voxelizer::blocks() const { return state_->blocks(); }
+
+LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure) {
     const auto start = Clock::now();
     const LeafStreamReport streamed = streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure,
-                                                   state_->options.progress, share);
+                                                   state_->options.progress, blocks());
     VoxelizeReport& report = state_->report;
     report.leaf_positions = report.leaves_evaluated = streamed.evaluated;
     report.build_seconds = secondsSince(start);
     return streamed;
-}
-
-LeafShare Voxelizer::shareOf(const LeafBounds& bounds, const Shard& shard) const {
-    return voxelize::shareOf(state_->bins, bounds, shard);
 }
 
 openvdb::FloatGrid::Ptr Voxelizer::emptyGrid() const { return state_->emptyGrid(); }

@@ -1,6 +1,7 @@
 // LayerStack -> FloatGrid: the level set of the part as printed.
 #pragma once
 
+#include "base/shard.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/placement.h"
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,8 @@ struct VoxelizeOptions {
     Interior interior = Interior::keep;
     /// Whether a grid will be built; stream() alone needs no memory for one.
     bool in_memory = true;
+    /// Only the blocks of one of several processes, for stream() alone.
+    std::optional<Shard> shard;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
     /// Called from time to time with the fraction done, 0..1, from any of the working threads, one call at a time.
@@ -82,11 +86,10 @@ public:
     /// The leaves of the selected beads before index `end` of the toolpath, one after the other instead of as a grid;
     /// only with Interior::keep. The values and masks are those of printUntil() of a new Voxelizer. `bounds`:
     /// leafBounds().
-    LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                            const BlockRange& share = {});
+    LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure);
     LeafBounds leafBounds() const;
-    /// The share of one of several processes, for stream().
-    LeafShare shareOf(const LeafBounds& bounds, const Shard& shard) const;
+    /// The blocks that stream() makes; all without VoxelizeOptions::shard.
+    BlockRange blocks() const;
     /// Name, class, transform and background of the grid, without a voxel.
     openvdb::FloatGrid::Ptr emptyGrid() const;
 

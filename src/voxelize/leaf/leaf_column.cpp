@@ -12,6 +12,26 @@ double weldGap(double half_height) { return kWeldGap * 2 * half_height; }
 
 }  // namespace
 
+LeafRange leavesAround(const Lattice& lattice, double z_min, double z_max) {
+    const double edge = lattice.voxel_size * kLeafDim;
+    return {static_cast<int>(std::floor((z_min - lattice.background() - lattice.origin_z) / edge)),
+            static_cast<int>(std::floor((z_max + lattice.background() - lattice.origin_z) / edge))};
+}
+
+LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack) {
+    double z_min = std::numeric_limits<double>::max();
+    double z_max = std::numeric_limits<double>::lowest();
+    for (const Layer& layer : stack.layers) {
+        z_min = std::min(z_min, layer.center_z - layer.halfHeight());
+        z_max = std::max(z_max, layer.center_z + layer.halfHeight());
+    }
+    for (const Extent& extent : stack.extents) {
+        z_min = std::min(z_min, extent.z_min);
+        z_max = std::max(z_max, extent.z_max);
+    }
+    return leavesAround(lattice, z_min, z_max);
+}
+
 LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
                        bool owners)
     : toolpath_(toolpath),
@@ -25,12 +45,6 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
     for (std::size_t i = 1; i < weld_offsets_.size(); ++i) weld_offsets_[i] += weld_offsets_[i - 1];
-}
-
-LeafRange LeafColumn::leafRange(double z_min, double z_max) const {
-    const double edge = lattice_.voxel_size * kLeafDim;
-    return {static_cast<int>(std::floor((z_min - band_ - lattice_.origin_z) / edge)),
-            static_cast<int>(std::floor((z_max + band_ - lattice_.origin_z) / edge))};
 }
 
 void LeafColumn::mergeRanges() {

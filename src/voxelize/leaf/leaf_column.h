@@ -23,6 +23,12 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 /// First and last leaf of a run along z, in leaves from index 0.
 using LeafRange = std::pair<int, int>;
 
+/// The leaves that the band around a solid between two heights (mm) reaches.
+LeafRange leavesAround(const Lattice& lattice, double z_min, double z_max);
+
+/// Of all beads; not of none.
+LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack);
+
 /// Scratch of one thread: opens columns one after the other and evaluates their leaves from the bottom up. Plan fields
 /// are kept in a window that moves up with the leaves, so memory is that of the layers that overlap one leaf.
 class LeafColumn {
@@ -99,7 +105,7 @@ private:
     };
 
     double sampleZ(int k) const { return lattice_.origin_z + k * lattice_.voxel_size; }
-    LeafRange leafRange(double z_min, double z_max) const;
+    LeafRange leafRange(double z_min, double z_max) const { return leavesAround(lattice_, z_min, z_max); }
     void mergeRanges();
     void moveWindow(double z_min, double z_max);
     /// Fills lines_, tapers_ and arcs_, and the ranks of each.

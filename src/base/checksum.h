@@ -1,0 +1,22 @@
+// CRC-32, with which files of parts say whether they are as they were written.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace stratum {
+
+/// Of what was before (0: nothing) and of these bytes.
+std::uint32_t checksumOf(std::string_view bytes, std::uint32_t before = 0);
+
+/// Of two runs of bytes, from the checksums of both and the length of the second.
+std::uint32_t checksumOfBoth(std::uint32_t first, std::uint32_t second, std::uint64_t second_bytes);
+
+/// checksumOf() of `count` values in memory.
+template <typename T>
+std::uint32_t checksumOf(const T* values, std::size_t count, std::uint32_t before = 0) {
+    return checksumOf(std::string_view(reinterpret_cast<const char*>(values), count * sizeof(T)), before);
+}
+
+}  // namespace stratum
