@@ -29,6 +29,7 @@ struct SceneOptions {
     double env_exposure = 0.0;        ///< --env-exposure, stops
     std::vector<std::string> lights;  ///< --light, see parseLight and parseAmbient; they add to the environment
     bool bed = true;                  ///< a sweep under the print
+    std::optional<double> bed_height;  ///< world units, where the bed lies; empty: restingHeight()
     BedSurface bed_surface = BedSurface::paper;  ///< --bed-surface
     double mm_per_unit = 1.0;                    ///< millimetres a world unit, for the texture of the bed
     bool backdrop = true;                        ///< false: nothing behind the print, alpha 0 there
