@@ -75,7 +75,7 @@ void addOptions(CLI::App& app, ViewCommand& o) {
 // The options of prints and bricks as they were given, for the command line that the page shows.
 std::vector<std::string> givenWords(const CLI::App& app) {
     std::vector<std::string> names = tools::givenPrintOptions(app);
-    names.emplace_back("--brick-cache");
+    if (app.get_option("--brick-cache")->count() > 0) names.emplace_back("--brick-cache");
     std::vector<std::string> words;
     for (const std::string& name : names)
         for (const std::string& value : app.get_option(name)->as<std::vector<std::string>>())

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace stratum::view {
@@ -90,10 +91,10 @@ void ViewScene::makeObjects(const PicturePlan& plan, const assemble::ReadEvents&
     build_seconds_ = watch.lap();
 }
 
-ViewedPicture ViewScene::picture(const PicturePlan& plan, int width, int height) {
+ViewedPicture ViewScene::picture(const PicturePlan& plan, int width, int height, Light light) {
     if (!objects_->bed_height && plan.options.scene.bed)
         objects_->bed_height = shade::restingHeight(*objects_->traced.intersector);
-    return stage(*objects_, plan, objects_->traced.intersector, objects_->bed_height, width, height);
+    return stage(*objects_, plan, objects_->traced.intersector, objects_->bed_height, width, height, light);
 }
 
 ViewedPicture ViewScene::standIn(const PicturePlan& plan, const ViewState& state, int width, int height) {
@@ -112,27 +113,32 @@ ViewedPicture ViewScene::standIn(const PicturePlan& plan, const ViewState& state
     }
     if (!bed && plan.options.scene.bed) bed = whole_->bed_height = shade::restingHeight(*whole_->traced.intersector);
     return stage(*whole_, plan, trace::makeClipIntersector(whole_->traced.intersector, std::move(planes)), bed, width,
-                 height);
+                 height, Light::near);
+}
+
+bool ViewScene::lightFits(const shade::Camera& camera, const std::string& env, Light light) const {
+    const shade::Camera& staged = stage_->scene.camera;
+    if (staged_bed_ && (camera.eye().z > *staged_bed_) != (staged.eye().z > *staged_bed_)) return false;
+    if (!turnsWithCamera(env)) return true;
+    if (light == Light::exact) return camera.right() == staged.right();
+    const double kNear = std::cos(12.0 * std::numbers::pi / 180.0);
+    return glm::dot(camera.right(), staged.right()) > kNear;
 }
 
 ViewedPicture ViewScene::stage(Objects& objects, const PicturePlan& plan,
                                std::shared_ptr<const trace::Intersector> print, std::optional<double> bed_height,
-                               int width, int height) {
+                               int width, int height, Light light) {
     assemble::StageOptions options = plan.options;
     options.render.width = width;
     options.render.height = height;
     options.scene.bed_height = bed_height;
-    const double exposure = plan.exposure.value_or(0.0);
-    const bool fixed = !turnsWithCamera(options.scene.env) && staged_ == &objects && light_key_ == plan.light_key;
-    if (fixed) {
-        // Only the camera differs, as long as it stays on its side of the bed.
-        const trace::Box box =
-            options.frame_all ? print->bounds() : objects.traced.part.value_or(print->bounds());
+    if (staged_ == &objects && light_key_ == plan.light_key && staged_bed_ == bed_height) {
+        const trace::Box box = options.frame_all ? print->bounds() : objects.traced.part.value_or(print->bounds());
         shade::CameraOptions camera = options.scene.camera;
         camera.mm_per_unit = objects.traced.mm_per_unit;
         const shade::Camera moved = shade::Camera::make(camera, box, width, height);
-        if (!bed_height || (moved.eye().z > *bed_height) == above_) {
-            ViewedPicture picture{std::move(print), stage_->scene, {stage_->exposure.value_or(exposure)}};
+        if (lightFits(moved, options.scene.env, light)) {
+            ViewedPicture picture = staged(std::move(print), plan, light);
             picture.scene.camera = moved;
             return picture;
         }
@@ -142,10 +148,16 @@ ViewedPicture ViewScene::stage(Objects& objects, const PicturePlan& plan,
     stage_ = assemble::makeStage(seen, options);
     staged_ = &objects;
     light_key_ = plan.light_key;
-    above_ = bed_height && stage_->scene.camera.eye().z > *bed_height;
-    // What stands in has its own bed, which must not stay.
-    if (print != objects.traced.intersector) staged_ = nullptr;
-    return {std::move(print), stage_->scene, {stage_->exposure.value_or(exposure)}};
+    staged_bed_ = bed_height;
+    bare_light_.reset();
+    return staged(std::move(print), plan, light);
+}
+
+ViewedPicture ViewScene::staged(std::shared_ptr<const trace::Intersector> print, const PicturePlan& plan,
+                                Light light) {
+    if (light == Light::near && !bare_light_)
+        bare_light_ = std::make_shared<const shade::BareLight>(stage_->scene, stage_->middle);
+    return {std::move(print), stage_->scene, {stage_->exposure.value_or(plan.exposure.value_or(0.0))}, bare_light_};
 }
 
 Json ViewScene::describe() const {

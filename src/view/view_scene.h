@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assemble/ready_scene.h"
+#include "shade/integrator/bare_light.h"
 #include "view/document.h"
 #include "view/picture_plan.h"
 
@@ -18,6 +19,7 @@ struct ViewedPicture {
     std::shared_ptr<const trace::Intersector> print;
     shade::SceneDescription scene;
     shade::ToneOptions tone;
+    std::shared_ptr<const shade::BareLight> bare_light;  ///< of its light; null for exact pictures
 };
 
 class ViewScene {
@@ -35,8 +37,11 @@ public:
     /// Seconds that this took last, if it was more than looking up.
     double buildSeconds() const { return build_seconds_; }
 
+    /// How exactly light follows the camera that it stands beside (the studio's does): a studio takes as long to make as
+    /// a small picture to trace, so while a view moves it follows in steps of a few degrees.
+    enum class Light { exact, near };
     /// A picture of the plan in another size, of its own objects.
-    ViewedPicture picture(const PicturePlan& plan, int width, int height);
+    ViewedPicture picture(const PicturePlan& plan, int width, int height, Light light = Light::exact);
     /// The same of what stands in for them.
     ViewedPicture standIn(const PicturePlan& plan, const ViewState& state, int width, int height);
 
@@ -54,7 +59,9 @@ private:
         std::optional<double> bed_height;
     };
     ViewedPicture stage(Objects& objects, const PicturePlan& plan, std::shared_ptr<const trace::Intersector> print,
-                        std::optional<double> bed_height, int width, int height);
+                        std::optional<double> bed_height, int width, int height, Light light);
+    ViewedPicture staged(std::shared_ptr<const trace::Intersector> print, const PicturePlan& plan, Light light);
+    bool lightFits(const shade::Camera& camera, const std::string& env, Light light) const;
 
     Document& document_;
     std::shared_ptr<Objects> objects_;
@@ -64,7 +71,8 @@ private:
     std::string light_key_;
     std::optional<assemble::Stage> stage_;
     const Objects* staged_ = nullptr;
-    bool above_ = true;
+    std::optional<double> staged_bed_;
+    std::shared_ptr<const shade::BareLight> bare_light_;  // of stage_, when it was first asked for
 };
 
 }  // namespace stratum::view

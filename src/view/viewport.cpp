@@ -6,6 +6,7 @@
 #include "shade/post/denoise.h"
 #include "view/inspect.h"
 #include "view/jpeg.h"
+#include "view/quick_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,16 @@ constexpr double kQuickBuild = 0.1;                     // seconds; no need for 
 constexpr int kMovingQuality = 80, kRoughQuality = 92;
 
 Json list(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+std::vector<std::uint8_t> movingPicture(const ViewedPicture& picture, shade::RenderOptions options) {
+    if (shade::needsLight(options.integrator)) return quickPicture(picture, *picture.bare_light);
+    options.width = picture.scene.camera.width();
+    options.height = picture.scene.camera.height();
+    options.spp = 1;
+    options.aovs.clear();
+    options.noise = 0.0;
+    return shade::toDisplay(shade::render(*picture.print, picture.scene, options).film, picture.tone);
+}
 
 std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -193,7 +204,7 @@ ViewedPicture Viewport::small(const PicturePlan& plan, int width, int height, bo
         return scene_->standIn(plan, current_.state, width, height);
     if (!*exact) makeExact();
     *exact = true;
-    return scene_->picture(plan, width, height);
+    return scene_->picture(plan, width, height, ViewScene::Light::near);
 }
 
 void Viewport::showMoving() {
@@ -204,19 +215,11 @@ void Viewport::showMoving() {
     const int height = std::max(16, static_cast<int>(std::lround(scale * state.height)));
     bool exact = false;
     const ViewedPicture picture = small(plan, width, height, &exact);
-    shade::RenderOptions options = plan.options.render;
-    options.width = width;
-    options.height = height;
-    options.spp = 1;
-    options.aovs.clear();
-    options.margin = 0;
-    options.noise = 0.0;
-    if (options.integrator.name == "path") options.integrator.name = "direct";
     Stopwatch watch;
-    const shade::RenderResult result = shade::render(*picture.print, picture.scene, options);
+    const std::vector<std::uint8_t> rgb = movingPicture(picture, plan.options.render);
     frame_scale_.took(static_cast<double>(width) * height, watch.lap());
     send("moving", "image/jpeg", width, height, picture, plan, current_.number,
-         encodeJpeg(width, height, shade::toDisplay(result.film, picture.tone), kMovingQuality));
+         encodeJpeg(width, height, rgb, kMovingQuality));
     const std::lock_guard lock(mutex_);
     rest_at_ = Clock::now() + kRest;
     stage_ = current_.moving ? Stage::waiting : Stage::exact;

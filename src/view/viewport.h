@@ -28,7 +28,7 @@ struct Output {
 };
 
 /// Asked from any thread, worked on one thread. Pictures, from the first:
-///   moving  in a size that keeps the frame rate, direct light, a sample a pixel, as JPEG
+///   moving  in a size that keeps the frame rate, with ambient occlusion (quick_picture.h), as JPEG
 ///   rough   at rest: half of the size, few samples of the full light, denoised, as JPEG
 ///   final   the PNG of vdbtrace
 class Viewport {

@@ -19,6 +19,7 @@ let number = 0; // of the last view that was asked for
 let asked = null; // a view that waits for the next frame
 const sentAt = new Map(); // times by number
 let latest = 0; // the number that the last picture answers
+let shownSize = [0, 0]; // of the last view that was asked for
 /** For measurements: one entry a picture. */
 const log = (window.vdbviewLog = []);
 
@@ -52,7 +53,8 @@ function sendAsked() {
   if (!connection.ready) return;
   if (orbit) state.camera = orbit.toJSON();
   sentAt.set(++number, performance.now());
-  connection.send({ type: "show", number, moving, state: toMessage(state, pixels()) });
+  shownSize = pixels();
+  connection.send({ type: "show", number, moving, state: toMessage(state, shownSize) });
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
@@ -248,9 +250,12 @@ window.addEventListener("hashchange", () => {
   ask(false);
 });
 
+
 let resizeTimer = 0;
 new ResizeObserver(() => {
   answer.draw(camera, aspect);
   clearTimeout(resizeTimer);
-  resizeTimer = setTimeout(() => ask(false), 120);
+  resizeTimer = setTimeout(() => {
+    if (String(pixels()) !== String(shownSize)) ask(false);
+  }, 120);
 }).observe(picture);
