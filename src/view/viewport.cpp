@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kFrameSeconds = 0.040;
+constexpr double kFrameSeconds = 0.050;
 constexpr int kMostOnTheWay = 2;  // pictures that are sent before the first of them is shown
 constexpr std::size_t kMostQueued = 16;
 constexpr auto kRest = std::chrono::milliseconds(350);  // after the last movement, if nobody says that it is over

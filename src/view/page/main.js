@@ -20,8 +20,9 @@ let asked = null; // a view that waits for the next frame
 const sentAt = new Map(); // times by number
 let latest = 0; // the number that the last picture answers
 let shownSize = [0, 0]; // of the last view that was asked for
-/** For measurements: one entry a picture. */
+/** For measurements and tests: one entry a picture, and the number of the last view. */
 const log = (window.vdbviewLog = []);
+window.vdbviewAsked = () => number;
 
 function orbitOf({ eye, look_at, fov }) {
   const way = [0, 1, 2].map((n) => look_at[n] - eye[n]);
@@ -239,10 +240,12 @@ byId("file").addEventListener("change", () => {
   connection.send({ type: "open", file });
   ask(false);
 });
-byId("panels").addEventListener("click", () => {
-  const closed = byId("side").classList.toggle("closed");
-  byId("panels").setAttribute("aria-expanded", String(!closed));
-});
+function showPanels(shown) {
+  byId("side").classList.toggle("closed", !shown);
+  byId("panels").setAttribute("aria-expanded", String(shown));
+}
+byId("panels").addEventListener("click", () => showPanels(byId("side").classList.contains("closed")));
+if (matchMedia("(max-width: 760px)").matches) showPanels(false); // the picture first
 window.addEventListener("hashchange", () => {
   ({ state } = fromFragment(location.hash));
   orbit = state.camera.eye ? orbitOf(state.camera) : null;
