@@ -37,7 +37,7 @@ struct TraceCommand {
     std::vector<std::string> inputs, notes;
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
     std::string eye, look_at, up, focus, phong;
-    std::vector<std::string> clip;         // --clip, as given
+    std::vector<std::string> clip;  // --clip, as given
     std::vector<trace::ClipPlane> clip_planes;
     bool each = false;
     std::string color, frame = "part";  // --color, --frame

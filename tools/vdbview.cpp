@@ -109,9 +109,8 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
         given.objects.emplace_back();
         given.objects.front().vdb = path;
     }
-    const bool prints = std::any_of(given.objects.begin(), given.objects.end(), [](const auto& object) {
-        return !object.sdf && !assemble::isVdbFile(object.vdb);
-    });
+    const bool prints = std::any_of(given.objects.begin(), given.objects.end(),
+                                    [](const auto& object) { return !object.sdf && !assemble::isVdbFile(object.vdb); });
     if (prints) given.words = words;
     tracing.prints = o.prints;
     if (!o.brick_cache.empty())
@@ -152,8 +151,7 @@ void run(const CLI::App& app, const ViewCommand& o) {
     if (!o.common.quiet) fmt::print(stderr, "vdbview: ctrl-C ends it\n");
     if (o.open) openBrowser(server.url());
     view::FileWatch watch(viewer->files());
-    if (watch.descriptor() >= 0)
-        server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });
+    if (watch.descriptor() >= 0) server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });
     server.run();
     viewer.reset();  // before the server: what it still makes is sent through that
     tools::writeStats(o.common, {{"inputs", o.inputs}, {"peak_rss_bytes", tools::peakRssBytes()}});

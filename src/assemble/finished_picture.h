@@ -1,5 +1,5 @@
-// What vdbtrace decides about a picture besides its scene: denoising, samples, and the facts that its file states. Shared
-// by all that write the same picture.
+// What vdbtrace decides about a picture besides its scene: denoising, samples, and the facts that its file states.
+// Shared by all that write the same picture.
 #pragma once
 
 #include "assemble/traced_objects.h"

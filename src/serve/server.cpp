@@ -3,10 +3,11 @@
 #include "base/error.h"
 #include "serve/socket_client.h"
 
+#include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/address.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/error.hpp>
@@ -14,7 +15,6 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -132,13 +132,12 @@ private:
         const bool keep = status == http::status::ok && !head && parser_->get().keep_alive();
         response_.keep_alive(keep);
         stream_.expires_after(kPatience);
-        http::async_write(stream_, response_,
-                          [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
-                              if (error) return;
-                              self->response_ = {};
-                              if (keep) return self->read();
-                              self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
-                          });
+        http::async_write(stream_, response_, [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
+            if (error) return;
+            self->response_ = {};
+            if (keep) return self->read();
+            self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+        });
     }
 
     beast::tcp_stream stream_;
@@ -193,9 +192,10 @@ Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handle
     beast::error_code error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error)
-        throw UsageError(fmt::format("{}: is no address to listen on; give one of this machine's, e.g. 127.0.0.1 or "
-                                     "0.0.0.0",
-                                     options.address));
+        throw UsageError(
+            fmt::format("{}: is no address to listen on; give one of this machine's, e.g. 127.0.0.1 or "
+                        "0.0.0.0",
+                        options.address));
     const tcp::endpoint place(address, options.port);
     tcp::acceptor& acceptor = parts_->acceptor;
     const auto attempt = [&](const auto& step) {
@@ -206,12 +206,12 @@ Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handle
     attempt([&] { acceptor.bind(place, error); });
     attempt([&] { acceptor.listen(asio::socket_base::max_listen_connections, error); });
     if (error)
-        throw UsageError(fmt::format("{}, port {}: can't listen there ({})", options.address, options.port,
-                                     error.message()));
+        throw UsageError(
+            fmt::format("{}, port {}: can't listen there ({})", options.address, options.port, error.message()));
     const std::uint16_t port = acceptor.local_endpoint().port();
     std::vector<std::string> hosts = options.hosts;
-    for (const std::string& own : {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"),
-                                   inUrl(address)})
+    for (const std::string& own :
+         {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"), inUrl(address)})
         hosts.push_back(own);
     const std::string token = options.token.empty() ? randomToken() : options.token;
     const bool any = address.is_unspecified();

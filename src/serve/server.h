@@ -22,11 +22,11 @@ struct PageFile {
 
 /// Bounds on what others can make the server do.
 struct Limits {
-    std::size_t connections = 256;           ///< at once, of all kinds; further ones wait to be accepted
-    std::size_t clients = 32;                ///< web sockets at once; further ones are refused with 503
-    std::size_t message_bytes = 64 << 10;    ///< of a message to the server; a longer one ends its connection
-    double messages_per_second = 250;        ///< mean of a client; more end its connection
-    std::size_t queued_bytes = 64 << 20;     ///< that wait to be sent to a client; more end its connection
+    std::size_t connections = 256;         ///< at once, of all kinds; further ones wait to be accepted
+    std::size_t clients = 32;              ///< web sockets at once; further ones are refused with 503
+    std::size_t message_bytes = 64 << 10;  ///< of a message to the server; a longer one ends its connection
+    double messages_per_second = 250;      ///< mean of a client; more end its connection
+    std::size_t queued_bytes = 64 << 20;   ///< that wait to be sent to a client; more end its connection
 };
 
 /// A web socket. send() and close() may be called from any thread, also after the other side has gone.

@@ -35,14 +35,10 @@ Json factsOf(const gcode::Toolpath& toolpath) {
     double lowest = 0.0;
     double highest = 0.0;
     for (const gcode::Bead& bead : toolpath.beads) highest = std::max<double>(highest, bead.z1);
-    return {{"layers", toolpath.layer_count},
-            {"features", std::move(features)},
-            {"objects", std::move(objects)},
-            {"tools", tools},
-            {"slicer", toolpath.slicer},
-            {"beads", toolpath.beads.size()},
-            {"height_mm", highest - lowest},
-            {"filament_mm", toolpath.filament_mm},
+    return {{"layers", toolpath.layer_count}, {"features", std::move(features)},
+            {"objects", std::move(objects)},  {"tools", tools},
+            {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
+            {"height_mm", highest - lowest},  {"filament_mm", toolpath.filament_mm},
             {"attributes", kAttributes}};
 }
 

@@ -9,8 +9,8 @@
 
 namespace stratum::view {
 
-/// Position, normal and, of G-code, the bead: its layer, feature, tool, object, width, height, speed, time, and its line
-/// with those around it. "hit" is false if nothing but bed and background are there.
+/// Position, normal and, of G-code, the bead: its layer, feature, tool, object, width, height, speed, time, and its
+/// line with those around it. "hit" is false if nothing but bed and background are there.
 /// @param picture  whose print is that of `scene`
 /// @param pixel    of the picture, from its upper left corner
 /// Throws InputError if the file can't be read any more.

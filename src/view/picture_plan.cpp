@@ -44,9 +44,9 @@ private:
     void selection() {
         assemble::PrintRequest& prints = plan_.options.tracing.prints;
         if (state_.first_layer != 0 || state_.last_layer != 0) {
-            prints.print.layers = fmt::format(
-                "{}:{}", std::max(1U, state_.first_layer),
-                state_.last_layer == 0 ? std::string() : std::to_string(state_.last_layer));
+            prints.print.layers =
+                fmt::format("{}:{}", std::max(1U, state_.first_layer),
+                            state_.last_layer == 0 ? std::string() : std::to_string(state_.last_layer));
             say("--layers", prints.print.layers);
         }
         if (!state_.hidden_features.empty()) {
@@ -187,8 +187,8 @@ std::string shellLine(const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) {
         const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-            return std::isalnum(c) != 0 || std::string_view("-_=+,.:/%@").find(static_cast<char>(c)) !=
-                                               std::string_view::npos;
+            return std::isalnum(c) != 0 ||
+                   std::string_view("-_=+,.:/%@").find(static_cast<char>(c)) != std::string_view::npos;
         });
         if (!line.empty()) line += ' ';
         if (plain) {

@@ -118,8 +118,8 @@ private:
                         // Neighbours on the same layer line count, and those of the next one a little.
                         const float like = std::max(0.0f, glm::dot(here.normal, there.normal));
                         const float apart = std::abs(there.depth - here.depth) / (0.01f * here.depth);
-                        const float weight = like * like * std::max(0.0f, 1.0f - apart) *
-                                             (there.depth > 0.0f ? 1.0f : 0.0f);
+                        const float weight =
+                            like * like * std::max(0.0f, 1.0f - apart) * (there.depth > 0.0f ? 1.0f : 0.0f);
                         sum += weight * there.occlusion;
                         weights += weight;
                     }

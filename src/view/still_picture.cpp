@@ -48,11 +48,11 @@ void StillPicture::traceBand(const std::function<void()>& check) {
     const int end = std::min(options.height, next_row_ + bandRows(options.height));
     options.crop = shade::PixelBox{0, next_row_, options.width, end};
     options.margin = 0;
-    const shade::RenderResult band = shade::render(*picture_.print, picture_.scene, options,
-                                                   [&check](std::uint64_t, std::uint64_t) { check(); });
+    const shade::RenderResult band =
+        shade::render(*picture_.print, picture_.scene, options, [&check](std::uint64_t, std::uint64_t) { check(); });
     if (next_row_ == 0)
-        whole_.film = shade::Film(options.width, options.height, {0, 0, options.width, options.height},
-                                  band.film.content());
+        whole_.film =
+            shade::Film(options.width, options.height, {0, 0, options.width, options.height}, band.film.content());
     copyBand(band.film, whole_.film);
     whole_.rays += band.rays;
     whole_.samples += band.samples;
@@ -76,8 +76,8 @@ std::vector<std::uint8_t> StillPicture::rgb() const { return shade::toDisplay(wh
 
 std::vector<std::uint8_t> StillPicture::png(const assemble::TracedObjects& objects) const {
     const shade::RenderOptions& render = plan_.options.render;
-    shade::Metadata metadata = assemble::metadataOf(source_, render, plan_.options.scene.env, objects, picture_.scene,
-                                                    whole_, plan_.denoise);
+    shade::Metadata metadata =
+        assemble::metadataOf(source_, render, plan_.options.scene.env, objects, picture_.scene, whole_, plan_.denoise);
     if (whole_.film.content() == shade::FilmContent::radiance) metadata.insert(assemble::exposureFact(picture_.tone));
     return shade::encodePng(render.width, render.height, rgb(), metadata);
 }

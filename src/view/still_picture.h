@@ -20,8 +20,8 @@ public:
     bool done() const { return next_row_ >= plan_.options.render.height; }
     /// 0..1
     double progress() const;
-    /// Traces the next rows. What `check` throws, which is called after each tile, ends it: the rows are traced again by
-    /// the next call.
+    /// Traces the next rows. What `check` throws, which is called after each tile, ends it: the rows are traced again
+    /// by the next call.
     void traceBand(const std::function<void()>& check);
 
     /// Denoises if the plan says so. Throws what `check` throws, and then can be called again.

@@ -21,8 +21,8 @@ bool selectsLayers(const assemble::PrintRequest& prints) {
     return !prints.print.layers.empty() || !prints.printed.empty();
 }
 
-/// Heights of the layers first to last, mm: between the undersides of the lowest and the middle of the highest beads, so
-/// that a flat cut shows the beads of the last layer.
+/// Heights of the layers first to last, mm: between the undersides of the lowest and the middle of the highest beads,
+/// so that a flat cut shows the beads of the last layer.
 struct Slab {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 };
@@ -153,8 +153,7 @@ ViewedPicture ViewScene::stage(Objects& objects, const PicturePlan& plan,
     return staged(std::move(print), plan, light);
 }
 
-ViewedPicture ViewScene::staged(std::shared_ptr<const trace::Intersector> print, const PicturePlan& plan,
-                                Light light) {
+ViewedPicture ViewScene::staged(std::shared_ptr<const trace::Intersector> print, const PicturePlan& plan, Light light) {
     if (light == Light::near && !bare_light_)
         bare_light_ = std::make_shared<const shade::BareLight>(stage_->scene, stage_->middle);
     return {std::move(print), stage_->scene, {stage_->exposure.value_or(plan.exposure.value_or(0.0))}, bare_light_};

@@ -28,8 +28,8 @@ public:
 
     /// Whether the objects of the plan are there, so that a picture of it needs no reading.
     bool has(const PicturePlan& plan) const;
-    /// Whether objects of this document are there that can stand for those of the plan while it moves: all of the print,
-    /// cut flat at the planes of its layers.
+    /// Whether objects of this document are there that can stand for those of the plan while it moves: all of the
+    /// print, cut flat at the planes of its layers.
     bool canStandIn(const PicturePlan& plan) const;
 
     /// The objects of the plan, read and built if they must be. Throws InputError and UsageError.
@@ -37,8 +37,8 @@ public:
     /// Seconds that this took last, if it was more than looking up.
     double buildSeconds() const { return build_seconds_; }
 
-    /// How exactly light follows the camera that it stands beside (the studio's does): a studio takes as long to make as
-    /// a small picture to trace, so while a view moves it follows in steps of a few degrees.
+    /// How exactly light follows the camera that it stands beside (the studio's does): a studio takes as long to make
+    /// as a small picture to trace, so while a view moves it follows in steps of a few degrees.
     enum class Light { exact, near };
     /// A picture of the plan in another size, of its own objects.
     ViewedPicture picture(const PicturePlan& plan, int width, int height, Light light = Light::exact);

@@ -107,7 +107,8 @@ void readCamera(JsonSection section, ViewState& state) {
 void readSelection(JsonSection& section, ViewState& state) {
     if (const std::vector<double> layers = section.numbers("layers", 2); !layers.empty()) {
         for (const double layer : layers)
-            if (!(layer >= 0 && layer <= 1e9 && layer == std::floor(layer))) section.fail("layers", "two whole numbers");
+            if (!(layer >= 0 && layer <= 1e9 && layer == std::floor(layer)))
+                section.fail("layers", "two whole numbers");
         state.first_layer = static_cast<std::uint32_t>(layers[0]);
         state.last_layer = static_cast<std::uint32_t>(layers[1]);
         if (state.last_layer != 0 && state.first_layer > state.last_layer)

@@ -19,8 +19,8 @@ namespace stratum::view {
 /// The files of the page, as they were built in.
 std::vector<serve::PageFile> pageFiles();
 
-/// Handles what pages send, on the server's thread; pictures are made on the loop's thread. Every page has its own view;
-/// what is read of an input is shared.
+/// Handles what pages send, on the server's thread; pictures are made on the loop's thread. Every page has its own
+/// view; what is read of an input is shared.
 class Viewer final : public serve::Handler {
 public:
     /// @param say  tells the terminal of reloads and of inputs that fail; called on any thread, one call at a time

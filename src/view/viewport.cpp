@@ -281,8 +281,8 @@ void Viewport::workOnSave(const std::function<void()>& check) {
         return;
     }
     saving_->finish(check);
-    send("saved", "image/png", options.width, options.height, scene_->picture(plan, options.width, options.height), plan,
-         save.number, saving_->png(scene_->objects()));
+    send("saved", "image/png", options.width, options.height, scene_->picture(plan, options.width, options.height),
+         plan, save.number, saving_->png(scene_->objects()));
     saving_.reset();
     const std::lock_guard lock(mutex_);
     if (!saves_.empty()) saves_.pop_front();

@@ -91,7 +91,8 @@ private:
     ShowMessage current_;
     std::optional<PicturePlan> plan_;
     std::unique_ptr<StillPicture> still_, saving_;
-    std::optional<ViewedPicture> full_;  // of the exact objects in the full size, for the finished picture and inspect()
+    std::optional<ViewedPicture>
+        full_;  // of the exact objects in the full size, for the finished picture and inspect()
     FrameScale frame_scale_;
 };
 

@@ -28,7 +28,8 @@ TEST(Access, OnlyBelowTheToken) {
     EXPECT_EQ(rest, "main.js");
     EXPECT_TRUE(access.below("/0123/", rest));
     EXPECT_EQ(rest, "");
-    for (const char* target : {"/", "", "/0123", "/0124/", "//0123/", "/01234/", "http://127.0.0.1/0123/", "/?/0123/"}) {
+    for (const char* target :
+         {"/", "", "/0123", "/0124/", "//0123/", "/01234/", "http://127.0.0.1/0123/", "/?/0123/"}) {
         SCOPED_TRACE(target);
         EXPECT_FALSE(access.below(target, rest));
     }

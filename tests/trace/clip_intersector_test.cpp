@@ -4,8 +4,8 @@
 #include "trace/sdf.h"
 #include "trace/sdf_intersector.h"
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <limits>
@@ -103,7 +103,8 @@ TEST(ClipIntersector, StreamsAreTheSame) {
 
 TEST(ClipIntersector, PlanesWithoutADirectionAreRefused) {
     EXPECT_THROW((void)makeClipIntersector(ball(), {{{0, 0, 0}, 1}}), UsageError);
-    EXPECT_THROW((void)makeClipIntersector(ball(), {{{0, 0, 1}, std::numeric_limits<double>::quiet_NaN()}}), UsageError);
+    EXPECT_THROW((void)makeClipIntersector(ball(), {{{0, 0, 1}, std::numeric_limits<double>::quiet_NaN()}}),
+                 UsageError);
 }
 
 }  // namespace

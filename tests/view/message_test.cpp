@@ -25,11 +25,11 @@ TEST(Message, EveryKindIsRead) {
 }
 
 TEST(Message, OthersAreRefused) {
-    for (const char* text : {"", "{", "null", "[]", "{}", R"({"type": "quit"})", R"({"type": 3})", R"({"type": "show"})",
-                             R"({"type": "show", "state": {"size": [1, 1]}})", R"({"type": "shown", "more": 1})",
-                             R"({"type": "inspect", "x": 2})", R"({"type": "inspect", "y": -1})",
-                             R"({"type": "open", "file": -1})", R"({"type": "open", "file": 1e30})",
-                             R"({"type": "show", "number": -1, "state": {}})"}) {
+    for (const char* text :
+         {"", "{", "null", "[]", "{}", R"({"type": "quit"})", R"({"type": 3})", R"({"type": "show"})",
+          R"({"type": "show", "state": {"size": [1, 1]}})", R"({"type": "shown", "more": 1})",
+          R"({"type": "inspect", "x": 2})", R"({"type": "inspect", "y": -1})", R"({"type": "open", "file": -1})",
+          R"({"type": "open", "file": 1e30})", R"({"type": "show", "number": -1, "state": {}})"}) {
         SCOPED_TRACE(text);
         EXPECT_THROW((void)parseMessage(text), InputError);
     }

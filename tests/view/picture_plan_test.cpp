@@ -44,11 +44,10 @@ TEST(PicturePlan, EveryChoiceIsInTheLine) {
     state.clip = trace::ClipPlane{{-1, 0, 0}, -90};
     state.spp = 16;
     const std::string line = lineOf(state);
-    for (const char* words :
-         {"--eye=1.25,-2.5,3 --look-at=0,0,0.5", "--fov 35", "--layers 4:", "--printed time:50%",
-          "--features=-skirt,-infill", "--object 2", "--tool 0 --tool 1", "--color-by layer", "--brdf '#ff8800'",
-          "--env sky:20,-30", "--env-rotation=-10", "--no-bed", "--exposure=-0.5", "--normals smooth",
-          "--clip=-1,0,0,-90", "--spp 16"})
+    for (const char* words : {"--eye=1.25,-2.5,3 --look-at=0,0,0.5", "--fov 35", "--layers 4:", "--printed time:50%",
+                              "--features=-skirt,-infill", "--object 2", "--tool 0 --tool 1", "--color-by layer",
+                              "--brdf '#ff8800'", "--env sky:20,-30", "--env-rotation=-10", "--no-bed",
+                              "--exposure=-0.5", "--normals smooth", "--clip=-1,0,0,-90", "--spp 16"})
         EXPECT_NE(line.find(words), std::string::npos) << words << " in " << line;
 }
 

@@ -1,9 +1,9 @@
 #include "view/still_picture.h"
 
 #include "given_tile.h"
+#include "scratch_folder.h"
 #include "shade/film/picture.h"
 #include "shade/post/denoise.h"
-#include "scratch_folder.h"
 #include "view/document.h"
 
 #include <gtest/gtest.h>

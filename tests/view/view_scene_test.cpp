@@ -79,8 +79,7 @@ TEST(QuickPicture, LooksLikeThePicture) {
     options.height = 72;
     options.aovs.clear();
     options.spp = 16;
-    const auto full =
-        shade::toDisplay(shade::render(*picture.print, picture.scene, options).film, picture.tone);
+    const auto full = shade::toDisplay(shade::render(*picture.print, picture.scene, options).film, picture.tone);
     ASSERT_EQ(quick.size(), full.size());
     double difference = 0.0;
     for (std::size_t n = 0; n < quick.size(); ++n) difference += std::abs(int{quick[n]} - int{full[n]});

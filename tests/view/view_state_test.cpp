@@ -46,9 +46,7 @@ TEST(ViewState, WhatIsWrittenIsReadAgain) {
     EXPECT_EQ(parseViewState(toJson(named)).named, shade::View::top);
 }
 
-TEST(ViewState, AllIsPrintedAt100PerCent) {
-    EXPECT_FALSE(parseViewState(Json::parse(R"({"printed": 100})")).printed);
-}
+TEST(ViewState, AllIsPrintedAt100PerCent) { EXPECT_FALSE(parseViewState(Json::parse(R"({"printed": 100})")).printed); }
 
 TEST(ViewState, NoTextNamesAFile) {
     for (const char* path : {"/etc/passwd", "../secret.bsdf", "./pla-blue", "map.hdr", "data/brdf/pla-blue.bsdf.gz"}) {
@@ -63,17 +61,42 @@ TEST(ViewState, NoTextNamesAFile) {
 }
 
 TEST(ViewState, WhatMakesNoPictureIsRefused) {
-    for (const char* text :
-         {"[]", "3", R"({"size": [0, 9]})", R"({"size": [1e9, 9]})", R"({"size": [8000, 8000]})", R"({"size": [100.5, 90]})",
-          R"({"size": "9x9"})", R"({"unknown": 1})", R"({"camera": []})", R"({"camera": {"view": "inside"}})",
-          R"({"camera": {"eye": [1, 2, 3]}})", R"({"camera": {"eye": [1e30, 2, 3], "look_at": [0, 0, 0]}})",
-          R"({"camera": {"view": "top", "eye": [1, 2, 3], "look_at": [0, 0, 0]}})", R"({"camera": {"fov": 0}})",
-          R"({"layers": [5, 2]})", R"({"layers": [-1, 2]})", R"({"layers": [1.5, 2]})", R"({"layers": [1]})",
-          R"({"printed": 0})", R"({"printed": 101})", R"({"printed": "half"})", R"({"hidden_features": ["legs"]})",
-          R"({"hidden_features": "skirt"})", R"({"objects": [-1]})", R"({"tools": [256]})", R"({"tools": [0.5]})",
-          R"({"color_by": "feature,layer"})", R"({"light_rotation": 1e4})", R"({"exposure": 99})", R"({"bed": "no"})",
-          R"({"bed_surface": "wood"})", R"({"clip": [0, 0, 0, 1]})", R"({"clip": [0, 0, 1]})",
-          R"({"clip": [0, 0, 1, 1e300]})", R"({"spp": 100000})", R"({"smooth": 1})"})
+    for (const char* text : {"[]",
+                             "3",
+                             R"({"size": [0, 9]})",
+                             R"({"size": [1e9, 9]})",
+                             R"({"size": [8000, 8000]})",
+                             R"({"size": [100.5, 90]})",
+                             R"({"size": "9x9"})",
+                             R"({"unknown": 1})",
+                             R"({"camera": []})",
+                             R"({"camera": {"view": "inside"}})",
+                             R"({"camera": {"eye": [1, 2, 3]}})",
+                             R"({"camera": {"eye": [1e30, 2, 3], "look_at": [0, 0, 0]}})",
+                             R"({"camera": {"view": "top", "eye": [1, 2, 3], "look_at": [0, 0, 0]}})",
+                             R"({"camera": {"fov": 0}})",
+                             R"({"layers": [5, 2]})",
+                             R"({"layers": [-1, 2]})",
+                             R"({"layers": [1.5, 2]})",
+                             R"({"layers": [1]})",
+                             R"({"printed": 0})",
+                             R"({"printed": 101})",
+                             R"({"printed": "half"})",
+                             R"({"hidden_features": ["legs"]})",
+                             R"({"hidden_features": "skirt"})",
+                             R"({"objects": [-1]})",
+                             R"({"tools": [256]})",
+                             R"({"tools": [0.5]})",
+                             R"({"color_by": "feature,layer"})",
+                             R"({"light_rotation": 1e4})",
+                             R"({"exposure": 99})",
+                             R"({"bed": "no"})",
+                             R"({"bed_surface": "wood"})",
+                             R"({"clip": [0, 0, 0, 1]})",
+                             R"({"clip": [0, 0, 1]})",
+                             R"({"clip": [0, 0, 1, 1e300]})",
+                             R"({"spp": 100000})",
+                             R"({"smooth": 1})"})
         expectRefused(text);
     EXPECT_THROW((void)parseViewState({{"objects", std::vector<int>(5000, 1)}}), InputError);
     EXPECT_THROW((void)parseViewState({{"material", std::string(10000, 'a')}}), InputError);

@@ -27,16 +27,14 @@ void KeptPrints::keep(const std::string& path, ReadProgram program) {
     programs_.insert_or_assign(path, std::move(program));
 }
 
-std::shared_ptr<TracedPrint> KeptPrints::print(const std::string& path, const PrintRequest& request,
-                                                     bool timed) const {
+std::shared_ptr<TracedPrint> KeptPrints::print(const std::string& path, const PrintRequest& request, bool timed) const {
     const auto found = prints_.find(keyOf(path, request));
     auto print = found == prints_.end() ? nullptr : found->second.lock();
     if (print && timed && print->print.toolpath->timing.empty()) return nullptr;
     return print;
 }
 
-void KeptPrints::keep(const std::string& path, const PrintRequest& request,
-                      const std::shared_ptr<TracedPrint>& print) {
+void KeptPrints::keep(const std::string& path, const PrintRequest& request, const std::shared_ptr<TracedPrint>& print) {
     for (auto entry = prints_.begin(); entry != prints_.end();)
         entry = entry->second.expired() ? prints_.erase(entry) : std::next(entry);
     prints_[keyOf(path, request)] = print;

@@ -30,7 +30,7 @@ march::Annotation annotationOf(const ObjectOptions& object, const std::shared_pt
 
 // Reads a selection of a print, and lists its bricks; or takes what is kept of it.
 std::shared_ptr<TracedPrint> tracedOf(const ObjectOptions& object, const PrintRequest& request,
-                                            const TracingOptions& options, Warnings& warnings) {
+                                      const TracingOptions& options, Warnings& warnings) {
     const bool keep = request.kept != nullptr && !request.print.voxel_auto;
     if (keep)
         if (auto known = request.kept->print(object.vdb, request, request.timed)) return known;

@@ -14,8 +14,9 @@ export class Controls {
   #box = null;
   #playing = 0;
 
-  /** changed(moving) is called after each change of state(). */
-  constructor({ state, changed }) {
+  /** changed(moving) is called after each change of state(); eye() is where the camera stands, or null. */
+  constructor({ state, changed, eye }) {
+    this.eye = eye;
     this.state = state;
     this.changed = changed;
     this.#bindLayers();
@@ -217,7 +218,15 @@ export class Controls {
       clip[axis] = sign;
       this.#set("clip", clip, moving);
     };
-    for (const id of ["cut", "cut-axis", "cut-flip"]) byId(id).addEventListener("change", () => take(false));
+    // A new cut faces the camera.
+    const face = () => {
+      const eye = this.eye();
+      const axis = Number(byId("cut-axis").value);
+      if (eye && this.#box) byId("cut-flip").checked = eye[axis] < (this.#box[axis] + this.#box[axis + 3]) / 2;
+      take(false);
+    };
+    for (const id of ["cut", "cut-axis"]) byId(id).addEventListener("change", face);
+    byId("cut-flip").addEventListener("change", () => take(false));
     byId("cut-at").addEventListener("input", () => take(true));
     byId("cut-at").addEventListener("change", () => take(false));
   }

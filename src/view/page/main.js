@@ -31,7 +31,7 @@ function orbitOf({ eye, look_at, fov }) {
 }
 
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
-const controls = new Controls({ state: () => state, changed: (moving) => ask(moving) });
+const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), eye: () => camera?.eye ?? null });
 const answer = new Answer(byId("answer"), byId("marks"));
 
 // ---------------------------------------------------------------- asking

@@ -216,9 +216,9 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
         std::string names;
         for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
             if (present[f]) names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-        throw InputError(
-            fmt::format("no bead is left by --layers, --features, --object and --tool; the print has layers 1 to {} and{}",
-                        toolpath.layer_count, names));
+        throw InputError(fmt::format(
+            "no bead is left by --layers, --features, --object and --tool; the print has layers 1 to {} and{}",
+            toolpath.layer_count, names));
     }
     return beads;
 }
