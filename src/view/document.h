@@ -3,7 +3,7 @@
 
 #include "assemble/print/kept_prints.h"
 #include "gcode/toolpath/toolpath.h"
-#include "view/picture_plan.h"
+#include "view/asked/picture_plan.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,8 +3,8 @@
 
 #include "assemble/ready_scene.h"
 #include "shade/integrator/bare_light.h"
+#include "view/asked/picture_plan.h"
 #include "view/document.h"
-#include "view/picture_plan.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,8 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "view/message.h"
+#include "view/asked/message.h"
+#include "view/loading_events.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -64,7 +65,10 @@ void Viewer::load(Input& input) {
     const std::string& path = input.document.given().path;
     try {
         const PicturePlan plan = planPicture(input.document.given(), ViewState());
-        input.scene.makeObjects(plan, {});
+        input.scene.makeObjects(plan, loadingEvents([&input](const Json& message) {
+                                    const std::lock_guard lock(input.mutex);
+                                    for (const Output& page : input.waiting) page.text(message);
+                                }));
         input.failure.clear();
         say_(fmt::format("{}: ready after {:.2f} s", path, watch.lap()));
     } catch (const std::exception& error) {
@@ -105,10 +109,16 @@ void Viewer::open(const std::shared_ptr<serve::Client>& client, std::size_t file
     page = {nullptr, file};
     Input& input = *inputs_[file];
     page.viewport = std::make_shared<Viewport>(input.document, outputTo(client));
+    client->sendText(dump({{"type", "loading"}, {"step", "reading"}}));
+    {
+        const std::lock_guard lock(input.mutex);
+        input.waiting.push_back(page.viewport->output());
+    }
     loop_.post([this, &input, viewport = page.viewport] {
-        if (input.scene.empty() && input.failure.empty()) {
-            viewport->output().text({{"type", "loading"}, {"step", "reading"}});
-            load(input);
+        if (input.scene.empty() && input.failure.empty()) load(input);
+        {
+            const std::lock_guard lock(input.mutex);
+            input.waiting.clear();  // whose turn has not come yet is told nothing new any more
         }
         viewport->startWith(input.scene);
         if (!input.failure.empty()) viewport->output().text({{"type", "failed"}, {"text", input.failure}});

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -45,6 +46,8 @@ private:
         Document document;
         ViewScene scene;  // of the input as it was given
         std::string failure;
+        std::mutex mutex;             // of the next one
+        std::vector<Output> waiting;  // pages that were opened before it is ready
     };
     struct Page {
         std::shared_ptr<Viewport> viewport;

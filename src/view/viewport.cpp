@@ -5,13 +5,15 @@
 #include "shade/film/tonemap.h"
 #include "shade/post/denoise.h"
 #include "view/inspect.h"
-#include "view/jpeg.h"
-#include "view/quick_picture.h"
+#include "view/loading_events.h"
+#include "view/picture/jpeg.h"
+#include "view/picture/quick_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -124,6 +126,8 @@ void Viewport::step(const std::function<void()>& check) {
         fail(error.what());
     } catch (const std::bad_alloc&) {
         fail("there is not enough memory for this view; show fewer layers, or start the viewer with larger voxels");
+    } catch (const std::exception& error) {
+        fail(error.what());
     }
 }
 
@@ -168,27 +172,9 @@ void Viewport::work(const std::function<void()>& check) {
     }
 }
 
-assemble::ReadEvents Viewport::events() const {
-    assemble::ReadEvents events;
-    const auto last = std::make_shared<Clock::time_point>();
-    const auto step = std::make_shared<std::string>();
-    const auto text = output_.text;
-    events.begin = [step, text](std::string_view name, bool) {
-        *step = name;
-        text({{"type", "loading"}, {"step", name}});
-    };
-    events.fraction = [step, text, last](double done) {
-        if (Clock::now() - *last < std::chrono::milliseconds(100)) return;
-        *last = Clock::now();
-        text({{"type", "loading"}, {"step", *step}, {"done", done}});
-    };
-    events.end = [] {};
-    return events;
-}
-
 void Viewport::makeExact() {
     if (!scene_->has(*plan_)) {
-        scene_->makeObjects(*plan_, events());
+        scene_->makeObjects(*plan_, loadingEvents(output_.text));
         output_.text({{"type", "facts"}, {"facts", document_.facts()}});
     }
     Json described = scene_->describe();
@@ -271,7 +257,7 @@ void Viewport::workOnSave(const std::function<void()>& check) {
     const PicturePlan plan = planPicture(document_.given(), save.state);
     const shade::RenderOptions& options = plan.options.render;
     if (!saving_) {
-        scene_->makeObjects(plan, events());
+        scene_->makeObjects(plan, loadingEvents(output_.text));
         saving_ = std::make_unique<StillPicture>(scene_->picture(plan, options.width, options.height), plan,
                                                  nameOf(document_.given().path));
     }
@@ -290,7 +276,7 @@ void Viewport::workOnSave(const std::function<void()>& check) {
 
 void Viewport::answer(const InspectMessage& inspect) {
     if (!plan_) return;
-    if (!scene_->has(*plan_)) scene_->makeObjects(*plan_, events());
+    if (!scene_->has(*plan_)) scene_->makeObjects(*plan_, loadingEvents(output_.text));
     const shade::RenderOptions& options = plan_->options.render;
     if (!full_) full_ = scene_->picture(*plan_, options.width, options.height);
     Json answer = view::inspect(document_, *scene_, *full_, {inspect.x * options.width, inspect.y * options.height});

@@ -1,10 +1,10 @@
 // One page's picture: from a quick one while it moves to the finished one at rest.
 #pragma once
 
+#include "view/asked/message.h"
 #include "view/document.h"
-#include "view/frame_scale.h"
-#include "view/message.h"
-#include "view/still_picture.h"
+#include "view/picture/frame_scale.h"
+#include "view/picture/still_picture.h"
 #include "view/view_scene.h"
 
 #include <nlohmann/json.hpp>
@@ -71,7 +71,6 @@ private:
     void send(const char* kind, const char* type, int width, int height, const ViewedPicture& picture,
               const PicturePlan& plan, std::uint64_t number, const std::vector<std::uint8_t>& file);
     ViewedPicture small(const PicturePlan& plan, int width, int height, bool* exact);
-    assemble::ReadEvents events() const;
     void set(Stage stage);
 
     Document& document_;

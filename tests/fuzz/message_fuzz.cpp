@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "shade/brdf/filament_color.h"
 #include "shade/brdf/preset_names.h"
-#include "view/message.h"
-#include "view/picture_plan.h"
+#include "view/asked/message.h"
+#include "view/asked/picture_plan.h"
 
 #include <cmath>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "corpus.h"
-#include "view/picture_plan.h"
+#include "view/asked/picture_plan.h"
 
 namespace stratum::test {
 

@@ -1,7 +1,7 @@
 #include "view/view_scene.h"
 
 #include "given_tile.h"
-#include "view/quick_picture.h"
+#include "view/picture/quick_picture.h"
 
 #include <gtest/gtest.h>
 

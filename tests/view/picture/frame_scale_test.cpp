@@ -1,4 +1,4 @@
-#include "view/frame_scale.h"
+#include "view/picture/frame_scale.h"
 
 #include <gtest/gtest.h>
 

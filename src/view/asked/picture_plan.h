@@ -5,7 +5,7 @@
 #include "assemble/finished_picture.h"
 #include "assemble/object_file.h"
 #include "assemble/ready_scene.h"
-#include "view/view_state.h"
+#include "view/asked/view_state.h"
 
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "view/message.h"
+#include "view/asked/message.h"
 
 #include "base/error.h"
 #include "base/json_section.h"

@@ -1,4 +1,4 @@
-#include "view/jpeg.h"
+#include "view/picture/jpeg.h"
 
 #include <gtest/gtest.h>
 

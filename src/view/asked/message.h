@@ -1,7 +1,7 @@
 // What a page may say.
 #pragma once
 
-#include "view/view_state.h"
+#include "view/asked/view_state.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "view/picture_plan.h"
+#include "view/asked/picture_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "view/still_picture.h"
+#include "view/picture/still_picture.h"
 
 #include "shade/film/png_writer.h"
 #include "shade/film/tonemap.h"

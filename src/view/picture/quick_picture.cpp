@@ -1,4 +1,4 @@
-#include "view/quick_picture.h"
+#include "view/picture/quick_picture.h"
 
 #include "base/parallel_for.h"
 #include "shade/camera/filter.h"

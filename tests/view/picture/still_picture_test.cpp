@@ -1,4 +1,4 @@
-#include "view/still_picture.h"
+#include "view/picture/still_picture.h"
 
 #include "given_tile.h"
 #include "scratch_folder.h"

@@ -1,4 +1,4 @@
-#include "view/view_state.h"
+#include "view/asked/view_state.h"
 
 #include "base/error.h"
 #include "base/json_section.h"
