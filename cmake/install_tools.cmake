@@ -2,7 +2,7 @@
 # materials, the Blender add-on, the documents.
 find_program(GZIP gzip REQUIRED)
 set(manuals)
-foreach(tool gcode2vdb vdbtrace vdbmerge vdbstudy)
+foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
   set(man ${PROJECT_BINARY_DIR}/manuals/${tool}.1.gz)
   set(completion ${PROJECT_BINARY_DIR}/manuals/${tool}.bash)
   add_custom_command(OUTPUT ${man} ${completion} VERBATIM

@@ -20,9 +20,11 @@ MAY_INCLUDE = {
     "ondemand": {"base", "gcode", "voxelize", "trace", "march"},
     "shade": {"base", "trace"},
     "assemble": {"base", "gcode", "motion", "deposit", "voxelize", "trace", "march", "ondemand", "shade"},
+    "serve": {"base"},
+    "view": {"base", "gcode", "voxelize", "trace", "march", "ondemand", "shade", "assemble", "serve"},
     "study": {"base", "gcode", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
 }
-WITHOUT_OPENVDB = {"base", "gcode", "motion", "deposit", "trace", "shade"}
+WITHOUT_OPENVDB = {"base", "gcode", "motion", "deposit", "trace", "shade", "serve"}
 MOST_LINES = 450
 MOST_FILES = 30  # of code, in one folder
 MOST_FUNCTION_LINES = 80

@@ -64,6 +64,14 @@ void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->allow_extra_args(false)
         ->type_name("NAME|NUMBER")
         ->group(what);
+    app.add_option_function<std::vector<unsigned>>(
+           "--tool",
+           [&options](const std::vector<unsigned>& tools) { options.tools.assign(tools.begin(), tools.end()); },
+           "Only what this tool (T number) prints; may be given again for more")
+        ->check(CLI::Range(0, 255))
+        ->allow_extra_args(false)
+        ->type_name("NUMBER")
+        ->group(what);
 }
 
 void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {

@@ -3,11 +3,11 @@
 #include "progress.h"
 #include "trace_shard.h"
 
+#include "assemble/finished_picture.h"
 #include "shade/film/picture.h"
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -23,23 +23,6 @@ shade::Progress progressOf(ProgressBar& bar) {
     if (!show) return {};
     return
         [show](std::uint64_t done, std::uint64_t all) { show(static_cast<double>(done) / static_cast<double>(all)); };
-}
-
-shade::Metadata metadataOf(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
-                           const shade::SceneDescription& scene, const shade::RenderResult& result, bool denoised) {
-    shade::Metadata metadata{{"Software", "vdbtrace " STRATUM_VERSION},
-                             {"Source", frame.source},
-                             {"Integrator", o.render.integrator.name},
-                             {"SamplesPerPixel", fmt::format("{:g}", result.mean_spp)},
-                             {"Seed", std::to_string(o.render.seed)},
-                             {"Brdf", objects.brdf},
-                             {"Environment", o.scene.env}};
-    if (!scene.material->notes().empty())
-        metadata.insert({"BrdfNotes", fmt::format("{}", fmt::join(scene.material->notes(), "; "))});
-    if (denoised) metadata.insert({"Denoised", shade::kDenoiserLabel});
-    if (o.render.seconds > 0.0)
-        metadata.insert({"Time", fmt::format("{:g} s; the samples depend on the machine", o.render.seconds)});
-    return metadata;
 }
 
 // What this picture did not need.
@@ -132,9 +115,10 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
     }
     seconds.denoise = watch.lap();
 
-    shade::Metadata metadata = metadataOf(o, frame, objects, scene, result, denoised);
+    shade::Metadata metadata =
+        assemble::metadataOf(frame.source, o.render, o.scene.env, objects, scene, result, denoised);
     const bool shown = !o.linear && result.film.content() == shade::FilmContent::radiance;
-    if (shown) metadata.insert({"Exposure", fmt::format("{:.3f} stops", o.tone.exposure)});
+    if (shown) metadata.insert(assemble::exposureFact(o.tone));
     const shade::Legend* legend = o.legend && !objects.legends.empty() ? &objects.legends.front() : nullptr;
     {
         const ProgressNote note("writing", o.common.quiet);

@@ -188,6 +188,14 @@ void addCameraOptions(CLI::App& app, TraceCommand& o) {
         ->group(camera);
 }
 
+void addClipOption(CLI::App& app, TraceCommand& o) {
+    app.add_option("--clip", o.clip,
+                   "A section: only what lies where NX x + NY y + NZ z <= D, with the cut closed; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("NX,NY,NZ,D")
+        ->group("Picture");
+}
+
 void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--integrator", o.render.integrator.name,
                              "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, "
@@ -317,6 +325,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addInputOptions(app, o);
     addPictureOptions(app, o);
     addCameraOptions(app, o);
+    addClipOption(app, o);
     addMaterialOptions(app, o);
     addLightOptions(app, o);
     addTracingOptions(app, o);
@@ -394,6 +403,11 @@ void applyText(TraceCommand& o) {
         o.scene.camera.focus_point.reset();
         if (focus.size() == 1) o.scene.camera.focus_distance = focus[0];
         if (focus.size() == 3) o.scene.camera.focus_point = glm::dvec3(focus[0], focus[1], focus[2]);
+    }
+    o.clip_planes.clear();
+    for (const std::string& text : o.clip) {
+        const std::vector<double> v = parseNumbers(text, {4}, "--clip", "NX,NY,NZ,D");
+        o.clip_planes.push_back({{v[0], v[1], v[2]}, v[3]});
     }
     if (!o.color.empty()) {
         if (!shade::parseNamedColor(o.color))

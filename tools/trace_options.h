@@ -10,6 +10,7 @@
 #include "shade/integrator/render.h"
 #include "shade/parts/shard.h"
 #include "shade/scene/scene.h"
+#include "trace/clip_intersector.h"
 
 #include <CLI/CLI.hpp>
 
@@ -36,6 +37,8 @@ struct TraceCommand {
     std::vector<std::string> inputs, notes;
     std::string output, grid, file_up, bed_surface, march = "auto", size, view, crop, write_brdf, aov, normals;
     std::string eye, look_at, up, focus, phong;
+    std::vector<std::string> clip;  // --clip, as given
+    std::vector<trace::ClipPlane> clip_planes;
     bool each = false;
     std::string color, frame = "part";  // --color, --frame
     std::string scene_text;             // hash of the scene file, or empty

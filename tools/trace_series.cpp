@@ -30,6 +30,7 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
     assemble::TracingOptions reading = assemble::tracingFor(o.scene, o.render);
     reading.march = assemble::parseMarchMethod(o.march);
     reading.values = o.values;
+    reading.clip = o.clip_planes;
     reading.prints = o.prints;
     reading.hash = !o.render.checkpoint.empty();
     reading.events = terminalEvents(o.common.quiet);

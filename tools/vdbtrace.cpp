@@ -8,17 +8,16 @@
 #include "trace_series.h"
 #include "trace_shard.h"
 
+#include "assemble/finished_picture.h"
 #include "assemble/shape/file_facts.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/film/picture.h"
-#include "shade/post/denoise.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -71,22 +70,6 @@ bool makesAny(const tools::TraceCommand& o) {
     for (std::size_t n = 0; n < tools::pictures(o); ++n)
         if (tools::makes(o, n)) return true;
     return false;
-}
-
-// A picture to look at is clean; numbers to measure are unbiased.
-void chooseDenoising(tools::TraceCommand& o) {
-    if (!o.denoise) o.denoise = !o.linear && o.render.spp > 1 && shade::canDenoise(o.render.integrator);
-    if (!*o.denoise) return;
-    if (!o.spp_given && !(o.render.noise > 0.0 || o.render.seconds > 0.0)) {
-        // 8 are enough where a layer line is some pixels high. In a small picture several lines share a pixel, which
-        // needs more samples; the total stays near that of the default size.
-        constexpr int kLeast = 8, kMost = 32;
-        constexpr std::int64_t kTotal = std::int64_t{1280} * 960 * kLeast * 11 / 10;
-        const std::int64_t pixels = std::int64_t{o.render.width} * o.render.height;
-        o.render.spp = kLeast;
-        while (o.render.spp < kMost && pixels * o.render.spp * 2 <= kTotal) o.render.spp *= 2;
-    }
-    shade::addDenoisingGuides(o.render);
 }
 
 void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::string& option) {
@@ -177,7 +160,7 @@ void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv)
         for (const Json& report : some) reports.push_back(report);
     };
     for (tools::TraceCommand& o : commands) {
-        chooseDenoising(o);
+        o.denoise = assemble::chooseDenoising({o.denoise, o.linear, o.spp_given}, o.render);
         tools::identify(o);
         if (!makesAny(o)) continue;
         for (const std::string& note : o.notes) tools::say(o.common, note);

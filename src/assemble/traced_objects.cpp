@@ -4,6 +4,7 @@
 #include "assemble/shape/object_materials.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"
+#include "trace/clip_intersector.h"
 
 #include <openvdb/openvdb.h>
 #include <glm/common.hpp>
@@ -162,7 +163,7 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     result.legends = materials.legends();
     result.no_color_lookup = materials.noLookup();
     result.warnings = reader.warnings();
-    result.intersector = trace::makeSceneIntersector(std::move(scene));
+    result.intersector = trace::makeClipIntersector(trace::makeSceneIntersector(std::move(scene)), options.clip);
     return result;
 }
 

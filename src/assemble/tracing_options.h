@@ -7,6 +7,7 @@
 #include "march/brick/brick_layout.h"
 #include "shade/integrator/render.h"
 #include "shade/scene/scene.h"
+#include "trace/clip_intersector.h"
 
 #include <cstddef>
 #include <string>
@@ -37,9 +38,10 @@ struct TracingOptions {
     bool smooth_normals = false;  ///< answer Tracer::shadingNormal() without the facets of voxels
     /// Bytes of samples at once, of each print and of each large level set.
     std::size_t brick_cache = march::BrickGrid::kNoBound;
-    std::vector<shade::Label> labels;  ///< that hits have; every level set must provide them
-    PrintRequest prints;               ///< of G-code
-    bool hash = false;                 ///< fill in TracedObjects::source
+    std::vector<shade::Label> labels;    ///< that hits have; every level set must provide them
+    PrintRequest prints;                 ///< of G-code
+    std::vector<trace::ClipPlane> clip;  ///< --clip, world space: what lies before all of these planes is left
+    bool hash = false;                   ///< fill in TracedObjects::source
     ReadEvents events;
 };
 

@@ -1,6 +1,7 @@
 #include "ondemand/print_attributes.h"
 
 #include "base/error.h"
+#include "ondemand/bead_lookup.h"
 #include "voxelize/grid/deposit_balance.h"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -19,8 +19,6 @@ namespace {
 
 using voxelize::Attribute;
 using Kind = voxelize::AttributeKind;
-
-constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
 
 glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, std::uint32_t bead) {
     switch (voxelize::attributeKind(attribute)) {
@@ -38,71 +36,19 @@ glm::vec3 valueOf(const voxelize::BeadAttributes& values, Attribute attribute, s
 class Lookup final : public march::AttributeLookup {
 public:
     Lookup(const PrintField& field, const voxelize::BeadAttributes& values, Attribute attribute)
-        : field_(field),
-          values_(values),
-          attribute_(attribute),
-          map_(field.transform().baseMap()),
-          maker_(field.layout(), true) {}
+        : beads_(field), values_(values), attribute_(attribute) {}
 
     // As march::AttributeLookup of a grid.
     std::optional<glm::vec3> at(const glm::dvec3& position) override {
-        const openvdb::Vec3d p = map_->applyInverseMap(openvdb::Vec3d(position.x, position.y, position.z));
-        const openvdb::Coord cell = openvdb::Coord::floor(p);
-        double nearest = 4.0;  // more than any corner's
-        std::uint32_t bead = kEnd;
-        for (int c = 0; c < 8; ++c) {
-            const openvdb::Coord voxel = cell.offsetBy(c >> 2, c >> 1 & 1, c & 1);
-            const double square = (p - voxel.asVec3d()).lengthSqr();
-            if (square >= nearest) continue;
-            const auto here = ownerOf(voxel);
-            if (!here) continue;
-            nearest = square;
-            bead = *here;
-        }
-        if (bead == kEnd) return std::nullopt;
-        return valueOf(values_, attribute_, bead);
+        const std::optional<std::uint32_t> bead = beads_.at(position);
+        if (!bead) return std::nullopt;
+        return valueOf(values_, attribute_, *bead);
     }
 
 private:
-    struct Owned {
-        openvdb::Coord origin{openvdb::Coord::max()};
-        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> active{};
-        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead{};
-    };
-
-    // The bead whose surface is nearest to an active voxel; nothing for others.
-    std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel) {
-        const openvdb::Coord origin = voxel & ~(voxelize::kLeafDim - 1);
-        const auto bit = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) >> 3; };
-        constexpr unsigned kLast = kSide - 1;
-        Owned& leaf = cache_[(bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast)];
-        if (leaf.origin != origin) fill(leaf, origin);
-        const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
-        if ((leaf.active[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
-        return leaf.bead[n];
-    }
-
-    void fill(Owned& leaf, const openvdb::Coord& origin) {
-        leaf.origin = openvdb::Coord::max();  // invalid if evaluation throws
-        leaf.active = {};
-        if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
-            std::array<float, voxelize::Leaf::SIZE> values;
-            voxelize::storeLeaf(maker_.column().planes(), values.data());
-            voxelize::maskWithin(values.data(), field_.background(), leaf.active.data());
-            maker_.column().owners(leaf.bead);
-            for (std::uint32_t& rank : leaf.bead)
-                if (rank != kEnd) rank = field_.layout().stack.beads[rank];
-        }
-        leaf.origin = origin;
-    }
-
-    static constexpr std::size_t kSide = 8;
-    const PrintField& field_;
+    BeadLookup beads_;
     const voxelize::BeadAttributes& values_;
     const Attribute attribute_;
-    const openvdb::math::MapBase::ConstPtr map_;
-    LeafMaker maker_;
-    std::vector<Owned> cache_ = std::vector<Owned>(kSide * kSide * kSide);
 };
 
 // What BeadAttributes wants, if that is the attribute.

@@ -15,7 +15,7 @@ from run_tools import BIN, SOURCE, check, gcode, run
 BUILD = os.path.dirname(BIN)
 FOLDER = tempfile.mkdtemp(prefix="stratum_install_")
 CONSUMER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "consumer")
-TOOLS = ("gcode2vdb", "vdbtrace", "vdbmerge", "vdbstudy")
+TOOLS = ("gcode2vdb", "vdbtrace", "vdbview", "vdbmerge", "vdbstudy")
 # The consumers' own flags; what they compile is looked up first if there is a cache.
 CONFIGURE = ["-GNinja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0"]
 if shutil.which("ccache"):

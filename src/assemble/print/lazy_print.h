@@ -39,6 +39,9 @@ public:
     /// Shows a moment, 0..moments() - 1. Bricks that don't change are kept.
     void show(std::size_t moment);
 
+    /// The print at its finest voxel size.
+    const ondemand::PrintField& finest() const { return *levels_.front().field; }
+
     /// Seconds, bricks and bytes so far.
     nlohmann::ordered_json report() const;
 

@@ -1,5 +1,6 @@
 #include "assemble/print/print_levels.h"
 
+#include "assemble/print/kept_prints.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
@@ -129,6 +130,32 @@ deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOp
     }
 }
 
+}  // namespace
+
+ReadProgram readProgram(const std::string& path, const PrintRequest& request, const ReadEvents& events,
+                        Warnings& warnings, bool hash) {
+    const bool timed = request.timed || request.series_by_time || voxelize::needsTiming(request.printed);
+    if (request.kept != nullptr)
+        if (const ReadProgram* known = request.kept->program(path, timed, hash)) return *known;
+    ReadProgram program;
+    {
+        const gcode::InputBytes file(path);
+        program.bytes = file.bytes().size();
+        program.name = file.name();
+        if (hash) program.content = sha256Hex(file.bytes());
+        gcode::ReadOptions read = request.print.read;
+        const Step step(events, "reading", true);
+        if (events.fraction) read.progress = events.fraction;
+        program.toolpath = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed).toolpath);
+    }
+    for (const gcode::Warning& warning : program.toolpath->warnings)
+        warnings.add(Warning::Kind::program, gcode::describe(warning, program.name));
+    if (request.kept != nullptr) request.kept->keep(path, program);
+    return program;
+}
+
+namespace {
+
 /// One print, step by step: each method needs what those before it found.
 class PrintReader {
 public:
@@ -137,7 +164,7 @@ public:
 
     PrintLevels read(bool hash) {
         Stopwatch watch;
-        readProgram(hash);
+        use(readProgram(path_, request_, events_, warnings_, hash));
         result_.parse_seconds = watch.lap();
         select();
         chooseLattice();
@@ -150,20 +177,11 @@ public:
     }
 
 private:
-    void readProgram(bool hash) {
-        {
-            const gcode::InputBytes file(path_);
-            bytes_ = file.bytes().size();
-            name_ = file.name();
-            if (hash) result_.content = sha256Hex(file.bytes());
-            gcode::ReadOptions read = request_.print.read;
-            const Step step(events_, "reading", true);
-            if (events_.fraction) read.progress = events_.fraction;
-            const bool timed = request_.timed || request_.series_by_time || voxelize::needsTiming(request_.printed);
-            toolpath_ = std::make_shared<const gcode::Toolpath>(readEither(file, read, timed).toolpath);
-        }
-        for (const gcode::Warning& warning : toolpath_->warnings)
-            warnings_.add(Warning::Kind::program, gcode::describe(warning, name_));
+    void use(const ReadProgram& program) {
+        toolpath_ = program.toolpath;
+        bytes_ = program.bytes;
+        name_ = program.name;
+        result_.content = program.content;
     }
 
     void select() {

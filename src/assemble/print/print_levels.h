@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,6 +18,8 @@
 #include <vector>
 
 namespace stratum::assemble {
+
+class KeptPrints;
 
 /// How to read a print, and how much of it.
 struct PrintRequest {
@@ -28,6 +31,8 @@ struct PrintRequest {
     /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; the second box is that of the part,
     /// see voxelize::partBounds().
     std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
+    /// Where prints are kept for the next scene of the same files; null: nothing is kept. Not with print.voxel_auto.
+    KeptPrints* kept = nullptr;
 };
 
 /// The print at one voxel size.
@@ -52,6 +57,19 @@ struct PrintLevels {
 
 /// The same box, mm, for the room that traces.
 trace::Box boxOf(const voxelize::Bounds& bounds);
+
+/// A program that has been read.
+struct ReadProgram {
+    std::shared_ptr<const gcode::Toolpath> toolpath;
+    std::size_t bytes = 0;  ///< of the file
+    std::string name;       ///< of the file, for messages
+    std::string content;    ///< SHA-256, if it was asked for
+};
+
+/// Reads the G-code alone, in any container, or takes what request.kept has of it; times by bead only if the request
+/// needs them. Throws InputError.
+ReadProgram readProgram(const std::string& path, const PrintRequest& request, const ReadEvents& events,
+                        Warnings& warnings, bool hash = false);
 
 /// Reads G-code in any container; "-" is standard input. Throws InputError for what is no G-code, UsageError for
 /// options that don't fit the print.

@@ -1,3 +1,4 @@
+#include "assemble/print/kept_prints.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,32 @@ march::Annotation annotationOf(const ObjectOptions& object, const std::shared_pt
     return annotation;
 }
 
+// Reads a selection of a print, and lists its bricks; or takes what is kept of it.
+std::shared_ptr<TracedPrint> tracedOf(const ObjectOptions& object, const PrintRequest& request,
+                                      const TracingOptions& options, Warnings& warnings) {
+    const bool keep = request.kept != nullptr && !request.print.voxel_auto;
+    if (keep)
+        if (auto known = request.kept->print(object.vdb, request, request.timed)) return known;
+    Stopwatch watch;
+    const auto traced = std::make_shared<TracedPrint>();
+    PrintLevels& print = traced->print;
+    print = readPrintLevels(object.vdb, request, options.hash, options.events, warnings);
+    // All levels together keep to the bound.
+    std::size_t cache = options.brick_cache;
+    if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size();
+    std::vector<LazyLevel> lazy;
+    for (const PrintLevel& level : print.levels) {
+        march::TracedBricks bricks =
+            march::makeTracedBricks(std::shared_ptr<const march::LeafField>(level.field), options.values, cache);
+        traced->shapes.push_back(std::move(bricks.intersector));
+        lazy.push_back({level.field, std::move(bricks.bricks)});
+    }
+    traced->lazy = std::make_shared<LazyPrint>(std::move(lazy), print.moments,
+                                               LazyPrint::Times{print.parse_seconds, watch.lap()}, cache);
+    if (keep) request.kept->keep(object.vdb, request, traced);
+    return traced;
+}
+
 }  // namespace
 
 Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs,
@@ -39,12 +67,13 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     for (const std::string& name : needs.names())
         if (needs.contains(object, name))
             request.timed = request.timed || voxelize::usesTiming(ondemand::attributeNamed(name));
-    PrintLevels print = readPrintLevels(object.vdb, request, options.hash, options.events, warnings);
+    const std::shared_ptr<TracedPrint> traced = tracedOf(object, request, options, warnings);
+    const PrintLevels& print = traced->print;
     Shape shape;
-    shape.report = std::move(print.report);
-    shape.line = std::move(print.line);
+    shape.report = print.report;
+    shape.line = print.line;
     shape.part = boxOf(print.part);
-    shape.source = std::move(print.content);
+    shape.source = print.content;
     if (needs.needsStatedColors(object)) {
         shape.colors = colorsOf(*print.toolpath, print.selection);
         if (shape.colors.by_place) needs.add(object, "color");
@@ -53,25 +82,18 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
         if (needs.contains(object, name))
             shape.summaries[name] =
                 ondemand::summarize(*print.levels.back().field, ondemand::attributeNamed(name), print.selection);
-    // All levels together keep to the bound.
-    std::size_t cache = options.brick_cache;
-    if (cache != march::BrickGrid::kNoBound) cache /= print.levels.size();
-    std::vector<LazyLevel> lazy;
     std::vector<trace::DetailLevel> shapes;
-    for (const PrintLevel& level : print.levels) {
-        march::TracedBricks traced =
-            march::makeTracedBricks(std::shared_ptr<const march::LeafField>(level.field), options.values, cache);
+    for (std::size_t n = 0; n < print.levels.size(); ++n)
         shapes.push_back(
-            {march::annotate(std::move(traced.intersector), annotationOf(object, level.field, options, needs)),
-             level.from});
-        lazy.push_back({level.field, std::move(traced.bricks)});
-    }
+            {march::annotate(traced->shapes[n], annotationOf(object, print.levels[n].field, options, needs)),
+             print.levels[n].from});
     shape.intersector = trace::makeDetailIntersector(std::move(shapes), print.eye);
     const double seconds = watch.lap();
-    shape.load_seconds = print.parse_seconds;
-    shape.build_seconds = seconds - print.parse_seconds;
-    shape.print = std::make_shared<LazyPrint>(std::move(lazy), std::move(print.moments),
-                                              LazyPrint::Times{print.parse_seconds, seconds}, cache);
+    shape.load_seconds = std::min(print.parse_seconds, seconds);
+    shape.build_seconds = seconds - shape.load_seconds;
+    if (request.kept == nullptr) traced->print.selection = {};
+    // Whoever has it keeps all of the selection, for the next scene.
+    shape.print = std::shared_ptr<LazyPrint>(traced, traced->lazy.get());
     return shape;
 }
 

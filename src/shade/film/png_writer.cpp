@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace stratum::shade {
@@ -66,10 +68,9 @@ bool run(const Job& job) {
     return true;
 }
 
-}  // namespace
-
-void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
-              const std::map<std::string, std::string>& metadata) {
+/// False if libpng or the stream reported an error.
+bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint8_t>& rgb,
+             const std::map<std::string, std::string>& metadata) {
     const std::size_t stride = 3 * static_cast<std::size_t>(width);
     if (width < 1 || height < 1 || rgb.size() != stride * static_cast<std::size_t>(height))
         throw std::invalid_argument(fmt::format("{} bytes are no RGB picture of {} x {}", rgb.size(), width, height));
@@ -97,15 +98,34 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
         texts.push_back(text);
     }
 
-    File file(std::fopen(path.c_str(), "wb"));
-    if (!file) throw OutputError(fmt::format("{}: can't be written ({})", path.string(), std::strerror(errno)));
-    const Job job{file.get(),   static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), rows.data(),
+    const Job job{file,         static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), rows.data(),
                   texts.data(), static_cast<int>(texts.size())};
     errno = 0;
-    const bool written = run(job) && std::fflush(file.get()) == 0;
-    if (!written)
+    return run(job) && std::fflush(file) == 0;
+}
+
+}  // namespace
+
+void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
+              const std::map<std::string, std::string>& metadata) {
+    const File file(std::fopen(path.c_str(), "wb"));
+    if (!file) throw OutputError(fmt::format("{}: can't be written ({})", path.string(), std::strerror(errno)));
+    if (!writeTo(file.get(), width, height, rgb, metadata))
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
                                       errno ? std::strerror(errno) : "libpng failed"));
+}
+
+std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& rgb,
+                                    const std::map<std::string, std::string>& metadata) {
+    char* bytes = nullptr;
+    std::size_t size = 0;
+    File file(open_memstream(&bytes, &size));
+    if (!file) throw std::bad_alloc();
+    const bool written = writeTo(file.get(), width, height, rgb, metadata);
+    file.reset();  // sets `bytes`
+    const std::unique_ptr<char, decltype(&std::free)> owner(bytes, &std::free);
+    if (!written || !bytes) throw std::bad_alloc();
+    return {bytes, bytes + size};
 }
 
 }  // namespace stratum::shade

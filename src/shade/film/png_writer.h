@@ -16,4 +16,8 @@ namespace stratum::shade {
 void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
               const std::map<std::string, std::string>& metadata);
 
+/// The same bytes in memory.
+std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& rgb,
+                                    const std::map<std::string, std::string>& metadata);
+
 }  // namespace stratum::shade

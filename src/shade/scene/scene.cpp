@@ -99,7 +99,7 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
     Bed bed;
     if (options.bed) {
         bed.texture = BedTexture(options.bed_surface, options.mm_per_unit);
-        bed.z = restingHeight(print);
+        bed.z = options.bed_height ? *options.bed_height : restingHeight(print);
         placement.bed = scene.camera.eye().z > bed.z;
     }
     scene.environment = makeEnvironment(options.env, placement);

@@ -197,11 +197,16 @@ void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpa
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection) {
     std::vector<char> object_kept(toolpath.objects.size(), selection.objects.empty() ? 1 : 0);
     for (const std::uint16_t object : selection.objects) object_kept[object] = 1;
+    const auto tool_kept = [&selection](std::uint8_t tool) {
+        return selection.tools.empty() ||
+               std::find(selection.tools.begin(), selection.tools.end(), tool) != selection.tools.end();
+    };
     std::vector<char> run_kept;
     run_kept.reserve(toolpath.runs.size());
     for (const gcode::Run& run : toolpath.runs)
         run_kept.push_back(run.layer >= selection.first_layer && run.layer <= selection.last_layer &&
-                           object_kept[run.object] != 0 && selection.features[static_cast<std::size_t>(run.feature)]);
+                           object_kept[run.object] != 0 && tool_kept(run.tool) &&
+                           selection.features[static_cast<std::size_t>(run.feature)]);
     std::vector<std::uint32_t> beads;
     for (std::uint32_t i = 0; i < toolpath.beads.size(); ++i)
         if (run_kept[toolpath.beads[i].run]) beads.push_back(i);
@@ -211,9 +216,9 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
         std::string names;
         for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
             if (present[f]) names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-        throw InputError(
-            fmt::format("no bead is left by --layers, --features and --object; the print has layers 1 to {} and{}",
-                        toolpath.layer_count, names));
+        throw InputError(fmt::format(
+            "no bead is left by --layers, --features, --object and --tool; the print has layers 1 to {} and{}",
+            toolpath.layer_count, names));
     }
     return beads;
 }

@@ -18,6 +18,7 @@ struct Selection {
     std::uint32_t last_layer = 0xffffffff;
     std::array<bool, gcode::kFeatureCount> features;
     std::vector<std::uint16_t> objects;  ///< indices into Toolpath::objects; empty takes all beads, labelled or not
+    std::vector<std::uint8_t> tools;     ///< T numbers; empty takes all
 
     Selection() { features.fill(true); }
 };

@@ -16,6 +16,7 @@ Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpa
     if (!options.layers.empty()) parseLayers(options.layers, selection);
     if (!options.features.empty()) parseFeatures(options.features, selection);
     for (const std::string& object : options.objects) chooseObject(object, toolpath, selection);
+    selection.tools = options.tools;
     return selection;
 }
 
@@ -27,6 +28,7 @@ std::string describeSelection(const PrintOptions& options) {
     note("layers", options.layers);
     note("features", options.features);
     for (const std::string& object : options.objects) note("object", object);
+    for (const std::uint8_t tool : options.tools) note("tool", std::to_string(tool));
     return text;
 }
 

@@ -26,6 +26,7 @@ struct PrintOptions {
     std::string layers;                ///< see parseLayers(); empty: all
     std::string features;              ///< see parseFeatures(); empty: all
     std::vector<std::string> objects;  ///< names or numbers, see chooseObject(); empty: all
+    std::vector<std::uint8_t> tools;   ///< T numbers; empty: all
 };
 
 /// Millimetres in a world unit by its name in files and on command lines: mm, cm or m; 1 for unknown names.

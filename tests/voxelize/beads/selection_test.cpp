@@ -88,6 +88,18 @@ TEST(Selection, ObjectsByNameAndNumber) {
     EXPECT_EQ(kept({"0"}), (Beads{1, 3, 5}));
 }
 
+TEST(Selection, Tools) {
+    gcode::Toolpath toolpath = tenLayers();
+    for (std::size_t n = 0; n < 6; ++n) toolpath.runs[n].tool = 1;
+    Selection selection;
+    selection.tools = {1};
+    EXPECT_EQ(selectBeads(toolpath, selection).size(), 6U);
+    selection.tools = {0, 1};
+    EXPECT_EQ(selectBeads(toolpath, selection).size(), 20U);
+    selection.tools = {7};
+    EXPECT_THROW((void)selectBeads(toolpath, selection), InputError);
+}
+
 TEST(Selection, AnUnknownObjectGetsTheList) {
     Selection selection;
     for (const char* bad : {"ship", "3", "-1", "", "boat "}) {

@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""Measures vdbview with a real headless Chromium, through the page's own clock.
+
+    /usr/bin/python3 bench/view.py BIN FILE... [--seconds 5] [--soak SECONDS]
+
+For each file: seconds from the start of the process until the page has shown the first picture; frames a second, latency
+from input to frame and size while the view is turned; latency of the layer slider; seconds until the rough and the
+finished picture; memory of the server beside that of vdbtrace; its processor time at rest. --soak turns, slides and
+colours by eight clients without a browser, and prints memory and pictures by the minute. Chromium runs on the same
+processors as the server.
+"""
+
+import argparse
+import base64
+import json
+import os
+import re
+import shlex
+import shutil
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+ORBIT = """
+const done = arguments[1], seconds = arguments[0], c = document.getElementById('picture'), b = c.getBoundingClientRect();
+const at = (type, x, y, buttons) => c.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: b.left + x,
+    clientY: b.top + y, buttons, button: 0, bubbles: true }));
+c.setPointerCapture = () => {};
+window.vdbviewLog.length = 0;
+at('pointerdown', 300, 300, 1);
+const begin = performance.now();
+const tick = () => {
+  const t = (performance.now() - begin) / 1000;
+  at('pointermove', 300 + 150 * t, 300 + 60 * Math.sin(2 * t), 1);
+  if (t < seconds) return requestAnimationFrame(tick);
+  const log = window.vdbviewLog.filter((e) => e.kind === 'moving');
+  at('pointerup', 300, 300, 0);
+  done(log);
+};
+requestAnimationFrame(tick);"""
+SLIDE = """
+const done = arguments[0], s = document.getElementById('layer-high'), most = Number(s.max);
+window.vdbviewLog.length = 0;
+let n = 0;
+const tick = () => {
+  s.value = Math.round(most * (1 - ++n / 60));
+  s.dispatchEvent(new Event('input'));
+  if (n < 40) return setTimeout(tick, 100);
+  setTimeout(() => done(window.vdbviewLog.filter((e) => e.kind === 'moving')), 300);
+};
+tick();"""
+
+
+def quantile(values, share):
+    values = sorted(values)
+    return values[min(len(values) - 1, int(share * len(values)))] if values else float("nan")
+
+
+def memory(process):
+    with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+        return int(re.search(r"VmHWM:\s+(\d+)", file.read()).group(1)) / 1024
+
+
+def processor(process):
+    with open(f"/proc/{process.pid}/stat", encoding="utf-8") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def start(folder, path):
+    process = subprocess.Popen([os.path.join(folder, "vdbview"), path, "--quiet"], stdout=subprocess.PIPE, text=True)
+    return process, process.stdout.readline().strip()
+
+
+def browser(profile):
+    options = Options()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--window-size=1580,900", f"--user-data-dir={profile}"):
+        options.add_argument(argument)
+    options.binary_location = shutil.which("chromium")
+    page = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+    page.set_script_timeout(120)
+    # So that the picture has 1280 x 720 CSS pixels.
+    page.get("about:blank")
+    inner = page.execute_script("return [innerWidth, innerHeight]")
+    page.set_window_size(1580 + 1580 - inner[0], 900 + 763 - inner[1])
+    return page
+
+
+def until(page, kind, seconds=300):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = page.execute_script(f"return (window.vdbviewLog ?? []).find((e) => e.kind === '{kind}')")
+        if found:
+            return found
+        time.sleep(0.02)
+    sys.exit(f"no {kind} picture within {seconds} s")
+
+
+def measure(folder, path, seconds, page):
+    begin = time.time()
+    process, url = start(folder, path)
+    page.get(url)
+    until(page, "moving")
+    shown = page.execute_script("return performance.timeOrigin + window.vdbviewLog[0].at") / 1000 - begin
+    until(page, "final")
+    plain = memory(process)
+    command = shlex.split(page.execute_script("return document.getElementById('command').textContent"))
+    before = processor(process)
+    time.sleep(5)
+    idle = (processor(process) - before) / 5
+    log = page.execute_async_script(ORBIT, seconds)
+    rough, final = until(page, "rough"), until(page, "final")
+    slid = page.execute_async_script(SLIDE)
+    process.terminate()
+    process.wait()
+    with tempfile.TemporaryDirectory() as scratch:
+        report = os.path.join(scratch, "s.json")
+        subprocess.run([os.path.join(folder, "vdbtrace"), *command[1:-1], os.path.join(scratch, "p.png"), "--quiet",
+                        "--stats", report], check=True)
+        with open(report, encoding="utf-8") as file:
+            alone = json.load(file)["peak_rss_bytes"] / 2**20
+    latency, slides = [e["latency"] for e in log], [e["latency"] for e in slid]
+    print(f"{os.path.basename(path)}: first picture {shown:.2f} s; turning {len(log) / seconds:.1f} frames/s, "
+          f"{quantile([e['width'] for e in log], 0.5)} x {quantile([e['height'] for e in log], 0.5)}, input to frame "
+          f"{quantile(latency, 0.5):.0f} ms, 95 % {quantile(latency, 0.95):.0f} ms; at rest rough {rough['latency'] / 1000:.1f} s, "
+          f"finished {final['latency'] / 1000:.1f} s; layer slider {quantile(slides, 0.5):.0f} ms, 95 % "
+          f"{quantile(slides, 0.95):.0f} ms; memory {plain:.0f} MB, vdbtrace {alone:.0f} MB; at rest {100 * idle:.1f} % of "
+          "a processor", flush=True)
+
+
+class Socket:
+    """A page without a browser: turns, and acknowledges what it gets."""
+
+    def __init__(self, url):
+        host, port, token = re.fullmatch(r"http://([^:/]+):(\d+)/(\w+)/", url).groups()
+        self.connection = socket.create_connection((host, int(port)))
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.connection.sendall((f"GET /{token}/socket HTTP/1.1\r\nHost: {host}:{port}\r\nOrigin: http://{host}:{port}\r\n"
+                                 "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                                 f"Sec-WebSocket-Key: {key}\r\n\r\n").encode())
+        self.stream = self.connection.makefile("rb")
+        while self.stream.readline() not in (b"\r\n", b""):
+            pass
+        self.pictures = 0
+        threading.Thread(target=self.read, daemon=True).start()
+
+    def send(self, message):
+        data = json.dumps(message).encode()
+        mask = os.urandom(4)
+        head = struct.pack("!BB", 0x81, 0x80 | len(data)) if len(data) < 126 else struct.pack("!BBH", 0x81, 0xFE, len(data))
+        self.connection.sendall(head + mask + bytes(byte ^ mask[n % 4] for n, byte in enumerate(data)))
+
+    def read(self):
+        try:
+            while True:
+                first, size = self.stream.read(2)
+                if size == 126:
+                    size = struct.unpack("!H", self.stream.read(2))[0]
+                elif size == 127:
+                    size = struct.unpack("!Q", self.stream.read(8))[0]
+                self.stream.read(size)
+                if first & 15 == 2:
+                    self.pictures += 1
+                    self.send({"type": "shown"})
+        except (OSError, ValueError):
+            pass
+
+
+def soak(folder, path, seconds):
+    process, url = start(folder, path)
+    clients = [Socket(url) for _ in range(8)]
+    begin, turn, told = time.monotonic(), 0, 0
+    while time.monotonic() - begin < seconds:
+        turn += 1
+        for n, client in enumerate(clients):
+            view = (turn // 40 + n) % 7
+            state = {"size": [640, 360], "camera": {"view": ["iso", "front", "back", "left", "right", "top", "bottom"][view]},
+                     "layers": [0, 0] if turn % 3 else [1 + turn % 5, 20 + turn % 50],
+                     "color_by": ["", "feature", "layer"][turn // 25 % 3]}
+            client.send({"type": "show", "number": turn, "moving": turn % 20 > 0, "state": state})
+        time.sleep(0.1 if turn % 20 else 1.5)
+        if time.monotonic() - begin > told * 30:
+            told += 1
+            with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+                resident = int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) / 1024
+            print(f"  {time.monotonic() - begin:.0f} s: {resident:.0f} MB, pictures of each client "
+                  f"{[client.pictures for client in clients]}", flush=True)
+    print("  alive" if process.poll() is None else f"  ended with {process.returncode}")
+    process.terminate()
+    process.wait()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--seconds", type=float, default=5)
+    parser.add_argument("--soak", type=float, default=0)
+    options = parser.parse_args()
+    if options.soak > 0:
+        return soak(options.bin, options.files[0], options.soak)
+    with tempfile.TemporaryDirectory() as profile:
+        page = browser(profile)
+        try:
+            for path in options.files:
+                measure(options.bin, path, options.seconds, page)
+        finally:
+            page.quit()
+
+
+main()

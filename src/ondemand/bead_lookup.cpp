@@ -1,0 +1,59 @@
+#include "ondemand/bead_lookup.h"
+
+#include <limits>
+
+namespace stratum::ondemand {
+namespace {
+
+constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+BeadLookup::BeadLookup(const PrintField& field)
+    : field_(field), map_(field.transform().baseMap()), maker_(field.layout(), true) {}
+
+std::optional<std::uint32_t> BeadLookup::at(const glm::dvec3& position) {
+    const openvdb::Vec3d p = map_->applyInverseMap(openvdb::Vec3d(position.x, position.y, position.z));
+    const openvdb::Coord cell = openvdb::Coord::floor(p);
+    double nearest = 4.0;  // more than any corner's
+    std::uint32_t bead = kEnd;
+    for (int c = 0; c < 8; ++c) {
+        const openvdb::Coord voxel = cell.offsetBy(c >> 2, c >> 1 & 1, c & 1);
+        const double square = (p - voxel.asVec3d()).lengthSqr();
+        if (square >= nearest) continue;
+        const auto here = ownerOf(voxel);
+        if (!here) continue;
+        nearest = square;
+        bead = *here;
+    }
+    if (bead == kEnd) return std::nullopt;
+    return bead;
+}
+
+// The bead whose surface is nearest to an active voxel; nothing for others.
+std::optional<std::uint32_t> BeadLookup::ownerOf(const openvdb::Coord& voxel) {
+    const openvdb::Coord origin = voxel & ~(voxelize::kLeafDim - 1);
+    const auto bit = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) >> 3; };
+    constexpr unsigned kLast = kSide - 1;
+    Owned& leaf = cache_[(bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast)];
+    if (leaf.origin != origin) fill(leaf, origin);
+    const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
+    if ((leaf.active[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
+    return leaf.bead[n];
+}
+
+void BeadLookup::fill(Owned& leaf, const openvdb::Coord& origin) {
+    leaf.origin = openvdb::Coord::max();  // invalid if evaluation throws
+    leaf.active = {};
+    if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
+        std::array<float, voxelize::Leaf::SIZE> values;
+        voxelize::storeLeaf(maker_.column().planes(), values.data());
+        voxelize::maskWithin(values.data(), field_.background(), leaf.active.data());
+        maker_.column().owners(leaf.bead);
+        for (std::uint32_t& rank : leaf.bead)
+            if (rank != kEnd) rank = field_.layout().stack.beads[rank];
+    }
+    leaf.origin = origin;
+}
+
+}  // namespace stratum::ondemand

@@ -1,0 +1,41 @@
+// Which bead a place of a print belongs to.
+#pragma once
+
+#include "ondemand/print_field.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace stratum::ondemand {
+
+/// Belongs to one thread, and caches a few recent leaves. The field must outlive it.
+class BeadLookup {
+public:
+    explicit BeadLookup(const PrintField& field);
+
+    /// The index of the bead whose surface is nearest to the nearest active voxel of the eight around a point in the
+    /// field's world space; nothing where none of them is active.
+    std::optional<std::uint32_t> at(const glm::dvec3& position);
+
+private:
+    struct Owned {
+        openvdb::Coord origin{openvdb::Coord::max()};
+        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> active{};
+        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead{};
+    };
+    std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel);
+    void fill(Owned& leaf, const openvdb::Coord& origin);
+
+    static constexpr std::size_t kSide = 8;
+    const PrintField& field_;
+    const openvdb::math::MapBase::ConstPtr map_;
+    LeafMaker maker_;
+    std::vector<Owned> cache_ = std::vector<Owned>(kSide * kSide * kSide);
+};
+
+}  // namespace stratum::ondemand

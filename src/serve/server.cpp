@@ -1,0 +1,247 @@
+#include "serve/server.h"
+
+#include "base/error.h"
+#include "serve/socket_client.h"
+
+#include <fmt/format.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <utility>
+
+namespace stratum::serve {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using tcp = asio::ip::tcp;
+
+constexpr auto kPatience = std::chrono::seconds(20);  // for a request to arrive and its answer to be taken
+constexpr std::uint32_t kMostHeader = 16 << 10;       // bytes
+constexpr std::string_view kSocket = "socket";        // below the token
+// Nothing of other hosts, no frames around the page, no sniffing of types.
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What all connections share.
+struct Shared {
+    Shared(Handler& its_handler, const Limits& its_limits, std::vector<PageFile> its_files, Access its_access)
+        : handler(its_handler), limits(its_limits), files(std::move(its_files)), access(std::move(its_access)) {}
+    Handler& handler;
+    const Limits limits;
+    const std::vector<PageFile> files;
+    const Access access;
+    std::size_t connections = 0, clients = 0;
+    std::function<void()> freed;  // a connection is over
+};
+
+/// One connection, until it is answered or has become a web socket.
+class Connection final : public std::enable_shared_from_this<Connection> {
+public:
+    Connection(tcp::socket&& socket, Shared& shared) : stream_(std::move(socket)), shared_(shared) {
+        ++shared_.connections;
+    }
+    ~Connection() {
+        if (upgraded_) return;
+        --shared_.connections;
+        shared_.freed();
+    }
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    void read() {
+        parser_.emplace();
+        parser_->body_limit(0);
+        parser_->header_limit(kMostHeader);
+        stream_.expires_after(kPatience);
+        http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+            if (error == http::error::body_limit || error == http::error::header_limit)
+                return self->refuse(http::status::payload_too_large, "too large");
+            if (error) return;  // gone, or never was HTTP
+            self->answer();
+        });
+    }
+
+private:
+    void answer() {
+        const Request& request = parser_->get();
+        const auto host = std::string_view(request[http::field::host].data(), request[http::field::host].size());
+        if (!shared_.access.knownHost(host)) return refuse(http::status::forbidden, "unknown host");
+        const std::string_view target(request.target().data(), request.target().size());
+        std::string_view rest;
+        if (!shared_.access.below(target, rest))
+            return refuse(http::status::forbidden, "This address needs the token that vdbview has printed.");
+        if (rest == kSocket) return upgrade(host);
+        if (request.method() != http::verb::get && request.method() != http::verb::head)
+            return refuse(http::status::method_not_allowed, "only GET");
+        const auto file = std::find_if(shared_.files.begin(), shared_.files.end(),
+                                       [&](const PageFile& each) { return each.path == rest; });
+        if (file == shared_.files.end()) return refuse(http::status::not_found, "no such page");
+        send(http::status::ok, file->type, std::string(file->bytes));
+    }
+
+    void upgrade(std::string_view host) {
+        const Request& request = parser_->get();
+        if (!beast::websocket::is_upgrade(request)) return refuse(http::status::upgrade_required, "a web socket");
+        const auto origin = request[http::field::origin];
+        if (!shared_.access.ownOrigin({origin.data(), origin.size()}, host))
+            return refuse(http::status::forbidden, "a page of another site");
+        if (shared_.clients >= shared_.limits.clients)
+            return refuse(http::status::service_unavailable, "too many pages are open");
+        ++shared_.clients;
+        upgraded_ = true;
+        const auto gone = [&shared = shared_] {
+            --shared.clients;
+            --shared.connections;
+            shared.freed();
+        };
+        std::make_shared<SocketClient>(std::move(stream_), shared_.handler, shared_.limits, gone)->start(request);
+    }
+
+    void refuse(http::status status, std::string_view why) {
+        send(status, "text/plain; charset=utf-8", std::string(why) + "\n");
+    }
+
+    void send(http::status status, std::string_view type, std::string body) {
+        const bool head = parser_->get().method() == http::verb::head;
+        response_.result(status);
+        response_.version(11);
+        response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+        response_.set(http::field::cache_control, "no-store");
+        response_.set("Content-Security-Policy", kPolicy);
+        response_.set("X-Content-Type-Options", "nosniff");
+        response_.set("Referrer-Policy", "no-referrer");
+        response_.set("Cross-Origin-Resource-Policy", "same-origin");
+        response_.content_length(body.size());
+        if (!head) response_.body() = std::move(body);
+        const bool keep = status == http::status::ok && !head && parser_->get().keep_alive();
+        response_.keep_alive(keep);
+        stream_.expires_after(kPatience);
+        http::async_write(stream_, response_, [self = shared_from_this(), keep](beast::error_code error, std::size_t) {
+            if (error) return;
+            self->response_ = {};
+            if (keep) return self->read();
+            self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+        });
+    }
+
+    beast::tcp_stream stream_;
+    Shared& shared_;
+    beast::flat_buffer buffer_{kMostHeader};
+    std::optional<http::request_parser<http::string_body>> parser_;
+    http::response<http::string_body> response_;
+    bool upgraded_ = false;
+};
+
+std::string inUrl(const asio::ip::address& address) {
+    return address.is_v6() ? fmt::format("[{}]", address.to_string()) : address.to_string();
+}
+
+}  // namespace
+
+struct Server::Parts {
+    asio::io_context context{1};
+    tcp::acceptor acceptor{context};
+    asio::signal_set signals{context, SIGINT, SIGTERM};
+    std::optional<Shared> shared;
+    std::string url;
+    bool accepting = false;
+    std::vector<std::unique_ptr<asio::posix::stream_descriptor>> watched;
+
+    void accept() {
+        if (accepting || shared->connections >= shared->limits.connections) return;
+        accepting = true;
+        acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
+            accepting = false;
+            if (error == asio::error::operation_aborted) return;
+            if (!error) {
+                socket.set_option(tcp::no_delay(true), error);
+                std::make_shared<Connection>(std::move(socket), *shared)->read();
+            }
+            accept();
+        });
+    }
+
+    void wait(asio::posix::stream_descriptor& descriptor, const std::function<void()>& ready) {
+        descriptor.async_wait(asio::posix::stream_descriptor::wait_read,
+                              [this, &descriptor, ready](beast::error_code error) {
+                                  if (error) return;
+                                  ready();
+                                  wait(descriptor, ready);
+                              });
+    }
+};
+
+Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handler& handler)
+    : parts_(std::make_unique<Parts>()) {
+    beast::error_code error;
+    const auto address = asio::ip::make_address(options.address, error);
+    if (error)
+        throw UsageError(
+            fmt::format("{}: is no address to listen on; give one of this machine's, e.g. 127.0.0.1 or "
+                        "0.0.0.0",
+                        options.address));
+    const tcp::endpoint place(address, options.port);
+    tcp::acceptor& acceptor = parts_->acceptor;
+    const auto attempt = [&](const auto& step) {
+        if (!error) step();
+    };
+    attempt([&] { acceptor.open(place.protocol(), error); });
+    attempt([&] { acceptor.set_option(asio::socket_base::reuse_address(true), error); });
+    attempt([&] { acceptor.bind(place, error); });
+    attempt([&] { acceptor.listen(asio::socket_base::max_listen_connections, error); });
+    if (error)
+        throw UsageError(
+            fmt::format("{}, port {}: can't listen there ({})", options.address, options.port, error.message()));
+    const std::uint16_t port = acceptor.local_endpoint().port();
+    std::vector<std::string> hosts = options.hosts;
+    for (const std::string& own :
+         {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"), inUrl(address)})
+        hosts.push_back(own);
+    const std::string token = options.token.empty() ? randomToken() : options.token;
+    const bool any = address.is_unspecified();
+    parts_->url = fmt::format("http://{}:{}/{}/", any ? std::string("127.0.0.1") : inUrl(address), port, token);
+    parts_->shared.emplace(handler, options.limits, std::move(files), Access(token, hosts, port));
+    // Not at once: the connection that is over is still being destroyed.
+    parts_->shared->freed = [parts = parts_.get()] { asio::post(parts->context, [parts] { parts->accept(); }); };
+}
+
+Server::~Server() {
+    // Connections go before what they share.
+    parts_->context.stop();
+    parts_->shared->freed = [] {};
+}
+
+std::string Server::url() const { return parts_->url; }
+
+void Server::run() {
+    parts_->signals.async_wait([this](beast::error_code error, int) {
+        if (!error) parts_->context.stop();
+    });
+    parts_->accept();
+    parts_->context.run();
+}
+
+void Server::stop() { parts_->context.stop(); }
+
+void Server::watch(int descriptor, std::function<void()> ready) {
+    parts_->watched.push_back(std::make_unique<asio::posix::stream_descriptor>(parts_->context, descriptor));
+    parts_->wait(*parts_->watched.back(), std::move(ready));
+}
+
+}  // namespace stratum::serve

@@ -1,0 +1,176 @@
+#include "trace/clip_intersector.h"
+
+#include "base/error.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stratum::trace {
+namespace {
+
+/// The part of a ray before all planes.
+struct Clipped {
+    Ray ray;                 ///< from there on; its t_max stays
+    double end = kInfinity;  ///< where it leaves
+    int entry = -1;          ///< the plane that it enters through; -1 if it starts before all
+    bool empty = false;
+};
+
+Clipped clipped(const std::vector<ClipPlane>& planes, const Ray& ray) {
+    Clipped part{ray, ray.t_max, -1, false};
+    for (std::size_t n = 0; n < planes.size(); ++n) {
+        const double slope = glm::dot(planes[n].normal, ray.direction);
+        const double over = glm::dot(planes[n].normal, ray.origin) - planes[n].offset;
+        if (slope == 0.0) {
+            if (over > 0.0) part.empty = true;
+            continue;
+        }
+        const double t = -over / slope;
+        if (slope > 0.0) {
+            part.end = std::min(part.end, t);
+        } else if (t > part.ray.t_min) {
+            part.ray.t_min = t;
+            part.entry = static_cast<int>(n);
+        }
+    }
+    part.empty = part.empty || !(part.ray.t_min < part.end);
+    return part;
+}
+
+/// A ray that enters through a plane is followed beyond its end, to see from which side it meets the shape next: if
+/// from inside, it has entered through the cut.
+Ray sightOf(const Clipped& part) {
+    Ray ray = part.ray;
+    ray.t_max = part.entry < 0 ? part.end : kInfinity;
+    return ray;
+}
+
+class ClipTracer final : public Tracer {
+public:
+    ClipTracer(const Intersector& shape, const std::vector<ClipPlane>& planes)
+        : tracer_(shape.makeTracer()), planes_(planes) {}
+
+    bool intersect(const Ray& ray, Hit& hit) override {
+        const Clipped part = clipped(planes_, ray);
+        if (part.empty) return false;
+        Hit found;
+        if (!tracer_->intersect(sightOf(part), found)) return false;
+        return accept(part, found, hit);
+    }
+
+    bool occluded(const Ray& ray) override {
+        const Clipped part = clipped(planes_, ray);
+        if (part.empty) return false;
+        if (part.entry < 0) return tracer_->occluded(sightOf(part));
+        Hit found;
+        Hit ignored;
+        return tracer_->intersect(sightOf(part), found) && accept(part, found, ignored);
+    }
+
+    void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
+        gather(rays, false);
+        tracer_->intersectStream(rays_, found_);
+        for (Hit& hit : hits) hit.t = kInfinity;
+        for (std::size_t n = 0; n < places_.size(); ++n)
+            if (std::isfinite(found_[n].t)) (void)accept(parts_[n], found_[n], hits[places_[n]]);
+    }
+
+    void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+        // Those that enter through a plane need to know which side they meet.
+        std::fill(blocked.begin(), blocked.end(), std::uint8_t{0});
+        gather(rays, true);
+        blocked_.resize(rays_.size());
+        tracer_->occludedStream(rays_, blocked_);
+        for (std::size_t n = 0; n < places_.size(); ++n) blocked[places_[n]] = blocked_[n];
+        for (std::size_t n = 0; n < rays.size(); ++n)
+            if (entering_[n] != 0) blocked[n] = occluded(rays[n]) ? 1 : 0;
+    }
+
+    glm::dvec3 shadingNormal(const Hit& hit) override {
+        for (const ClipPlane& plane : planes_)
+            if (hit.normal == plane.normal) return hit.normal;
+        return tracer_->shadingNormal(hit);
+    }
+    std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override {
+        return tracer_->attribute(hit, which);
+    }
+
+private:
+    bool accept(const Clipped& part, const Hit& found, Hit& hit) const {
+        const bool from_inside = part.entry >= 0 && glm::dot(found.normal, part.ray.direction) > 0.0;
+        if (!from_inside && found.t > std::min(part.end, part.ray.t_max)) return false;
+        if (from_inside && part.ray.t_min > part.ray.t_max) return false;
+        hit = found;
+        if (!from_inside) return true;
+        hit.t = part.ray.t_min;
+        hit.position = part.ray.origin + hit.t * part.ray.direction;
+        hit.normal = planes_[static_cast<std::size_t>(part.entry)].normal;
+        return true;
+    }
+
+    // The rays that have a part before the planes. `entering` leaves out those that enter through one, and marks them.
+    void gather(std::span<const Ray> rays, bool entering) {
+        rays_.clear();
+        parts_.clear();
+        places_.clear();
+        entering_.assign(rays.size(), 0);
+        for (std::size_t n = 0; n < rays.size(); ++n) {
+            const Clipped part = clipped(planes_, rays[n]);
+            if (part.empty) continue;
+            if (entering && part.entry >= 0) {
+                entering_[n] = 1;
+                continue;
+            }
+            rays_.push_back(sightOf(part));
+            parts_.push_back(part);
+            places_.push_back(n);
+        }
+        found_.resize(rays_.size());
+    }
+
+    const std::unique_ptr<Tracer> tracer_;
+    const std::vector<ClipPlane>& planes_;
+    // The current stream; members, because allocating them for every stream would cost as much as tracing it.
+    std::vector<Ray> rays_;
+    std::vector<Clipped> parts_;
+    std::vector<std::size_t> places_;
+    std::vector<Hit> found_;
+    std::vector<std::uint8_t> blocked_, entering_;
+};
+
+class ClipIntersector final : public Intersector {
+public:
+    ClipIntersector(std::shared_ptr<const Intersector> shape, std::vector<ClipPlane> planes)
+        : shape_(std::move(shape)), planes_(std::move(planes)) {}
+
+    std::unique_ptr<Tracer> makeTracer() const override { return std::make_unique<ClipTracer>(*shape_, planes_); }
+    std::string_view name() const override { return shape_->name(); }
+    Box bounds() const override { return shape_->bounds(); }
+    double voxelSize() const override { return shape_->voxelSize(); }
+    std::size_t bytes() const override { return shape_->bytes(); }
+    double surfaceOffset() const override { return shape_->surfaceOffset(); }
+
+private:
+    const std::shared_ptr<const Intersector> shape_;
+    const std::vector<ClipPlane> planes_;  // normals of unit length
+};
+
+}  // namespace
+
+std::shared_ptr<const Intersector> makeClipIntersector(std::shared_ptr<const Intersector> shape,
+                                                       std::vector<ClipPlane> planes) {
+    for (ClipPlane& plane : planes) {
+        const double length = glm::length(plane.normal);
+        if (!(length > 0.0 && std::isfinite(length) && std::isfinite(plane.offset)))
+            throw UsageError("--clip: the plane's normal and offset must be finite numbers, and the normal not zero");
+        plane.normal /= length;
+        plane.offset /= length;
+    }
+    if (planes.empty()) return shape;
+    return std::make_shared<ClipIntersector>(std::move(shape), std::move(planes));
+}
+
+}  // namespace stratum::trace

@@ -1,0 +1,56 @@
+#include "view/asked/message.h"
+
+#include "base/error.h"
+#include "base/json_section.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace stratum::view {
+
+Message parseMessage(std::string_view text) {
+    static const std::string name = "the message";
+    using Json = nlohmann::json;
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw InputError("the message is no JSON");
+    JsonSection section(json, "", name);
+    std::string type;
+    section.read("type", type);
+    std::uint64_t number = 0;
+    section.readInteger("number", number);
+    const auto state = [&] {
+        const Json* view = section.find("state");
+        if (view == nullptr) section.fail("state", "a view");
+        return parseViewState(*view);
+    };
+    Message message;
+    if (type == "show") {
+        ShowMessage show{number, false, state()};
+        section.read("moving", show.moving);
+        message = std::move(show);
+    } else if (type == "inspect") {
+        InspectMessage inspect{number, 0.0, 0.0};
+        section.read("x", inspect.x);
+        section.read("y", inspect.y);
+        if (!(inspect.x >= 0.0 && inspect.x <= 1.0 && inspect.y >= 0.0 && inspect.y <= 1.0))
+            section.fail("x", "a place from 0 to 1, as y");
+        message = inspect;
+    } else if (type == "save") {
+        message = SaveMessage{number, state()};
+    } else if (type == "shown") {
+        message = ShownMessage{};
+    } else if (type == "open") {
+        OpenMessage open;
+        std::uint32_t file = 0;
+        section.readInteger("file", file);
+        open.file = file;
+        message = open;
+    } else {
+        section.fail("type", "show, inspect, save, shown or open");
+    }
+    section.finish();
+    return message;
+}
+
+}  // namespace stratum::view

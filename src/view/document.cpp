@@ -1,0 +1,92 @@
+#include "view/document.h"
+
+#include "assemble/shape/file_facts.h"
+#include "base/error.h"
+#include "gcode/summary.h"
+#include "shade/brdf/preset_names.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+
+namespace stratum::view {
+namespace {
+
+using Json = nlohmann::json;
+
+// Attributes that colour a print. Overfill takes seconds of a large print, and is none of a page's.
+constexpr std::array<const char*, 9> kAttributes = {"color", "feature", "layer", "tool", "object",
+                                                    "width", "speed",   "flow",  "time"};
+
+Json factsOf(const gcode::Toolpath& toolpath) {
+    Json features = Json::array();
+    const auto totals = gcode::featureTotals(toolpath);
+    for (std::size_t n = 0; n < totals.size(); ++n)
+        if (totals[n].beads > 0)
+            features.push_back({{"name", gcode::featureName(static_cast<gcode::Feature>(n))},
+                                {"length_mm", totals[n].length},
+                                {"volume_mm3", totals[n].volume}});
+    Json objects = Json::array();
+    for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
+        objects.push_back({{"number", n}, {"name", toolpath.objects[n].substr(0, 200)}});
+    std::set<int> tools;
+    for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
+    double lowest = 0.0;
+    double highest = 0.0;
+    for (const gcode::Bead& bead : toolpath.beads) highest = std::max<double>(highest, bead.z1);
+    return {{"layers", toolpath.layer_count}, {"features", std::move(features)},
+            {"objects", std::move(objects)},  {"tools", tools},
+            {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
+            {"height_mm", highest - lowest},  {"filament_mm", toolpath.filament_mm},
+            {"attributes", kAttributes}};
+}
+
+}  // namespace
+
+std::vector<std::string> Document::files() const {
+    std::vector<std::string> files{given_.path};
+    for (const assemble::ObjectOptions& object : given_.objects)
+        if (!object.vdb.empty()) files.push_back(object.vdb);
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    return files;
+}
+
+void Document::forget() {
+    kept_.forget();
+    ++generation_;
+}
+
+std::shared_ptr<const gcode::Toolpath> Document::toolpath(std::size_t object) const {
+    if (object >= given_.objects.size()) return nullptr;
+    const assemble::ReadProgram* program = kept_.program(given_.objects[object].vdb, false, false);
+    return program == nullptr ? nullptr : program->toolpath;
+}
+
+std::shared_ptr<const gcode::Toolpath> Document::timedToolpath(std::size_t object) {
+    if (!toolpath(object)) return nullptr;
+    const std::string& path = given_.objects[object].vdb;
+    if (const assemble::ReadProgram* timed = kept_.program(path, true, false)) return timed->toolpath;
+    assemble::PrintRequest request = given_.options.tracing.prints;
+    request.timed = true;
+    request.kept = &kept_;
+    const assemble::ReadEvents silent;
+    assemble::Warnings ignored(silent);
+    return assemble::readProgram(path, request, silent, ignored).toolpath;
+}
+
+Json Document::facts() const {
+    Json facts{{"file", std::filesystem::path(given_.path).filename().string()},
+               {"path", given_.path},
+               {"materials", shade::brdfNames()},
+               {"generation", generation_}};
+    for (std::size_t n = 0; n < given_.objects.size(); ++n)
+        if (const auto print = toolpath(n)) {
+            facts["print"] = factsOf(*print);
+            break;
+        }
+    return facts;
+}
+
+}  // namespace stratum::view

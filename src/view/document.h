@@ -1,0 +1,47 @@
+// An input that pages look at: what is kept of it from one picture to the next, and what can be said of it.
+#pragma once
+
+#include "assemble/print/kept_prints.h"
+#include "gcode/toolpath/toolpath.h"
+#include "view/asked/picture_plan.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stratum::view {
+
+/// For one thread at a time.
+class Document {
+public:
+    explicit Document(GivenInput given) : given_(std::move(given)) {}
+
+    const GivenInput& given() const { return given_; }
+    assemble::KeptPrints& kept() { return kept_; }
+
+    /// Files whose change makes it another: the input and the objects of a scene.
+    std::vector<std::string> files() const;
+    /// Counts the changes of those files.
+    std::uint64_t generation() const { return generation_; }
+    /// Forgets what was read: the files have changed.
+    void forget();
+
+    /// The G-code of an object; null if that is no print, or was not read yet.
+    std::shared_ptr<const gcode::Toolpath> toolpath(std::size_t object) const;
+    /// With times by bead, which are computed when first asked for: reads the file once more. Null as above. Throws
+    /// InputError.
+    std::shared_ptr<const gcode::Toolpath> timedToolpath(std::size_t object);
+
+    /// What the page offers: layers, features, objects, tools, attributes. Of the first print, if there is one.
+    nlohmann::json facts() const;
+
+private:
+    GivenInput given_;
+    assemble::KeptPrints kept_;
+    std::uint64_t generation_ = 0;
+};
+
+}  // namespace stratum::view

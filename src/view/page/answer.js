@@ -1,0 +1,113 @@
+// What a click has found: the bead, its line of G-code, and the distance of two clicks. Marks follow the picture.
+import { project, sub, size } from "./camera.js";
+
+const fixed = (value, digits = 2) => value.toFixed(digits);
+const point = (p) => p.map((v) => fixed(v)).join(", ");
+
+function clock(seconds) {
+  const whole = Math.round(seconds);
+  const two = (n) => String(n).padStart(2, "0");
+  return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
+}
+
+function rowsOf(found) {
+  const rows = [["Position", point(found.position)]];
+  const bead = found.bead;
+  if (!bead) return rows;
+  rows.push(["Layer", bead.layer], ["Feature", bead.feature.replaceAll("-", " ")], ["Tool", `T${bead.tool}`]);
+  if (bead.object) rows.push(["Object", bead.object]);
+  rows.push(["Width", `${fixed(bead.width_mm, 3)} mm`], ["Height", `${fixed(bead.height_mm, 3)} mm`]);
+  rows.push(["Length", `${fixed(bead.length_mm)} mm`]);
+  if (bead.speed_mm_s !== undefined) rows.push(["Speed", `${fixed(bead.speed_mm_s, 1)} mm/s (asked ${fixed(bead.feed_rate_mm_s, 0)})`]);
+  else rows.push(["Speed", `${fixed(bead.feed_rate_mm_s, 0)} mm/s asked`]);
+  if (bead.time_s !== undefined) rows.push(["Printed at", clock(bead.time_s)]);
+  return rows;
+}
+
+export class Answer {
+  points = []; // that are marked, of the print
+  measuring = false;
+
+  constructor(place, marks) {
+    this.place = place;
+    this.marks = marks;
+  }
+
+  clear() {
+    this.points = [];
+    this.place.hidden = true;
+    this.draw(null, 1);
+  }
+
+  show(found) {
+    if (!found.hit) {
+      if (!this.measuring) this.clear();
+      return;
+    }
+    if (!this.measuring) this.points = [];
+    if (this.points.length >= 2) this.points = [];
+    this.points.push(found.position);
+    const title = this.measuring ? (this.points.length === 2 ? "Distance" : "Click the second point") : found.bead ? "Bead" : "Surface";
+    const head = document.createElement("header");
+    const heading = document.createElement("h2");
+    heading.textContent = title;
+    const close = document.createElement("button");
+    close.textContent = "Close";
+    close.addEventListener("click", () => this.clear());
+    head.append(heading, close);
+    const list = document.createElement("dl");
+    for (const [name, value] of this.#rows(found)) {
+      const term = document.createElement("dt");
+      term.textContent = name;
+      const text = document.createElement("dd");
+      text.textContent = value;
+      list.append(term, text);
+    }
+    this.place.replaceChildren(head, list);
+    if (found.lines && !this.measuring) this.place.append(this.#lines(found));
+    this.place.hidden = false;
+  }
+
+  #rows(found) {
+    if (!this.measuring) return rowsOf(found);
+    if (this.points.length < 2) return [["From", point(this.points[0])]];
+    const way = sub(this.points[1], this.points[0]);
+    return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(this.points[0])], ["To", point(this.points[1])]];
+  }
+
+  #lines(found) {
+    const list = document.createElement("ol");
+    list.setAttribute("aria-label", "Lines of G-code");
+    for (const line of found.lines) {
+      const item = document.createElement("li");
+      const number = document.createElement("span");
+      number.textContent = line.number;
+      item.append(number, line.text);
+      if (line.number === found.bead.line) item.className = "this";
+      list.append(item);
+    }
+    return list;
+  }
+
+  /** On top of the picture that this camera of the server shows. */
+  draw(camera, aspect) {
+    const canvas = this.marks;
+    const ratio = devicePixelRatio || 1;
+    canvas.width = Math.round(canvas.clientWidth * ratio);
+    canvas.height = Math.round(canvas.clientHeight * ratio);
+    if (!camera || !this.points.length) return;
+    const context = canvas.getContext("2d");
+    const places = this.points.map((p) => project(camera, aspect, p)).filter((p) => p !== null).map(([x, y]) => [x * canvas.width, y * canvas.height]);
+    const stroke = (path) => {
+      for (const [width, color] of [[5 * ratio, "rgba(0,0,0,.65)"], [2.5 * ratio, "#ffd23f"]]) {
+        context.lineWidth = width;
+        context.strokeStyle = color;
+        context.beginPath();
+        path();
+        context.stroke();
+      }
+    };
+    if (places.length === 2) stroke(() => { context.moveTo(...places[0]); context.lineTo(...places[1]); });
+    for (const [x, y] of places) stroke(() => context.arc(x, y, 7 * ratio, 0, 2 * Math.PI));
+  }
+}

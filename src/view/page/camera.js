@@ -1,0 +1,165 @@
+// A camera that turns about a point, and how mouse, touch and keys move it. Lengths are those of the print.
+
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const size = (a) => Math.hypot(...a);
+export const unit = (a) => times(a, 1 / (size(a) || 1));
+const rounded = (a) => a.map((v) => Math.round(v * 1e4) / 1e4); // a tenth of a micrometre, and short in a command line
+
+export class OrbitCamera {
+  target = [0, 0, 0];
+  distance = 300;
+  azimuth = -1; // radians, of the eye about the target
+  elevation = 0.5;
+  fov = 28; // degrees, vertical
+
+  /** From a camera of the server; the target is the point before it that is nearest to `middle`. */
+  static from(camera, middle) {
+    const orbit = new OrbitCamera();
+    orbit.distance = Math.max(1e-3, dot(sub(middle, camera.eye), camera.forward));
+    orbit.target = add(camera.eye, times(camera.forward, orbit.distance));
+    orbit.elevation = Math.asin(Math.max(-1, Math.min(1, -camera.forward[2])));
+    // Straight up or down, the azimuth is that of the picture's upper edge.
+    const flat = Math.hypot(camera.forward[0], camera.forward[1]) < 1e-3;
+    const way = flat ? times(camera.up, camera.forward[2] < 0 ? 1 : -1) : camera.forward;
+    orbit.azimuth = Math.atan2(-way[1], -way[0]);
+    orbit.fov = camera.fov;
+    orbit.turn(0, 0);
+    return orbit;
+  }
+
+  /** As a part of the state. */
+  toJSON() {
+    return { eye: rounded(this.eye), look_at: rounded(this.target), fov: this.fov };
+  }
+
+  get eye() {
+    return add(this.target, times(this.outward, this.distance));
+  }
+  get outward() {
+    const flat = Math.cos(this.elevation);
+    return [flat * Math.cos(this.azimuth), flat * Math.sin(this.azimuth), Math.sin(this.elevation)];
+  }
+  get right() {
+    return [-Math.sin(this.azimuth), Math.cos(this.azimuth), 0];
+  }
+  get up() {
+    return cross(this.outward, this.right);
+  }
+
+  turn(right, up) {
+    this.azimuth -= right;
+    const most = Math.PI / 2 - 0.002; // straight down has no upper edge
+    this.elevation = Math.max(-most, Math.min(most, this.elevation + up));
+  }
+
+  /** By parts of the picture's height. */
+  pan(right, up) {
+    const height = 2 * this.distance * Math.tan((this.fov * Math.PI) / 360);
+    this.target = add(this.target, add(times(this.right, -right * height), times(this.up, -up * height)));
+  }
+
+  zoom(factor) {
+    this.distance = Math.max(0.05, Math.min(1e5, this.distance * factor));
+  }
+
+  /** All of the box [x0, y0, z0, x1, y1, z1], from the same side. */
+  fit(box, aspect) {
+    this.target = [(box[0] + box[3]) / 2, (box[1] + box[4]) / 2, (box[2] + box[5]) / 2];
+    const slope = Math.tan((this.fov * Math.PI) / 360) * 0.92;
+    let distance = 0;
+    for (let n = 0; n < 8; ++n) {
+      const corner = sub([box[n & 1 ? 3 : 0], box[n & 2 ? 4 : 1], box[n & 4 ? 5 : 2]], this.target);
+      const near = dot(corner, this.outward);
+      distance = Math.max(distance, near + Math.abs(dot(corner, this.right)) / (slope * aspect), near + Math.abs(dot(corner, this.up)) / slope);
+    }
+    this.distance = distance;
+  }
+}
+
+/** Where a point is in a picture that a camera of the server shows: 0 to 1 in each direction, or null. */
+export function project(camera, aspect, point) {
+  const way = sub(point, camera.eye);
+  const depth = dot(way, camera.forward);
+  if (depth <= 0) return null;
+  const scale = 2 * depth * Math.tan((camera.fov * Math.PI) / 360);
+  return [0.5 + dot(way, camera.right) / (scale * aspect), 0.5 - dot(way, camera.up) / scale];
+}
+
+/** Mouse, touch and keys on an element. Calls moved(moving) after each change of orbit(), and clicked(x, y) in 0..1. */
+export function handleInput(element, { orbit, moved, clicked, key }) {
+  const pointers = new Map();
+  let travelled = 0;
+  let wheelTimer = 0;
+  const place = (event) => [event.clientX, event.clientY];
+  const spread = () => {
+    const [a, b] = [...pointers.values()];
+    return { middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], distance: Math.hypot(a[0] - b[0], a[1] - b[1]) };
+  };
+
+  element.addEventListener("pointerdown", (event) => {
+    element.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, place(event));
+    if (pointers.size === 1) travelled = 0;
+    element.classList.add("turning");
+  });
+  element.addEventListener("pointermove", (event) => {
+    const last = pointers.get(event.pointerId);
+    if (!last) return;
+    const now = place(event);
+    const [dx, dy] = [now[0] - last[0], now[1] - last[1]];
+    travelled += Math.abs(dx) + Math.abs(dy);
+    const height = element.clientHeight;
+    if (pointers.size === 2) {
+      const before = spread();
+      pointers.set(event.pointerId, now);
+      const after = spread();
+      orbit().zoom(before.distance / Math.max(1, after.distance));
+      orbit().pan((after.middle[0] - before.middle[0]) / height, -(after.middle[1] - before.middle[1]) / height);
+      moved(true);
+      return;
+    }
+    pointers.set(event.pointerId, now);
+    if (travelled < 4) return; // a click may tremble
+    if (event.buttons & 6 || event.shiftKey) orbit().pan(dx / height, -dy / height);
+    else orbit().turn((dx / height) * 3.2, (dy / height) * 3.2);
+    moved(true);
+  });
+  const lifted = (event) => {
+    if (!pointers.delete(event.pointerId) || pointers.size > 0) return;
+    element.classList.remove("turning");
+    if (travelled >= 4) return moved(false);
+    const box = element.getBoundingClientRect();
+    if (event.type === "pointerup" && event.button === 0)
+      clicked((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
+  };
+  element.addEventListener("pointerup", lifted);
+  element.addEventListener("pointercancel", lifted);
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
+  element.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? 30 : 1;
+    orbit().zoom(Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0015));
+    moved(true);
+    clearTimeout(wheelTimer);
+    wheelTimer = setTimeout(() => moved(false), 180);
+  }, { passive: false });
+
+  const turns = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+  element.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const way = turns[event.key];
+    if (way && event.shiftKey) orbit().pan(way[0] * 0.05, way[1] * 0.05);
+    else if (way) orbit().turn(way[0] * 0.08, -way[1] * 0.08);
+    else if (event.key === "+" || event.key === "=") orbit().zoom(0.9);
+    else if (event.key === "-") orbit().zoom(1 / 0.9);
+    else return key(event);
+    event.preventDefault();
+    moved(true);
+    clearTimeout(wheelTimer);
+    wheelTimer = setTimeout(() => moved(false), 180);
+  });
+}

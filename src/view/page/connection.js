@@ -1,0 +1,54 @@
+// The web socket: messages out, messages and pictures in; comes back when the server does.
+
+export class Connection extends EventTarget {
+  #socket = null;
+  #wait = 250; // ms until the next attempt
+  #timer = 0;
+
+  constructor(url) {
+    super();
+    this.url = url;
+    this.#open();
+  }
+
+  get ready() {
+    return this.#socket !== null && this.#socket.readyState === WebSocket.OPEN;
+  }
+
+  send(message) {
+    if (this.ready) this.#socket.send(JSON.stringify(message));
+  }
+
+  #open() {
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    this.#socket = socket;
+    socket.addEventListener("open", () => {
+      this.#wait = 250;
+      this.#tell("open");
+    });
+    socket.addEventListener("message", (event) => this.#take(event.data));
+    socket.addEventListener("close", () => {
+      this.#tell("gone");
+      clearTimeout(this.#timer);
+      this.#timer = setTimeout(() => this.#open(), this.#wait);
+      this.#wait = Math.min(5000, this.#wait * 2);
+    });
+  }
+
+  #take(data) {
+    if (typeof data === "string") {
+      const message = JSON.parse(data);
+      this.#tell(message.type, message);
+      return;
+    }
+    // Four bytes, the head's length; the head; the file of a picture.
+    const length = new DataView(data).getUint32(0, true);
+    const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+    this.#tell(head.type, { ...head, file: new Blob([new Uint8Array(data, 4 + length)], { type: head.media }) });
+  }
+
+  #tell(type, detail = null) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+}

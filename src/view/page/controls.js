@@ -1,0 +1,233 @@
+// The panel beside the picture: what it shows is the state, what is changed there changes the state.
+
+const byId = (id) => document.getElementById(id);
+
+function option(value, text) {
+  const element = document.createElement("option");
+  element.value = value;
+  element.textContent = text;
+  return element;
+}
+
+export class Controls {
+  #facts = null;
+  #box = null;
+  #playing = 0;
+
+  /** changed(moving) is called after each change of state(); eye() is where the camera stands, or null. */
+  constructor({ state, changed, eye }) {
+    this.eye = eye;
+    this.state = state;
+    this.changed = changed;
+    this.#bindLayers();
+    this.#bindProgress();
+    this.#bindLook();
+    this.#bindLight();
+    this.#bindSection();
+  }
+
+  get layerCount() {
+    return this.#facts?.print?.layers ?? 0;
+  }
+
+  /** From the server: what the input has. */
+  setFacts(facts) {
+    this.#facts = facts;
+    const print = facts.print;
+    for (const group of document.querySelectorAll(".of-prints")) group.hidden = !print;
+    const materials = byId("material");
+    materials.replaceChildren(option("", "as the file says"), option("#", "a colour"), ...facts.materials.map((name) => option(name, name)));
+    if (print) {
+      for (const id of ["layer-low", "layer-high", "layer-from", "layer-to"]) byId(id).max = print.layers;
+      this.#checks("features", print.features.map((f) => [f.name, f.name.replaceAll("-", " ")]), (list) => (this.state().hidden_features = list.off));
+      this.#checks("objects", print.objects.map((o) => [o.number, o.name]), (list) => (this.state().objects = list.off.length ? list.on : []));
+      this.#checks("tools", print.tools.map((t) => [t, `T${t}`]), (list) => (this.state().tools = list.off.length ? list.on : []));
+      byId("objects-group").hidden = print.objects.length < 2;
+      byId("tools-group").hidden = print.tools.length < 2;
+    }
+    const attributes = print ? print.attributes : ["color", "feature", "layer", "tool", "object", "width", "speed", "flow", "time"];
+    byId("color-by").replaceChildren(option("", "the material"), ...attributes.map((name) => option(name, name === "color" ? "the file's colours" : name)));
+    this.show();
+  }
+
+  setBox(box) {
+    this.#box = box;
+  }
+
+  /** The state in the controls. */
+  show() {
+    const state = this.state();
+    const count = this.layerCount;
+    const low = state.layers[0] || 1;
+    const high = state.layers[1] || count;
+    byId("layer-low").value = byId("layer-from").value = low;
+    byId("layer-high").value = byId("layer-to").value = high;
+    const part = (layer) => (count > 1 ? ((layer - 1) / (count - 1)) * 100 : 0);
+    byId("layer-between").style.left = `${part(low)}%`;
+    byId("layer-between").style.right = `${100 - part(high)}%`;
+    byId("printed").value = state.printed;
+    byId("printed-value").textContent = `${state.printed} %`;
+    byId("by-time").value = state.by_time ? "1" : "";
+    for (const box of byId("features").querySelectorAll("input")) box.checked = !state.hidden_features.includes(box.value);
+    for (const id of ["objects", "tools"])
+      for (const box of byId(id).querySelectorAll("input")) box.checked = !state[id].length || state[id].includes(Number(box.value));
+    byId("color-by").value = state.color_by;
+    const own = state.material.startsWith("#");
+    byId("material").value = own ? "#" : state.material;
+    byId("color-row").hidden = !own;
+    if (own) byId("color").value = state.material;
+    byId("integrator").value = state.integrator;
+    byId("smooth").checked = state.smooth;
+    this.#showLight(state);
+    byId("cut").checked = state.clip !== null;
+    byId("spp").value = String(state.spp);
+  }
+
+  #checks(id, entries, take) {
+    const place = byId(id);
+    const collect = () => {
+      const boxes = [...place.querySelectorAll("input")];
+      const value = (box) => (id === "features" ? box.value : Number(box.value));
+      take({ on: boxes.filter((b) => b.checked).map(value), off: boxes.filter((b) => !b.checked).map(value) });
+      this.changed(false);
+    };
+    place.replaceChildren(...entries.map(([value, text]) => {
+      const label = document.createElement("label");
+      const box = document.createElement("input");
+      box.type = "checkbox";
+      box.value = value;
+      box.addEventListener("change", collect);
+      label.append(box, text);
+      return label;
+    }));
+  }
+
+  /** Layers low to high of all; the ends that are those of the print are left open. */
+  setLayers(low, high, moving) {
+    const count = this.layerCount;
+    low = Math.max(1, Math.min(count, Math.round(low) || 1));
+    high = Math.max(low, Math.min(count, Math.round(high) || count));
+    this.state().layers = [low === 1 && high === count ? 0 : low, high === count ? 0 : high];
+    this.show();
+    this.changed(moving);
+  }
+
+  #bindLayers() {
+    const low = byId("layer-low");
+    const high = byId("layer-high");
+    for (const [slider, moving] of [[low, true], [low, false], [high, true], [high, false]])
+      slider.addEventListener(moving ? "input" : "change", () => {
+        // A handle pushes the other one.
+        const [a, b] = [Number(low.value), Number(high.value)];
+        if (slider === low) this.setLayers(a, Math.max(a, b), moving);
+        else this.setLayers(Math.min(a, b), b, moving);
+      });
+    for (const id of ["layer-from", "layer-to"])
+      byId(id).addEventListener("change", () => this.setLayers(Number(byId("layer-from").value), Number(byId("layer-to").value), false));
+  }
+
+  #bindProgress() {
+    const set = (value, moving) => {
+      this.state().printed = Math.round(value * 2) / 2;
+      this.show();
+      this.changed(moving);
+    };
+    const slider = byId("printed");
+    slider.addEventListener("input", () => set(Number(slider.value), true));
+    slider.addEventListener("change", () => set(Number(slider.value), false));
+    byId("by-time").addEventListener("change", () => {
+      this.state().by_time = byId("by-time").value !== "";
+      this.changed(false);
+    });
+    byId("play").addEventListener("click", () => (this.#playing ? this.stop() : this.#play(set)));
+  }
+
+  #play(set) {
+    byId("play").setAttribute("aria-pressed", "true");
+    byId("play").textContent = "❚❚";
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    let value = this.state().printed >= 100 ? 0.5 : this.state().printed;
+    this.#playing = setInterval(() => {
+      value = Math.min(100, value + (still ? 10 : 0.5));
+      set(value, value < 100);
+      if (value >= 100) this.stop();
+    }, still ? 1500 : 100);
+  }
+
+  stop() {
+    clearInterval(this.#playing);
+    this.#playing = 0;
+    byId("play").setAttribute("aria-pressed", "false");
+    byId("play").textContent = "▶";
+    this.changed(false);
+  }
+
+  #bindLook() {
+    byId("color-by").addEventListener("change", (e) => this.#set("color_by", e.target.value));
+    byId("material").addEventListener("change", (e) => this.#set("material", e.target.value === "#" ? byId("color").value : e.target.value));
+    byId("color").addEventListener("change", (e) => this.#set("material", e.target.value));
+    byId("integrator").addEventListener("change", (e) => this.#set("integrator", e.target.value));
+    byId("smooth").addEventListener("change", (e) => this.#set("smooth", e.target.checked));
+    byId("spp").addEventListener("change", (e) => this.#set("spp", Number(e.target.value)));
+  }
+
+  #set(key, value, moving = false) {
+    this.state()[key] = value;
+    this.show();
+    this.changed(moving);
+  }
+
+  #showLight(state) {
+    const sun = state.light.startsWith("sky:");
+    byId("light").value = sun ? "sky:" : state.light;
+    byId("sun").hidden = !sun;
+    if (sun) [byId("sun-height").value, byId("sun-turn").value] = state.light.slice(4).split(",");
+    byId("light-turn").value = state.light_rotation;
+    byId("own-exposure").checked = state.exposure !== null;
+    byId("exposure").disabled = state.exposure === null;
+    if (state.exposure !== null) byId("exposure").value = state.exposure;
+    byId("bed").value = state.bed === null ? "" : state.bed ? state.bed_surface : "none";
+  }
+
+  #bindLight() {
+    const sky = () => `sky:${byId("sun-height").value},${byId("sun-turn").value}`;
+    byId("light").addEventListener("change", (e) => this.#set("light", e.target.value === "sky:" ? sky() : e.target.value));
+    const follow = (id, take) => {
+      byId(id).addEventListener("input", () => take(true));
+      byId(id).addEventListener("change", () => take(false));
+    };
+    for (const id of ["sun-height", "sun-turn"]) follow(id, (moving) => this.#set("light", sky(), moving));
+    follow("light-turn", (moving) => this.#set("light_rotation", Number(byId("light-turn").value), moving));
+    follow("exposure", (moving) => this.#set("exposure", Number(byId("exposure").value), moving));
+    byId("own-exposure").addEventListener("change", (e) => this.#set("exposure", e.target.checked ? Number(byId("exposure").value) : null));
+    byId("bed").addEventListener("change", (e) => {
+      const value = e.target.value;
+      this.state().bed = value === "" ? null : value !== "none";
+      this.#set("bed_surface", value === "none" ? "" : value);
+    });
+  }
+
+  #bindSection() {
+    const take = (moving) => {
+      if (!byId("cut").checked || !this.#box) return this.#set("clip", null);
+      const axis = Number(byId("cut-axis").value);
+      const [low, high] = [this.#box[axis], this.#box[axis + 3]];
+      const at = Math.round((low + ((high - low) * Number(byId("cut-at").value)) / 1000) * 1000) / 1000;
+      const sign = byId("cut-flip").checked ? -1 : 1;
+      const clip = [0, 0, 0, sign * at];
+      clip[axis] = sign;
+      this.#set("clip", clip, moving);
+    };
+    // A new cut faces the camera.
+    const face = () => {
+      const eye = this.eye();
+      const axis = Number(byId("cut-axis").value);
+      if (eye && this.#box) byId("cut-flip").checked = eye[axis] < (this.#box[axis] + this.#box[axis + 3]) / 2;
+      take(false);
+    };
+    for (const id of ["cut", "cut-axis"]) byId(id).addEventListener("change", face);
+    byId("cut-flip").addEventListener("change", () => take(false));
+    byId("cut-at").addEventListener("input", () => take(true));
+    byId("cut-at").addEventListener("change", () => take(false));
+  }
+}

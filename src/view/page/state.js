@@ -1,0 +1,54 @@
+// What is shown, as the server takes it, and its form in the URL's fragment.
+
+/** The view of an input as it was given. */
+export const initial = () => ({
+  camera: { view: "iso", fov: 28 },
+  layers: [0, 0],
+  printed: 100,
+  by_time: false,
+  hidden_features: [],
+  objects: [],
+  tools: [],
+  color_by: "",
+  material: "",
+  light: "",
+  light_rotation: 0,
+  exposure: null,
+  bed: null,
+  bed_surface: "",
+  smooth: false,
+  clip: null,
+  integrator: "",
+  spp: 0,
+});
+
+/** For the server: without what is left open. */
+export function toMessage(state, size) {
+  const message = { ...state, size };
+  for (const key of ["exposure", "bed", "clip"]) if (message[key] === null) delete message[key];
+  return message;
+}
+
+/** What differs from the initial state, as text for the fragment. */
+export function toFragment(state, file) {
+  const first = initial();
+  const changed = {};
+  for (const key of Object.keys(first))
+    if (JSON.stringify(first[key]) !== JSON.stringify(state[key])) changed[key] = state[key];
+  if (file > 0) changed.file = file;
+  return Object.keys(changed).length ? "#" + encodeURIComponent(JSON.stringify(changed)) : "";
+}
+
+/** The state of a fragment; unknown keys are left out, and the server checks the values. */
+export function fromFragment(fragment) {
+  const state = initial();
+  let file = 0;
+  try {
+    const changed = JSON.parse(decodeURIComponent(fragment.slice(1)) || "{}");
+    for (const key of Object.keys(state)) if (key in changed) state[key] = changed[key];
+    if (Number.isInteger(changed.file)) file = changed.file;
+  } catch {
+    // Not ours, or cut short.
+  }
+  return { state, file };
+}

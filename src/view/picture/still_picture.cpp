@@ -1,0 +1,85 @@
+#include "view/picture/still_picture.h"
+
+#include "shade/film/png_writer.h"
+#include "shade/film/tonemap.h"
+#include "shade/integrator/tile.h"
+#include "shade/post/denoise.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace stratum::view {
+namespace {
+
+// Rows of whole tiles. Each band makes integrator and tables anew, so they are few.
+int bandRows(int height) {
+    constexpr int kBands = 8;
+    return std::max(2 * shade::kTile, (height / kBands + shade::kTile - 1) / shade::kTile * shade::kTile);
+}
+
+// Copies the rows of a band into the film of the whole frame, layers and all.
+void copyBand(const shade::Film& band, shade::Film& whole) {
+    if (whole.layers().empty() && !band.layers().empty()) {
+        whole.layers() = band.layers();
+        for (shade::FilmLayer& layer : whole.layers())
+            layer.values.assign(layer.channels.size() * whole.pixels().size(), 0.0f);
+    }
+    const std::size_t first = whole.index(0, band.region().y0);
+    std::copy(band.pixels().begin(), band.pixels().end(), whole.pixels().begin() + static_cast<std::ptrdiff_t>(first));
+    for (std::size_t n = 0; n < band.layers().size(); ++n) {
+        const shade::FilmLayer& from = band.layers()[n];
+        shade::FilmLayer& to = whole.layers()[n];
+        std::copy(from.values.begin(), from.values.end(),
+                  to.values.begin() + static_cast<std::ptrdiff_t>(first * to.channels.size()));
+    }
+}
+
+}  // namespace
+
+StillPicture::StillPicture(ViewedPicture picture, const PicturePlan& plan, std::string source)
+    : picture_(std::move(picture)), plan_(plan), source_(std::move(source)) {}
+
+double StillPicture::progress() const {
+    return static_cast<double>(next_row_) / static_cast<double>(plan_.options.render.height);
+}
+
+void StillPicture::traceBand(const std::function<void()>& check) {
+    shade::RenderOptions options = plan_.options.render;
+    const int end = std::min(options.height, next_row_ + bandRows(options.height));
+    options.crop = shade::PixelBox{0, next_row_, options.width, end};
+    options.margin = 0;
+    const shade::RenderResult band =
+        shade::render(*picture_.print, picture_.scene, options, [&check](std::uint64_t, std::uint64_t) { check(); });
+    if (next_row_ == 0)
+        whole_.film =
+            shade::Film(options.width, options.height, {0, 0, options.width, options.height}, band.film.content());
+    copyBand(band.film, whole_.film);
+    whole_.rays += band.rays;
+    whole_.samples += band.samples;
+    whole_.pixels += band.pixels;
+    next_row_ = end;
+}
+
+void StillPicture::finish(const std::function<void()>& check) {
+    whole_.mean_spp = static_cast<double>(whole_.samples) / static_cast<double>(whole_.pixels);
+    if (!plan_.denoise) return;
+    const std::vector<shade::Pixel> noisy = whole_.film.pixels();
+    try {
+        shade::denoise(whole_.film, [&check](std::uint64_t, std::uint64_t) { check(); });
+    } catch (...) {
+        whole_.film.pixels() = noisy;
+        throw;
+    }
+}
+
+std::vector<std::uint8_t> StillPicture::rgb() const { return shade::toDisplay(whole_.film, picture_.tone); }
+
+std::vector<std::uint8_t> StillPicture::png(const assemble::TracedObjects& objects) const {
+    const shade::RenderOptions& render = plan_.options.render;
+    shade::Metadata metadata =
+        assemble::metadataOf(source_, render, plan_.options.scene.env, objects, picture_.scene, whole_, plan_.denoise);
+    if (whole_.film.content() == shade::FilmContent::radiance) metadata.insert(assemble::exposureFact(picture_.tone));
+    return shade::encodePng(render.width, render.height, rgb(), metadata);
+}
+
+}  // namespace stratum::view

@@ -1,0 +1,65 @@
+// The viewer: inputs on one side, pages on the other.
+#pragma once
+
+#include "serve/server.h"
+#include "view/document.h"
+#include "view/render_loop.h"
+#include "view/view_scene.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::view {
+
+/// The files of the page, as they were built in.
+std::vector<serve::PageFile> pageFiles();
+
+/// Handles what pages send, on the server's thread; pictures are made on the loop's thread. Every page has its own
+/// view; what is read of an input is shared.
+class Viewer final : public serve::Handler {
+public:
+    /// @param say  tells the terminal of reloads and of inputs that fail; called on any thread, one call at a time
+    Viewer(std::vector<GivenInput> inputs, std::function<void(const std::string&)> say);
+    ~Viewer() override;
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+
+    /// Of all inputs, to be watched.
+    std::vector<std::string> files() const;
+    /// These of them have changed: reads them anew, and shows them where they are looked at.
+    void changed(const std::set<std::string>& paths);
+
+    void opened(const std::shared_ptr<serve::Client>& client) override;
+    void received(const std::shared_ptr<serve::Client>& client, std::string_view text) override;
+    void closed(const std::shared_ptr<serve::Client>& client) override;
+
+private:
+    /// An input and what is ready of it; of the loop's thread.
+    struct Input {
+        explicit Input(GivenInput given) : document(std::move(given)), scene(document) {}
+        Document document;
+        ViewScene scene;  // of the input as it was given
+        std::string failure;
+        std::mutex mutex;             // of the next one
+        std::vector<Output> waiting;  // pages that were opened before it is ready
+    };
+    struct Page {
+        std::shared_ptr<Viewport> viewport;
+        std::size_t file = 0;
+    };
+    void load(Input& input);
+    void open(const std::shared_ptr<serve::Client>& client, std::size_t file);
+
+    const std::function<void(const std::string&)> say_;
+    std::vector<std::unique_ptr<Input>> inputs_;
+    std::map<std::shared_ptr<serve::Client>, Page> pages_;  // of the server's thread
+    RenderLoop loop_;                                       // the last one: it uses the others
+};
+
+}  // namespace stratum::view

@@ -1,0 +1,52 @@
+#include "serve/access.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace stratum::serve {
+namespace {
+
+TEST(Access, TokensAreLongAndDiffer) {
+    std::set<std::string> tokens;
+    for (int n = 0; n < 100; ++n) tokens.insert(randomToken());
+    EXPECT_EQ(tokens.size(), 100U);
+    EXPECT_EQ(tokens.begin()->size(), 32U);
+}
+
+TEST(Access, SecretsAreComparedWhole) {
+    EXPECT_TRUE(equalSecrets("abc", "abc"));
+    EXPECT_FALSE(equalSecrets("abc", "abd"));
+    EXPECT_FALSE(equalSecrets("abc", "ab"));
+    EXPECT_FALSE(equalSecrets("", "a"));
+}
+
+TEST(Access, OnlyBelowTheToken) {
+    const Access access("0123", {"127.0.0.1"}, 80);
+    std::string_view rest;
+    EXPECT_TRUE(access.below("/0123/main.js?x=1", rest));
+    EXPECT_EQ(rest, "main.js");
+    EXPECT_TRUE(access.below("/0123/", rest));
+    EXPECT_EQ(rest, "");
+    for (const char* target :
+         {"/", "", "/0123", "/0124/", "//0123/", "/01234/", "http://127.0.0.1/0123/", "/?/0123/"}) {
+        SCOPED_TRACE(target);
+        EXPECT_FALSE(access.below(target, rest));
+    }
+}
+
+TEST(Access, OnlyTheOwnHostsAndPages) {
+    const Access access("0123", {"127.0.0.1", "localhost", "[::1]"}, 8080);
+    EXPECT_TRUE(access.knownHost("LOCALHOST:8080"));
+    EXPECT_TRUE(access.knownHost("[::1]:8080"));
+    for (const char* host : {"", "localhost", "localhost:80", "evil.example:8080", "127.0.0.1:8080.evil.example"})
+        EXPECT_FALSE(access.knownHost(host)) << host;
+    EXPECT_TRUE(access.ownOrigin("http://127.0.0.1:8080", "127.0.0.1:8080"));
+    for (const char* origin : {"", "null", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1:8081",
+                               "http://localhost:8080", "http://127.0.0.1:8080/"})
+        EXPECT_FALSE(access.ownOrigin(origin, "127.0.0.1:8080")) << origin;
+    EXPECT_FALSE(access.ownOrigin("http://evil.example:8080", "evil.example:8080"));
+}
+
+}  // namespace
+}  // namespace stratum::serve

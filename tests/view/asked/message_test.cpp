@@ -1,0 +1,44 @@
+#include "view/asked/message.h"
+
+#include "base/error.h"
+#include "fuzz/corpus_runner.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+extern "C" int fuzzMessage(const std::uint8_t* data, std::size_t size);  // fuzz/message_fuzz.cpp
+
+namespace stratum::view {
+namespace {
+
+TEST(Message, EveryKindIsRead) {
+    const Message show = parseMessage(R"({"type": "show", "number": 7, "moving": true, "state": {"spp": 4}})");
+    EXPECT_EQ(std::get<ShowMessage>(show).number, 7U);
+    EXPECT_TRUE(std::get<ShowMessage>(show).moving);
+    EXPECT_EQ(std::get<ShowMessage>(show).state.spp, 4);
+    const Message inspect = parseMessage(R"({"type": "inspect", "number": 1, "x": 0.25, "y": 1})");
+    EXPECT_EQ(std::get<InspectMessage>(inspect).x, 0.25);
+    EXPECT_TRUE(std::holds_alternative<SaveMessage>(parseMessage(R"({"type": "save", "state": {}})")));
+    EXPECT_TRUE(std::holds_alternative<ShownMessage>(parseMessage(R"({"type": "shown"})")));
+    EXPECT_EQ(std::get<OpenMessage>(parseMessage(R"({"type": "open", "file": 2})")).file, 2U);
+}
+
+TEST(Message, OthersAreRefused) {
+    for (const char* text :
+         {"", "{", "null", "[]", "{}", R"({"type": "quit"})", R"({"type": 3})", R"({"type": "show"})",
+          R"({"type": "show", "state": {"size": [1, 1]}})", R"({"type": "shown", "more": 1})",
+          R"({"type": "inspect", "x": 2})", R"({"type": "inspect", "y": -1})", R"({"type": "open", "file": -1})",
+          R"({"type": "open", "file": 1e30})", R"({"type": "show", "number": -1, "state": {}})"}) {
+        SCOPED_TRACE(text);
+        EXPECT_THROW((void)parseMessage(text), InputError);
+    }
+    EXPECT_THROW((void)parseMessage(std::string(60000, '[')), InputError);
+    EXPECT_THROW((void)parseMessage(std::string("{\"type\":\"shown\0\"}", 17)), InputError);
+    EXPECT_THROW((void)parseMessage("\xff\xfe"), InputError);
+}
+
+TEST(FuzzCorpus, Messages) { EXPECT_GT(test::runFuzzCorpus("message", fuzzMessage), 8U); }
+
+}  // namespace
+}  // namespace stratum::view

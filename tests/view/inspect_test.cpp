@@ -1,0 +1,64 @@
+#include "view/inspect.h"
+
+#include "given_tile.h"
+#include "view/program_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace stratum::view {
+namespace {
+
+TEST(Inspect, ABeadAndItsLine) {
+    Document document(test::givenTile(0.1));
+    ViewScene scene(document);
+    ViewState state;
+    state.width = state.height = 100;
+    state.named = shade::View::top;
+    state.last_layer = 2;  // solid
+    const PicturePlan plan = planPicture(document.given(), state);
+    scene.makeObjects(plan, {});
+    const ViewedPicture picture = scene.picture(plan, 100, 100);
+    int hits = 0;
+    for (int n = 0; n < 9; ++n) {
+        const auto found = inspect(document, scene, picture, {38.3 + 8 * (n % 3), 38.7 + 8 * (n / 3)});
+        ASSERT_TRUE(found["hit"]);
+        ASSERT_TRUE(found.contains("bead"));
+        const auto& bead = found["bead"];
+        EXPECT_EQ(bead["layer"], 2);
+        EXPECT_NEAR(found["position"][2], 0.4, 0.11);
+        EXPECT_GT(bead["time_s"], 0.0);
+        // Its own line is among those shown, and moves to its end.
+        for (const auto& line : found["lines"]) {
+            if (line["number"] != bead["line"]) continue;
+            ++hits;
+            const std::string text = line["text"];
+            EXPECT_NEAR(std::stod(text.substr(text.find('X') + 1)), bead["to"][0], 1e-6) << text;
+        }
+    }
+    EXPECT_EQ(hits, 9);
+}
+
+TEST(Inspect, NothingBesideThePrint) {
+    Document document(test::givenTile(0.1));
+    ViewScene scene(document);
+    ViewState state;
+    state.named = shade::View::iso;
+    const PicturePlan plan = planPicture(document.given(), state);
+    scene.makeObjects(plan, {});
+    EXPECT_FALSE(inspect(document, scene, scene.picture(plan, 100, 100), {1, 1})["hit"]);
+    EXPECT_FALSE(inspect(document, scene, scene.picture(plan, 100, 100), {1, 99})["hit"]);  // the bed
+}
+
+TEST(ProgramLines, AtTheEndsOfTheFile) {
+    const std::string path = test::givenTile(0.1).path;
+    const auto first = linesAround(path, {}, 1, 2);
+    ASSERT_EQ(first.size(), 3U);
+    EXPECT_EQ(first.front().number, 1U);
+    const auto beyond = linesAround(path, {}, 4000000, 2);
+    EXPECT_TRUE(beyond.empty());
+}
+
+}  // namespace
+}  // namespace stratum::view

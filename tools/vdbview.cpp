@@ -1,0 +1,167 @@
+// vdbview: level sets, prints and scenes -> a page in the browser to look at them.
+#include "command_line.h"
+#include "print_options.h"
+#include "trace_print_options.h"
+
+#include "assemble/scene_file.h"
+#include "assemble/shape/file_facts.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "serve/server.h"
+#include "view/file_watch.h"
+#include "view/viewer.h"
+#include "voxelize/grid/voxel_choice.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace stratum;
+
+constexpr const char* kExamples = R"(
+Examples:
+  vdbview part.gcode --open                         in the browser of this machine
+  vdbview part.gcode --voxel-size 0.05 --port 8080
+  vdbview part.vdb part.gcode scene.json            one page, three inputs
+  ssh -L 8080:127.0.0.1:8080 machine vdbview part.gcode --port 8080)";
+
+struct ViewCommand {
+    tools::CommonOptions common;
+    std::vector<std::string> inputs, hosts;
+    assemble::PrintRequest prints;
+    std::string brick_cache, listen = "127.0.0.1";
+    std::uint16_t port = 0;
+    bool open = false;
+};
+
+void addOptions(CLI::App& app, ViewCommand& o) {
+    app.add_option("IN", o.inputs,
+                   "What to look at: a print (G-code in any container), a level set, or a scene; of several, the page "
+                   "chooses")
+        ->required()
+        ->type_name("FILE.gcode|FILE.vdb|SCENE.json");
+    app.add_flag("--open", o.open, "Opens the page in the browser (xdg-open)");
+    const char* server = "Server";
+    app.add_option("--port", o.port, "Port to listen on (default: any that is free)")->type_name("N")->group(server);
+    app.add_option("--listen", o.listen,
+                   "Address to listen on (default 127.0.0.1: this machine alone). Who has the URL sees the input, and "
+                   "the connection is not encrypted")
+        ->type_name("ADDRESS")
+        ->group(server);
+    app.add_option("--host", o.hosts, "A further name that the page is called by, e.g. behind a proxy; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("NAME")
+        ->group(server);
+    app.add_option("--brick-cache", o.brick_cache, "No more than this of samples at once, of each print, e.g. 200MB")
+        ->type_name("SIZE")
+        ->group("Tracing");
+    tools::addPrintOptions(app, o.prints.print);
+    tools::addCommonOptions(app, o.common,
+                            {"--open", "--port", "--listen", "--voxel-size", "--printer", "--threads", "--quiet",
+                             "--version", "--help", "--help-all"});
+    app.footer(kExamples);
+}
+
+// The options of prints and bricks as they were given, for the command line that the page shows.
+std::vector<std::string> givenWords(const CLI::App& app) {
+    std::vector<std::string> names = tools::givenPrintOptions(app);
+    if (app.get_option("--brick-cache")->count() > 0) names.emplace_back("--brick-cache");
+    std::vector<std::string> words;
+    for (const std::string& name : names)
+        for (const std::string& value : app.get_option(name)->as<std::vector<std::string>>())
+            words.push_back(fmt::format("{}={}", name, value));
+    return words;
+}
+
+bool isScene(const std::string& path) { return assemble::isSceneFile(MappedFile(path).bytes()); }
+
+view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const std::vector<std::string>& words) {
+    if (path == "-") throw UsageError("-: standard input can't be read anew when it has changed; name a file");
+    view::GivenInput given;
+    given.path = path;
+    assemble::TracingOptions& tracing = given.options.tracing;
+    if (isScene(path)) {
+        const assemble::SceneFile scene = assemble::readSceneFile(path);
+        given.objects = scene.objects;
+        if (given.objects.empty()) {
+            given.objects.emplace_back();
+            given.objects.front().vdb = scene.print;
+            given.objects.front().grid = scene.grid;
+            given.objects.front().up = scene.file_up;
+        }
+        given.options.scene = scene.scene;
+        given.options.render = scene.render;
+        given.options.render.seconds = 0.0;  // pictures by the clock differ from each other
+        given.options.render.checkpoint.clear();
+        given.denoising = {scene.denoise, false, scene.spp_given};
+        if (scene.exposure_given) given.exposure = scene.tone.exposure;
+    } else {
+        given.objects.emplace_back();
+        given.objects.front().vdb = path;
+    }
+    const bool prints = std::any_of(given.objects.begin(), given.objects.end(),
+                                    [](const auto& object) { return !object.sdf && !assemble::isVdbFile(object.vdb); });
+    if (prints) given.words = words;
+    tracing.prints = o.prints;
+    if (!o.brick_cache.empty())
+        tracing.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
+    return given;
+}
+
+void openBrowser(const std::string& url) {
+    std::string program = "xdg-open";
+    std::string address = url;
+    char* const arguments[] = {program.data(), address.data(), nullptr};
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    pid_t process = 0;
+    if (posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ) != 0)
+        fmt::print(stderr, "vdbview: xdg-open could not be started; open the URL yourself\n");
+    posix_spawn_file_actions_destroy(&actions);
+}
+
+void run(const CLI::App& app, const ViewCommand& o) {
+    const tools::ThreadLimit limit(o.common.threads);
+    const std::vector<std::string> words = givenWords(app);
+    std::vector<view::GivenInput> inputs;
+    for (const std::string& path : o.inputs) inputs.push_back(givenInput(o, path, words));
+    auto viewer = std::make_unique<view::Viewer>(std::move(inputs), [&o](const std::string& text) {
+        if (o.common.quiet) return;
+        fmt::print(stderr, "vdbview: {}\n", text);
+    });
+    serve::ServerOptions options;
+    options.address = o.listen;
+    options.port = o.port;
+    options.hosts = o.hosts;
+    serve::Server server(options, view::pageFiles(), *viewer);
+    fmt::print("{}\n", server.url());
+    std::fflush(stdout);
+    if (!o.common.quiet) fmt::print(stderr, "vdbview: ctrl-C ends it\n");
+    if (o.open) openBrowser(server.url());
+    view::FileWatch watch(viewer->files());
+    if (watch.descriptor() >= 0) server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });
+    server.run();
+    viewer.reset();  // before the server: what it still makes is sent through that
+    tools::writeStats(o.common, {{"inputs", o.inputs}, {"peak_rss_bytes", tools::peakRssBytes()}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Shows prints, level sets and scenes in a browser.", "vdbview");
+    ViewCommand command;
+    addOptions(app, command);
+    return tools::runTool(app, argc, argv, [&] { run(app, command); });
+}
