@@ -32,13 +32,12 @@ Json factsOf(const gcode::Toolpath& toolpath) {
         objects.push_back({{"number", n}, {"name", toolpath.objects[n].substr(0, 200)}});
     std::set<int> tools;
     for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
-    double lowest = 0.0;
     double highest = 0.0;
     for (const gcode::Bead& bead : toolpath.beads) highest = std::max<double>(highest, bead.z1);
     return {{"layers", toolpath.layer_count}, {"features", std::move(features)},
             {"objects", std::move(objects)},  {"tools", tools},
             {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
-            {"height_mm", highest - lowest},  {"filament_mm", toolpath.filament_mm},
+            {"height_mm", highest},           {"filament_mm", toolpath.filament_mm},
             {"attributes", kAttributes}};
 }
 

@@ -152,6 +152,7 @@ def sliding():
     js("const s = document.getElementById('layer-high'); s.value = 2; s.dispatchEvent(new Event('input'));"
        "s.dispatchEvent(new Event('change'));")
     until(lambda: "--layers 1:2" in command(), "the layers in the command")
+    check("--eye=" in command(), "a named view, which is fitted to what is shown, stays where it was")
     check(final("the picture of some layers") == traced(), "the picture of two layers has the bytes of vdbtrace's")
     js("const s = document.getElementById('color-by'); s.value = 'feature'; s.dispatchEvent(new Event('change'));")
     until(lambda: js("return document.querySelectorAll('#legend li').length") > 1, "the legend")
@@ -221,9 +222,13 @@ def strangers():
             if (answers.length === 100) { s.close(); done(answers.length); } };
         setTimeout(() => done(answers.length), 20000);""")
     check(rubbish == 100, f"100 senseless messages are refused one by one: {rubbish}")
-    for _ in range(300):
-        socket.create_connection(re.fullmatch(r"http://([^:]+):(\d+)/", root).groups(), timeout=5).close()
-    check(status(url) == 200 and server.poll() is None, "300 connections do no harm")
+    address = re.fullmatch(r"http://([^:]+):(\d+)/", root).groups()
+    held = [socket.create_connection(address, timeout=5) for _ in range(200)]
+    for _ in range(800):
+        socket.create_connection(address, timeout=5).close()
+    check(status(url) == 200 and server.poll() is None, "1000 connections, 200 of them held open, do no harm")
+    for connection in held:
+        connection.close()
 
 
 def losing():

@@ -14,11 +14,15 @@ export class Controls {
   #box = null;
   #playing = 0;
 
-  /** changed(moving) is called after each change of state(); eye() is where the camera stands, or null. */
-  constructor({ state, changed, eye }) {
+  /**
+   * changed(moving) is called after each change of state(), and before it hold() where a change of what is printed must
+   * not move the camera; eye() is where the camera stands, or null.
+   */
+  constructor({ state, changed, hold, eye }) {
     this.eye = eye;
     this.state = state;
     this.changed = changed;
+    this.hold = hold;
     this.#bindLayers();
     this.#bindProgress();
     this.#bindLook();
@@ -89,6 +93,7 @@ export class Controls {
       const boxes = [...place.querySelectorAll("input")];
       const value = (box) => (id === "features" ? box.value : Number(box.value));
       take({ on: boxes.filter((b) => b.checked).map(value), off: boxes.filter((b) => !b.checked).map(value) });
+      this.hold();
       this.changed(false);
     };
     place.replaceChildren(...entries.map(([value, text]) => {
@@ -108,6 +113,7 @@ export class Controls {
     low = Math.max(1, Math.min(count, Math.round(low) || 1));
     high = Math.max(low, Math.min(count, Math.round(high) || count));
     this.state().layers = [low === 1 && high === count ? 0 : low, high === count ? 0 : high];
+    this.hold();
     this.show();
     this.changed(moving);
   }
@@ -129,6 +135,7 @@ export class Controls {
   #bindProgress() {
     const set = (value, moving) => {
       this.state().printed = Math.round(value * 2) / 2;
+      this.hold();
       this.show();
       this.changed(moving);
     };
@@ -137,6 +144,7 @@ export class Controls {
     slider.addEventListener("change", () => set(Number(slider.value), false));
     byId("by-time").addEventListener("change", () => {
       this.state().by_time = byId("by-time").value !== "";
+      this.hold();
       this.changed(false);
     });
     byId("play").addEventListener("click", () => (this.#playing ? this.stop() : this.#play(set)));

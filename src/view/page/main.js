@@ -31,7 +31,7 @@ function orbitOf({ eye, look_at, fov }) {
 }
 
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
-const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), eye: () => camera?.eye ?? null });
+const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
 const answer = new Answer(byId("answer"), byId("marks"));
 
 // ---------------------------------------------------------------- asking
@@ -70,6 +70,11 @@ function fit() {
   orbit ??= OrbitCamera.from(camera, middle());
   orbit.fit(box, aspect);
   ask(false);
+}
+
+/** A named view is fitted to what is shown; from here on it stays where the last picture was seen from. */
+function hold() {
+  if (!orbit && camera && box && latest === number) orbit = OrbitCamera.from(camera, middle());
 }
 
 const middle = () => [0, 1, 2].map((n) => (box[n] + box[n + 3]) / 2);
