@@ -239,9 +239,9 @@ void Server::run() {
 
 void Server::stop() { parts_->context.stop(); }
 
-void Server::watch(int descriptor, std::function<void()> ready) {
+void Server::watch(int descriptor, const std::function<void()>& ready) {
     parts_->watched.push_back(std::make_unique<asio::posix::stream_descriptor>(parts_->context, descriptor));
-    parts_->wait(*parts_->watched.back(), std::move(ready));
+    parts_->wait(*parts_->watched.back(), ready);
 }
 
 }  // namespace stratum::serve

@@ -70,7 +70,7 @@ public:
     /// From any thread.
     void stop();
     /// Calls `ready` on the thread of run() whenever the descriptor can be read.
-    void watch(int descriptor, std::function<void()> ready);
+    void watch(int descriptor, const std::function<void()>& ready);
 
 private:
     struct Parts;

@@ -35,7 +35,7 @@ std::shared_ptr<TracedPrint> tracedOf(const ObjectOptions& object, const PrintRe
     if (keep)
         if (auto known = request.kept->print(object.vdb, request, request.timed)) return known;
     Stopwatch watch;
-    const auto traced = std::make_shared<TracedPrint>();
+    auto traced = std::make_shared<TracedPrint>();
     PrintLevels& print = traced->print;
     print = readPrintLevels(object.vdb, request, options.hash, options.events, warnings);
     // All levels together keep to the bound.

@@ -5,7 +5,8 @@
 
 #include <jpeglib.h>
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <csetjmp>
 #include <cstdlib>
 #include <memory>
@@ -75,7 +76,9 @@ std::vector<std::uint8_t> encodeJpeg(int width, int height, const std::vector<st
     if (width < 1 || height < 1 || rgb.size() != 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
         throw std::invalid_argument("these bytes are no RGB picture of that size");
     std::vector<std::string> comments;
-    for (const auto& [keyword, text] : metadata) comments.push_back((keyword + ": " + text).substr(0, kLongestComment));
+    comments.reserve(metadata.size());
+    for (const auto& [keyword, text] : metadata)
+        comments.push_back(fmt::format("{}: {}", keyword, text).substr(0, kLongestComment));
     Job job{width, height, quality, rgb.data(), comments.data(), comments.size(), nullptr, 0};
     const bool done = run(job);
     const std::unique_ptr<unsigned char, decltype(&std::free)> owner(job.bytes, &std::free);
