@@ -163,9 +163,9 @@ for name, damaged in (("cut.exr", part[: len(part) * 2 // 3]), ("end.exr", part[
     with open(path(name), "wb") as file:
         file.write(damaged)
     refused(3, [name], VDBMERGE, "no.png", P[0], name, P[2])
-refused(2, ["the parts are of a .png"], VDBMERGE, "no.exr", *P)
+refused(2, ["the parts are of a picture to look at"], VDBMERGE, "no.exr", *P)
 refused(2, ["the parts are of an .exr"], VDBMERGE, "no.png", *parts("linear", 3))
-refused(2, ["no.jpg"], VDBMERGE, "no.jpg", *P)
+refused(2, ["no.gif"], VDBMERGE, "no.gif", *P)
 refused(2, ["is an input"], VDBMERGE, P[0], *P)
 
 for index in range(2):
