@@ -16,7 +16,6 @@ import json
 import os
 import re
 import shlex
-import shutil
 import socket
 import struct
 import subprocess
@@ -25,9 +24,8 @@ import tempfile
 import threading
 import time
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests/clients"))
+from chromium import browser
 
 ORBIT = """
 const done = arguments[1], seconds = arguments[0], c = document.getElementById('picture'), b = c.getBoundingClientRect();
@@ -80,15 +78,9 @@ def start(folder, path):
     return process, process.stdout.readline().strip()
 
 
-def browser(profile):
-    options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=1580,900", f"--user-data-dir={profile}"):
-        options.add_argument(argument)
-    options.binary_location = shutil.which("chromium")
-    page = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
-    page.set_script_timeout(120)
-    # So that the picture has 1280 x 720 CSS pixels.
+def window(profile):
+    """So that the picture has 1280 x 720 CSS pixels."""
+    page = browser(profile, 1580, 900, 120)
     page.get("about:blank")
     inner = page.execute_script("return [innerWidth, innerHeight]")
     page.set_window_size(1580 + 1580 - inner[0], 900 + 763 - inner[1])
@@ -209,7 +201,7 @@ def main():
     if options.soak > 0:
         return soak(options.bin, options.files[0], options.soak)
     with tempfile.TemporaryDirectory() as profile:
-        page = browser(profile)
+        page = window(profile)
         try:
             for path in options.files:
                 measure(options.bin, path, options.seconds, page)

@@ -9,29 +9,19 @@ at rest. Needs chromium, chromium-driver, python3-selenium and python3-pil.
 
 import io
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
 from PIL import Image
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(ROOT, "tests/clients"))
+from chromium import browser
+
 FRAMES = 28
 SECONDS_A_FRAME = 0.12
-
-
-def browser(profile):
-    options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=900,560", f"--user-data-dir={profile}"):
-        options.add_argument(argument)
-    options.binary_location = shutil.which("chromium")
-    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
 
 def at_rest(page):
@@ -52,7 +42,7 @@ def main():
     server = subprocess.Popen([os.path.join(sys.argv[1], "vdbview"), gcode, "--quiet"], stdout=subprocess.PIPE, text=True)
     frames = []
     with tempfile.TemporaryDirectory() as profile:
-        page = browser(profile)
+        page = browser(profile, 900, 560, 30)
         try:
             page.get(server.stdout.readline().strip())
             at_rest(page)

@@ -17,9 +17,7 @@ import urllib.request
 from run_tools import BIN, check, gcode, run
 
 try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
+    from chromium import browser
 except ImportError:
     # Debian's package is of the system's Python, which need not be the first one.
     if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/lib/python3/dist-packages/selenium"):
@@ -41,17 +39,6 @@ def start(*options):
     process = subprocess.Popen([VDBVIEW, PART, "--voxel-size", "0.1", "--quiet", *options], stdout=subprocess.PIPE,
                                text=True)
     return process, process.stdout.readline().strip()
-
-
-def browser():
-    options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                     "--window-size=800,460", f"--user-data-dir={FOLDER}/profile"):
-        options.add_argument(argument)
-    options.binary_location = shutil.which("chromium")
-    driver = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
-    driver.set_script_timeout(30)
-    return driver
 
 
 def until(condition, text, seconds=30):
@@ -249,7 +236,7 @@ def losing():
 
 shutil.copy(gcode("tile.gcode"), PART)
 server, url = start()
-page = browser()
+page = browser(f"{FOLDER}/profile", 800, 460, 30)
 try:
     first = opening()
     turning(first)

@@ -128,7 +128,8 @@ void Beams::meetMacros(int slab) {
         const int thin = fan_.forth ? n : kMacro / kBrick - 1 - n;
         const std::uint64_t among = any & kSlabMask[fan_.main][thin];
         const int from = slab * kMacro + thin * kBrick;
-        if (among == 0 || !cover(from, from + kBrick, box)) continue;
+        const bool behind = depthsOf(fan_, from, from + kBrick).far <= 0;
+        if (among == 0 || behind || !cover(from, from + kBrick, box)) continue;
         for (int half = 0; half < 2; ++half) {  // blocks of a half have one depth
             const int layer = fan_.forth ? half : 1 - half;
             const int block = from + layer * kPart;
