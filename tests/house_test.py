@@ -15,6 +15,7 @@ MAY_INCLUDE = {
     "deposit": {"base", "gcode", "motion"},
     "voxelize": {"base", "gcode"},
     "export": {"base", "gcode", "voxelize"},
+    "mechanics": {"base", "gcode", "voxelize"},
     "trace": {"base"},
     "march": {"base", "trace"},
     "ondemand": {"base", "gcode", "voxelize", "trace", "march"},

@@ -1,6 +1,7 @@
 #include "conversion.h"
 
 #include "convert_shard.h"
+#include "elements_output.h"
 #include "grid_report.h"
 #include "print_options.h"
 #include "progress.h"
@@ -106,6 +107,7 @@ public:
         read();
         tell();
         choose();
+        if (isElementsPath(output_)) return makeElements(threads);
         describeSource();
         voxelize::VoxelizeOptions options = voxelizeOptions();
         placement_ = options.placement;
@@ -120,7 +122,7 @@ public:
         for (const Job& job : jobs) make(voxelizer, job);
         const double total = total_.lap();
         say(o_.common, fmt::format("  done in {:.2f} s", total));
-        return o_.common.stats.empty() ? Json() : report(voxelizer, threads, total);
+        return o_.common.stats.empty() ? Json() : report(skipped(voxelizer.report()), threads, total);
     }
 
 private:
@@ -164,6 +166,21 @@ private:
         if (o_.summary && sag_) say(o_.common, sagLine(*sag_));
     }
 
+    // Solid elements instead of a level set.
+    Json makeElements(int threads) {
+        provenance_.source_sha256 = o_.common.stats.empty() ? "" : sha256Hex(file_.bytes());
+        files_.push_back(
+            writeElements(o_, toolpath_, selection_, lattice_, placementFor(o_, bounds_), file_.name(), output_));
+        seconds_.write = watch_.lap();
+        const double total = total_.lap();
+        say(o_.common, fmt::format("  done in {:.2f} s", total));
+        return o_.common.stats.empty() ? Json()
+                                       : report({{{"what", "the level set"},
+                                                  {"why", "elements need its signs alone"},
+                                                  {"saved", "leaves, their grid and file"}}},
+                                                threads, total);
+    }
+
     // Beads, grids and the lattice.
     void choose() {
         selection_ = voxelize::selectBeads(toolpath_, voxelize::selectionOf(o_.print, toolpath_));
@@ -186,7 +203,9 @@ private:
         lattice_ = voxelize::latticeFor(o_.print, toolpath_, selection_, bounds_, interior_);
         say(o_.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes",
                                    lattice_.voxel_size, lattice_.reason, lattice_.aligned_share * 100));
-        if (!lattice_.warning.empty()) warn(fmt::format("{}: {}", file_.name(), lattice_.warning));
+        // Elements are chosen for what a solver can take, not for layer lines; they say what volume they hold.
+        if (!lattice_.warning.empty() && !isElementsPath(output_))
+            warn(fmt::format("{}: {}", file_.name(), lattice_.warning));
     }
 
     void describeSource() {
@@ -402,8 +421,7 @@ private:
         return skipped;
     }
 
-    Json report(const voxelize::Voxelizer& voxelizer, int threads, double total) {
-        const Json left_out = skipped(voxelizer.report());
+    Json report(const Json& left_out, int threads, double total) {
         Json toolpath_report = describeToolpath(toolpath_);
         toolpath_report["selected_bbox_mm"] = {bounds_.min, bounds_.max};
         return {{"input",

@@ -25,6 +25,13 @@ struct ConvertShard {
     std::optional<Shard> shard;
 };
 
+/// Of an .inp (elements_output.h).
+struct ElementOptions {
+    std::string elastic;  // empty: no material
+    std::size_t most_nodes = 5'000'000;
+    bool all_pieces = false;
+};
+
 /// As the command line gives it.
 struct ConvertCommand {
     CommonOptions common;
@@ -44,6 +51,7 @@ struct ConvertCommand {
     std::string unit = "mm", origin = "bed";
     exporter::FileOptions file;
     ConvertShard shard;
+    ElementOptions elements;
 };
 
 /// The .usda beside a .vdb.

@@ -4,6 +4,7 @@
 #include "command_line.h"
 #include "conversion.h"
 #include "convert_shard.h"
+#include "elements_output.h"
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
@@ -35,6 +36,7 @@ Examples:
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
+  gcode2vdb part.gcode -o part.inp --voxel-size 0.4 --elastic 3500   solid elements for CalculiX and Abaqus
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      part_025pct.vdb, ..., three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
@@ -91,7 +93,8 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->required()
         ->type_name("FILE");
     app.add_option("-o,--output", o.output,
-                   "A .vdb, or a mesh: .stl, .ply, .obj; a folder, made if missing, for the .vdb files of several "
+                   "A .vdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
+                   ".vdb files of several "
                    "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
                    "of several inputs beside each)")
         ->type_name("FILE|DIR");
@@ -130,6 +133,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->type_name("LIST")
         ->group(what);
     addWritingOptions(app, o);
+    tools::addElementOptions(app, o.elements);
     addShardOptions(app, o);
     tools::addCommonOptions(app, o.common,
                             {"--output",
@@ -193,8 +197,10 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
     const fs::path& output = outputs.front();
     const bool mesh = exporter::isMeshPath(output);
     const bool standard = isStandardOutput(output);
-    if (!mesh && output != "-" && output.extension() != ".vdb")
-        throw UsageError(fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj", output.string()));
+    tools::checkElementOptions(o, output);
+    if (!mesh && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
+        throw UsageError(
+            fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj, or .inp", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
     if (mesh) refuseGridsOfMeshes(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
@@ -213,9 +219,18 @@ void refuseEqualNames(const tools::ConvertCommand& o, const std::vector<fs::path
     }
 }
 
+// One element a layer, if nobody chooses: a solver takes millions of elements, not billions.
+void chooseElementSize(tools::ConvertCommand& o, const fs::path& output) {
+    voxelize::PrintOptions& print = o.print;
+    const bool chosen =
+        print.lattice.voxel_size || print.lattice.voxels_per_layer || print.tolerance || !print.memory_budget.empty();
+    if (tools::isElementsPath(output) && !chosen) print.lattice.voxels_per_layer = 1;
+}
+
 void run(tools::ConvertCommand& o) {
     std::vector<fs::path> outputs = outputsOf(o);
     check(o, outputs);
+    chooseElementSize(o, outputs.front());
     const bool folder = !o.output.empty() && outputs.front() != o.output;
     tools::divide(o, outputs);
     refuseEqualNames(o, outputs);

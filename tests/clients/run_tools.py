@@ -30,6 +30,21 @@ def convert(source, *options):
     return vdb, json.loads(report)
 
 
+def write_box(path, x, y, z):
+    """A box from the origin as ASCII STL: two triangles a face."""
+    corners = [(a, b, c) for a in (0, x) for b in (0, y) for c in (0, z)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    with open(path, "w", encoding="ascii") as file:
+        file.write("solid box\n")
+        for a, b, c, d in faces:
+            for triangle in ((a, b, c), (a, c, d)):
+                file.write("facet normal 0 0 0\nouter loop\n")
+                for corner in triangle:
+                    file.write("vertex %g %g %g\n" % corners[corner])
+                file.write("endloop\nendfacet\n")
+        file.write("endsolid box\n")
+
+
 def check(condition, text):
     if not condition:
         sys.exit("FAILED: " + text)

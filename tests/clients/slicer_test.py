@@ -4,25 +4,12 @@ import os
 import re
 import tempfile
 
-from run_tools import check, convert, run
-
-# A 12 mm cube as ASCII STL: two triangles a face.
-CORNERS = [(x, y, z) for x in (0, 12) for y in (0, 12) for z in (0, 12)]
-FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-stl = "solid cube\n"
-for a, b, c, d in FACES:
-    for triangle in ((a, b, c), (a, c, d)):
-        stl += "facet normal 0 0 0\nouter loop\n"
-        for corner in triangle:
-            stl += "vertex %g %g %g\n" % CORNERS[corner]
-        stl += "endloop\nendfacet\n"
-stl += "endsolid cube\n"
+from run_tools import check, convert, run, write_box
 
 folder = tempfile.mkdtemp(prefix="stratum_slicer_")
 model = os.path.join(folder, "cube.stl")
 sliced = os.path.join(folder, "cube.gcode")
-with open(model, "w", encoding="ascii") as file:
-    file.write(stl)
+write_box(model, 12, 12, 12)
 run("prusa-slicer", "--export-gcode", "--layer-height", "0.2", "--first-layer-height", "0.2", "--skirts", "0",
     "--filament-diameter", "1.75", "-o", sliced, model)
 with open(sliced, encoding="utf-8") as file:

@@ -1,0 +1,36 @@
+// Sets of elements and nodes by what they were printed as, and by where they are.
+#pragma once
+
+#include "gcode/toolpath/toolpath.h"
+#include "mechanics/bead_direction.h"
+#include "mechanics/hexahedra.h"
+#include "mechanics/solid_elements.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace stratum::mechanics {
+
+/// Consecutive numbers, from 0, both included.
+struct NumberRange {
+    std::uint32_t first = 0, last = 0;
+};
+
+struct NamedSet {
+    std::string name;  ///< capitals, digits and underscores
+    std::vector<NumberRange> members;
+};
+
+/// LAYER_n, FEATURE_name and TOOL_n of the nearest bead; sets that are empty are left out.
+std::vector<NamedSet> elementSets(const SolidElements& elements, const gcode::Toolpath& toolpath);
+
+/// The nodes of those elements, under the same names; and BED and TOP, XMIN, XMAX, YMIN and YMAX: the nodes of the
+/// outermost plane of each side.
+std::vector<NamedSet> nodeSets(const SolidElements& elements, const Hexahedra& mesh, const gcode::Toolpath& toolpath);
+
+/// ALONG_azimuth, and ALONG_azimuth_UP_elevation of sloped beads: every element is in one.
+std::map<BeadDirection, NamedSet> directionSets(const SolidElements& elements, const gcode::Toolpath& toolpath);
+
+}  // namespace stratum::mechanics

@@ -1,0 +1,167 @@
+#include "mechanics/inp_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "mechanics/element_sets.h"
+
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+namespace stratum::mechanics {
+namespace {
+
+constexpr std::size_t kChunkLines = 16384;  // about a megabyte
+constexpr std::size_t kChunksAtOnce = 32;
+
+// Lines of numbers are made by all threads, a few chunks at a time, and written in order.
+class Lines {
+public:
+    explicit Lines(std::ofstream& out) : out_(out) {}
+
+    void text(std::string_view text) { out_.write(text.data(), static_cast<std::streamsize>(text.size())); }
+
+    // line(n, buffer) appends line n.
+    template <typename Line>
+    void each(std::size_t count, const Line& line) {
+        const std::size_t chunks = (count + kChunkLines - 1) / kChunkLines;
+        std::vector<fmt::memory_buffer> made(std::min(chunks, kChunksAtOnce));
+        for (std::size_t begin = 0; begin < chunks; begin += made.size()) {
+            const std::size_t now = std::min(made.size(), chunks - begin);
+            parallelFor(now, 1, [&](std::size_t first, std::size_t last) {
+                for (std::size_t c = first; c < last; ++c) {
+                    made[c].clear();
+                    const std::size_t from = (begin + c) * kChunkLines;
+                    for (std::size_t n = from; n < std::min(from + kChunkLines, count); ++n) line(n, made[c]);
+                }
+            });
+            for (std::size_t c = 0; c < now; ++c) text({made[c].data(), made[c].size()});
+        }
+    }
+
+    void set(const char* keyword, const NamedSet& set) {
+        text(fmt::format("*{0}, {0}={1}, GENERATE\n", keyword, set.name));
+        each(set.members.size(), [&set](std::size_t n, fmt::memory_buffer& buffer) {
+            fmt::format_to(std::back_inserter(buffer), FMT_COMPILE("{}, {}, 1\n"), set.members[n].first + 1,
+                           set.members[n].last + 1);
+        });
+    }
+
+private:
+    std::ofstream& out_;
+};
+
+// The few coordinates that there are along an axis, as text.
+class Axis {
+public:
+    Axis(const std::vector<Node>& nodes, std::int32_t Node::*index, double origin, double edge) : index_(index) {
+        const auto [low, high] = std::minmax_element(
+            nodes.begin(), nodes.end(), [index](const Node& a, const Node& b) { return a.*index < b.*index; });
+        low_ = (*low).*index;
+        for (std::int32_t n = low_; n <= (*high).*index; ++n) {
+            // A micrometre's thousandth is below what the solvers' single precision of coordinates shows.
+            const double at = std::round((origin + n * edge) * 1e6) * 1e-6;
+            text_.push_back(fmt::format("{:.9g}", at == 0 ? 0.0 : at));
+        }
+    }
+    std::string_view operator()(const Node& node) const { return text_[static_cast<std::size_t>(node.*index_ - low_)]; }
+
+private:
+    std::int32_t Node::*index_;
+    std::int32_t low_ = 0;
+    std::vector<std::string> text_;
+};
+
+void writeNodes(const SolidElements& elements, const Hexahedra& mesh, const InpOptions& options, Lines& out) {
+    const auto axis = [&](std::int32_t Node::*index, int n) {
+        return Axis(mesh.nodes, index, elements.origin[n] + options.offset[n], elements.edge);
+    };
+    const Axis x = axis(&Node::i, 0);
+    const Axis y = axis(&Node::j, 1);
+    const Axis z = axis(&Node::k, 2);
+    out.text("*NODE, NSET=NODES\n");
+    out.each(mesh.nodes.size(), [&](std::size_t n, fmt::memory_buffer& buffer) {
+        const Node& node = mesh.nodes[n];
+        fmt::format_to(std::back_inserter(buffer), FMT_COMPILE("{}, {}, {}, {}\n"), n + 1, x(node), y(node), z(node));
+    });
+}
+
+void writeElements(const Hexahedra& mesh, Lines& out) {
+    out.text("*ELEMENT, TYPE=C3D8I, ELSET=PART\n");
+    out.each(mesh.corners.size(), [&mesh](std::size_t n, fmt::memory_buffer& buffer) {
+        const auto& c = mesh.corners[n];
+        fmt::format_to(std::back_inserter(buffer), FMT_COMPILE("{}, {}, {}, {}, {}, {}, {}, {}, {}\n"), n + 1, c[0] + 1,
+                       c[1] + 1, c[2] + 1, c[3] + 1, c[4] + 1, c[5] + 1, c[6] + 1, c[7] + 1);
+    });
+}
+
+// The local axes of a direction: along it, and across it in the plan.
+std::string orientation(const BeadDirection& direction, const std::string& name) {
+    constexpr double kRadians = std::numbers::pi / 180;
+    const double azimuth = direction.azimuth * kRadians;
+    const double elevation = direction.elevation * kRadians;
+    return fmt::format("*ORIENTATION, NAME={}, SYSTEM=RECTANGULAR\n{:.7f}, {:.7f}, {:.7f}, {:.7f}, {:.7f}, 0.\n", name,
+                       std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
+                       std::sin(elevation), -std::sin(azimuth), std::cos(azimuth));
+}
+
+std::size_t writeMaterial(const SolidElements& elements, const gcode::Toolpath& toolpath, const Elastic& elastic,
+                          Lines& out) {
+    const auto& [e1, e2, e3] = elastic.young;
+    const auto& [nu12, nu13, nu23] = elastic.poisson;
+    const auto& [g12, g13, g23] = elastic.shear;
+    out.text("*MATERIAL, NAME=PLASTIC\n");
+    if (elastic.isotropic) {
+        out.text(fmt::format("*ELASTIC\n{:g}, {:g}\n*SOLID SECTION, ELSET=PART, MATERIAL=PLASTIC\n", e1, nu12));
+        return 0;
+    }
+    out.text(fmt::format("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{:g}, {:g}, {:g}, {:g}, {:g}, {:g}, {:g}, {:g}\n{:g}\n",
+                         e1, e2, e3, nu12, nu13, nu23, g12, g13, g23));
+    const auto sets = directionSets(elements, toolpath);
+    for (const auto& [direction, set] : sets) {
+        out.set("ELSET", set);
+        out.text(orientation(direction, set.name));
+        out.text(fmt::format("*SOLID SECTION, ELSET={0}, MATERIAL=PLASTIC, ORIENTATION={0}\n", set.name));
+    }
+    return sets.size();
+}
+
+}  // namespace
+
+InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const gcode::Toolpath& toolpath,
+                   const InpOptions& options, const std::filesystem::path& path) {
+    if (elements.list.empty())
+        throw UsageError(
+            fmt::format("{}: no element of {:g} mm has its middle inside the print; choose a smaller "
+                        "--voxel-size, half a layer height or less",
+                        path.string(), elements.edge));
+    AtomicFile file(path);
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    Lines out(stream);
+    InpReport report;
+    out.text(fmt::format("** by Stratum {}: {}\n** mm, N, MPa; {} nodes, {} elements of {:g} mm\n", STRATUM_VERSION,
+                         options.source, mesh.nodes.size(), elements.list.size(), elements.edge));
+    writeNodes(elements, mesh, options, out);
+    writeElements(mesh, out);
+    const std::vector<NamedSet> of_elements = elementSets(elements, toolpath);
+    for (const NamedSet& set : of_elements) out.set("ELSET", set);
+    const std::vector<NamedSet> of_nodes = nodeSets(elements, mesh, toolpath);
+    for (const NamedSet& set : of_nodes) out.set("NSET", set);
+    report.element_sets = of_elements.size();
+    report.node_sets = of_nodes.size();
+    if (options.elastic) report.directions = writeMaterial(elements, toolpath, *options.elastic, out);
+    stream.close();
+    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    file.commit();
+    return report;
+}
+
+}  // namespace stratum::mechanics

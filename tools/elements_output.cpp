@@ -1,0 +1,115 @@
+#include "elements_output.h"
+
+#include "progress.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/human_text.h"
+#include "base/text.h"
+#include "mechanics/elastic.h"
+#include "mechanics/inp_file.h"
+#include "mechanics/pieces.h"
+#include "voxelize/grid/solid_check.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
+namespace stratum::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostNodes = std::size_t{1} << 31;
+
+}  // namespace
+
+bool isElementsPath(const fs::path& path) {
+    return lowerCase(path.extension().string()) == ".inp" || lowerCase(path.string()) == "-.inp";
+}
+
+void addElementOptions(CLI::App& app, ElementOptions& options) {
+    const char* elements = "Elements (-o part.inp)";
+    app.add_option("--elastic", options.elastic,
+                   "Also a material: Young's modulus in MPa and Poisson's ratio, or nine engineering constants whose "
+                   "first axis is along the beads (default: elements and sets alone)")
+        ->type_name("E[,NU]|E1,...,G23")
+        ->group(elements);
+    app.add_option("--max-nodes", options.most_nodes, "Refuse more nodes than these (default 5000000)")
+        ->check(CLI::Range(std::size_t{8}, kMostNodes))
+        ->type_name("N")
+        ->group(elements);
+    app.add_flag("--all-pieces", options.all_pieces,
+                 "Keep what no face joins to the largest piece, e.g. skirts and the other parts of a plate")
+        ->group(elements);
+}
+
+void checkElementOptions(const ConvertCommand& o, const fs::path& output) {
+    if (!isElementsPath(output)) {
+        if (o.elements.all_pieces || !o.elements.elastic.empty())
+            throw UsageError(fmt::format("{}: is for elements; write an .inp, not {}",
+                                         o.elements.all_pieces ? "--all-pieces" : "--elastic", output.string()));
+        return;
+    }
+    const auto refuse = [&output](const char* option, const char* why) {
+        throw UsageError(fmt::format("{}: {} has {}; leave it out, or write a .vdb", option, output.string(), why));
+    };
+    if (!o.grids.empty()) refuse("--grids", "sets of layers, features and tools instead of grids");
+    if (o.usda) refuse("--usda", "no volume");
+    if (!o.snapshots.empty()) refuse("--snapshots", "one state of the print: choose it with --layers");
+    if (!o.interior.empty()) refuse("--interior", "all solid elements");
+    if (o.interior_distance) refuse("--interior-distance", "no distances");
+    if (o.unit != "mm") refuse("--unit", "the solver's units, mm, N and MPa");
+    if (o.up != "z") refuse("--up", "axes as printed");
+    if (!o.elements.elastic.empty()) mechanics::parseElastic(o.elements.elastic);
+}
+
+Json writeElements(const ConvertCommand& o, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                   const voxelize::Lattice& lattice, const voxelize::Placement& placement, const std::string& source,
+                   const fs::path& output) {
+    mechanics::SolidElements elements;
+    {
+        ProgressBar bar("elements", o.common.quiet);
+        elements = mechanics::solidElements(toolpath, selection, lattice, {o.elements.most_nodes, bar.callback()});
+    }
+    const double solid_mm3 = elements.volume();
+    mechanics::Pieces pieces;
+    if (!o.elements.all_pieces) pieces = mechanics::keepLargestPiece(elements);
+    const mechanics::Hexahedra mesh = mechanics::hexahedraOf(elements, o.elements.most_nodes);
+    mechanics::InpOptions options;
+    if (!o.elements.elastic.empty()) options.elastic = mechanics::parseElastic(o.elements.elastic);
+    std::copy_n(placement.offset, 3, options.offset);
+    options.source = source;
+    mechanics::InpReport report;
+    {
+        const ProgressNote note("writing", o.common.quiet);
+        report = mechanics::writeInp(elements, mesh, toolpath, options, output);
+    }
+    const double laid = voxelize::depositedVolume(toolpath, selection);
+    say(o.common,
+        fmt::format("  {}: {} elements of {:g} mm, {} nodes, {} sets; {:.4g} cm3 of {:.4g} that the beads hold",
+                    output.string(), humanCount(static_cast<double>(mesh.corners.size())), elements.edge,
+                    humanCount(static_cast<double>(mesh.nodes.size())), report.element_sets + report.node_sets,
+                    elements.volume() * 1e-3, laid * 1e-3));
+    if (pieces.removed > 0)
+        say(o.common,
+            fmt::format("  the largest of {} pieces; {} elements of the others are left out (--all-pieces keeps them)",
+                        pieces.count, pieces.removed));
+    return {{"path", output.string()},
+            {"bytes", isStandardOutput(output) ? 0 : fs::file_size(output)},
+            {"elements", mesh.corners.size()},
+            {"nodes", mesh.nodes.size()},
+            {"edge_mm", elements.edge},
+            {"solid_mm3", solid_mm3},
+            {"written_mm3", elements.volume()},
+            {"deposited_mm3", laid},
+            {"pieces", o.elements.all_pieces ? Json(nullptr) : Json(pieces.count)},
+            {"removed_elements", pieces.removed},
+            {"element_sets", report.element_sets},
+            {"node_sets", report.node_sets},
+            {"directions", report.directions}};
+}
+
+}  // namespace stratum::tools
