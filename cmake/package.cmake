@@ -21,8 +21,8 @@ vdbtrace ray-traces it, vdbstudy measures both. With an add-on for Blender.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstratum-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libtbb-dev, libblosc-dev, \
-libopenexr-dev, libglm-dev, libpng-dev, libssl-dev, libfmt-dev, nlohmann-json3-dev, libfast-float-dev, libhwy-dev, \
-libdeflate-dev, libjpeg62-turbo-dev, libwebp-dev, zlib1g-dev, libzip-dev, pkg-config")
+libopenexr-dev, libglm-dev, libpng-dev, libssl-dev, libfmt-dev, nlohmann-json3-dev, libfast-float-dev, libassimp-dev, \
+libhwy-dev, libdeflate-dev, libjpeg62-turbo-dev, libwebp-dev, zlib1g-dev, libzip-dev, pkg-config")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
   "The libraries behind the tools: find_package(stratum) gives stratum::gcode, stratum::voxelize, stratum::march
 and stratum::shade.")

@@ -15,6 +15,7 @@ MAY_INCLUDE = {
     "deposit": {"base", "gcode", "motion"},
     "voxelize": {"base", "gcode"},
     "export": {"base", "gcode", "voxelize"},
+    "compare": {"base", "export"},
     "mechanics": {"base", "gcode", "voxelize"},
     "trace": {"base"},
     "march": {"base", "trace"},

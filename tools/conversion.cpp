@@ -3,6 +3,7 @@
 #include "convert_shard.h"
 #include "elements_output.h"
 #include "grid_report.h"
+#include "model_comparison.h"
 #include "print_options.h"
 #include "progress.h"
 #include "time_report.h"
@@ -11,6 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "compare/comparison_report.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
 #include "export/parts/part_file.h"
@@ -113,6 +115,8 @@ public:
         placement_ = options.placement;
         voxelize::Voxelizer voxelizer(toolpath_, selection_, lattice_, std::move(options));
         seconds_.voxelize += watch_.lap();
+        if (!o_.compare.model.empty()) comparison_ = compareWithModel(o_, toolpath_, selection_, lattice_);
+        seconds_.compare = watch_.lap();
         const std::vector<Job> jobs = planJobs(o_, toolpath_, selection_, output_);
         for (const Job& job : jobs)
             if (!job.label.empty()) {
@@ -127,14 +131,14 @@ public:
 
 private:
     struct Seconds {
-        double parse = 0, voxelize = 0, cull = 0, mesh = 0, write = 0, check = 0;
+        double parse = 0, voxelize = 0, cull = 0, mesh = 0, write = 0, check = 0, compare = 0;
     };
 
     bool culls() const { return interior_ == voxelize::Interior::cull; }
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const {
-        return !as_mesh_ && !culls() && attributes_.empty() && o_.snapshots.empty() && !o_.interior_distance &&
-               !o_.forecast && (part_ || !(settles() && !o_.common.stats.empty()));
+        return !as_mesh_ && !culls() && attributes_.empty() && !o_.compare.grid && o_.snapshots.empty() &&
+               !o_.interior_distance && !o_.forecast && (part_ || !(settles() && !o_.common.stats.empty()));
     }
     bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
@@ -341,6 +345,9 @@ private:
     void writeGrids(const openvdb::FloatGrid::Ptr& grid, openvdb::GridPtrVec& grids, const Job& job) {
         const ProgressNote note("writing", o_.common.quiet);
         exporter::describe(*grid, lattice_, provenance_);
+        if (o_.compare.grid)
+            grids.push_back(compare::deviationGrid(*grid, *voxelize::makeTransform(lattice_, {}), *comparison_->model,
+                                                   comparison_->found.model_to_print));
         grids.insert(grids.begin(), grid);
         exporter::writeVdb(grids, job.path, o_.file);
         writeUsda(grids, job);
@@ -403,6 +410,8 @@ private:
             skip("settling", "beads are capsules (--beads settled)", "pairs of neighbouring beads in each plan field");
         if (!flow_)
             skip("flow", "beads have their commanded widths (--flow-lag)", "a plan of the motion, and more beads");
+        if (!comparison_)
+            skip("the model", "no model to compare with (--compare)", "the outside as polygons, and their distances");
         if (!o_.interior_distance)
             skip("distances inside the solid", "the surface needs only their sign",
                  "a fast-sweeping pass over the grid");
@@ -436,6 +445,7 @@ private:
                 {"deposit", deposit_},
                 {"flow", flow_ ? describeFlow(*flow_) : Json(nullptr)},
                 {"sag", sag_ ? describeSag(*sag_) : Json(nullptr)},
+                {"compare", comparison_ ? compare::describe(comparison_->found) : Json(nullptr)},
                 {"files", files_},
                 {"skipped", left_out},
                 {"seconds",
@@ -445,6 +455,7 @@ private:
                   {"mesh", seconds_.mesh},
                   {"write", seconds_.write},
                   {"volume", seconds_.check},
+                  {"compare", seconds_.compare},
                   {"total", total}}},
                 {"peak_rss_bytes", peakRssBytes()},
                 {"threads", threads}};
@@ -475,6 +486,7 @@ private:
     std::optional<ProgressBar> bar_;
     Json files_ = Json::array();
     Json grid_, deposit_;
+    std::optional<ModelComparison> comparison_;
 };
 
 }  // namespace

@@ -32,6 +32,13 @@ struct ElementOptions {
     bool all_pieces = false;
 };
 
+/// --compare (model_comparison.h).
+struct CompareCommand {
+    std::string model;  // empty: none
+    std::string placement = "fit";
+    bool grid = false;  // --grids deviation
+};
+
 /// As the command line gives it.
 struct ConvertCommand {
     CommonOptions common;
@@ -52,6 +59,7 @@ struct ConvertCommand {
     exporter::FileOptions file;
     ConvertShard shard;
     ElementOptions elements;
+    CompareCommand compare;
 };
 
 /// The .usda beside a .vdb.

@@ -5,6 +5,7 @@
 #include "conversion.h"
 #include "convert_shard.h"
 #include "elements_output.h"
+#include "model_comparison.h"
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
@@ -42,6 +43,7 @@ Examples:
   gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
   gcode2vdb part.gcode --interior cull --voxel-size 0.05   only what is seen from outside
   gcode2vdb part.gcode --grids layer,color          what each voxel was printed as
+  gcode2vdb part.gcode --compare part.stl --grids deviation   how far the print is from its model
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
@@ -123,16 +125,18 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->group(what);
     tools::completes(
         app.add_option("--grids", o.grids,
-                       "Also layer,time,feature,tool,object,width,speed,flow,overfill,color, as grids of the same "
-                       "voxels; surface alone is no others (default: color if there are several)"),
+                       "Also layer,time,feature,tool,object,width,speed,flow,overfill,color,deviation, as grids of the "
+                       "same voxels; surface alone is no others (default: color if there are several)"),
         tools::Completion::list,
-        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "color"})
+        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "color",
+         "deviation"})
         ->type_name("LIST")
         ->group(what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
         ->type_name("LIST")
         ->group(what);
     addWritingOptions(app, o);
+    tools::addCompareOptions(app, o.compare);
     tools::addElementOptions(app, o.elements);
     addShardOptions(app, o);
     tools::addCommonOptions(app, o.common,
@@ -229,6 +233,7 @@ void chooseElementSize(tools::ConvertCommand& o, const fs::path& output) {
 
 void run(tools::ConvertCommand& o) {
     std::vector<fs::path> outputs = outputsOf(o);
+    o.compare.grid = tools::takeDeviation(o);
     check(o, outputs);
     chooseElementSize(o, outputs.front());
     const bool folder = !o.output.empty() && outputs.front() != o.output;
@@ -236,6 +241,7 @@ void run(tools::ConvertCommand& o) {
     refuseEqualNames(o, outputs);
     tools::RunFiles files;
     for (const std::string& input : o.inputs) files.reads(input);
+    if (!o.compare.model.empty()) files.reads(o.compare.model);
     for (const fs::path& output : outputs) {
         files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");

@@ -24,16 +24,10 @@ namespace fs = std::filesystem;
 gcode::Toolpath twoLayers() {
     gcode::Toolpath toolpath;
     for (int n = 0; n < 4; ++n) test::addBead(toolpath, 0, 0.35 * n, 0.2, 2, 0.35 * n, 0.2, 0.4, 0.2);
-    gcode::Run upper = toolpath.runs.back();
-    upper.layer = 2;
-    upper.tool = 1;
-    upper.feature = gcode::Feature::external_perimeter;
-    for (int n = 0; n < 5; ++n) {
-        test::addBead(toolpath, 0.4 * n, 0, 0.4, 0.4 * n, 1, 0.4, 0.4, 0.2);
-        if (n == 0) toolpath.runs.push_back(upper);
-        toolpath.beads.back().run = static_cast<std::uint32_t>(toolpath.runs.size() - 1);
-    }
-    for (std::size_t n = 0; n < 4; ++n) toolpath.runs[toolpath.beads[n].run].layer = 1;
+    for (int n = 0; n < 5; ++n) test::addBead(toolpath, 0.4 * n, 0, 0.4, 0.4 * n, 1, 0.4, 0.4, 0.2, 2);
+    toolpath.runs.back().tool = 1;
+    toolpath.runs.back().feature = gcode::Feature::external_perimeter;
+    for (std::size_t n = 5; n < toolpath.beads.size(); ++n) toolpath.beads[n].run = toolpath.beads[4].run;
     return toolpath;
 }
 

@@ -98,7 +98,11 @@ TEST(SolidElements, HoldTheVolumeOfASlopedTube) {
     Toolpath toolpath;
     test::addBead(toolpath, 0, 0, 0.2, 10, 0, 0.2, 1.0, 0.2);
     test::addBead(toolpath, 0, 3, 1.2, 10, 3, 4.2, 0.8, 0.8);
-    const SolidElements elements = solidElements(toolpath, test::allBeads(toolpath), latticeOf(toolpath, 4));
+    voxelize::Lattice lattice = latticeOf(toolpath, 4);
+    lattice.voxel_size = 0.05;
+    lattice.layer_height = 0.2;
+    lattice.origin_z = 0;
+    const SolidElements elements = solidElements(toolpath, test::allBeads(toolpath), lattice);
     const double length = std::hypot(10, 3);
     const double pi = std::numbers::pi;
     const double rod = pi * 0.16 * length + 4.0 / 3 * pi * 0.064;

@@ -1,0 +1,228 @@
+#include "compare/best_fit.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace stratum::compare {
+namespace {
+
+constexpr std::size_t kCoarseSamples = 300;
+constexpr std::size_t kMediumSamples = 2000;
+constexpr std::size_t kFineSamples = 20000;
+constexpr int kCoarseSteps = 12;
+constexpr int kFineSteps = 60;
+constexpr int kTurns = 24;
+constexpr std::size_t kRefined = 4;
+constexpr double kTrimmed = 0.1;
+
+// The placement of a print in the model's space, and how well it fits.
+struct Candidate {
+    Rigid print_to_model;
+    double residual = 0;
+};
+
+using Row = std::array<double, 7>;
+
+// Solves six equations of six unknowns by Gauss with pivots; unknowns that nothing determines (a sphere's turn) are 0.
+std::array<double, 6> solve(std::array<Row, 6> rows) {
+    double largest = 0;
+    for (std::size_t n = 0; n < 6; ++n) largest = std::max(largest, rows[n][n]);
+    std::array<double, 6> x{};
+    // Levenberg's term keeps what is undetermined at 0, and changes what is determined by a millionth.
+    for (std::size_t n = 0; n < 6; ++n) rows[n][n] += 1e-9 * largest + 1e-300;
+    for (std::size_t n = 0; n < 6; ++n) {
+        std::size_t pivot = n;
+        for (std::size_t m = n + 1; m < 6; ++m)
+            if (std::abs(rows[m][n]) > std::abs(rows[pivot][n])) pivot = m;
+        std::swap(rows[n], rows[pivot]);
+        for (std::size_t m = n + 1; m < 6; ++m) {
+            const double factor = rows[m][n] / rows[n][n];
+            for (std::size_t c = n; c < 7; ++c) rows[m][c] -= factor * rows[n][c];
+        }
+    }
+    for (std::size_t n = 6; n-- > 0;) {
+        double sum = rows[n][6];
+        for (std::size_t c = n + 1; c < 6; ++c) sum -= rows[n][c] * x[c];
+        x[n] = sum / rows[n][n];
+    }
+    return x;
+}
+
+class Fitting {
+public:
+    Fitting(const ClosedModel& model, const SurfaceSamples& samples, double size)
+        : model_(model), points_(samples.points), hints_(points_.size(), Nearest::kNone), size_(size) {}
+
+    Candidate run(Candidate candidate, int steps) {
+        std::fill(hints_.begin(), hints_.end(), Nearest::kNone);
+        for (int step = 0; step < steps; ++step) {
+            const Rigid moved = improve(candidate);
+            const double turned = angleOf(moved.turn) * size_;
+            if (turned + glm::length(moved.move) < 1e-5) break;
+        }
+        measure(candidate);
+        return candidate;
+    }
+
+private:
+    struct Pair {
+        glm::dvec3 at;  // in the model's space
+        ModelDistance nearest;
+    };
+
+    std::vector<Pair> pairs(const Rigid& placement) {
+        std::vector<Pair> found(points_.size());
+        parallelFor(points_.size(), 1024, [&](std::size_t first, std::size_t last) {
+            for (std::size_t n = first; n < last; ++n) {
+                found[n].at = placement(points_[n]);
+                found[n].nearest = model_.distance(found[n].at, hints_[n]);
+                hints_[n] = found[n].nearest.triangle;
+            }
+        });
+        const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(found.size()) * (1 - kTrimmed));
+        std::vector<double> distances;
+        distances.reserve(found.size());
+        for (const Pair& pair : found) distances.push_back(std::abs(pair.nearest.distance));
+        std::nth_element(distances.begin(), distances.begin() + kept, distances.end());
+        const double most = distances[static_cast<std::size_t>(kept)];
+        std::erase_if(found, [most](const Pair& pair) { return std::abs(pair.nearest.distance) > most; });
+        return found;
+    }
+
+    // One step; what it changes.
+    Rigid improve(Candidate& candidate) {
+        const std::vector<Pair> found = pairs(candidate.print_to_model);
+        glm::dvec3 middle(0.0);
+        for (const Pair& pair : found) middle += pair.at;
+        middle /= static_cast<double>(found.size());
+        std::array<Row, 6> rows{};
+        for (const Pair& pair : found) {
+            const glm::dvec3 normal = model_.normal(pair.nearest.triangle);
+            // Lengths of turns are scaled by the size, so that the unknowns are alike.
+            const glm::dvec3 lever = glm::cross(pair.at - middle, normal) / size_;
+            const std::array<double, 6> slope{lever.x, lever.y, lever.z, normal.x, normal.y, normal.z};
+            const double off = -glm::dot(pair.at - pair.nearest.point, normal);
+            for (std::size_t r = 0; r < 6; ++r) {
+                for (std::size_t c = 0; c < 6; ++c) rows[r][c] += slope[r] * slope[c];
+                rows[r][6] += slope[r] * off;
+            }
+        }
+        const std::array<double, 6> x = solve(rows);
+        Rigid moved;
+        moved.turn = turnBy(glm::dvec3(x[0], x[1], x[2]) / size_);
+        moved.move = glm::dvec3(x[3], x[4], x[5]);
+        const Rigid about_middle{moved.turn, middle + moved.move - moved.turn * middle};
+        candidate.print_to_model = about_middle.after(candidate.print_to_model);
+        return moved;
+    }
+
+    void measure(Candidate& candidate) {
+        const std::vector<Pair> found = pairs(candidate.print_to_model);
+        double sum = 0;
+        for (const Pair& pair : found) sum += pair.nearest.distance * pair.nearest.distance;
+        candidate.residual = std::sqrt(sum / static_cast<double>(found.size()));
+    }
+
+    const ClosedModel& model_;
+    const std::vector<glm::dvec3>& points_;
+    std::vector<std::uint32_t> hints_;
+    const double size_;  // mm, of the print
+};
+
+glm::dvec3 middleOf(const std::vector<glm::dvec3>& points) {
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& p : points) sum += p;
+    return sum / static_cast<double>(points.size());
+}
+
+// mm: the farthest point from the middle.
+double sizeOf(const SurfaceSamples& samples, const glm::dvec3& middle) {
+    double size = 1e-9;
+    for (const glm::dvec3& p : samples.points) size = std::max(size, glm::length(p - middle));
+    return size;
+}
+
+// Turns of the print that bring each of the model's six sides down, the way the file has it first.
+std::vector<glm::dmat3> sidesDown() {
+    constexpr double kQuarter = 0.5 * std::numbers::pi;
+    return {glm::dmat3(1.0),           turnBy({2 * kQuarter, 0, 0}), turnBy({kQuarter, 0, 0}),
+            turnBy({-kQuarter, 0, 0}), turnBy({0, kQuarter, 0}),     turnBy({0, -kQuarter, 0})};
+}
+
+// Whether two candidates fit equally well: a fiftieth, or what steps that have converged still differ by.
+bool alike(double a, double b, double size) { return std::abs(a - b) <= 0.02 * std::max(a, b) + 1e-4 * size; }
+
+double turnOf(const Candidate& candidate) { return angleOf(candidate.print_to_model.turn); }
+
+// Better, or as good with less of a turn.
+bool before(const Candidate& a, const Candidate& b, double size) {
+    return alike(a.residual, b.residual, size) ? turnOf(a) < turnOf(b) : a.residual < b.residual;
+}
+
+// Those to go on with: of the best ones, which are alike, those with the smallest turns.
+std::vector<Candidate> chosen(std::vector<Candidate> candidates, double size) {
+    double best = candidates.front().residual;
+    for (const Candidate& candidate : candidates) best = std::min(best, candidate.residual);
+    std::stable_sort(candidates.begin(), candidates.end(), [best, size](const Candidate& a, const Candidate& b) {
+        const bool a_best = alike(a.residual, best, size);
+        const bool b_best = alike(b.residual, best, size);
+        if (a_best != b_best) return a_best;
+        return a_best ? turnOf(a) < turnOf(b) : a.residual < b.residual;
+    });
+    candidates.resize(std::min(candidates.size(), kRefined));
+    return candidates;
+}
+
+}  // namespace
+
+Fit fitModel(const ClosedModel& model, const SurfaceSamples& print) {
+    if (print.points.size() < kFewestSamples)
+        throw UsageError(
+            fmt::format("--compare: {} points of the printed surface are too few to place the model; choose a "
+                        "smaller --voxel-size",
+                        print.points.size()));
+    const SurfaceSamples coarse = thinned(print, kCoarseSamples);
+    const SurfaceSamples medium = thinned(print, kMediumSamples);
+    const glm::dvec3 print_middle = middleOf(medium.points);
+    const glm::dvec3 model_middle = middleOf(sampleSurface(model.mesh(), kMediumSamples).points);
+    const double size = sizeOf(coarse, print_middle);
+
+    Fitting rough(model, coarse, size);
+    Fitting better(model, medium, size);
+    Candidate best;
+    bool any = false;
+    for (const glm::dmat3& side : sidesDown()) {
+        std::vector<Candidate> starts;
+        for (int n = 0; n < kTurns; ++n) {
+            const glm::dmat3 turn = side * turnBy({0, 0, 2 * std::numbers::pi * n / kTurns});
+            starts.push_back(rough.run({{turn, model_middle - turn * print_middle}, 0}, kCoarseSteps));
+        }
+        for (const Candidate& start : chosen(std::move(starts), size)) {
+            const Candidate refined = better.run(start, kFineSteps);
+            if (!any || before(refined, best, size)) best = refined;
+            any = true;
+        }
+        // As it lies in the file: surfaces of beads are a tenth of a millimetre from the model, and hardly more.
+        if (best.residual < 0.01 * size) break;
+    }
+    return refineFit(model, print, best.print_to_model.inverse());
+}
+
+Fit refineFit(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print) {
+    const SurfaceSamples fine = thinned(print, kFineSamples);
+    Fitting exact(model, fine, sizeOf(fine, middleOf(fine.points)));
+    const Candidate best = exact.run({model_to_print.inverse(), 0}, kFineSteps);
+    return {best.print_to_model.inverse(), best.residual, fine.points.size()};
+}
+
+}  // namespace stratum::compare

@@ -1,0 +1,29 @@
+// Where a model lies in a print: slicers move and turn it, and few say how.
+#pragma once
+
+#include "compare/closed_model.h"
+#include "compare/rigid.h"
+#include "compare/surface_samples.h"
+
+namespace stratum::compare {
+
+struct Fit {
+    Rigid model_to_print;
+    double residual = 0;  ///< mm: RMS of the distances of the nine tenths of the samples that are nearest
+    std::size_t samples = 0;
+};
+
+constexpr std::size_t kFewestSamples = 100;
+
+/// Iterated closest points, to the planes of the nearest triangles (Chen and Medioni, Image and Vision Computing 10,
+/// 1992), trimmed: the tenth of the samples that is farthest does not count (Chetverikov et al., ICPR 2002). It starts
+/// from both surfaces' centroids with 24 turns about z, and if none of them fits with those of the other five sides
+/// down. Of placements that fit equally well, as those of a cube, that with the smallest turn. Parallel; the result
+/// does not depend on the number of threads. Throws UsageError if there are fewer samples than
+/// kFewestSamples.
+Fit fitModel(const ClosedModel& model, const SurfaceSamples& print);
+
+/// The same from a placement that is nearly right.
+Fit refineFit(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print);
+
+}  // namespace stratum::compare

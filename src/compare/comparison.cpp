@@ -1,0 +1,225 @@
+#include "compare/comparison.h"
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "compare/surface_samples.h"
+#include "export/surface_mesh.h"
+
+#include <openvdb/tools/Interpolation.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace stratum::compare {
+namespace {
+
+constexpr std::size_t kGrain = 1024;
+const double kDiagonal = std::sqrt(0.5);  // of 45 degrees
+
+// Points and normals in print space.
+struct Place {
+    glm::dvec3 at;
+    double mm = 0;
+    double up = 0;  // z of the model's normal there
+};
+
+TriangleMesh meshOf(const openvdb::FloatGrid& print) {
+    exporter::MeshOptions options;
+    options.outside_only = true;
+    const exporter::SurfaceMesh surface = exporter::meshSurface(print, options);
+    TriangleMesh mesh;
+    mesh.points.reserve(surface.points.size());
+    for (const openvdb::Vec3s& p : surface.points) mesh.points.emplace_back(p[0], p[1], p[2]);
+    mesh.triangles.reserve(surface.triangleCount());
+    surface.forEachTriangle([&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        mesh.triangles.push_back({a, b, c});
+    });
+    return mesh;
+}
+
+template <typename Keep>
+Deviations statisticsOf(const std::vector<Place>& places, const Keep& keep) {
+    Deviations found;
+    std::vector<double> sizes;
+    double sum = 0;
+    double squares = 0;
+    for (const Place& place : places) {
+        if (!keep(place)) continue;
+        if (sizes.empty() || place.mm < found.least.mm) found.least = {place.mm, place.at};
+        if (sizes.empty() || place.mm > found.most.mm) found.most = {place.mm, place.at};
+        sum += place.mm;
+        squares += place.mm * place.mm;
+        sizes.push_back(std::abs(place.mm));
+    }
+    found.samples = sizes.size();
+    if (sizes.empty()) return found;
+    const auto count = static_cast<double>(sizes.size());
+    found.mean = sum / count;
+    found.rms = std::sqrt(squares / count);
+    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.95 * count)) - 1;
+    std::nth_element(sizes.begin(), rank, sizes.end());
+    found.within_95 = *rank;
+    return found;
+}
+
+DeviationsByNormal byNormal(const std::vector<Place>& places) {
+    DeviationsByNormal all;
+    all.all = statisticsOf(places, [](const Place&) { return true; });
+    all.walls = statisticsOf(places, [](const Place& place) { return std::abs(place.up) <= kDiagonal; });
+    all.tops = statisticsOf(places, [](const Place& place) { return place.up > kDiagonal; });
+    all.bottoms = statisticsOf(places, [](const Place& place) { return place.up < -kDiagonal; });
+    return all;
+}
+
+// Whether the print lies between one of its places and the outside of the model beyond: along the model's normal, from
+// a voxel above the place to a voxel above the model.
+class Hidden {
+public:
+    explicit Hidden(const openvdb::FloatGrid& print) : phi_(print), voxel_(print.voxelSize()[0]) {}
+
+    bool operator()(const glm::dvec3& at, const glm::dvec3& normal, double distance) const {
+        for (double up = voxel_; up < voxel_ - distance; up += 0.5 * voxel_) {
+            const glm::dvec3 p = at + normal * up;
+            if (phi_.wsSample({p.x, p.y, p.z}) < 0) return true;
+        }
+        return false;
+    }
+
+private:
+    const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi_;
+    const double voxel_;
+};
+
+// Their samples are taken out of `samples`.
+std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& print, const ClosedModel& model,
+                             const Rigid& model_to_print) {
+    const Rigid to_model = model_to_print.inverse();
+    std::vector<Place> places(samples.points.size());
+    std::vector<std::uint8_t> seen(places.size());
+    parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        const Hidden hidden(print);
+        std::uint32_t hint = Nearest::kNone;
+        for (std::size_t n = first; n < last; ++n) {
+            const ModelDistance found = model.distance(to_model(samples.points[n]), hint);
+            hint = found.triangle;
+            const glm::dvec3 normal = model_to_print.turn * model.normal(found.triangle);
+            places[n] = {samples.points[n], found.distance, normal.z};
+            seen[n] = hidden(samples.points[n], normal, found.distance) ? 0 : 1;
+        }
+    });
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        if (seen[n] == 0) continue;
+        places[kept] = places[n];
+        samples.points[kept] = samples.points[n];
+        samples.triangles[kept++] = samples.triangles[n];
+    }
+    places.resize(kept);
+    samples.points.resize(kept);
+    samples.triangles.resize(kept);
+    return places;
+}
+
+std::vector<Place> fromModel(const SurfaceSamples& samples, const ClosedModel& model, const Rigid& model_to_print,
+                             const TriangleTree& surface, const openvdb::FloatGrid& print) {
+    std::vector<Place> places(samples.points.size());
+    parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi(print);
+        std::uint32_t hint = Nearest::kNone;
+        for (std::size_t n = first; n < last; ++n) {
+            const glm::dvec3 at = model_to_print(samples.points[n]);
+            const Nearest found = surface.nearest(at, hint);
+            hint = found.triangle;
+            const double distance = std::sqrt(found.distance2);
+            const bool inside = phi.wsSample({at.x, at.y, at.z}) < 0;
+            places[n] = {at, inside ? distance : -distance,
+                         (model_to_print.turn * model.normal(samples.triangles[n])).z};
+        }
+    });
+    return places;
+}
+
+// The gradient of the level set by differences to the neighbours that are nearer to the surface: values beyond the band
+// are clamped, and say nothing (Rouy and Tourin, SIAM Journal on Numerical Analysis 29, 1992).
+template <typename Accessor>
+glm::dvec3 slopeTowardsSurface(const Accessor& phi, const openvdb::Coord& at, double voxel) {
+    const auto here = static_cast<double>(phi.getValue(at));
+    glm::dvec3 slope(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        openvdb::Coord step(0);
+        step[axis] = 1;
+        const double back = here - static_cast<double>(phi.getValue(at - step));
+        const double ahead = static_cast<double>(phi.getValue(at + step)) - here;
+        const double side = here < 0 ? -1 : 1;
+        if (side * back > 0 && side * back >= -side * ahead)
+            slope[axis] = back / voxel;
+        else if (side * ahead < 0)
+            slope[axis] = ahead / voxel;
+    }
+    return slope;
+}
+
+}  // namespace
+
+Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& model, const CompareOptions& options) {
+    const TriangleMesh mesh = meshOf(print);
+    if (mesh.triangles.empty())
+        throw UsageError("--compare: the print has no surface at this voxel size; choose a smaller --voxel-size");
+    SurfaceSamples printed = sampleSurface(mesh, options.samples);
+    const auto all = static_cast<double>(printed.points.size());
+    Comparison comparison;
+    comparison.model_mm3 = model.volume();
+    comparison.model_mm2 = model.area();
+    comparison.print_mm2 = printed.area;
+    const bool fits = options.placement == ModelPlacement::fit;
+    if (fits) comparison.model_to_print = fitModel(model, printed).model_to_print;
+    std::vector<Place> places = fromPrint(printed, print, model, comparison.model_to_print);
+    comparison.hidden_share = 1 - static_cast<double>(places.size()) / all;
+    if (fits && printed.points.size() >= kFewestSamples) {
+        comparison.fit = refineFit(model, printed, comparison.model_to_print);
+        comparison.model_to_print = comparison.fit->model_to_print;
+        places = fromPrint(printed, print, model, comparison.model_to_print);
+    }
+    comparison.print_to_model = byNormal(places);
+    const TriangleTree surface(mesh);
+    comparison.model_to_surface = byNormal(
+        fromModel(sampleSurface(model.mesh(), options.samples), model, comparison.model_to_print, surface, print));
+    return comparison;
+}
+
+openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_print,
+                                      const ClosedModel& model, const Rigid& model_to_print) {
+    using Leaf = openvdb::FloatTree::LeafNodeType;
+    auto grid =
+        openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(surface.tree(), 0.0F, openvdb::TopologyCopy()));
+    grid->setTransform(surface.transform().copy());
+    grid->setName("deviation");
+    std::vector<Leaf*> leaves;
+    grid->tree().getNodes(leaves);
+    const Rigid to_model = model_to_print.inverse();
+    const double voxel = surface.voxelSize()[0];
+    // The slope has no unit; a turned world (--up y) has the axes of the index space all the same.
+    const double mm = to_print.voxelSize()[0] / voxel;
+    parallelFor(leaves.size(), 16, [&](std::size_t first, std::size_t last) {
+        auto phi = surface.getConstAccessor();
+        std::uint32_t hint = Nearest::kNone;
+        for (std::size_t n = first; n < last; ++n)
+            for (auto value = leaves[n]->beginValueOn(); value; ++value) {
+                const openvdb::Coord at = value.getCoord();
+                const glm::dvec3 slope = slopeTowardsSurface(phi, at, voxel);
+                const openvdb::Vec3d world = to_print.indexToWorld(at);
+                glm::dvec3 place(world[0], world[1], world[2]);
+                // One step of Newton's to the surface; between beads the slope vanishes, and the voxel stays.
+                const double steep = glm::dot(slope, slope);
+                if (steep > 0.25) place -= slope * (mm * static_cast<double>(phi.getValue(at)) / steep);
+                const ModelDistance found = model.distance(to_model(place), hint);
+                hint = found.triangle;
+                value.setValue(static_cast<float>(found.distance));
+            }
+    });
+    return grid;
+}
+
+}  // namespace stratum::compare

@@ -1,0 +1,88 @@
+#include "compare/model_file.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace stratum::compare {
+namespace {
+
+auto orderOf(const glm::dvec3& p) { return std::tie(p.x, p.y, p.z); }
+
+// STL has every corner three times or more.
+void mergeEqualPoints(TriangleMesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(),
+              [&mesh](std::uint32_t a, std::uint32_t b) { return orderOf(mesh.points[a]) < orderOf(mesh.points[b]); });
+    std::vector<std::uint32_t> place(mesh.points.size());
+    std::vector<glm::dvec3> merged;
+    for (const std::uint32_t n : order) {
+        if (merged.empty() || merged.back() != mesh.points[n]) merged.push_back(mesh.points[n]);
+        place[n] = static_cast<std::uint32_t>(merged.size() - 1);
+    }
+    mesh.points = std::move(merged);
+    for (Triangle& triangle : mesh.triangles)
+        for (std::uint32_t& corner : triangle) corner = place[corner];
+    std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+}
+
+void append(const aiMesh& part, const std::string& name, TriangleMesh& mesh) {
+    const auto first = static_cast<std::uint32_t>(mesh.points.size());
+    for (unsigned n = 0; n < part.mNumVertices; ++n) {
+        const aiVector3D& p = part.mVertices[n];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            throw InputError(fmt::format("{}: point {} is not finite; export the model again", name, n + 1));
+        mesh.points.emplace_back(p.x, p.y, p.z);
+    }
+    for (unsigned n = 0; n < part.mNumFaces; ++n) {
+        const aiFace& face = part.mFaces[n];
+        if (face.mNumIndices == 3)
+            mesh.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
+    }
+}
+
+}  // namespace
+
+bool isModelPath(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    return extension == ".stl" || extension == ".3mf" || extension == ".obj";
+}
+
+TriangleMesh readModel(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    if (!isModelPath(path))
+        throw InputError(fmt::format("{}: is no model by its name; expected .stl, .3mf or .obj", name));
+    if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such file", name));
+    Assimp::Importer importer;
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* scene =
+        importer.ReadFile(name, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
+    if (scene == nullptr)
+        throw InputError(fmt::format("{}: can't be read as a model: {}; export it again as STL, 3MF or OBJ", name,
+                                     importer.GetErrorString()));
+    std::size_t triangles = 0;
+    for (unsigned n = 0; n < scene->mNumMeshes; ++n) triangles += scene->mMeshes[n]->mNumFaces;
+    if (triangles > kMostTriangles)
+        throw InputError(
+            fmt::format("{}: {} triangles are more than {}; simplify the model", name, triangles, kMostTriangles));
+    TriangleMesh mesh;
+    for (unsigned n = 0; n < scene->mNumMeshes; ++n) append(*scene->mMeshes[n], name, mesh);
+    mergeEqualPoints(mesh);
+    if (mesh.triangles.empty())
+        throw InputError(
+            fmt::format("{}: has no triangles; expected a solid model, exported as STL, 3MF or OBJ", name));
+    return mesh;
+}
+
+}  // namespace stratum::compare

@@ -1,0 +1,142 @@
+#include "compare/nearest_triangle.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace stratum::compare {
+namespace {
+
+constexpr std::uint32_t kLeaf = 4;
+constexpr std::size_t kDeepest = 64;  // the median halves 2^32 triangles 32 times
+
+float below(double value) {
+    const auto near = static_cast<float>(value);
+    return static_cast<double>(near) <= value ? near : std::nextafter(near, -std::numeric_limits<float>::infinity());
+}
+float above(double value) { return -below(-value); }
+
+Nearest found(const glm::dvec3& p, const glm::dvec3& point, std::uint8_t feature) {
+    Nearest nearest;
+    nearest.point = point;
+    const glm::dvec3 to = p - point;
+    nearest.distance2 = glm::dot(to, to);
+    nearest.feature = feature;
+    return nearest;
+}
+
+}  // namespace
+
+Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a;
+    const glm::dvec3 ac = c - a;
+    // Along both edges from each corner.
+    const double ab_a = glm::dot(ab, p - a);
+    const double ac_a = glm::dot(ac, p - a);
+    if (ab_a <= 0 && ac_a <= 0) return found(p, a, 1);
+    const double ab_b = glm::dot(ab, p - b);
+    const double ac_b = glm::dot(ac, p - b);
+    if (ab_b >= 0 && ac_b <= ab_b) return found(p, b, 2);
+    const double ab_c = glm::dot(ab, p - c);
+    const double ac_c = glm::dot(ac, p - c);
+    if (ac_c >= 0 && ab_c <= ac_c) return found(p, c, 4);
+    // Signed areas towards each edge: barycentric coordinates, times the area.
+    const double towards_c = ab_a * ac_b - ab_b * ac_a;
+    if (towards_c <= 0 && ab_a >= 0 && ab_b <= 0) return found(p, a + ab * (ab_a / (ab_a - ab_b)), 1 | 2);
+    const double towards_b = ab_c * ac_a - ab_a * ac_c;
+    if (towards_b <= 0 && ac_a >= 0 && ac_c <= 0) return found(p, a + ac * (ac_a / (ac_a - ac_c)), 1 | 4);
+    const double towards_a = ab_b * ac_c - ab_c * ac_b;
+    const double from_b = ac_b - ab_b;
+    const double from_c = ab_c - ac_c;
+    if (towards_a <= 0 && from_b >= 0 && from_c >= 0)
+        return found(p, b + (c - b) * (from_b / (from_b + from_c)), 2 | 4);
+    const double sum = towards_a + towards_b + towards_c;
+    return found(p, a + ab * (towards_b / sum) + ac * (towards_c / sum), 1 | 2 | 4);
+}
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::vector<glm::vec3> middles;
+    middles.reserve(order_.size());
+    for (const Triangle& t : mesh.triangles)
+        middles.emplace_back((mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0);
+    nodes_.reserve(order_.size());
+    if (!order_.empty()) build(middles, 0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::uint32_t TriangleTree::build(std::vector<glm::vec3>& middles, std::uint32_t begin, std::uint32_t end) {
+    const auto number = static_cast<std::uint32_t>(nodes_.size());
+    glm::dvec3 low(std::numeric_limits<double>::infinity());
+    glm::dvec3 high(-low);
+    for (std::uint32_t n = begin; n < end; ++n)
+        for (const std::uint32_t corner : mesh_.triangles[order_[n]]) {
+            low = glm::min(low, mesh_.points[corner]);
+            high = glm::max(high, mesh_.points[corner]);
+        }
+    Node node{{below(low.x), below(low.y), below(low.z)}, {above(high.x), above(high.y), above(high.z)}, begin, end, 0};
+    nodes_.push_back(node);
+    if (end - begin <= kLeaf) return number;
+    const glm::dvec3 size = high - low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const auto at = [this](std::uint32_t n) { return order_.begin() + static_cast<std::ptrdiff_t>(n); };
+    std::nth_element(at(begin), at(middle), at(end), [&middles, axis](std::uint32_t a, std::uint32_t b) {
+        return std::pair(middles[a][axis], a) < std::pair(middles[b][axis], b);
+    });
+    build(middles, begin, middle);
+    const std::uint32_t right = build(middles, middle, end);
+    nodes_[number].right = right;
+    return number;
+}
+
+double TriangleTree::distance2(const Node& node, const glm::dvec3& p) {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double out = std::max(
+            {static_cast<double>(node.low[axis]) - p[axis], p[axis] - static_cast<double>(node.high[axis]), 0.0});
+        sum += out * out;
+    }
+    return sum;
+}
+
+void TriangleTree::test(std::uint32_t triangle, const glm::dvec3& p, Nearest& best) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    Nearest here = nearestOn(p, mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2));
+    here.triangle = triangle;
+    // Of equally near ones the first, so that the result does not depend on the hint.
+    if (std::pair(here.distance2, here.triangle) < std::pair(best.distance2, best.triangle)) best = here;
+}
+
+Nearest TriangleTree::nearest(const glm::dvec3& p, std::uint32_t hint) const {
+    Nearest best;
+    if (nodes_.empty()) return best;
+    if (hint != Nearest::kNone) test(hint, p, best);
+    struct Waiting {
+        std::uint32_t node;
+        double distance2;
+    };
+    std::array<Waiting, kDeepest> stack;
+    std::size_t waiting = 0;
+    stack[waiting++] = {0, distance2(nodes_[0], p)};
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (next.distance2 > best.distance2) continue;
+        const Node& node = nodes_[next.node];
+        if (node.right == 0) {
+            for (std::uint32_t n = node.begin; n < node.end; ++n) test(order_[n], p, best);
+            continue;
+        }
+        Waiting near{next.node + 1, distance2(nodes_[next.node + 1], p)};
+        Waiting far{node.right, distance2(nodes_[node.right], p)};
+        if (far.distance2 < near.distance2) std::swap(near, far);
+        if (far.distance2 <= best.distance2) stack[waiting++] = far;
+        if (near.distance2 <= best.distance2) stack[waiting++] = near;
+    }
+    return best;
+}
+
+}  // namespace stratum::compare

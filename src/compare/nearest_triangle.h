@@ -1,0 +1,54 @@
+// The point of a mesh that is nearest to a place: a tree of boxes over its triangles.
+#pragma once
+
+#include "compare/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace stratum::compare {
+
+struct Nearest {
+    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+    std::uint32_t triangle = kNone;  ///< one that has the point
+    glm::dvec3 point{0.0};
+    double distance2 = std::numeric_limits<double>::infinity();  ///< mm^2
+    /// What of the triangle has the point: bit n is set where corner n counts. One bit is a corner, two an edge, three
+    /// the face.
+    std::uint8_t feature = 0;
+};
+
+/// The point of a triangle that is nearest to p. Source: the regions of Voronoi of a triangle's corners, edges and
+/// face.
+Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// Immutable; shared by all threads. Boxes are split at the median of the middles along their longest side; leaves have
+/// up to four triangles. The mesh must outlive it.
+class TriangleTree {
+public:
+    explicit TriangleTree(const TriangleMesh& mesh);
+
+    /// @param hint  a triangle that is probably near, e.g. that of a place beside this one: saves most of the search
+    Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
+    const TriangleMesh& mesh() const { return mesh_; }
+    std::size_t bytes() const { return nodes_.size() * sizeof(Node) + order_.size() * sizeof(std::uint32_t); }
+
+private:
+    struct Node {
+        float low[3], high[3];     // rounded outward
+        std::uint32_t begin, end;  // of order_; leaves have no children
+        std::uint32_t right;       // the left child is the next node; 0 for leaves
+    };
+    std::uint32_t build(std::vector<glm::vec3>& middles, std::uint32_t begin, std::uint32_t end);
+    void test(std::uint32_t triangle, const glm::dvec3& p, Nearest& best) const;
+    static double distance2(const Node& node, const glm::dvec3& p);
+
+    const TriangleMesh& mesh_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace stratum::compare

@@ -1,0 +1,59 @@
+#include "compare/surface_samples.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::compare {
+namespace {
+
+// The additive recurrence of the plastic number fills a square evenly (Roberts, "The unreasonable effectiveness of
+// quasirandom sequences", 2018).
+constexpr double kFirst = 0.7548776662466927;
+constexpr double kSecond = 0.5698402909980532;
+
+double fraction(double x) { return x - std::floor(x); }
+
+}  // namespace
+
+SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count) {
+    SurfaceSamples samples;
+    std::vector<double> until;
+    until.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles) {
+        samples.area += 0.5 * glm::length(mesh.areaNormal(t));
+        until.push_back(samples.area);
+    }
+    if (until.empty() || !(samples.area > 0)) return samples;
+    samples.points.reserve(count);
+    samples.triangles.reserve(count);
+    std::size_t triangle = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        const double at = samples.area * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
+        while (triangle + 1 < until.size() && until[triangle] < at) ++triangle;
+        // Uniform in the triangle: the square root makes the first coordinate's density linear.
+        const double root = std::sqrt(fraction(kFirst * static_cast<double>(n + 1)));
+        const double other = fraction(kSecond * static_cast<double>(n + 1));
+        const Triangle& t = mesh.triangles[triangle];
+        samples.points.push_back(mesh.corner(t, 0) * (1 - root) + mesh.corner(t, 1) * (root * (1 - other)) +
+                                 mesh.corner(t, 2) * (root * other));
+        samples.triangles.push_back(static_cast<std::uint32_t>(triangle));
+    }
+    return samples;
+}
+
+SurfaceSamples thinned(const SurfaceSamples& samples, std::size_t count) {
+    const std::size_t all = samples.points.size();
+    if (all <= count) return samples;
+    SurfaceSamples fewer;
+    fewer.area = samples.area;
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t at = n * all / count;
+        fewer.points.push_back(samples.points[at]);
+        fewer.triangles.push_back(samples.triangles[at]);
+    }
+    return fewer;
+}
+
+}  // namespace stratum::compare
