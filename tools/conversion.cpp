@@ -347,7 +347,7 @@ private:
         exporter::describe(*grid, lattice_, provenance_);
         if (o_.compare.grid)
             grids.push_back(compare::deviationGrid(*grid, *voxelize::makeTransform(lattice_, {}), *comparison_->model,
-                                                   comparison_->found.model_to_print));
+                                                   comparison_->found));
         grids.insert(grids.begin(), grid);
         exporter::writeVdb(grids, job.path, o_.file);
         writeUsda(grids, job);

@@ -189,16 +189,27 @@ Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& mo
     return comparison;
 }
 
+double shownDeviation(const Comparison& comparison) {
+    const double least =
+        std::max({comparison.print_to_model.all.within_95, comparison.model_to_surface.all.within_95, 1e-6});
+    const double ten = std::pow(10, std::floor(std::log10(least)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (step * ten >= least) return step * ten;
+    return 10 * ten;
+}
+
 openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_print,
-                                      const ClosedModel& model, const Rigid& model_to_print) {
+                                      const ClosedModel& model, const Comparison& comparison) {
     using Leaf = openvdb::FloatTree::LeafNodeType;
     auto grid =
         openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(surface.tree(), 0.0F, openvdb::TopologyCopy()));
     grid->setTransform(surface.transform().copy());
     grid->setName("deviation");
+    const double shown = shownDeviation(comparison);
+    grid->insertMeta("range", openvdb::Vec2DMetadata(openvdb::Vec2d(-shown, shown)));
     std::vector<Leaf*> leaves;
     grid->tree().getNodes(leaves);
-    const Rigid to_model = model_to_print.inverse();
+    const Rigid to_model = comparison.model_to_print.inverse();
     const double voxel = surface.voxelSize()[0];
     // The slope has no unit; a turned world (--up y) has the axes of the index space all the same.
     const double mm = to_print.voxelSize()[0] / voxel;

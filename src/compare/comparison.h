@@ -60,9 +60,14 @@ struct CompareOptions {
 /// the number of threads. Throws UsageError if the print has no surface.
 Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& model, const CompareOptions& options);
 
+/// What a picture of deviations shows to both sides of 0, mm: 95 % of both surfaces, rounded up to 1, 2 or 5 times a
+/// power of ten.
+double shownDeviation(const Comparison& comparison);
+
 /// A grid `deviation` over the active voxels of `surface`, in mm: how far the place of the surface that is nearest to a
-/// voxel is from the model. `to_print`: from the surface's index space to print space, mm.
+/// voxel is from the model. Its metadata "range" is shownDeviation(). `to_print`: from
+/// the surface's index space to print space, mm.
 openvdb::FloatGrid::Ptr deviationGrid(const openvdb::FloatGrid& surface, const openvdb::math::Transform& to_print,
-                                      const ClosedModel& model, const Rigid& model_to_print);
+                                      const ClosedModel& model, const Comparison& comparison);
 
 }  // namespace stratum::compare

@@ -73,7 +73,10 @@ TEST(Comparison, DeviationsOfVoxelsAreThoseOfTheirSurface) {
     openvdb::initialize();
     const ClosedModel model(test::ellipsoidModel({5, 5, 5}, 200), "sphere");
     const auto surface = sphere(5.15, {0, 0, 0});
-    const auto grid = deviationGrid(*surface, surface->transform(), model, {});
+    const Comparison found = compareToModel(*surface, model, onTheBed());
+    EXPECT_NEAR(shownDeviation(found), 0.2, 1e-12);
+    const auto grid = deviationGrid(*surface, surface->transform(), model, found);
+    EXPECT_EQ(grid->metaValue<openvdb::Vec2d>("range"), openvdb::Vec2d(-0.2, 0.2));
     EXPECT_EQ(grid->activeVoxelCount(), surface->activeVoxelCount());
     EXPECT_EQ(grid->getName(), "deviation");
     for (auto value = grid->cbeginValueOn(); value; ++value)

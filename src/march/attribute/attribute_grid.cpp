@@ -122,6 +122,20 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
     return grid;
 }
 
+namespace {
+
+// Metadata "range" of a grid of numbers: what to show, if a few extremes would hide the rest.
+void showRange(const openvdb::GridBase& grid, trace::AttributeSummary& summary) {
+    const auto range = grid.getMetadata<openvdb::Vec2DMetadata>("range");
+    if (!range || summary.kind != trace::AttributeSummary::Kind::number) return;
+    const openvdb::Vec2d shown = range->value();
+    if (!std::isfinite(shown[0]) || !std::isfinite(shown[1]) || !(shown[0] < shown[1])) return;
+    summary.least = shown[0];
+    summary.most = shown[1];
+}
+
+}  // namespace
+
 trace::AttributeSummary summarize(const openvdb::GridBase& grid) {
     trace::AttributeSummary summary;
     summary.labels = labelsOf(grid);
@@ -163,6 +177,7 @@ trace::AttributeSummary summarize(const openvdb::GridBase& grid) {
             }
             if (values.size() <= trace::AttributeSummary::kMostValues)
                 summary.values.assign(values.begin(), values.end());
+            showRange(grid, summary);
         }
     });
     return summary;

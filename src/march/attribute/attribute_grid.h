@@ -19,7 +19,8 @@ namespace stratum::march {
 openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path, const std::string& name,
                                               const openvdb::FloatGrid& surface);
 
-/// One pass over all active voxels. Throws InputError if there are more than AttributeSummary::kMostColors colors.
+/// One pass over all active voxels. Metadata "range" (two doubles) replaces the least and the most number: beyond it
+/// colors stay the same. Throws InputError if there are more than AttributeSummary::kMostColors colors.
 trace::AttributeSummary summarize(const openvdb::GridBase& grid);
 
 /// Belongs to one thread. Keeps a reference to the grid.

@@ -48,7 +48,7 @@ std::string titleOf(const Legend& legend) {
 }  // namespace
 
 std::string unitOfAttribute(const std::string& attribute) {
-    if (attribute == "width") return "mm";
+    if (attribute == "width" || attribute == "deviation") return "mm";
     if (attribute == "speed") return "mm/s";
     if (attribute == "time") return "s";
     if (attribute == "flow") return "mm^3/s";

@@ -22,7 +22,7 @@ struct Legend {
     double least = 0.0, most = 0.0;
 };
 
-/// The unit of a print's attribute: "mm" of width, "mm/s" of speed, "s" of time; nothing for others.
+/// The unit of a print's attribute: "mm" of width and deviation, "mm/s" of speed, "s" of time; nothing for others.
 std::string unitOfAttribute(const std::string& attribute);
 
 /// Draws it into the upper left corner of an 8-bit sRGB picture, on a light panel, in a size relative to the picture's

@@ -87,6 +87,22 @@ std::shared_ptr<const Brdf> recolored(const Brdf& base, const Color& color, cons
         "the material {} has a colour of its own; to colour by an attribute take lambert:... or plastic:...", text));
 }
 
+// Of colors at even places from 0 to 1.
+Color between(std::span<const std::uint32_t> stops, double t) {
+    const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
+    const auto n = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+    const auto w = static_cast<float>(place - static_cast<double>(n));
+    // Interpolated between square roots, which is approximately perceptually uniform.
+    const Color mixed = (1.0f - w) * glm::sqrt(fromSrgb(stops[n])) + w * glm::sqrt(fromSrgb(stops[n + 1]));
+    return mixed * mixed;
+}
+
+// A place of the ramp of a summary.
+Color rampOf(const trace::AttributeSummary& summary, std::size_t n) {
+    const double t = static_cast<double>(n) / (kRampSteps - 1);
+    return summary.most > 0 && summary.least == -summary.most ? divergingColor(t) : rampColor(t);
+}
+
 }  // namespace
 
 ObjectMaterial::ObjectMaterial(std::shared_ptr<const Brdf> brdf) {
@@ -109,12 +125,12 @@ Color categoryColor(std::size_t n) {
 
 Color rampColor(double t) {
     constexpr std::array<std::uint32_t, 6> kStops = {0x2a1a5e, 0x2b5a92, 0x1f8f8c, 0x4fb562, 0xb5cf3f, 0xf7e65a};
-    const double place = std::clamp(t, 0.0, 1.0) * (kStops.size() - 1);
-    const auto n = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-    const auto w = static_cast<float>(place - static_cast<double>(n));
-    // Interpolated between square roots, which is approximately perceptually uniform.
-    const Color mixed = (1.0f - w) * glm::sqrt(fromSrgb(kStops[n])) + w * glm::sqrt(fromSrgb(kStops[n + 1]));
-    return mixed * mixed;
+    return between(kStops, t);
+}
+
+Color divergingColor(double t) {
+    constexpr std::array<std::uint32_t, 5> kStops = {0x1d4e9e, 0x7fb0dd, 0xf2f0ec, 0xe8956f, 0xa51c24};
+    return between(kStops, t);
 }
 
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
@@ -164,8 +180,7 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
                     return n >= 0 && n <= span ? static_cast<std::size_t>(n) + 1 : std::size_t{0};
                 }};
     }
-    for (std::size_t n = 0; n < kRampSteps; ++n)
-        brdfs.push_back(recolored(*base, rampColor(static_cast<double>(n) / (kRampSteps - 1)), text));
+    for (std::size_t n = 0; n < kRampSteps; ++n) brdfs.push_back(recolored(*base, rampOf(summary, n), text));
     brdfs.push_back(recolored(*base, kNeutral, text));
     return {attribute, brdfs, [least, span](const glm::vec3& v) {
                 const double t = span > 0 ? (static_cast<double>(v.x) - least) / span : 0.0;
@@ -194,8 +209,7 @@ Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary&
         legend.unit = unitOfAttribute(options.by);
         legend.least = summary.least;
         legend.most = summary.most;
-        for (std::size_t n = 0; n < kRampSteps; ++n)
-            legend.ramp.push_back(rampColor(static_cast<double>(n) / (kRampSteps - 1)));
+        for (std::size_t n = 0; n < kRampSteps; ++n) legend.ramp.push_back(rampOf(summary, n));
     }
     return legend;
 }

@@ -58,8 +58,8 @@ private:
 /// The material of `options` for an object whose attribute `options.by` has this number and summary.
 /// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colors: those of the attribute itself if
 /// its values are colors, of a palette for up to 32 whole numbers (features have fixed colors), else of a ramp from the
-/// least value to the most; gray where a value is not finite. Throws UsageError: a BRDF without a body color (a table),
-/// a name that the attribute doesn't have.
+/// least value to the most, from blue over white to red if they are opposite; gray where a value is not finite. Throws
+/// UsageError: a BRDF without a body color (a table), a name that the attribute doesn't have.
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary);
 
@@ -71,5 +71,7 @@ Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary&
 Color categoryColor(std::size_t n);
 /// A ramp from dark blue (0) through green to yellow (1) of increasing lightness. Linear RGB.
 Color rampColor(double t);
+/// A ramp from blue (0) over white to red (1), for values about zero. Linear RGB.
+Color divergingColor(double t);
 
 }  // namespace stratum::shade
