@@ -34,9 +34,7 @@ std::string lineOf(const char* what, const compare::Deviations& found) {
 
 void tell(const ConvertCommand& o, const compare::Comparison& found) {
     const std::string fitted =
-        found.fit
-            ? fmt::format("; best fit, {:.3f} mm from the print in nine tenths of its surface", found.fit->residual)
-            : "";
+        found.fit ? fmt::format("; best fit, {:.3f} mm (RMS) from the print", found.fit->residual) : "";
     say(o.common, fmt::format("  {}: {}{}", o.compare.model, compare::describe(found.model_to_print), fitted));
     for (const auto& [title, way] : {std::pair{"the print from the model", &found.print_to_model},
                                      std::pair{"the model from the print", &found.model_to_surface}}) {

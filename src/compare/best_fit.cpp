@@ -23,7 +23,11 @@ constexpr int kCoarseSteps = 12;
 constexpr int kFineSteps = 60;
 constexpr int kTurns = 24;
 constexpr std::size_t kRefined = 4;
-constexpr double kTrimmed = 0.1;
+// Samples farther than this count for nothing: of the distance that nine tenths keep, or of the print's size if that is
+// more. A share of the samples instead would be taken from one side when the other is nearer: walls are printed a
+// little inside the model, and a shift would feed itself.
+constexpr double kMostOfUsual = 3;
+constexpr double kLeastOfSize = 2e-3;
 
 // The placement of a print in the model's space, and how well it fits.
 struct Candidate {
@@ -89,12 +93,12 @@ private:
                 hints_[n] = found[n].nearest.triangle;
             }
         });
-        const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(found.size()) * (1 - kTrimmed));
+        const auto usual = static_cast<std::ptrdiff_t>(found.size() * 9 / 10);
         std::vector<double> distances;
         distances.reserve(found.size());
         for (const Pair& pair : found) distances.push_back(std::abs(pair.nearest.distance));
-        std::nth_element(distances.begin(), distances.begin() + kept, distances.end());
-        const double most = distances[static_cast<std::size_t>(kept)];
+        std::nth_element(distances.begin(), distances.begin() + usual, distances.end());
+        const double most = std::max(kMostOfUsual * distances[static_cast<std::size_t>(usual)], kLeastOfSize * size_);
         std::erase_if(found, [most](const Pair& pair) { return std::abs(pair.nearest.distance) > most; });
         return found;
     }

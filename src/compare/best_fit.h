@@ -9,14 +9,15 @@ namespace stratum::compare {
 
 struct Fit {
     Rigid model_to_print;
-    double residual = 0;  ///< mm: RMS of the distances of the nine tenths of the samples that are nearest
+    double residual = 0;  ///< mm: RMS of the distances of the samples that count
     std::size_t samples = 0;
 };
 
 constexpr std::size_t kFewestSamples = 100;
 
 /// Iterated closest points, to the planes of the nearest triangles (Chen and Medioni, Image and Vision Computing 10,
-/// 1992), trimmed: the tenth of the samples that is farthest does not count (Chetverikov et al., ICPR 2002). It starts
+/// 1992), without what is farther than three times the distance that nine
+/// tenths of the samples keep. It starts
 /// from both surfaces' centroids with 24 turns about z, and if none of them fits with those of the other five sides
 /// down. Of placements that fit equally well, as those of a cube, that with the smallest turn. Parallel; the result
 /// does not depend on the number of threads. Throws UsageError if there are fewer samples than
