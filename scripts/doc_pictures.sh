@@ -78,3 +78,12 @@ for filament in pla-blue pla-green pla-red pla-white pla-yellow petg-black petg-
     filaments+=("--size 360x300 --features -skirt --zoom 1.15 --brdf $filament")
 done
 tiles filaments 4 "$boat" "${filaments[@]}"
+# A print beside its model.
+if asked deviation && [[ -f "$corpus/models/gearwheel.stl" ]]; then
+    install_packages prusa-slicer
+    prusa-slicer --export-gcode --layer-height 0.2 --first-layer-height 0.2 -o "$work/gear.gcode" "$corpus/models/gearwheel.stl"
+    "$bin/gcode2vdb" "$work/gear.gcode" -o "$work/gear.vdb" --voxel-size 0.1 --compare "$corpus/models/gearwheel.stl" \
+        --grids deviation
+    "$bin/vdbtrace" "$work/gear.vdb" --color-by deviation --legend --size 900x560 -o "$work/deviation.png"
+    convert "$work/deviation.png" -quality 88 "$out/deviation.jpg"
+fi
