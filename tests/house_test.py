@@ -15,6 +15,7 @@ MAY_INCLUDE = {
     "deposit": {"base", "gcode", "motion"},
     "voxelize": {"base", "gcode"},
     "export": {"base", "gcode", "voxelize"},
+    "report": {"base", "gcode", "motion", "voxelize"},
     "compare": {"base", "export"},
     "mechanics": {"base", "gcode", "voxelize"},
     "trace": {"base"},
@@ -24,7 +25,7 @@ MAY_INCLUDE = {
     "assemble": {"base", "gcode", "motion", "deposit", "voxelize", "trace", "march", "ondemand", "shade"},
     "serve": {"base"},
     "view": {"base", "gcode", "voxelize", "trace", "march", "ondemand", "shade", "assemble", "serve"},
-    "study": {"base", "gcode", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
+    "study": {"base", "gcode", "voxelize", "export", "report", "trace", "march", "ondemand", "shade", "assemble"},
 }
 WITHOUT_OPENVDB = {"base", "gcode", "motion", "deposit", "trace", "shade", "serve"}
 MOST_LINES = 450
@@ -83,7 +84,7 @@ for room, allowed in MAY_INCLUDE.items():
                     problems.append(f"{place}/{name}:{number}: {room} must not include from {match.group(1)}")
                 if room in WITHOUT_OPENVDB and re.match(r"#include <openvdb", line):
                     problems.append(f"{place}/{name}:{number}: {room} knows no OpenVDB")
-for folder in ("tools", "tools/command_line"):
+for folder in ("tools", "tools/command_line", "tools/convert"):
     names = [name for name in os.listdir(os.path.join(ROOT, folder)) if name.endswith((".h", ".cpp"))]
     if len(names) > MOST_FILES:
         problems.append(f"{folder}: {len(names)} files; divide them")

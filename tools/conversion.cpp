@@ -89,7 +89,7 @@ std::vector<Job> planJobs(const ConvertCommand& o, const gcode::Toolpath& toolpa
 // Whether anything asks when beads are laid.
 bool needsTimes(const ConvertCommand& o) {
     const std::vector<voxelize::Attribute> grids = voxelize::parseGrids(o.grids);
-    return o.summary || !o.common.stats.empty() || voxelize::needsTiming(o.snapshots) ||
+    return o.summary || o.report.asked() || !o.common.stats.empty() || voxelize::needsTiming(o.snapshots) ||
            std::any_of(grids.begin(), grids.end(), voxelize::usesTiming);
 }
 
@@ -131,14 +131,15 @@ public:
 
 private:
     struct Seconds {
-        double parse = 0, voxelize = 0, cull = 0, mesh = 0, write = 0, check = 0, compare = 0;
+        double parse = 0, voxelize = 0, cull = 0, mesh = 0, write = 0, check = 0, compare = 0, report = 0;
     };
 
     bool culls() const { return interior_ == voxelize::Interior::cull; }
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const {
         return !as_mesh_ && !culls() && attributes_.empty() && !o_.compare.grid && o_.snapshots.empty() &&
-               !o_.interior_distance && !o_.forecast && (part_ || !(settles() && !o_.common.stats.empty()));
+               !o_.interior_distance && !o_.forecast && !o_.report.asked() &&
+               (part_ || !(settles() && !o_.common.stats.empty()));
     }
     bool settles() const { return toolpath_.deposit.settles(); }
     void warn(const std::string& text) const {
@@ -302,9 +303,10 @@ private:
         std::optional<exporter::SurfaceMesh> mesh;
         if (as_mesh_)
             mesh = writeMesh(*grid, grids, job);
-        else
+        else if (o_.writesGrid())
             writeGrids(grid, grids, job);
         seconds_.write += watch_.lap();
+        if (o_.report.asked() && job.label.empty()) makeReport(*grid);
         GridNumbers numbers = numbersOf(*grid);
         if (checks()) {
             const ProgressNote note("measuring", o_.common.quiet);
@@ -312,13 +314,21 @@ private:
             numbers.enclosed_of_leaves = std::min<std::size_t>(numbers.counted.leaves, voxelize::kVolumeSample);
             check(job, numbers);
         }
-        tellOutput(voxelizer, job, numbers);
+        if (o_.writesGrid()) tellOutput(voxelizer, job, numbers);
         if (mesh) tellMesh(*mesh, *grid);
         if (!checks() || !job.label.empty()) return;
         const bool exact = settles() && !o_.common.stats.empty();
         describeWhole(voxelizer, numbers, exact ? enclosedMm3(*grid, lattice_, true) : 0);
         if (!o_.common.stats.empty() && o_.forecast && !culls())
             grid_["cull_would_save"] = describeCull(voxelizer, *grid);
+    }
+
+    void makeReport(const openvdb::FloatGrid& grid) {
+        const ProgressNote note("report", o_.common.quiet);
+        report::ReportOptions options{provenance_.source_file, provenance_.selection, culls(), o_.report.density,
+                                      o_.report.price};
+        writeReports(o_.report, report::makeReport(grid, toolpath_, selection_, lattice_, times_, options));
+        seconds_.report = watch_.lap();
     }
 
     // Whether the level set holds what its beads lay.
@@ -420,6 +430,8 @@ private:
                  "a nearest-bead search and four bytes a voxel for each");
         if (streams())
             skip("the grid in memory", "only its file is wanted", "a leaf of 2 kB for each that is in the file");
+        if (!o_.report.asked())
+            skip("the report", "not asked for (--report)", "floods and passes over a grid in memory");
         if (!o_.forecast && !culls())
             skip("what --interior cull would save", "not asked for (--forecast)",
                  "a flood through all leaves, about a third of a build");
@@ -456,6 +468,7 @@ private:
                   {"write", seconds_.write},
                   {"volume", seconds_.check},
                   {"compare", seconds_.compare},
+                  {"report", seconds_.report},
                   {"total", total}}},
                 {"peak_rss_bytes", peakRssBytes()},
                 {"threads", threads}};
@@ -496,7 +509,7 @@ fs::path usdaOf(fs::path vdb) { return vdb.replace_extension(".usda"); }
 Json convert(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run,
              int threads) {
     // Unwritable places are found before the work, not after it.
-    { const AtomicFile probe(output); }
+    if (command.writesGrid()) const AtomicFile probe(output);
     std::optional<exporter::PartOfPrint> part;
     if (command.shard.shard) part = partOf(command, input);
     if (part && command.shard.resume && exporter::isPartOfPrint(output, part->version, part->scene, part->shard)) {

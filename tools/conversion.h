@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "convert/convert_report.h"
 #include "run_files.h"
 
 #include "base/shard.h"
@@ -60,6 +61,12 @@ struct ConvertCommand {
     ConvertShard shard;
     ElementOptions elements;
     CompareCommand compare;
+    ConvertReport report;
+
+    /// Whether a level set is written: not if only a report is asked for.
+    bool writesGrid() const {
+        return !report.asked() || !output.empty() || usda || !snapshots.empty() || !grids.empty() || compare.grid;
+    }
 };
 
 /// The .usda beside a .vdb.

@@ -34,6 +34,7 @@ void refuseWhole(const ConvertCommand& o, const std::vector<fs::path>& outputs) 
         refuse("--interior cull", fmt::format("finds what the outside reaches in the whole print; {}", one));
     if (o.interior_distance) refuse("--interior-distance", fmt::format("sweeps through the whole level set; {}", one));
     if (o.forecast) refuse("--forecast", fmt::format("counts in the whole level set; {}", one));
+    if (o.report.asked()) refuse("--report", "measures the whole level set; make it without --shard");
     if (o.usda) refuse("--usda", "stands beside the whole level set; make it without --shard");
     if (!o.dump_toolpath.empty())
         refuse("--dump-toolpath", "would be written by every shard; write it by a run without --shard");

@@ -45,6 +45,7 @@ Examples:
   gcode2vdb part.gcode --grids layer,color          what each voxel was printed as
   gcode2vdb part.gcode --compare part.stl --grids deviation   how far the print is from its model
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
+  gcode2vdb part.gcode --report part.html --density 1.24    mass, porosity, walls, bonding ... as a page
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
@@ -139,28 +140,29 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::addCompareOptions(app, o.compare);
     tools::addElementOptions(app, o.elements);
     addShardOptions(app, o);
-    tools::addCommonOptions(app, o.common,
-                            {"--output",
-                             "--voxel-size",
-                             "--voxels-per-layer",
-                             "--memory-budget",
-                             "--unit",
-                             "--origin",
-                             "--up",
-                             "--interior",
-                             "--grids",
-                             "--layers",
-                             "--features",
-                             "--object",
-                             "--snapshots",
-                             "--filament-diameter",
-                             "--summary",
-                             "--threads",
-                             "--stats",
-                             "--quiet",
-                             "--version",
-                             "--help",
-                             "--help-all"});
+    tools::addReportOptions(app, o.report);
+    tools::addCommonOptions(app, o.common, {"--output",
+                                            "--voxel-size",
+                                            "--voxels-per-layer",
+                                            "--memory-budget",
+                                            "--unit",
+                                            "--origin",
+                                            "--up",
+                                            "--interior",
+                                            "--grids",
+                                            "--layers",
+                                            "--features",
+                                            "--object",
+                                            "--snapshots",
+                                            "--filament-diameter",
+                                            "--summary",
+                                            "--report",
+                                            "--threads",
+                                            "--stats",
+                                            "--quiet",
+                                            "--version",
+                                            "--help",
+                                            "--help-all"});
     app.footer(kExamples);
 }
 
@@ -243,13 +245,15 @@ void run(tools::ConvertCommand& o) {
     for (const std::string& input : o.inputs) files.reads(input);
     if (!o.compare.model.empty()) files.reads(o.compare.model);
     for (const fs::path& output : outputs) {
-        files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
+        if (o.writesGrid()) files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");
     }
     files.writes(o.dump_toolpath, "--dump-toolpath");
     files.writes(o.common.stats, "--stats");
+    tools::checkReport(o.report, o.inputs.size(), o.output, files);
     if (folder) tools::makeFolder(o.output);
-    o.common.output_on_stdout = isStandardOutput(outputs.front()) || o.dump_toolpath == "-";
+    o.common.output_on_stdout =
+        isStandardOutput(outputs.front()) || o.dump_toolpath == "-" || o.report.onStandardOutput();
 
     const tools::ThreadLimit limit(o.common.threads);
     openvdb::initialize();

@@ -15,6 +15,8 @@ namespace stratum::gcode {
 namespace {
 
 constexpr double kLongest = 1e9;  // s, thirty years
+constexpr double kDensest = 25;   // g/cm^3
+constexpr double kDearest = 1e9;  // a kg
 
 // Each part of a list, with its number.
 template <typename Take>
@@ -116,6 +118,10 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
         split(value, ";,", [this](std::size_t tool, std::string_view name) { setMaterial(tool, name); });
     } else if (key == "nozzle_diameter") {
         split(value, ",;", [this](std::size_t tool, std::string_view size) { setNozzle(tool, size); });
+    } else if (key == "filament_density") {
+        setNumbers(value, kDensest, facts_.densities);
+    } else if (key == "filament_cost") {
+        setNumbers(value, kDearest, facts_.prices);
     } else if (key == "printer_model" || key == "printer_name") {
         if (!value.empty()) facts_.printer = value;
     } else if (key == "printer_settings_id") {
@@ -159,6 +165,10 @@ void StatedReader::setting(std::string_view key, std::string_view value) {
         setMaterial(0, value);
     } else if (key == "extruderDiameter") {
         split(value, ",|", [this](std::size_t tool, std::string_view size) { setNozzle(tool, size); });
+    } else if (key == "filamentDensities") {
+        setNumbers(value, kDensest, facts_.densities);
+    } else if (key == "filamentPricesPerKg") {
+        setNumbers(value, kDearest, facts_.prices);
     } else if (key == "profileName") {
         profile_ = value;
     } else if (key == "layerHeight") {
@@ -172,6 +182,12 @@ void StatedReader::setMaterial(std::size_t tool, std::string_view name) {
     if (name.empty()) return;
     if (facts_.materials.size() <= tool) facts_.materials.resize(tool + 1);
     facts_.materials[tool] = name;
+}
+
+void StatedReader::setNumbers(std::string_view list, double most, std::vector<double>& numbers) {
+    numbers.clear();
+    split(list, ",;|",
+          [&](std::size_t, std::string_view text) { numbers.push_back(positiveNumber(text, most).value_or(0)); });
 }
 
 void StatedReader::setNozzle(std::size_t tool, std::string_view diameter) {

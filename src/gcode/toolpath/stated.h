@@ -2,7 +2,8 @@
 // values that the file doesn't state are absent.
 // Sources: PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio GCode.cpp ("estimated printing time (normal mode) =",
 // "total filament used [g] =", "model printing time: ...; total estimated time:", their settings); Cura's ";TIME:" and
-// Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas); ideaMaker
+// Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas:
+// filamentDensities, filamentPricesPerKg); ideaMaker
 // ("Print Time:"); KISSlicer ("Estimated Build Time: 332.83 minutes"); Kiri:Moto ("--- print time: 806s ---");
 // FlashPrint ("machine_type:", "right_extruder_material:") and the header of its .gx; Snapmaker Luban
 // ("estimated_time(s):", "Extruder 0 Material:").
@@ -22,6 +23,8 @@ struct StatedFacts {
     std::optional<double> grams;               ///< all filament
     std::vector<std::string> materials;        ///< as the slicer names them, e.g. "PLA"
     std::vector<double> nozzle_diameters;      ///< mm
+    std::vector<double> densities;             ///< g/cm^3, of the filament; 0 for a tool without one
+    std::vector<double> prices;                ///< of a kg of filament, in the user's currency; 0 without one
     std::string printer;                       ///< the model, or else the name of its profile
     std::optional<double> layer_height;        ///< mm
     std::optional<double> first_layer_height;  ///< mm
@@ -42,6 +45,7 @@ private:
     void sentence(std::string_view key, std::string_view value);
     void setting(std::string_view key, std::string_view value);
     void setMaterial(std::size_t tool, std::string_view name);
+    static void setNumbers(std::string_view list, double most, std::vector<double>& numbers);
     void setNozzle(std::size_t tool, std::string_view diameter);
 
     StatedFacts facts_;

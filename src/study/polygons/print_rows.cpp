@@ -1,7 +1,5 @@
 #include "study/polygons/print_rows.h"
 
-#include "study/report/svg_plot.h"
-
 #include <fmt/format.h>
 
 #include <cmath>

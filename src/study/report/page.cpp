@@ -80,41 +80,41 @@ std::string base64(std::string_view bytes) {
 
 Page::Page(std::string title, std::span<const std::string> command) : title_(std::move(title)) {
     made_by_ = fmt::format("<footer><p><code>{}</code><br>\n{:%Y-%m-%d}, vdbstudy {}<br>\n{}</p></footer>\n",
-                           escapeMarkup(withoutFolders(command)), fmt::gmtime(std::time(nullptr)), STRATUM_VERSION,
-                           escapeMarkup(machineLine()));
+                           report::escapeMarkup(withoutFolders(command)), fmt::gmtime(std::time(nullptr)),
+                           STRATUM_VERSION, report::escapeMarkup(machineLine()));
 }
 
-void Page::heading(std::string_view text) { body_ += fmt::format("<h2>{}</h2>\n", escapeMarkup(text)); }
+void Page::heading(std::string_view text) { body_ += fmt::format("<h2>{}</h2>\n", report::escapeMarkup(text)); }
 
-void Page::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", escapeMarkup(text)); }
+void Page::paragraph(std::string_view text) { body_ += fmt::format("<p>{}</p>\n", report::escapeMarkup(text)); }
 
 void Page::table(const Row& columns, const std::vector<Row>& rows, std::string_view marked) {
     body_ += "<table><tr>";
-    for (const std::string& cell : columns) body_ += fmt::format("<th>{}</th>", escapeMarkup(cell));
+    for (const std::string& cell : columns) body_ += fmt::format("<th>{}</th>", report::escapeMarkup(cell));
     body_ += "</tr>\n";
     for (const Row& row : rows) {
         const bool mark = !marked.empty() && std::find(row.begin(), row.end(), marked) != row.end();
         body_ += mark ? "<tr class='marked'>" : "<tr>";
         for (const std::string& cell : row)
-            body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class='n'" : "", escapeMarkup(cell));
+            body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class='n'" : "", report::escapeMarkup(cell));
         body_ += "</tr>\n";
     }
     body_ += "</table>\n";
 }
 
-void Page::plot(const Plot& plot) { body_ += "<p>" + drawSvg(plot) + "</p>\n"; }
+void Page::plot(const Plot& plot) { body_ += "<p>" + report::drawSvg(plot) + "</p>\n"; }
 
 void Page::picture(const std::filesystem::path& png, std::string_view caption) {
     body_ +=
         fmt::format("<figure><img alt='{0}' src='data:image/png;base64,{1}'><figcaption>{0}</figcaption></figure>\n",
-                    escapeMarkup(caption), base64(MappedFile(png).bytes()));
+                    report::escapeMarkup(caption), base64(MappedFile(png).bytes()));
 }
 
 std::string Page::html() const {
     return fmt::format(
         "<!doctype html>\n<html lang='en'><head><meta charset='utf-8'><title>{0}</title>\n<style>{1}</style></head>\n"
         "<body><h1>{0}</h1>\n{2}{3}</body></html>\n",
-        escapeMarkup(title_), kStyle, body_, made_by_);
+        report::escapeMarkup(title_), kStyle, body_, made_by_);
 }
 
 void Page::write(const std::filesystem::path& path) const {

@@ -1,8 +1,8 @@
 // One HTML file that holds all it shows: text, tables, plots, pictures.
 #pragma once
 
+#include "report/text/svg_plot.h"
 #include "study/report/result_table.h"
-#include "study/report/svg_plot.h"
 
 #include <filesystem>
 #include <span>
@@ -10,6 +10,9 @@
 #include <string_view>
 
 namespace stratum::study {
+
+using report::Plot;
+using report::Series;
 
 class Page {
 public:

@@ -13,6 +13,7 @@
 #include "voxelize/leaf/leaf_column.h"
 #include "voxelize/leaf/leaf_positions.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -37,6 +38,14 @@ struct ExteriorRule {
     int depth = 3;         ///< voxels, 1..8: openings narrower than the flood passes are shown up to this depth
     double band = 2;       ///< voxels, 1..8: voxels inside the solid stay active within this distance of shown ones
 };
+
+/// The clearance of a lattice, mm: half a voxel, so that the narrowest gap that the flood passes is a voxel wide; but
+/// not the channels of planned spacing, however fine the voxel. With h the layer height their clear radius is
+/// h (sqrt((pi / 8)^2 + 1 / 4) - 1 / 2) = 0.136 h.
+inline double exteriorClearance(const Lattice& lattice) {
+    constexpr double kChannelRadius = 0.15;  // layer heights
+    return std::max(0.5 * lattice.voxel_size, kChannelRadius * lattice.layer_height);
+}
 
 /// Leaves with at least one active voxel, by column.
 using LeavesByColumn = std::vector<std::vector<std::unique_ptr<Leaf>>>;

@@ -30,7 +30,6 @@ namespace {
 
 // With culling, in voxels: the masks cover only the neighbouring leaves.
 constexpr double kDeepestBand = 8;
-constexpr double kChannelRadius = 0.15;  // layer heights
 constexpr std::size_t kColumnGrain = 16;
 
 using Clock = std::chrono::steady_clock;
@@ -169,10 +168,7 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
 ExteriorRule Voxelizer::State::exteriorRule() const {
     ExteriorRule rule;
     rule.background = background;
-    // Half a voxel, so that the narrowest gap passed is a voxel wide; but not the channels of planned spacing, however
-    // fine the voxel: with h the layer height their clear radius is h (sqrt((pi / 8)^2 + 1 / 4) - 1 / 2) = 0.136 h.
-    rule.clearance = static_cast<float>(std::max(0.5 * lattice.voxel_size, kChannelRadius * lattice.layer_height) *
-                                        options.placement.unit);
+    rule.clearance = static_cast<float>(exteriorClearance(lattice) * options.placement.unit);
     // An outside sample next to the surface is up to a voxel from it.
     rule.band = std::clamp(lattice.half_width - 1, 1.0, kDeepestBand);
     return rule;

@@ -223,6 +223,15 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     return {&layer, line_ids_, near_, &sides2_};
 }
 
+const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    gatherPaths(source, false);
+    minimumOfPaths(d_, nullptr);
+    if (layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1)
+        settle(*layer.settling, layer.radius, d_, sides2_);
+    return d_;
+}
+
 float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
     const GrooveRule rule(curve, radius * scale_);
     const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size * scale_;

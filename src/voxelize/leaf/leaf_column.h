@@ -81,6 +81,13 @@ public:
     void forEachLayer(Visit visit) {
         for (const ColumnLayer& source : column_layers_) visit(planLayer(source));
     }
+    /// Calls visit(layer, d) for each layer of the open column, from the lowest: its index in LayerStack::layers, and
+    /// the plan distance beyond its flats as the level set has it, after settling. Only of a column of which no leaf is
+    /// evaluated.
+    template <typename Visit>
+    void forEachField(Visit visit) {
+        for (const ColumnLayer& source : column_layers_) visit(source.layer, fieldOf(source));
+    }
 
 private:
     struct ColumnLayer {
@@ -114,6 +121,7 @@ private:
     void minimumOfPaths(PlanField& d, PlanOwners* owners) const;
     void loadLayer(const ColumnLayer& source);
     LayerPlan planLayer(const ColumnLayer& source);
+    const PlanField& fieldOf(const ColumnLayer& source);
     /// Fills the grooves of a layer whose d is the minimum over its paths; returns the least of sides2.
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     /// The same for the beads in near_.

@@ -63,6 +63,16 @@ TEST(Stated, NonsenseIsAbsent) {
             .empty());
 }
 
+TEST(Stated, DensitiesAndPrices) {
+    const StatedFacts facts = factsOf({"filament_density = 1.24,0,x", "filament_cost = 27.82;0"});
+    EXPECT_EQ(facts.densities, (std::vector<double>{1.24, 0, 0}));
+    EXPECT_EQ(facts.prices, (std::vector<double>{27.82, 0}));
+    // Simplify3D.
+    const StatedFacts other = factsOf({"filamentDensities,1.25|1.3", "filamentPricesPerKg,46|-1"});
+    EXPECT_EQ(other.densities, (std::vector<double>{1.25, 1.3}));
+    EXPECT_EQ(other.prices, (std::vector<double>{46, 0}));
+}
+
 TEST(Stated, TheSummaryBeginsWithIt) {
     const std::string text = summarize(readProgram(
         "M83\nG1 Z.2\nG1 X9 E4\n; estimated printing time (normal mode) = 1h 5m 24s\n; total filament used [g] = "

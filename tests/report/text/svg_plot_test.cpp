@@ -1,10 +1,10 @@
-#include "study/report/svg_plot.h"
+#include "report/text/svg_plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace stratum::study {
+namespace stratum::report {
 namespace {
 
 std::size_t countOf(const std::string& text, const std::string& part) {
@@ -58,4 +58,4 @@ TEST(SvgPlot, PutsDecadesAtEqualDistances) {
 TEST(SvgPlot, SaysWhenThereIsNothing) { EXPECT_NE(drawSvg(Plot{}).find("no points"), std::string::npos); }
 
 }  // namespace
-}  // namespace stratum::study
+}  // namespace stratum::report

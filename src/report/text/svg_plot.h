@@ -1,11 +1,16 @@
-// A line plot as SVG text: linear or logarithmic axes, marks, a legend. Nothing but what the studies' pages need.
+// A line plot as SVG text: linear or logarithmic axes, marks, a legend. Nothing but what pages of studies and reports
+// need.
+//
+// Colors of paper, ink and lines can be set by the page, for a dark scheme: the CSS variables --plot-paper, --plot-ink
+// and
+// --plot-lines; without them a plot is black on white.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace stratum::study {
+namespace stratum::report {
 
 struct Series {
     std::string name;
@@ -13,6 +18,7 @@ struct Series {
     bool dashed = false;
     bool joined = true;
     int color = -1;  ///< index into the palette; -1: the next one
+    bool marked = true;
 };
 
 struct Plot {
@@ -20,6 +26,7 @@ struct Plot {
     std::string x_label, y_label;  ///< with units
     bool log_x = true, log_y = true;
     std::vector<Series> series;
+    bool compact = false;  ///< half as large, so that text is readable on a phone; the legend in a row below
 };
 
 /// One <svg> element. Points that an axis can't show (not finite, not positive on a logarithmic axis) are left out; a
@@ -33,4 +40,4 @@ std::vector<double> axisTicks(double low, double high, bool logarithmic);
 /// "<" and its like as HTML and SVG want them.
 std::string escapeMarkup(std::string_view text);
 
-}  // namespace stratum::study
+}  // namespace stratum::report

@@ -1,0 +1,79 @@
+// Which pixels of the plan lie within the outline of each layer: a bit a pixel, where there are any.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace stratum::report {
+
+/// Columns of 8 x 8 pixels; bit x * 8 + y of a word.
+class PlanBits {
+public:
+    PlanBits(std::size_t columns_i, std::size_t columns_j)
+        : columns_i_(columns_i), columns_j_(columns_j), entries_(columns_i * columns_j) {}
+
+    struct Entry {
+        std::uint32_t layer = 0;
+        std::uint64_t bits = 0;
+    };
+
+    /// Layers of a column ascend. Columns may be filled by several threads.
+    void add(std::size_t column, std::uint32_t layer, std::uint64_t bits) { entries_[column].push_back({layer, bits}); }
+    std::size_t columnCount() const { return entries_.size(); }
+    std::span<const Entry> of(std::size_t column) const { return entries_[column]; }
+
+    /// How many pixels of an entry are farther from all pixels of the layers `below` than each reach (pixels,
+    /// ascending).
+    template <std::size_t N>
+    std::array<std::int64_t, N> countBeyond(std::size_t column, const Entry& entry,
+                                            std::span<const std::uint32_t> below,
+                                            const std::array<double, N>& reach) const {
+        std::array<std::int64_t, N> counts{};
+        forEachGap(column, entry, below, static_cast<int>(std::ceil(reach.back())), [&](double distance2) {
+            for (std::size_t n = 0; n < N; ++n) counts[n] += distance2 > reach[n] * reach[n] ? 1 : 0;
+        });
+        return counts;
+    }
+
+private:
+    std::uint64_t bitsOf(std::size_t i, std::size_t j, std::span<const std::uint32_t> layers) const;
+    /// Calls visit(squared distance) of each pixel that is in none of the layers below: to the nearest that is, or
+    /// infinite beyond `most` pixels (up to kMost are looked at).
+    template <typename Visit>
+    void forEachGap(std::size_t column, const Entry& entry, std::span<const std::uint32_t> below, int most,
+                    const Visit& visit) const {
+        const std::size_t i = column % columns_i_;
+        const std::size_t j = column / columns_i_;
+        const std::uint64_t free = entry.bits & ~bitsOf(i, j, below);
+        if (free == 0) return;
+        const Window window(*this, i, j, below, most);
+        for (std::uint64_t rest = free; rest != 0; rest &= rest - 1) {
+            const int p = __builtin_ctzll(rest);
+            visit(window.distance2(p >> 3, p & 7));
+        }
+    }
+
+    static constexpr int kMost = 24;  // pixels, three columns
+    // Rows of pixels along y around a column: bit y + kMost.
+    class Window {
+    public:
+        Window(const PlanBits& bits, std::size_t i, std::size_t j, std::span<const std::uint32_t> below, int most);
+        double distance2(int x, int y) const;
+
+    private:
+        std::uint64_t& at(int x) { return rows_[static_cast<std::size_t>(x) + kMost]; }
+        std::uint64_t at(int x) const { return rows_[static_cast<std::size_t>(x) + kMost]; }
+
+        int most_;
+        std::array<std::uint64_t, 8 + 2 * kMost> rows_{};
+    };
+
+    std::size_t columns_i_, columns_j_;
+    std::vector<std::vector<Entry>> entries_;
+};
+
+}  // namespace stratum::report

@@ -1,0 +1,244 @@
+#include "report/plan/plan_contact.h"
+
+#include "base/parallel_for.h"
+#include "report/plan/plan_bits.h"
+#include "voxelize/beads/plan_bins.h"
+#include "voxelize/leaf/leaf_column.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stratum::report {
+namespace {
+
+using voxelize::kColumnSamples;
+using voxelize::PlanField;
+
+constexpr std::size_t kPlanGrain = 16;
+// Integers, because their sum does not depend on the order of threads; parts of a pixel.
+constexpr double kUnit = 1.0 / (1 << 24);
+std::int64_t unitsOf(double pixels) { return std::llround(pixels / kUnit); }
+
+// Pixels with nothing below, and of them those beyond each cone.
+using ConeCounts = std::array<std::int64_t, kConeAngles.size() + 1>;
+
+struct Sums {
+    explicit Sums(std::size_t layers) : area(layers), supported(layers), contact(layers) {}
+    std::vector<std::int64_t> area, supported, contact;  // by layer of the stack
+};
+
+// What lies under each layer of the stack.
+struct Under {
+    std::vector<std::vector<std::uint32_t>> layers;
+    std::vector<bool> bed;
+};
+
+Under underOf(const voxelize::LayerStack& stack) {
+    Under under{std::vector<std::vector<std::uint32_t>>(stack.layers.size()), std::vector<bool>(stack.layers.size())};
+    for (const voxelize::Weld& weld : stack.welds) under.layers[weld.upper].push_back(weld.lower);
+    for (std::size_t n = 0; n < stack.layers.size(); ++n) {
+        const voxelize::Layer& layer = stack.layers[n];
+        under.bed[n] = std::abs(layer.center_z - layer.halfHeight()) <= voxelize::kWeldGap * 2 * layer.halfHeight();
+    }
+    return under;
+}
+
+// Pixels of the plan: a lattice whose columns the beads' outlines reach.
+voxelize::Lattice pixelsOf(const voxelize::Lattice& lattice) {
+    voxelize::Lattice pixels = lattice;
+    if (lattice.layer_height > 0)
+        pixels.voxel_size = std::clamp(lattice.voxel_size, lattice.layer_height / 4, lattice.layer_height / 2);
+    pixels.half_width = 1;
+    return pixels;
+}
+
+// The share of a pixel that lies within an edge at this distance of its middle, in pixels; exact on average over the
+// places that an edge may have, whatever its direction.
+double covered(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
+
+// The fields of a column's layers, while those above may rest on them.
+class ColumnFields {
+public:
+    explicit ColumnFields(const voxelize::LayerStack& stack) : at_(stack.layers.size(), kNone) {}
+
+    void clear() {
+        for (const std::uint32_t layer : layers_) at_[layer] = kNone;
+        layers_.clear();
+        fields_.clear();
+    }
+    void add(std::uint32_t layer, const PlanField& d) {
+        at_[layer] = layers_.size();
+        layers_.push_back(layer);
+        fields_.push_back(d);
+    }
+    const PlanField* find(std::uint32_t layer) const { return at_[layer] == kNone ? nullptr : &fields_[at_[layer]]; }
+
+private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    std::vector<std::size_t> at_;
+    std::vector<std::uint32_t> layers_;
+    std::vector<PlanField> fields_;
+};
+
+class Measurement {
+public:
+    Measurement(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack, const voxelize::Lattice& lattice)
+        : toolpath_(toolpath),
+          stack_(stack),
+          pixels_(pixelsOf(lattice)),
+          under_(underOf(stack)),
+          bins_(toolpath, stack, pixels_, std::numeric_limits<std::size_t>::max()),
+          bits_(bins_.columnsI(), bins_.columnsJ()) {}
+
+    PlanContact run() {
+        const std::size_t count = stack_.layers.size();
+        Sums sums(count);
+        {
+            tbb::enumerable_thread_specific<Sums> threads([count] { return Sums(count); });
+            tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
+                [this] { return voxelize::LeafColumn(toolpath_, stack_, pixels_, 1); });
+            tbb::enumerable_thread_specific<ColumnFields> fields([this] { return ColumnFields(stack_); });
+            parallelFor(bins_.size(), kPlanGrain, [&](std::size_t first, std::size_t last) {
+                for (std::size_t c = first; c != last; ++c)
+                    if (!bins_[c].empty()) measureColumn(c, columns.local(), fields.local(), threads.local());
+            });
+            for (const Sums& one : threads)
+                for (std::size_t n = 0; n < count; ++n) {
+                    sums.area[n] += one.area[n];
+                    sums.supported[n] += one.supported[n];
+                    sums.contact[n] += one.contact[n];
+                }
+        }
+        return collect(sums, conesOf());
+    }
+
+private:
+    void measureColumn(std::size_t c, voxelize::LeafColumn& column, ColumnFields& fields, Sums& sums) {
+        column.open(bins_.originI(c), bins_.originJ(c), bins_[c], std::numeric_limits<std::uint32_t>::max());
+        fields.clear();
+        column.forEachField([&](std::uint32_t layer, const PlanField& d) {
+            const bool in_outline = measureLayer(c, layer, d, fields, sums);
+            if (in_outline) fields.add(layer, d);
+        });
+    }
+
+    // Whether some of the column lies within the layer's outline.
+    bool measureLayer(std::size_t c, std::uint32_t layer, const PlanField& d, const ColumnFields& fields, Sums& sums) {
+        const double per_pixel = 1 / pixels_.voxel_size;
+        const double radius = stack_.layers[layer].radius * per_pixel;
+        const bool bed = under_.bed[layer];
+        const PlanField* below[4];
+        double below_radius[4];
+        std::size_t belows = 0;
+        for (const std::uint32_t lower : under_.layers[layer])
+            if (const PlanField* field = fields.find(lower); field != nullptr && belows < 4) {
+                below_radius[belows] = stack_.layers[lower].radius * per_pixel;
+                below[belows++] = field;
+            }
+        double area = 0;
+        double supported = 0;
+        double contact = 0;
+        std::uint64_t within = 0;
+        for (std::size_t p = 0; p < kColumnSamples; ++p) {
+            const double flat = static_cast<double>(d.v[p]) * per_pixel;
+            const double edge = flat - radius;
+            if (!(edge < 0.5)) continue;
+            area += covered(edge);
+            if (edge < 0) within |= std::uint64_t{1} << p;
+            double flat_below = std::numeric_limits<double>::max();
+            double edge_below = flat_below;
+            for (std::size_t n = 0; n < belows; ++n) {
+                const double other = static_cast<double>(below[n]->v[p]) * per_pixel;
+                flat_below = std::min(flat_below, other);
+                edge_below = std::min(edge_below, other - below_radius[n]);
+            }
+            if (bed) flat_below = edge_below = std::numeric_limits<double>::lowest();
+            supported += covered(std::max(edge, edge_below));
+            contact += covered(std::max(flat, flat_below));
+        }
+        if (!(area > 0)) return false;
+        sums.area[layer] += unitsOf(area);
+        sums.supported[layer] += unitsOf(supported);
+        sums.contact[layer] += unitsOf(contact);
+        if (within != 0) bits_.add(c, layer, within);
+        return true;
+    }
+
+    // By layer of the stack, pixels beyond each cone.
+    std::vector<ConeCounts> conesOf() {
+        using Counts = std::vector<ConeCounts>;
+        const std::size_t count = stack_.layers.size();
+        tbb::enumerable_thread_specific<Counts> threads([count] { return Counts(count); });
+        parallelFor(bits_.columnCount(), kPlanGrain, [&](std::size_t first, std::size_t last) {
+            Counts& counts = threads.local();
+            for (std::size_t c = first; c != last; ++c)
+                for (const PlanBits::Entry& entry : bits_.of(c)) {
+                    if (under_.bed[entry.layer]) continue;
+                    const double height = 2 * stack_.layers[entry.layer].halfHeight() / pixels_.voxel_size;
+                    std::array<double, kConeAngles.size() + 1> reach{};
+                    for (std::size_t a = 0; a < kConeAngles.size(); ++a)
+                        // From the middle of a pixel to that of one within, whose outline is half a pixel farther.
+                        reach[a + 1] = height * std::tan(kConeAngles[a] * std::numbers::pi / 180) + 0.5;
+                    const auto beyond = bits_.countBeyond(c, entry, under_.layers[entry.layer], reach);
+                    for (std::size_t a = 0; a < reach.size(); ++a) counts[entry.layer][a] += beyond[a];
+                }
+        });
+        Counts sums(count);
+        for (const Counts& one : threads)
+            for (std::size_t n = 0; n < count; ++n)
+                for (std::size_t a = 0; a < sums[n].size(); ++a) sums[n][a] += one[n][a];
+        return sums;
+    }
+
+    PlanContact collect(const Sums& sums, const std::vector<ConeCounts>& cones) const {
+        PlanContact contact;
+        contact.layers.resize(toolpath_.layer_count + std::size_t{1});
+        const double pixel = pixels_.voxel_size * pixels_.voxel_size;
+        for (std::size_t n = 0; n < stack_.layers.size(); ++n) {
+            const double area = static_cast<double>(sums.area[n]) * kUnit * pixel;
+            const std::uint32_t bead = stack_.beads[stack_.layers[n].first];
+            LayerContact& layer = contact.layers.at(toolpath_.runOf(toolpath_.beads[bead]).layer);
+            layer.area += area;
+            const double supported = static_cast<double>(sums.supported[n]) * kUnit * pixel;
+            layer.supported += supported;
+            layer.contact += static_cast<double>(sums.contact[n]) * kUnit * pixel;
+            // Whole pixels share the area that was measured by parts of pixels.
+            const double each = cones[n][0] > 0 ? (area - supported) / static_cast<double>(cones[n][0]) : 0;
+            for (std::size_t a = 0; a < kConeAngles.size(); ++a)
+                layer.beyond_cone[a] += static_cast<double>(cones[n][a + 1]) * each;
+            if (!under_.bed[n]) continue;
+            contact.bed_contact += static_cast<double>(sums.contact[n]) * kUnit * pixel;
+            contact.bed_outline += area;
+            layer.on_bed = true;
+        }
+        double level = 0;
+        double all = 0;
+        for (std::uint32_t rank = 0; rank < stack_.beads.size(); ++rank) {
+            const double volume = gcode::laidVolume(toolpath_, stack_.beads[rank]);
+            all += volume;
+            if (rank < stack_.first_direct) level += volume;
+        }
+        contact.level_share = all > 0 ? level / all : 0;
+        return contact;
+    }
+
+    const gcode::Toolpath& toolpath_;
+    const voxelize::LayerStack& stack_;
+    const voxelize::Lattice pixels_;
+    const Under under_;
+    const voxelize::PlanBins bins_;
+    PlanBits bits_;
+};
+
+}  // namespace
+
+PlanContact measureContact(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack,
+                           const voxelize::Lattice& lattice) {
+    return Measurement(toolpath, stack, lattice).run();
+}
+
+}  // namespace stratum::report

@@ -1,0 +1,37 @@
+#include "report/text/report_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace stratum::report {
+namespace {
+
+std::string endingOf(const std::filesystem::path& path) { return path.extension().string(); }
+
+}  // namespace
+
+bool isReportPath(const std::filesystem::path& path) {
+    const std::string ending = endingOf(path);
+    return ending == ".json" || ending == ".md" || ending == ".html";
+}
+
+void writeReport(const PrintReport& report, const std::filesystem::path& path) {
+    if (!isReportPath(path))
+        throw UsageError(fmt::format("--report {}: the name must end in .json, .md or .html", path.string()));
+    const std::string ending = endingOf(path);
+    const std::string text = ending == ".json" ? toJson(report).dump(1) + "\n"
+                             : ending == ".md" ? reportMarkdown(report)
+                                               : reportPage(report);
+    AtomicFile file(path);
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    file.commit();
+}
+
+}  // namespace stratum::report

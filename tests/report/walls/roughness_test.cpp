@@ -1,0 +1,76 @@
+#include "report/walls/roughness.h"
+
+#include "reported_print.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace stratum::report {
+namespace {
+
+using test::addBead;
+using test::layeredLattice;
+using test::numberOf;
+using test::reportOfAll;
+
+// The side of a stadium is y = sqrt(r^2 - z^2), r = h / 2, over |z| < r. Its mean is pi r / 4 and it is symmetric, so
+// the least squares line over whole layers is the mean. y is above the mean within |z| < a = r sqrt(1 - pi^2 / 16), so
+//     Ra = (1 / 2r) int |y - pi r / 4| = (2 / 2r) int_{-a}^{a} (y - pi r / 4) dz
+//        = (1 / r) [a sqrt(r^2 - a^2) + r^2 asin(a / r) - 2 a pi r / 4], with sqrt(r^2 - a^2) = pi r / 4.
+double stadiumRa(double height) {
+    const double r = height / 2;
+    const double mean = std::numbers::pi / 4;
+    const double a = std::sqrt(1 - mean * mean);
+    return r * (a * mean + std::asin(a) - 2 * a * mean);
+}
+
+gcode::Toolpath wall(double height, int layers) {
+    gcode::Toolpath toolpath;
+    for (int n = 1; n <= layers; ++n)
+        addBead(toolpath, 0, 0.013, n * height, 20, 0.013, n * height, 2.5 * height, height,
+                static_cast<std::uint32_t>(n));
+    return toolpath;
+}
+
+TEST(Roughness, OfStackedStadiums) {
+    EXPECT_NEAR(stadiumRa(1), 0.0907, 5e-5);
+    for (const double height : {0.1, 0.2, 0.35}) {
+        const double exact = 1e3 * stadiumRa(height);
+        for (const int voxels : {4, 8}) {
+            const PrintReport report = reportOfAll(wall(height, 24), layeredLattice(height, voxels));
+            EXPECT_NEAR(numberOf(report, "roughness_ra"), exact, (voxels == 4 ? 0.04 : 0.02) * exact)
+                << height << " " << voxels;
+            // Voxels blunt the grooves, which end in a cusp.
+            const double rz = numberOf(report, "roughness_rz");
+            EXPECT_LT(rz, 500 * height * 1.001);
+            EXPECT_GT(rz, 500 * height * (voxels == 4 ? 0.8 : 0.86));
+        }
+    }
+}
+
+TEST(Roughness, ALeaningWallIsNoRougher) {
+    gcode::Toolpath toolpath;
+    for (int n = 1; n <= 24; ++n)
+        addBead(toolpath, 0, 0.004 * n, n * 0.2, 20, 0.004 * n, n * 0.2, 0.5, 0.2, static_cast<std::uint32_t>(n));
+    const double exact = 1e3 * stadiumRa(0.2);
+    const PrintReport report = reportOfAll(toolpath, layeredLattice(0.2, 8));
+    EXPECT_NEAR(numberOf(report, "roughness_ra"), exact, 0.03 * exact);
+}
+
+TEST(Roughness, SamplingLengthsAreWholeLayers) {
+    EXPECT_DOUBLE_EQ(samplingLength(0.2), 0.8);
+    EXPECT_NEAR(samplingLength(static_cast<double>(0.4F)), 0.8, 1e-6);
+    EXPECT_DOUBLE_EQ(samplingLength(0.1), 0.3);
+    EXPECT_DOUBLE_EQ(samplingLength(0.35), 2 * 0.35);
+    EXPECT_DOUBLE_EQ(samplingLength(5), 10);
+}
+
+TEST(Roughness, TooLowAWallHasNone) {
+    const PrintReport report = reportOfAll(wall(0.2, 3), layeredLattice(0.2, 4));
+    EXPECT_EQ(report.find("roughness_ra"), nullptr);
+}
+
+}  // namespace
+}  // namespace stratum::report
