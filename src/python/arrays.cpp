@@ -100,7 +100,9 @@ py::dtype recordType<gcode::BeadFlow>() {
 
 py::array viewOf(const py::dtype& type, const std::vector<py::ssize_t>& shape, const void* data,
                  const py::object& owner) {
-    py::array view(type, shape, {}, data, owner);
+    // Of nothing, too, the owner owns it.
+    static const char nothing = 0;
+    py::array view(type, shape, {}, data != nullptr ? data : &nothing, owner);
     // Others read the same records without the GIL: nobody may write to them.
     view.attr("setflags")(py::arg("write") = false);
     return view;

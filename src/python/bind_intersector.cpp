@@ -15,6 +15,8 @@
 #include <pybind11/stl.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -149,25 +151,44 @@ IntersectorObject makeIntersector(const py::object& source, const std::vector<st
     return result;
 }
 
-std::vector<trace::Ray> raysOf(const py::object& origins, const py::object& directions, double t_min, double t_max) {
-    const std::vector<glm::dvec3> from = pointsOf(origins, "origins");
-    const std::vector<glm::dvec3> along = pointsOf(directions, "directions");
-    if (along.size() != from.size() && along.size() != 1 && from.size() != 1)
-        throw UsageError(fmt::format("origins and directions: {} and {} rows; give as many of both, or one of either",
-                                     from.size(), along.size()));
-    if (!(t_min >= 0 && t_max > t_min))
-        throw UsageError(fmt::format("t_min={:g}, t_max={:g}: expected 0 <= t_min < t_max", t_min, t_max));
-    std::vector<trace::Ray> rays(std::max(from.size(), along.size()));
-    if (from.empty() || along.empty()) rays.clear();
-    for (std::size_t n = 0; n < rays.size(); ++n) {
-        const glm::dvec3& direction = along[along.size() == 1 ? 0 : n];
-        // Of the largest component first: squares of extreme numbers are none.
-        const double most = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-        if (!(most > 0)) throw UsageError(fmt::format("directions[{}]: has no length; leave such rays out", n));
-        rays[n] = {from[from.size() == 1 ? 0 : n], glm::normalize(direction / most), t_min, t_max};
+/// Rays as they are given; each is made where it is traced.
+class Rays {
+public:
+    Rays(const py::object& origins, const py::object& directions, double t_min, double t_max)
+        : origins_(pointsOf(origins, "origins")),
+          directions_(pointsOf(directions, "directions")),
+          t_min_(t_min),
+          t_max_(t_max) {
+        const std::size_t from = origins_.size();
+        const std::size_t along = directions_.size();
+        if (along != from && along != 1 && from != 1)
+            throw UsageError(fmt::format(
+                "origins and directions: {} and {} rows; give as many of both, or one of either", from, along));
+        if (!(t_min >= 0 && t_max > t_min))
+            throw UsageError(fmt::format("t_min={:g}, t_max={:g}: expected 0 <= t_min < t_max", t_min, t_max));
+        for (std::size_t n = 0; n < along; ++n)
+            if (directions_[n] == glm::dvec3(0))
+                throw UsageError(fmt::format("directions[{}]: has no length; leave such rays out", n));
     }
-    return rays;
-}
+
+    std::size_t size() const {
+        return origins_.empty() || directions_.empty() ? 0 : std::max(origins_.size(), directions_.size());
+    }
+    std::vector<trace::Ray> part(std::size_t first, std::size_t last) const {
+        std::vector<trace::Ray> rays(last - first);
+        for (std::size_t n = first; n < last; ++n) {
+            const glm::dvec3& along = directions_[directions_.size() == 1 ? 0 : n];
+            // By the largest component first: squares of extreme numbers are none.
+            const double most = std::max({std::abs(along.x), std::abs(along.y), std::abs(along.z)});
+            rays[n - first] = {origins_[origins_.size() == 1 ? 0 : n], glm::normalize(along / most), t_min_, t_max_};
+        }
+        return rays;
+    }
+
+private:
+    std::vector<glm::dvec3> origins_, directions_;
+    double t_min_, t_max_;
+};
 
 /// What hits have, in arrays.
 struct HitArrays {
@@ -207,7 +228,7 @@ py::array attributeArray(const std::vector<float>& values, Kind kind) {
 
 py::object traceRays(const IntersectorObject& self, const py::object& origins, const py::object& directions,
                      double t_min, double t_max, const py::object& progress) {
-    const std::vector<trace::Ray> rays = raysOf(origins, directions, t_min, t_max);
+    const Rays rays(origins, directions, t_min, t_max);
     HitArrays out{std::vector<double>(rays.size()),
                   std::vector<double>(3 * rays.size()),
                   std::vector<double>(3 * rays.size()),
@@ -217,7 +238,7 @@ py::object traceRays(const IntersectorObject& self, const py::object& origins, c
     forPoints(rays.size(), progress, [&](std::size_t first, std::size_t last) {
         const std::unique_ptr<trace::Tracer> tracer = self.intersector->makeTracer();
         std::vector<trace::Hit> hits(last - first);
-        tracer->intersectStream(std::span(rays).subspan(first, last - first), hits);
+        tracer->intersectStream(rays.part(first, last), hits);
         for (std::size_t n = first; n < last; ++n) store(*tracer, hits[n - first], n, out);
     });
     const auto count = static_cast<py::ssize_t>(rays.size());
@@ -231,10 +252,10 @@ py::object traceRays(const IntersectorObject& self, const py::object& origins, c
 
 py::object occluded(const IntersectorObject& self, const py::object& origins, const py::object& directions,
                     double t_min, double t_max, const py::object& progress) {
-    const std::vector<trace::Ray> rays = raysOf(origins, directions, t_min, t_max);
+    const Rays rays(origins, directions, t_min, t_max);
     std::vector<std::uint8_t> blocked(rays.size());
     forPoints(rays.size(), progress, [&](std::size_t first, std::size_t last) {
-        self.intersector->makeTracer()->occludedStream(std::span(rays).subspan(first, last - first),
+        self.intersector->makeTracer()->occludedStream(rays.part(first, last),
                                                        std::span(blocked).subspan(first, last - first));
     });
     const auto count = static_cast<py::ssize_t>(rays.size());
@@ -264,7 +285,8 @@ void bindPrintField(py::module_& module) {
             "gcode2vdb --grids.",
             "name"_a, "points"_a)
         .def_property_readonly(
-            "voxel_size", [](const PrintFieldObject& self) { return self.field->layout().lattice.voxel_size; }, "mm.")
+            "voxel_size", [](const PrintFieldObject& self) { return self.field->layout().lattice.voxel_size; },
+            "mm, of rays and attributes.")
         .def_property_readonly(
             "reach",
             [](const PrintFieldObject& self) {

@@ -54,8 +54,10 @@ ToolpathObject readProgram(const py::object& source, const py::object& progress,
     std::string bytes;
     std::string path;
     const bool in_memory = py::isinstance<py::bytes>(source) || py::isinstance<py::bytearray>(source);
-    if (in_memory)
-        bytes = py::bytes(source).cast<std::string>();
+    if (py::isinstance<py::bytes>(source))
+        bytes = source.cast<std::string>();
+    else if (in_memory)
+        bytes = std::string(PyByteArray_AsString(source.ptr()), py::len(source));
     else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__"))
         path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
     else

@@ -2,8 +2,10 @@
 
 import gc
 import gzip
+import os
 import pathlib
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -12,6 +14,8 @@ import numpy as np
 
 import stratum
 from common import gcode, read_bytes, tool
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
 
 
 def box_of_beads(count, layers=1):
@@ -37,7 +41,7 @@ class Reading(unittest.TestCase):
     def test_same_as_the_tool(self):
         path = gcode("hull.gcode")
         toolpath = stratum.read(path)
-        lines = tool("gcode2vdb", path, "--dump-toolpath", "-", "--voxel-size", "0.4", "-o", "/dev/null").splitlines()
+        lines = tool("gcode2vdb", path, "--dump-toolpath", "-", "--voxel-size", "0.4", "-o", os.path.join(FOLDER, "hull.vdb"), "--quiet").splitlines()
         names = lines[0].split(",")
         rows = np.genfromtxt(lines[1:], delimiter=",", usecols=[names.index(n) for n in names if n[-1] in "01"])
         columns = [n for n in names if n[-1] in "01"]
@@ -118,8 +122,8 @@ class Views(unittest.TestCase):
         toolpath = stratum.read(gcode("tile.gcode"), timed=True)
         for name in ("beads", "runs", "arcs", "timing"):
             one, other = getattr(toolpath, name), getattr(toolpath, name)
-            self.assertEqual(one.ctypes.data, other.ctypes.data)
             if len(one):
+                self.assertEqual(one.ctypes.data, other.ctypes.data)
                 self.assertTrue(np.shares_memory(one, other))
             self.assertFalse(one.flags.writeable)
             with self.assertRaises(ValueError):

@@ -1,6 +1,5 @@
 """Level sets: the tool's bytes, dense blocks, values as pyopenvdb reads them, sampling."""
 
-import json
 import os
 import sys
 import tempfile
@@ -228,9 +227,9 @@ class OpenVdb(unittest.TestCase):
         except ImportError:
             self.skipTest("no pyopenvdb for this Python")
         path = path_of("hull.vdb")
-        stratum.write_vdb(stratum.read(gcode("hull.gcode")), path, voxel_size=0.2, grids="layer")
+        stratum.write_vdb(stratum.read(gcode("hull.gcode")), path, voxel_size=0.2, grids="width")
         theirs = pyopenvdb.read(path, "surface")
-        ours = stratum.LevelSet.read(path, attributes=["layer"])
+        ours = stratum.LevelSet.read(path, attributes=["width"])
         self.assertEqual(theirs.activeVoxelCount(), ours.active_voxels)
         self.assertEqual(theirs.background, ours.background)
         low, high = theirs.evalActiveVoxelBoundingBox()
@@ -239,13 +238,11 @@ class OpenVdb(unittest.TestCase):
         block = ours.dense()
         np.testing.assert_array_equal(block.values, values)
         np.testing.assert_allclose(theirs.transform.indexToWorld(low), block.origin)
-        layers = pyopenvdb.read(path, "layer").getConstAccessor()
+        widths = pyopenvdb.read(path, "width").getConstAccessor()
         inside = np.argwhere(np.abs(values) < 0.1)[::997]
         points = block.origin + block.voxel_size * inside
-        expected = [layers.getValue(tuple(int(c) for c in low + index)) for index in inside]
-        np.testing.assert_array_equal(ours.attribute("layer", points), expected)
-        with open(path_of("stats.json"), "w", encoding="utf-8") as file:
-            json.dump(str(ours.metadata), file)
+        expected = [widths.getValue(tuple(int(c) for c in low + index)) for index in inside]
+        np.testing.assert_array_equal(ours.attribute("width", points), np.float32(expected))
 
 
 if __name__ == "__main__":
