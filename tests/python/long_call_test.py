@@ -32,7 +32,8 @@ program = (open(sys.argv[1], "rb").read() * 60) if "program" in sys.argv[2] else
 points = np.empty((0, 3))
 if "points" in sys.argv[2]:
     low, high = np.array([60.0, 80, 0]), np.array([140.0, 120, 40])
-    points = np.random.default_rng(1).uniform(low, high, (20_000_000, 3))
+    count = 8_000_000 if "trace" in sys.argv[2] else 20_000_000
+    points = np.random.default_rng(1).uniform(low, high, (count, 3))
 if "shape" in sys.argv[2]:
     shape = stratum.Intersector(stratum.PrintField(toolpath, voxel_size=0.2))
 threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()

@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import stratum
-from common import gcode, read_bytes, tool
+from common import CORPUS, gcode, read_bytes, tool
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
 
@@ -243,6 +243,23 @@ class OpenVdb(unittest.TestCase):
         points = block.origin + block.voxel_size * inside
         expected = [widths.getValue(tuple(int(c) for c in low + index)) for index in inside]
         np.testing.assert_array_equal(ours.attribute("width", points), np.float32(expected))
+
+
+class Corpus(unittest.TestCase):
+    """Real files, where they are."""
+
+    def test_block_of_real_prints(self):
+        for name, layers in (("gcode-preview-benchy_slic3r.gcode", "5:9"), ("vase_ps25.gcode", "3:12"),
+                             ("preprocess_cancellation-superslicer.gcode", "1:5")):
+            path = os.path.join(CORPUS, "gcode", name)
+            if not os.path.exists(path):
+                self.skipTest(f"no {path}")
+            toolpath = stratum.read(path)
+            values, origin, size = stratum.voxelize_block(toolpath, voxel_size=0.2, layers=layers)
+            high = np.add(origin, size * (np.array(values.shape) - 1))
+            grid = stratum.voxelize(toolpath, voxel_size=0.2, layers=layers, grids="surface")
+            np.testing.assert_array_equal(values, grid.dense((origin, high)).values, name)
+            self.assertLess(values.min(), 0)
 
 
 if __name__ == "__main__":
