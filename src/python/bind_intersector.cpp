@@ -23,7 +23,7 @@
 namespace stratum::python {
 
 namespace py = pybind11;
-using py::literals::operator""_a;
+using namespace py::literals;
 using Kind = trace::AttributeSummary::Kind;
 
 namespace {

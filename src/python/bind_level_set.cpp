@@ -20,7 +20,7 @@
 namespace stratum::python {
 
 namespace py = pybind11;
-using py::literals::operator""_a;
+using namespace py::literals;
 using Kind = trace::AttributeSummary::Kind;
 
 namespace {
@@ -208,11 +208,10 @@ py::array attributeAt(const LevelSetObject& self, const std::string& name, const
 
 Matrix transformOf(const LevelSetObject& self) {
     const openvdb::Mat4d linear = self.surface().transform().baseMap()->getAffineMap()->getMat4();
-    std::vector<double> columns(16);
+    std::vector<double> columns;
     // OpenVDB multiplies from the left: the transpose is what others use.
     for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-            columns[static_cast<std::size_t>(4 * row + column)] = linear(column, row);
+        for (int column = 0; column < 4; ++column) columns.push_back(linear(column, row));
     return arrayOf(std::move(columns), {4, 4});
 }
 

@@ -1,5 +1,7 @@
 #include "python/conversion.h"
 
+#include "python/print_options.h"
+
 #include "export/vdb_stream.h"
 #include "gcode/slicer/bead_colors.h"
 #include "voxelize/beads/part_bounds.h"

@@ -67,10 +67,10 @@ private:
         std::array<std::uint64_t, kDim> active;
         column.storeValues(leaf, active);
         const int begin = std::max(next_, k * kDim);
+        const float* const first = leaf.data() + (begin - k * kDim);
         for (int x = x0_; x <= x1_; ++x)
             for (int y = y0_; y <= y1_; ++y)
-                std::copy_n(leaf.data() + ((x - i) * kDim + (y - j)) * kDim + (begin - k * kDim), end - begin,
-                            at(x, y, begin));
+                std::copy_n(first + std::ptrdiff_t{kDim} * (kDim * (x - i) + (y - j)), end - begin, at(x, y, begin));
         next_ = end;
     }
 
@@ -147,8 +147,10 @@ void fillDense(const std::shared_ptr<const gcode::Toolpath>& toolpath, std::span
         [&] { return voxelize::LeafColumn(*layout.toolpath, layout.stack, layout.lattice, layout.unit); });
     const int first_i = floorLeaf(box.min()[0]);
     const int first_j = floorLeaf(box.min()[1]);
-    const auto along_i = static_cast<std::size_t>(floorLeaf(box.max()[0]) - first_i + 1);
-    const auto along_j = static_cast<std::size_t>(floorLeaf(box.max()[1]) - first_j + 1);
+    const int last_i = floorLeaf(box.max()[0]);
+    const int last_j = floorLeaf(box.max()[1]);
+    const std::size_t along_i = static_cast<std::size_t>(last_i) - static_cast<std::size_t>(first_i) + 1;
+    const std::size_t along_j = static_cast<std::size_t>(last_j) - static_cast<std::size_t>(first_j) + 1;
     voxelize::ProgressMeter meter(along_i * along_j, progress);
     parallelFor(along_i * along_j, 1, [&](std::size_t first, std::size_t last) {
         Pile pile(layout, box, values);
