@@ -1,4 +1,5 @@
-# `cpack` makes two Debian packages: stratum (the tools) and libstratum-dev (the static libraries and their headers).
+# `cpack` makes Debian packages: stratum (the tools), libstratum-dev (the static libraries and their headers), and
+# python3-stratum (the Python module).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME stratum)
 set(CPACK_PACKAGE_CONTACT "The Stratum developers <stratum@localhost>")
@@ -6,6 +7,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "printer G-code to OpenVDB level sets to r
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL tools dev)
+if(STRATUM_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
@@ -26,4 +30,17 @@ libhwy-dev, libdeflate-dev, libjpeg62-turbo-dev, libwebp-dev, zlib1g-dev, libzip
 set(CPACK_COMPONENT_DEV_DESCRIPTION
   "The libraries behind the tools: find_package(stratum) gives stratum::gcode, stratum::voxelize, stratum::march
 and stratum::shade.")
+
+# A module is for one minor version of the interpreter. The tables of materials are in the package of the tools.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stratum)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+if(STRATUM_PYTHON)
+  math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next_python}), python3-numpy, stratum (= ${PROJECT_VERSION})")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-openvdb")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+  "import stratum: toolpaths of G-code as NumPy arrays, level sets, distances, rays and pictures.")
 include(CPack)

@@ -4,12 +4,25 @@
 
 #include "deposit/printer.h"
 #include "gcode/machine/machine_limits.h"
+#include "gcode/option_names.h"
 
 #include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace stratum::tools {
 
 namespace {
+
+// The check for a table of names.
+template <typename Value, std::size_t N>
+CLI::Validator namesOf(const gcode::OptionNames<Value, N>& names) {
+    std::vector<std::pair<std::string, int>> values;
+    for (const auto& [name, value] : names) values.emplace_back(name, static_cast<int>(value));
+    return enumeration(std::move(values));
+}
 
 void addLatticeOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
     const char* lattice = kLattice;
@@ -88,13 +101,11 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
               Completion::preset, {"ideal", "typical"})
         ->type_name("PRESET|FILE")
         ->group(plastic);
-    const auto beads = [](gcode::DepositModel::Beads value) { return static_cast<int>(value); };
     app.add_option(
            "--beads", options.read.deposit.beads,
            "What overlapping beads do: capsule: nothing, they are united (default); settled: what two neighbours "
            "both claim fills the groove between them")
-        ->transform(enumeration({{"capsule", beads(gcode::DepositModel::Beads::capsule)},
-                                 {"settled", beads(gcode::DepositModel::Beads::settled)}}))
+        ->transform(namesOf(gcode::kBeadModels))
         ->type_name("MODEL")
         ->group(plastic);
     completes(
@@ -140,31 +151,18 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->check(CLI::Range(0.001, 50.0))
         ->type_name("MM")
         ->group(reading);
-    const auto mode = [](gcode::ExtruderMode value) { return static_cast<int>(value); };
     app.add_option("--e-mode", options.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
-        ->transform(enumeration({{"auto", mode(gcode::ExtruderMode::automatic)},
-                                 {"absolute", mode(gcode::ExtruderMode::absolute)},
-                                 {"relative", mode(gcode::ExtruderMode::relative)}}))
+        ->transform(namesOf(gcode::kExtruderModes))
         ->type_name("MODE")
         ->group(reading);
-    const auto rule = [](gcode::CornerRule value) { return static_cast<int>(value); };
     app.add_option(
            "--planner", options.read.corner_rule,
            "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity")
-        ->transform(enumeration({{"auto", rule(gcode::CornerRule::automatic)},
-                                 {"jerk", rule(gcode::CornerRule::jerk)},
-                                 {"slicer-jerk", rule(gcode::CornerRule::slicer_jerk)},
-                                 {"plan-jerk", rule(gcode::CornerRule::plan_jerk)},
-                                 {"junction-deviation", rule(gcode::CornerRule::junction_deviation)},
-                                 {"corner-velocity", rule(gcode::CornerRule::corner_velocity)}}))
+        ->transform(namesOf(gcode::kCornerRules))
         ->type_name("RULE")
         ->group(reading);
-    const auto firmware = [](gcode::Firmware value) { return static_cast<int>(value); };
     app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
-        ->transform(enumeration({{"auto", firmware(gcode::Firmware::automatic)},
-                                 {"marlin", firmware(gcode::Firmware::marlin)},
-                                 {"klipper", firmware(gcode::Firmware::klipper)},
-                                 {"reprap", firmware(gcode::Firmware::reprap)}}))
+        ->transform(namesOf(gcode::kFirmwares))
         ->type_name("NAME")
         ->group(reading);
 }

@@ -87,8 +87,9 @@ public:
         if (object.sdf) return keep(shapeOfSdf(object, options_), result);
         auto& known = files_[{object.vdb, object.grid}];
         if (known == nullptr)
-            known = &keep(isVdbFile(object.vdb) ? shapeOfLevelSet(object, options_, needs_, warnings_)
-                                                : shapeOfPrint(object, options_, needs_, warnings_),
+            known = &keep(!options_.prints.toolpath && isVdbFile(object.vdb)
+                              ? shapeOfLevelSet(object, options_, needs_, warnings_)
+                              : shapeOfPrint(object, options_, needs_, warnings_),
                           result);
         return *known;
     }

@@ -95,6 +95,13 @@ for folder, _, names in os.walk(documents):
                 check(os.path.exists(os.path.join(folder, target.split("#")[0])), f"{name}: {target}")
 check(links > 40, f"{links} links in the installed documents")
 
+# --- the Python module ------------------------------------------------------------------------------------------------
+package = os.path.join(prefix, "lib/python3/dist-packages")
+check(os.path.exists(os.path.join(package, "stratum/py.typed")), "the Python package is installed")
+said = run("/usr/bin/env", f"PYTHONPATH={package}", "/usr/bin/python3", "-c",
+           "import stratum, sys; print(stratum.__file__, len(stratum.read(sys.argv[1])))", gcode("tile.gcode")).split()
+check(said[0].startswith(package) and int(said[1]) > 100, f"  and reads a print: {said[1]} beads")
+
 # A table of materials that only the moved tree has.
 tables = os.path.join(prefix, "share/stratum/data/brdf")
 shutil.copy(os.path.join(tables, "pla-blue.bsdf.gz"), os.path.join(tables, "mine.bsdf.gz"))
@@ -102,6 +109,9 @@ vdb = os.path.join(FOLDER, "tile.vdb")
 report = json.loads(run(os.path.join(bin_, "gcode2vdb"), gcode("tile.gcode"), "-o", vdb, "--stats", "-"))
 run(os.path.join(bin_, "vdbtrace"), vdb, "-o", os.path.join(FOLDER, "tile.png"), "--brdf", "mine", "--size", "64x48", "--spp", "1")
 check(os.path.getsize(os.path.join(FOLDER, "tile.png")) > 1000, "renders with a table of its own tree")
+run("/usr/bin/env", f"PYTHONPATH={package}", "/usr/bin/python3", "-c",
+    "import stratum, sys; stratum.render(sys.argv[1], size=(64, 48), spp=1, brdf='mine')", vdb)
+check(True, "  so does the module")
 
 # --- strangers ---------------------------------------------------------------------------------------------------------
 for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
@@ -130,8 +140,15 @@ if shutil.which("dpkg-shlibdeps") and shutil.which("cpack"):
     run("cpack", "--config", os.path.join(BUILD, "CPackConfig.cmake"), "-B", packages,
         "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
     names = sorted(name for name in os.listdir(packages) if name.endswith(".deb"))
-    check([name.split("_")[0] for name in names] == ["libstratum-dev", "stratum"], f"packages: {names}")
+    check([name.split("_")[0] for name in names] == ["libstratum-dev", "python3-stratum", "stratum"], f"packages: {names}")
     deb = os.path.join(packages, names[1])
+    depends = run("dpkg-deb", "-f", deb, "Depends")
+    for library in ("libopenvdb10.0", "python3 (>= 3.", "python3-numpy"):
+        check(library in depends, f"  the module depends on {library}")
+    contents = run("dpkg-deb", "-c", deb)
+    for path in ("_stratum.cpython-", "__init__.py", "__init__.pyi", "py.typed"):
+        check("./usr/lib/python3/dist-packages/stratum/" + path in contents, f"  has {path}")
+    deb = os.path.join(packages, names[2])
     depends = run("dpkg-deb", "-f", deb, "Depends")
     for library in ("libopenvdb10.0", "libtbb12", "libopenexr-3-1-30", "libc6"):
         check(library in depends, f"  depends on {library}")

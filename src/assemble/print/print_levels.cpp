@@ -134,6 +134,7 @@ deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOp
 
 ReadProgram readProgram(const std::string& path, const PrintRequest& request, const ReadEvents& events,
                         Warnings& warnings, bool hash) {
+    if (request.toolpath) return {request.toolpath, 0, path, ""};
     const bool timed = request.timed || request.series_by_time || voxelize::needsTiming(request.printed);
     if (request.kept != nullptr)
         if (const ReadProgram* known = request.kept->program(path, timed, hash)) return *known;

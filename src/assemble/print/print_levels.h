@@ -33,6 +33,8 @@ struct PrintRequest {
     std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
     /// Where prints are kept for the next scene of the same files; null: nothing is kept. Not with print.voxel_auto.
     KeptPrints* kept = nullptr;
+    /// A program that is in memory already: then the objects' path is only a name. Its times are not computed.
+    std::shared_ptr<const gcode::Toolpath> toolpath;
 };
 
 /// The print at one voxel size.

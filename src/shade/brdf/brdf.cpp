@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -23,13 +25,21 @@ namespace {
 
 /// The tables that come with the project.
 std::filesystem::path tableFolder() {
-    if (const char* data = std::getenv("STRATUM_DATA")) return std::filesystem::path(data) / "brdf";
-    // Installed tables are found relative to the program, so the tree can be moved.
+    namespace fs = std::filesystem;
+    if (const char* data = std::getenv("STRATUM_DATA")) return fs::path(data) / "brdf";
+    // Installed tables are found relative to the program in bin, or to the Python module in
+    // lib/python3/dist-packages/stratum, so the tree can be moved.
     std::error_code missing;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", missing);
-    std::filesystem::path installed = program.parent_path().parent_path() / "share/stratum/data/brdf";
-    if (std::filesystem::is_directory(installed, missing)) return installed;
-    return std::filesystem::path(STRATUM_DATA_DIR) / "brdf";
+    const fs::path program = fs::read_symlink("/proc/self/exe", missing);
+    Dl_info code{};
+    const bool found = dladdr(reinterpret_cast<const void*>(&tableFolder), &code) != 0 && code.dli_fname != nullptr;
+    const fs::path module = found ? fs::path(code.dli_fname).parent_path() : fs::path();
+    const fs::path prefix = module.filename() == "stratum"
+                                ? module.parent_path().parent_path().parent_path().parent_path()
+                                : program.parent_path().parent_path();
+    fs::path installed = prefix / "share/stratum/data/brdf";
+    if (fs::is_directory(installed, missing)) return installed;
+    return fs::path(STRATUM_DATA_DIR) / "brdf";
 }
 
 constexpr std::string_view kEnding = ".bsdf.gz";

@@ -1,0 +1,158 @@
+#include "python/arrays.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+namespace stratum::python {
+
+namespace py = pybind11;
+
+namespace {
+
+struct Field {
+    const char* name;
+    const char* type;
+    std::size_t offset;
+};
+
+py::dtype typeOf(std::initializer_list<Field> fields, std::size_t size) {
+    py::list names;
+    py::list formats;
+    py::list offsets;
+    for (const Field& field : fields) {
+        names.append(field.name);
+        formats.append(field.type);
+        offsets.append(field.offset);
+    }
+    return {names, formats, offsets, static_cast<py::ssize_t>(size)};
+}
+
+std::string shapeOf(const py::array& array) {
+    const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
+    return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+}
+
+}  // namespace
+
+template <>
+py::dtype recordType<gcode::Bead>() {
+    using gcode::Bead;
+    return typeOf({{"x0", "<f8", offsetof(Bead, x0)},
+                   {"y0", "<f8", offsetof(Bead, y0)},
+                   {"z0", "<f8", offsetof(Bead, z0)},
+                   {"x1", "<f8", offsetof(Bead, x1)},
+                   {"y1", "<f8", offsetof(Bead, y1)},
+                   {"z1", "<f8", offsetof(Bead, z1)},
+                   {"width", "<f4", offsetof(Bead, width)},
+                   {"run", "<u4", offsetof(Bead, run)},
+                   {"arc", "<i4", offsetof(Bead, arc)}},
+                  sizeof(Bead));
+}
+
+template <>
+py::dtype recordType<gcode::Run>() {
+    using gcode::Run;
+    return typeOf({{"height", "<f4", offsetof(Run, height)},
+                   {"speed", "<f4", offsetof(Run, speed)},
+                   {"layer", "<u4", offsetof(Run, layer)},
+                   {"object", "<u2", offsetof(Run, object)},
+                   {"tool", "u1", offsetof(Run, tool)},
+                   {"feature", "u1", offsetof(Run, feature)}},
+                  sizeof(Run));
+}
+
+template <>
+py::dtype recordType<gcode::Arc>() {
+    using gcode::Arc;
+    return typeOf({{"center_x", "<f8", offsetof(Arc, center_x)},
+                   {"center_y", "<f8", offsetof(Arc, center_y)},
+                   {"sweep", "<f8", offsetof(Arc, sweep)},
+                   {"line", "<u4", offsetof(Arc, line)}},
+                  sizeof(Arc));
+}
+
+template <>
+py::dtype recordType<gcode::BeadTiming>() {
+    using gcode::BeadTiming;
+    return typeOf({{"start", "<f8", offsetof(BeadTiming, start)},
+                   {"seconds", "<f4", offsetof(BeadTiming, seconds)},
+                   {"entry", "<f4", offsetof(BeadTiming, entry)},
+                   {"peak", "<f4", offsetof(BeadTiming, peak)},
+                   {"exit", "<f4", offsetof(BeadTiming, exit)}},
+                  sizeof(BeadTiming));
+}
+
+template <>
+py::dtype recordType<gcode::BeadFlow>() {
+    using gcode::BeadFlow;
+    return typeOf({{"volume", "<f4", offsetof(BeadFlow, volume)},
+                   {"rate", "<f4", offsetof(BeadFlow, rate)},
+                   {"widening", "<f4", offsetof(BeadFlow, widening)}},
+                  sizeof(BeadFlow));
+}
+
+py::array viewOf(const py::dtype& type, const std::vector<py::ssize_t>& shape, const void* data,
+                 const py::object& owner) {
+    // Of nothing, too, the owner owns it.
+    static const char nothing = 0;
+    py::array view(type, shape, {}, data != nullptr ? data : &nothing, owner);
+    // Others read the same records without the GIL: nobody may write to them.
+    view.attr("setflags")(py::arg("write") = false);
+    return view;
+}
+
+template <typename Record>
+std::vector<Record> recordsOf(const py::handle& array, std::string_view name, std::string_view type_name) {
+    const py::dtype type = recordType<Record>();
+    if (!py::isinstance<py::array>(array))
+        throw UsageError(fmt::format("{}: expected a NumPy array of {}; make one with numpy.zeros(n, stratum.{})", name,
+                                     type_name, type_name));
+    const auto given = py::reinterpret_borrow<py::array>(array);
+    if (given.ndim() != 1)
+        throw UsageError(
+            fmt::format("{}: expected one dimension, not the shape {}; use .reshape(-1)", name, shapeOf(given)));
+    if (!given.dtype().equal(type))
+        throw UsageError(fmt::format(
+            "{}: expected the dtype stratum.{}, not {}; make numpy.zeros(n, stratum.{}) and copy field by field", name,
+            type_name, py::str(given.dtype()).cast<std::string>(), type_name));
+    const auto dense = py::array::ensure(given, py::array::c_style);
+    std::vector<Record> records(static_cast<std::size_t>(dense.size()));
+    if (!records.empty())
+        std::memcpy(static_cast<void*>(records.data()), dense.data(), records.size() * sizeof(Record));
+    return records;
+}
+
+template std::vector<gcode::Bead> recordsOf(const py::handle&, std::string_view, std::string_view);
+template std::vector<gcode::Run> recordsOf(const py::handle&, std::string_view, std::string_view);
+template std::vector<gcode::Arc> recordsOf(const py::handle&, std::string_view, std::string_view);
+
+std::vector<glm::dvec3> pointsOf(const py::handle& array, std::string_view name) {
+    const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
+    if (!numbers) {
+        PyErr_Clear();
+        throw UsageError(fmt::format("{}: expected numbers in an array of shape (N, 3)", name));
+    }
+    if (numbers.ndim() != 2 || numbers.shape(1) != 3)
+        throw UsageError(
+            fmt::format("{}: expected the shape (N, 3), not {}; use .reshape(-1, 3)", name, shapeOf(numbers)));
+    std::vector<glm::dvec3> points(static_cast<std::size_t>(numbers.shape(0)));
+    static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
+    if (!points.empty())
+        std::memcpy(static_cast<void*>(points.data()), numbers.data(), points.size() * sizeof(glm::dvec3));
+    for (std::size_t n = 0; n < points.size(); ++n)
+        if (!std::isfinite(points[n].x) || !std::isfinite(points[n].y) || !std::isfinite(points[n].z))
+            throw UsageError(
+                fmt::format("{}[{}]: is not finite; leave such rows out, e.g. "
+                            "a[numpy.isfinite(a).all(axis=1)]",
+                            name, n));
+    return points;
+}
+
+}  // namespace stratum::python

@@ -1,0 +1,326 @@
+#include "python/arrays.h"
+#include "python/keywords.h"
+#include "python/long_call.h"
+#include "python/make_toolpath.h"
+#include "python/print_options.h"
+#include "python/toolpath_object.h"
+
+#include "base/checksum.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "gcode/container/input_bytes.h"
+#include "gcode/summary.h"
+#include "gcode/toolpath/warning_log.h"
+#include "voxelize/beads/selection.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <utility>
+
+namespace stratum::python {
+
+namespace py = pybind11;
+using namespace py::literals;
+
+namespace {
+
+constexpr const char* kRead = R"(read(source, *, timed=False, progress=None, **options) -> Toolpath
+
+Reads one G-code program: a path, or bytes; plain text or any container (gzip, .bgcode, .gcode.3mf, .ufp, .gx).
+
+timed: plan the motion of the machine, for Toolpath.timing and Toolpath.times; takes about twice as long.
+progress: called with the fraction done, 0..1.
+The options are those of the tools: plate, filament_diameter (mm, one or by tool), layer_height (mm), e_mode, firmware,
+planner, printer, beads, section, flow_lag (s), pressure_advance (s), sag.
+
+Raises InputError for what is no G-code, UsageError for options out of range.)";
+
+constexpr const char* kMake =
+    R"(make_toolpath(beads, runs, arcs=None, objects=None, *, filament_diameter=1.75, layer_height=0.0) -> Toolpath
+
+A toolpath of arrays: beads (bead_dtype, mm, in print order), the runs they refer to (run_dtype), arcs (arc_dtype), and
+names of objects, of which the first is "". The arrays are copied.
+
+Raises UsageError, with the index and the remedy, for records that nothing can be made of.)";
+
+ToolpathObject readProgram(const py::object& source, const py::object& progress, const py::kwargs& given) {
+    Keywords options("read", given);
+    const bool timed = options.flag("timed").value_or(false);
+    gcode::ReadOptions read = readOptionsOf(options);
+    options.finish();
+    std::string bytes;
+    std::string path;
+    const bool in_memory = py::isinstance<py::bytes>(source) || py::isinstance<py::bytearray>(source);
+    if (py::isinstance<py::bytes>(source))
+        bytes = source.cast<std::string>();
+    else if (in_memory)
+        bytes = std::string(PyByteArray_AsString(source.ptr()), py::len(source));
+    else if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__"))
+        path = py::module_::import("os").attr("fspath")(source).cast<std::string>();
+    else
+        throw py::type_error("read(): source: expected a path, or the bytes of a program");
+    return callLong(progress, [&](const Report& report) {
+        read.progress = report;
+        const auto make = [&](std::string_view program, const std::string& name) {
+            deposit::PrintRead print = deposit::readPrint(program, name, read, timed);
+            return ToolpathObject{std::make_shared<const gcode::Toolpath>(std::move(print.toolpath)),
+                                  std::move(print.times), in_memory ? "" : std::filesystem::path(name).filename(),
+                                  sha256Hex(program)};
+        };
+        if (in_memory) return make(bytes, "bytes");
+        const gcode::InputBytes file(path);
+        return make(file.bytes(), file.name());
+    });
+}
+
+// Takes what is given, and keeps the rest.
+void takeArrays(gcode::Toolpath& toolpath, const py::object& beads, const py::object& runs, const py::object& arcs,
+                const py::object& objects) {
+    if (!beads.is_none()) toolpath.beads = recordsOf<gcode::Bead>(beads, "beads", "bead_dtype");
+    if (!runs.is_none()) toolpath.runs = recordsOf<gcode::Run>(runs, "runs", "run_dtype");
+    if (!arcs.is_none()) toolpath.arcs = recordsOf<gcode::Arc>(arcs, "arcs", "arc_dtype");
+    if (!objects.is_none()) toolpath.objects = objects.cast<std::vector<std::string>>();
+}
+
+ToolpathObject finished(gcode::Toolpath&& toolpath) {
+    const py::gil_scoped_release release;
+    requireValid(toolpath);
+    sumUp(toolpath);
+    return {std::make_shared<const gcode::Toolpath>(std::move(toolpath)), {}, "", ""};
+}
+
+ToolpathObject makeToolpath(const py::object& beads, const py::object& runs, const py::object& arcs,
+                            const py::object& objects, double filament_diameter, double layer_height) {
+    gcode::Toolpath toolpath;
+    takeArrays(toolpath, beads, runs, arcs, objects);
+    if (!(filament_diameter >= 0.1 && filament_diameter <= 20))
+        throw UsageError(fmt::format("filament_diameter={:g}: expected 0.1 to 20 mm", filament_diameter));
+    if (!(layer_height >= 0 && layer_height <= 50))
+        throw UsageError(fmt::format("layer_height={:g}: expected 0 to 50 mm; 0 is unknown", layer_height));
+    toolpath.filament_diameter = filament_diameter;
+    toolpath.layer_height = layer_height;
+    return finished(std::move(toolpath));
+}
+
+ToolpathObject replaced(const ToolpathObject& self, const py::object& beads, const py::object& runs,
+                        const py::object& arcs, const py::object& objects) {
+    gcode::Toolpath toolpath = *self.toolpath;
+    const std::size_t count = toolpath.beads.size();
+    takeArrays(toolpath, beads, runs, arcs, objects);
+    // Times and flow are those of the program, not of what was made of it.
+    toolpath.timing.clear();
+    toolpath.flow.clear();
+    if (toolpath.beads.size() != count) toolpath.color_changes.clear();
+    return finished(std::move(toolpath));
+}
+
+// A value for each bead.
+template <typename Value, typename Of>
+py::array perBead(const ToolpathObject& self, const Of& of) {
+    const gcode::Toolpath& toolpath = *self.toolpath;
+    std::vector<Value> values(toolpath.beads.size());
+    {
+        const py::gil_scoped_release release;
+        for (std::size_t n = 0; n < values.size(); ++n) values[n] = of(toolpath, toolpath.beads[n]);
+    }
+    const auto count = static_cast<py::ssize_t>(values.size());
+    return arrayOf(std::move(values), {count});
+}
+
+py::dict statedOf(const gcode::Toolpath& toolpath) {
+    const gcode::StatedFacts& facts = toolpath.stated;
+    py::dict stated;
+    stated["seconds"] = py::cast(facts.seconds);
+    stated["model_seconds"] = py::cast(facts.model_seconds);
+    stated["grams"] = py::cast(facts.grams);
+    stated["materials"] = py::cast(facts.materials);
+    stated["nozzle_diameters"] = py::cast(facts.nozzle_diameters);
+    stated["printer"] = py::cast(facts.printer);
+    stated["layer_height"] = py::cast(facts.layer_height);
+    stated["first_layer_height"] = py::cast(facts.first_layer_height);
+    return stated;
+}
+
+py::object timesOf(const ToolpathObject& self) {
+    if (!self.times) return py::none();
+    py::dict features;
+    for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
+        if (self.times->features[f] > 0)
+            features[py::str(std::string(gcode::featureName(static_cast<gcode::Feature>(f))))] =
+                self.times->features[f];
+    return py::dict("total"_a = self.times->total, "travel"_a = self.times->travel,
+                    "retraction"_a = self.times->retraction, "waiting"_a = self.times->waiting, "features"_a = features,
+                    "layers"_a = self.times->layers, "rule"_a = self.times->rule);
+}
+
+py::array selectBeads(const ToolpathObject& self, const py::kwargs& given) {
+    Keywords options("select", given);
+    voxelize::PrintOptions print;
+    readSelection(options, print);
+    options.finish();
+    std::vector<std::uint32_t> selection =
+        voxelize::selectBeads(*self.toolpath, voxelize::selectionOf(print, *self.toolpath));
+    const auto count = static_cast<py::ssize_t>(selection.size());
+    return arrayOf(std::move(selection), {count});
+}
+
+py::list warningsOf(const gcode::Toolpath& toolpath) {
+    py::list warnings;
+    for (const gcode::Warning& warning : toolpath.warnings)
+        warnings.append(
+            py::dict("text"_a = warning.text, "first_line"_a = warning.first_line, "count"_a = warning.count));
+    return warnings;
+}
+
+const ToolpathObject& objectOf(const py::object& self) { return self.cast<const ToolpathObject&>(); }
+
+void addArrays(py::class_<ToolpathObject>& type) {
+    type.def_property_readonly(
+            "beads", [](const py::object& self) { return viewOf(objectOf(self).toolpath->beads, self); },
+            "Read-only array of bead_dtype, without a copy, in print order: mm; z is that of the nozzle, the top of "
+            "the bead; run is an index into runs; arc is an index into arcs, or minus the line if straight.")
+        .def_property_readonly(
+            "runs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->runs, self); },
+            "Read-only array of run_dtype, without a copy: what consecutive beads share. height mm, speed mm/s.")
+        .def_property_readonly(
+            "arcs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->arcs, self); },
+            "Read-only array of arc_dtype, without a copy: center mm, sweep radians.")
+        .def_property_readonly(
+            "timing",
+            [](const py::object& self) -> py::object {
+                const gcode::Toolpath& toolpath = *objectOf(self).toolpath;
+                if (toolpath.timing.empty()) return py::none();
+                return viewOf(toolpath.timing, self);
+            },
+            "Read-only array of timing_dtype by bead, without a copy: s since the program's begin, s, mm/s. None "
+            "unless read with timed=True or flow_lag.")
+        .def_property_readonly(
+            "flow",
+            [](const py::object& self) -> py::object {
+                const gcode::Toolpath& toolpath = *objectOf(self).toolpath;
+                if (toolpath.flow.empty()) return py::none();
+                return viewOf(toolpath.flow, self);
+            },
+            "Read-only array of flow_dtype by bead, without a copy: mm^3, mm^3/s, mm. None unless read with flow_lag.");
+    using Path = gcode::Toolpath;
+    using gcode::Bead;
+    type.def(
+            "bead_layers",
+            [](const ToolpathObject& self) {
+                return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).layer; });
+            },
+            "The layer of each bead: 1, 2, ...; 0 is what comes before the first.")
+        .def(
+            "bead_features",
+            [](const ToolpathObject& self) {
+                return perBead<std::uint8_t>(
+                    self, [](const Path& t, const Bead& b) { return static_cast<std::uint8_t>(t.runOf(b).feature); });
+            },
+            "The feature of each bead, an index into stratum.features.")
+        .def(
+            "bead_tools",
+            [](const ToolpathObject& self) {
+                return perBead<std::uint8_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).tool; });
+            },
+            "The T number of each bead.")
+        .def(
+            "bead_objects",
+            [](const ToolpathObject& self) {
+                return perBead<std::uint16_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).object; });
+            },
+            "The object of each bead, an index into objects; 0 is none.")
+        .def(
+            "bead_lines",
+            [](const ToolpathObject& self) {
+                return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.lineOf(b); });
+            },
+            "The line of each bead in its file, from 1.")
+        .def(
+            "bead_lengths",
+            [](const ToolpathObject& self) {
+                return perBead<double>(self, [](const Path& t, const Bead& b) { return gcode::beadLength(t, b); });
+            },
+            "The length of each bead's path, mm, its climb included.")
+        .def(
+            "bead_volumes",
+            [](const ToolpathObject& self) {
+                return perBead<double>(self, [](const Path& t, const Bead& b) {
+                    return gcode::laidVolume(t, static_cast<std::uint32_t>(&b - t.beads.data()));
+                });
+            },
+            "What each bead lays, mm^3.");
+}
+
+void addFacts(py::class_<ToolpathObject>& type) {
+    const auto fact = [&type](const char* name, auto member, const char* doc) {
+        type.def_property_readonly(
+            name, [member](const ToolpathObject& self) { return (*self.toolpath).*member; }, doc);
+    };
+    fact("objects", &gcode::Toolpath::objects, "Names of the labelled objects; [0] is \"\".");
+    fact("slicer", &gcode::Toolpath::slicer, "e.g. \"PrusaSlicer 2.5.0\"; empty if the file doesn't say.");
+    fact("firmware", &gcode::Toolpath::firmware, "The rule set used, e.g. \"marlin\".");
+    fact("format", &gcode::Toolpath::format, "The container, e.g. \"ascii\", \"bgcode\".");
+    fact("filament_diameter", &gcode::Toolpath::filament_diameter, "mm, of tool 0.");
+    fact("layer_height", &gcode::Toolpath::layer_height, "mm, nominal, from the file's settings; 0 if unknown.");
+    fact("layer_count", &gcode::Toolpath::layer_count, "Number of the last layer.");
+    fact("extrusion_rule", &gcode::Toolpath::extrusion_rule, "Unit of E and its source.");
+    fact("cut_short", &gcode::Toolpath::cut_short, "Why the program seems truncated; empty if it doesn't.");
+    fact("filament_mm", &gcode::Toolpath::filament_mm, "mm of filament in the beads.");
+    fact("extruded_mm3", &gcode::Toolpath::extruded_mm3, "mm^3 that the file extrudes into the beads.");
+    type.def_property_readonly(
+            "warnings", [](const ToolpathObject& self) { return warningsOf(*self.toolpath); },
+            "What is doubtful in the file: dicts of text, first_line, count.")
+        .def_property_readonly(
+            "stated", [](const ToolpathObject& self) { return statedOf(*self.toolpath); },
+            "What the file states of its print: seconds, grams, materials, ...; None where it doesn't.")
+        .def_property_readonly("times", &timesOf,
+                               "Planned seconds: total, travel, retraction, waiting, features, layers, rule. None "
+                               "unless read with timed=True or flow_lag.")
+        .def_readonly("source", &ToolpathObject::source, "Name of its file without folders; empty if it has none.")
+        .def(
+            "summary", [](const ToolpathObject& self) { return gcode::summarize(*self.toolpath); },
+            "What the file holds, in lines of text.")
+        .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
+        .def("__repr__", [](const ToolpathObject& self) {
+            return fmt::format("<stratum.Toolpath: {} beads in {} layers>", self.toolpath->beads.size(),
+                               self.toolpath->layer_count);
+        });
+}
+
+}  // namespace
+
+void bindToolpath(py::module_& module) {
+    py::class_<ToolpathObject> type(module, "Toolpath",
+                                    "Everything that one G-code file deposits, in print order: mm, z up. It never "
+                                    "changes; replace() makes another.");
+    addArrays(type);
+    addFacts(type);
+    type.def("select", &selectBeads,
+             "select(*, layers=None, features=None, objects=None, tools=None) -> array of indices into beads, "
+             "ascending; as the tools' options of those names")
+        .def("replace", &replaced, "Another toolpath with these arrays instead; they are checked and copied.",
+             py::kw_only(), "beads"_a = py::none(), "runs"_a = py::none(), "arcs"_a = py::none(),
+             "objects"_a = py::none());
+    module.def(
+        "read",
+        [](const py::object& source, const py::object& progress, const py::kwargs& options) {
+            return readProgram(source, progress, options);
+        },
+        kRead, "source"_a, py::kw_only(), "progress"_a = py::none());
+    module.def("make_toolpath", &makeToolpath, kMake, "beads"_a, "runs"_a, "arcs"_a = py::none(),
+               "objects"_a = py::none(), py::kw_only(), "filament_diameter"_a = 1.75, "layer_height"_a = 0.0);
+    module.attr("bead_dtype") = recordType<gcode::Bead>();
+    module.attr("run_dtype") = recordType<gcode::Run>();
+    module.attr("arc_dtype") = recordType<gcode::Arc>();
+    module.attr("timing_dtype") = recordType<gcode::BeadTiming>();
+    module.attr("flow_dtype") = recordType<gcode::BeadFlow>();
+    py::list features;
+    for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
+        features.append(std::string(gcode::featureName(static_cast<gcode::Feature>(f))));
+    module.attr("features") = py::tuple(features);
+}
+
+}  // namespace stratum::python

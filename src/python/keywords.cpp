@@ -1,0 +1,148 @@
+#include "python/keywords.h"
+
+#include "base/error.h"
+#include "base/nearest_name.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace stratum::python {
+
+namespace py = pybind11;
+
+namespace {
+
+bool isText(const py::handle& value) { return py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__"); }
+
+std::string textOf(const py::handle& value) {
+    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+    return py::module_::import("os").attr("fspath")(value).cast<std::string>();
+}
+
+bool isNumber(const py::handle& value) {
+    return PyNumber_Check(value.ptr()) != 0 && PyBool_Check(value.ptr()) == 0 && !py::isinstance<py::array>(value) &&
+           PyComplex_Check(value.ptr()) == 0;
+}
+
+}  // namespace
+
+std::optional<py::object> Keywords::find(std::string_view name) {
+    known_.emplace_back(name);
+    const py::str key(name.data(), name.size());
+    if (!given_.contains(key)) return std::nullopt;
+    py::object value = given_[key];
+    if (value.is_none()) return std::nullopt;
+    return value;
+}
+
+void Keywords::fail(std::string_view name, std::string_view expected) const {
+    const py::str key(name.data(), name.size());
+    throw py::type_error(fmt::format("{}(): {}: expected {}, not {}", function_, name, expected,
+                                     py::repr(given_[key]).cast<std::string>()));
+}
+
+double Keywords::finite(std::string_view name, const py::handle& value) const {
+    if (!isNumber(value)) fail(name, "a number");
+    const double number = PyFloat_AsDouble(value.ptr());
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    if (!std::isfinite(number))
+        throw UsageError(fmt::format("{}(): {}: expected a finite number, not {}", function_, name, number));
+    return number;
+}
+
+std::optional<double> Keywords::number(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return std::nullopt;
+    return finite(name, *value);
+}
+
+std::optional<double> Keywords::number(std::string_view name, double least, double most) {
+    const std::optional<double> value = number(name);
+    if (value && !(*value >= least && *value <= most))
+        throw UsageError(
+            fmt::format("{}(): {}={:g}: expected a number from {:g} to {:g}", function_, name, *value, least, most));
+    return value;
+}
+
+std::optional<int> Keywords::integer(std::string_view name, int least, int most) {
+    const std::optional<py::object> given = find(name);
+    if (!given) return std::nullopt;
+    if (PyIndex_Check(given->ptr()) == 0 || PyBool_Check(given->ptr()) != 0) fail(name, "a whole number");
+    int overflow = 0;
+    const py::object index = py::reinterpret_steal<py::object>(PyNumber_Index(given->ptr()));
+    if (!index) throw py::error_already_set();
+    const long long value = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
+    if (overflow != 0 || value < least || value > most)
+        throw UsageError(fmt::format("{}(): {}={}: expected a whole number from {} to {}", function_, name,
+                                     py::str(*given).cast<std::string>(), least, most));
+    return static_cast<int>(value);
+}
+
+std::optional<bool> Keywords::flag(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return std::nullopt;
+    if (PyBool_Check(value->ptr()) == 0) fail(name, "True or False");
+    return value->cast<bool>();
+}
+
+std::optional<std::string> Keywords::text(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return std::nullopt;
+    if (!isText(*value)) fail(name, "a text");
+    return textOf(*value);
+}
+
+std::optional<glm::dvec3> Keywords::point(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return std::nullopt;
+    if (!py::isinstance<py::sequence>(*value) || isText(*value) || py::len(*value) != 3)
+        fail(name, "three numbers, x, y, z");
+    glm::dvec3 point;
+    int axis = 0;
+    for (const py::handle& item : *value) point[axis++] = finite(name, item);
+    return point;
+}
+
+std::vector<double> Keywords::numbers(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return {};
+    if (isNumber(*value)) return {finite(name, *value)};
+    if (!py::isinstance<py::sequence>(*value) || isText(*value)) fail(name, "a number or a list of them");
+    std::vector<double> numbers;
+    for (const py::handle& item : *value) numbers.push_back(finite(name, item));
+    return numbers;
+}
+
+std::vector<std::string> Keywords::texts(std::string_view name) {
+    const std::optional<py::object> value = find(name);
+    if (!value) return {};
+    if (isText(*value)) return {textOf(*value)};
+    if (!py::isinstance<py::sequence>(*value)) fail(name, "a text or a list of them");
+    std::vector<std::string> texts;
+    for (const py::handle& item : *value) {
+        if (!isText(item)) fail(name, "a text or a list of them");
+        texts.push_back(textOf(item));
+    }
+    return texts;
+}
+
+void Keywords::refuseChoice(std::string_view name, const std::string& given,
+                            std::span<const std::string_view> names) const {
+    throw UsageError(fmt::format("{}(): {}={:?}: expected one of {}{}", function_, name, given, fmt::join(names, ", "),
+                                 didYouMean(given, names)));
+}
+
+void Keywords::finish() const {
+    for (const auto& item : given_) {
+        const auto name = item.first.cast<std::string>();
+        if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+        const std::vector<std::string_view> names(known_.begin(), known_.end());
+        throw py::type_error(fmt::format("{}(): no option is named {}{}; there are {}", function_, name,
+                                         didYouMean(name, names), fmt::join(names, ", ")));
+    }
+}
+
+}  // namespace stratum::python

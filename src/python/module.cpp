@@ -1,0 +1,22 @@
+// The Python module stratum._stratum: the package stratum takes everything from it.
+#include "python/bind_picture.h"
+#include "python/errors.h"
+#include "python/level_set_object.h"
+#include "python/threads.h"
+#include "python/toolpath_object.h"
+
+#include <openvdb/openvdb.h>
+#include <pybind11/pybind11.h>
+
+PYBIND11_MODULE(_stratum, module) {
+    using namespace stratum::python;
+    module.attr("__version__") = STRATUM_VERSION;
+    openvdb::initialize();
+    bindErrors(module);
+    bindToolpath(module);
+    bindLevelSet(module);
+    bindPrintField(module);
+    bindIntersector(module);
+    bindPicture(module);
+    bindThreads(module);
+}

@@ -1,0 +1,25 @@
+// Options of Python -> a picture.
+#pragma once
+
+#include "python/keywords.h"
+
+#include "assemble/ready_scene.h"
+
+#include <optional>
+
+namespace stratum::python {
+
+/// All that render() takes besides its source.
+struct RenderCall {
+    assemble::PictureOptions picture;
+    std::optional<bool> denoise;  ///< empty: as fits the picture
+    bool spp_given = false;
+    bool legend = false;
+    std::optional<double> exposure;  ///< stops; empty: found from the light
+    std::string grid, file_up;       ///< of a .vdb
+};
+
+/// As vdbtrace's options of those names. Throws UsageError.
+RenderCall renderCallOf(Keywords& options);
+
+}  // namespace stratum::python

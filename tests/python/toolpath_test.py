@@ -1,0 +1,269 @@
+"""stratum.Toolpath: what it reads, views without a copy, and toolpaths of arrays."""
+
+import gc
+import gzip
+import os
+import pathlib
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import stratum
+from common import gcode, read_bytes, tool
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
+
+
+def box_of_beads(count, layers=1):
+    """Lines of 1 mm side by side."""
+    beads = np.zeros(count, stratum.bead_dtype)
+    index = np.arange(count)
+    beads["x0"] = index % 1000 * 0.4
+    beads["x1"] = beads["x0"]
+    beads["y0"] = index // 1000 % 1000
+    beads["y1"] = beads["y0"] + 1
+    beads["run"] = index % layers
+    beads["z0"] = beads["z1"] = 0.2 * (1 + beads["run"])
+    beads["width"] = 0.4
+    beads["arc"] = -1
+    runs = np.zeros(layers, stratum.run_dtype)
+    runs["height"] = 0.2
+    runs["speed"] = 50
+    runs["layer"] = np.arange(layers) + 1
+    return beads, runs
+
+
+class Reading(unittest.TestCase):
+    def test_same_as_the_tool(self):
+        path = gcode("hull.gcode")
+        toolpath = stratum.read(path)
+        lines = tool("gcode2vdb", path, "--dump-toolpath", "-", "--voxel-size", "0.4", "-o", os.path.join(FOLDER, "hull.vdb"), "--quiet").splitlines()
+        names = lines[0].split(",")
+        rows = np.genfromtxt(lines[1:], delimiter=",", usecols=[names.index(n) for n in names if n[-1] in "01"])
+        columns = [n for n in names if n[-1] in "01"]
+        self.assertEqual(len(rows), len(toolpath))
+        for name in ("x0", "y0", "x1", "y1"):
+            if name in columns:
+                np.testing.assert_allclose(toolpath.beads[name], rows[:, columns.index(name)], atol=1e-3)
+
+    def test_from_path_bytes_and_container(self):
+        path = gcode("tile.gcode")
+        program = read_bytes(path)
+        beads = stratum.read(path).beads
+        for source in (pathlib.Path(path), program, bytearray(program), gzip.compress(program)):
+            self.assertTrue(np.array_equal(stratum.read(source).beads, beads))
+        self.assertEqual(stratum.read(gzip.compress(program)).format, "gzip")
+
+    def test_options(self):
+        path = gcode("tile.gcode")
+        thick = stratum.read(path, filament_diameter=2.85)
+        self.assertGreater(thick.beads["width"].mean(), stratum.read(path).beads["width"].mean())
+        lagging = stratum.read(path, flow_lag=0.05, printer="ideal")
+        self.assertEqual(len(lagging.flow), len(lagging))
+        self.assertEqual(stratum.read(path).flow, None)
+
+    def test_facts(self):
+        toolpath = stratum.read(gcode("hull.gcode"))
+        self.assertIn("PrusaSlicer", toolpath.slicer)
+        self.assertEqual(toolpath.layer_count, toolpath.bead_layers().max())
+        self.assertEqual(set(toolpath.stated), {"seconds", "model_seconds", "grams", "materials", "nozzle_diameters",
+                                                "printer", "layer_height", "first_layer_height"})
+        self.assertGreater(toolpath.stated["seconds"], 60)
+        self.assertIn("PrusaSlicer", toolpath.summary())
+        self.assertIn(f"{len(toolpath)} beads", repr(toolpath))
+        self.assertAlmostEqual(toolpath.bead_volumes().sum() / toolpath.extruded_mm3, 1, delta=0.02)
+
+    def test_helpers(self):
+        toolpath = stratum.read(gcode("two_tone.gcode"))
+        runs, of = toolpath.runs, toolpath.beads["run"]
+        np.testing.assert_array_equal(toolpath.bead_layers(), runs["layer"][of])
+        np.testing.assert_array_equal(toolpath.bead_tools(), runs["tool"][of])
+        np.testing.assert_array_equal(toolpath.bead_objects(), runs["object"][of])
+        np.testing.assert_array_equal(toolpath.bead_features(), runs["feature"][of])
+        self.assertEqual(set(np.unique(toolpath.bead_tools())), {0, 1})
+        straight = toolpath.beads["arc"] < 0
+        np.testing.assert_array_equal(toolpath.bead_lines()[straight], -toolpath.beads["arc"][straight])
+        beads = toolpath.beads
+        length = np.sqrt(sum((beads[a + "1"] - beads[a + "0"]) ** 2 for a in "xyz"))
+        np.testing.assert_allclose(toolpath.bead_lengths()[straight], length[straight])
+
+    def test_selection(self):
+        toolpath = stratum.read(gcode("hull.gcode"))
+        chosen = toolpath.select(layers="2:3", features="+external-perimeter")
+        expected = np.isin(toolpath.bead_layers(), (2, 3)) & (
+            toolpath.bead_features() == stratum.features.index("external-perimeter"))
+        np.testing.assert_array_equal(chosen, np.flatnonzero(expected))
+        with self.assertRaisesRegex(stratum.UsageError, "external-perimeter"):
+            toolpath.select(features="+outer")
+
+    def test_times(self):
+        toolpath = stratum.read(gcode("tile.gcode"), timed=True)
+        timing = toolpath.timing
+        self.assertEqual(timing.dtype, stratum.timing_dtype)
+        self.assertEqual(len(timing), len(toolpath))
+        self.assertTrue((np.diff(timing["start"]) >= 0).all())
+        self.assertAlmostEqual(timing["seconds"].sum(), sum(toolpath.times["features"].values()), delta=0.1)
+        self.assertGreaterEqual(toolpath.times["total"], timing["start"][-1])
+        self.assertIsNone(stratum.read(gcode("tile.gcode")).timing)
+        self.assertIsNone(stratum.read(gcode("tile.gcode")).times)
+
+
+class Views(unittest.TestCase):
+    def test_layout(self):
+        self.assertEqual(stratum.bead_dtype.itemsize, 60)
+        self.assertEqual(stratum.bead_dtype.names, ("x0", "y0", "z0", "x1", "y1", "z1", "width", "run", "arc"))
+        self.assertEqual(stratum.run_dtype.itemsize, 16)
+
+    def test_no_copy_and_read_only(self):
+        toolpath = stratum.read(gcode("tile.gcode"), timed=True)
+        for name in ("beads", "runs", "arcs", "timing"):
+            one, other = getattr(toolpath, name), getattr(toolpath, name)
+            if len(one):
+                self.assertEqual(one.ctypes.data, other.ctypes.data)
+                self.assertTrue(np.shares_memory(one, other))
+            self.assertFalse(one.flags.writeable)
+            with self.assertRaises(ValueError):
+                one.flags.writeable = True
+        with self.assertRaises(ValueError):
+            toolpath.beads["x0"][0] = 1
+
+    def test_view_keeps_its_owner(self):
+        toolpath = stratum.read(gcode("tile.gcode"))
+        beads = toolpath.beads
+        copy = beads.copy()
+        runs = toolpath.runs
+        self.assertGreater(sys.getrefcount(toolpath), 2)
+        del toolpath
+        gc.collect()
+        trash = [np.full(1000, 7, stratum.bead_dtype) for _ in range(100)]
+        self.assertTrue(np.array_equal(beads, copy))
+        self.assertGreater(runs["height"].min(), 0)
+        del trash
+
+    def test_a_million_beads(self):
+        beads, runs = box_of_beads(1_000_000)
+        toolpath = stratum.make_toolpath(beads, runs)
+        seconds = []
+        for _ in range(20):
+            start = time.perf_counter()
+            view = toolpath.beads
+            seconds.append(time.perf_counter() - start)
+        self.assertEqual(len(view), 1_000_000)
+        self.assertTrue(np.shares_memory(view, toolpath.beads))
+        start = time.perf_counter()
+        view.copy()
+        copying = time.perf_counter() - start
+        # A copy of 60 MB takes milliseconds.
+        self.assertLess(min(seconds), 0.05 * copying)
+        print(f"10^6 beads: a view takes {min(seconds) * 1e6:.0f} us, a copy {copying * 1e3:.0f} ms")
+
+
+class Arrays(unittest.TestCase):
+    def test_the_same_again(self):
+        toolpath = stratum.read(gcode("tile_arcs.gcode"))
+        again = stratum.make_toolpath(toolpath.beads, toolpath.runs, toolpath.arcs, toolpath.objects)
+        self.assertGreater(len(toolpath.arcs), 0)
+        for name in ("beads", "runs", "arcs"):
+            self.assertTrue(np.array_equal(getattr(again, name), getattr(toolpath, name)))
+        self.assertFalse(np.shares_memory(again.beads, toolpath.beads))
+        self.assertAlmostEqual(again.extruded_mm3, toolpath.bead_volumes().sum(), places=6)
+
+    def test_replace(self):
+        toolpath = stratum.read(gcode("tile.gcode"), timed=True)
+        beads = toolpath.beads.copy()
+        beads["x0"] += 10
+        beads["x1"] += 10
+        moved = toolpath.replace(beads=beads)
+        np.testing.assert_array_equal(moved.beads["x0"], toolpath.beads["x0"] + 10)
+        self.assertEqual(moved.slicer, toolpath.slicer)
+        self.assertIsNone(moved.timing)
+        half = toolpath.replace(beads=toolpath.beads[::2])
+        np.testing.assert_array_equal(half.beads["y1"], toolpath.beads["y1"][::2])
+
+    def refuses(self, remedy, change=None, **arrays):
+        beads, runs = box_of_beads(10)
+        given = {"beads": beads, "runs": runs, **arrays}
+        if change:
+            change(given)
+        with self.assertRaisesRegex(stratum.UsageError, remedy):
+            stratum.make_toolpath(given["beads"], given["runs"], given.get("arcs"), given.get("objects"))
+
+    def test_bad_arrays(self):
+        self.assertTrue(issubclass(stratum.UsageError, ValueError))
+        self.refuses("numpy.zeros", beads=[1, 2, 3])
+        self.refuses("dtype stratum.bead_dtype.*field by field", beads=np.zeros((10, 9)).reshape(-1))
+        self.refuses(r"not the shape \(10, 1\); use .reshape", lambda g: g.update(beads=g["beads"].reshape(10, 1)))
+        self.refuses("is empty", lambda g: g.update(beads=g["beads"][:0]))
+        self.refuses("dtype stratum.run_dtype", runs=np.zeros(1, stratum.arc_dtype))
+        for bad in (np.nan, np.inf, 1e9):
+            self.refuses(r"beads\[3\]: y1 is .*leave such beads out", lambda g, v=bad: g["beads"]["y1"].__setitem__(3, v))
+        for bad in (np.nan, 0, -1, 1e4):
+            self.refuses(r"beads\[2\]: width", lambda g, v=bad: g["beads"]["width"].__setitem__(2, v))
+            self.refuses(r"runs\[0\]: height", lambda g, v=bad: g["runs"]["height"].__setitem__(0, v))
+        self.refuses(r"beads\[9\]: run 1: there are 1", lambda g: g["beads"]["run"].__setitem__(9, 1))
+        self.refuses(r"beads\[0\]: arc 0: there are 0", lambda g: g["beads"]["arc"].__setitem__(0, 0))
+        self.refuses(r"runs\[0\]: object 1", lambda g: g["runs"]["object"].__setitem__(0, 1))
+        self.refuses(r"runs\[0\]: feature 200", lambda g: g["runs"]["feature"].__setitem__(0, 200))
+        self.refuses(r"runs\[0\]: speed", lambda g: g["runs"]["speed"].__setitem__(0, np.nan))
+        self.refuses("the first must be", objects=["cube"])
+        arcs = np.zeros(1, stratum.arc_dtype)
+        self.refuses(r"arcs\[0\]: sweep 0", arcs=arcs)
+        arcs = arcs.copy()
+        arcs["sweep"] = 1
+        self.refuses(r"beads\[5\]: its ends are", lambda g: g["beads"]["arc"].__setitem__(5, 0), arcs=arcs)
+
+    def test_strided_arrays(self):
+        beads, runs = box_of_beads(20)
+        toolpath = stratum.make_toolpath(beads[::-2], runs)
+        self.assertTrue(np.array_equal(toolpath.beads, beads[::-2]))
+
+
+class Errors(unittest.TestCase):
+    def test_input(self):
+        for source, text in (("/nowhere/part.gcode", "/nowhere/part.gcode"), (b"", "empty|no G-code"), (b"\0" * 100, "")):
+            with self.assertRaisesRegex(stratum.InputError, text):
+                stratum.read(source)
+
+    def test_options(self):
+        path = gcode("tile.gcode")
+        with self.assertRaisesRegex(TypeError, "did you mean 'filament_diameter'.*there are"):
+            stratum.read(path, filament_diametre=2)
+        with self.assertRaisesRegex(stratum.UsageError, "did you mean 'klipper'"):
+            stratum.read(path, firmware="kliper")
+        with self.assertRaisesRegex(TypeError, "plate: expected a whole number, not 1.5"):
+            stratum.read(path, plate=1.5)
+        with self.assertRaisesRegex(stratum.UsageError, "from 0 to 0.5"):
+            stratum.read(path, sag=3)
+        with self.assertRaisesRegex(stratum.UsageError, "finite"):
+            stratum.read(path, layer_height=float("nan"))
+        with self.assertRaisesRegex(TypeError, "expected a path"):
+            stratum.read(42)
+        with self.assertRaisesRegex(TypeError, "progress"):
+            stratum.read(path, progress=3)
+
+
+class Threads(unittest.TestCase):
+    def test_many_read_one(self):
+        toolpath = stratum.read(gcode("hull.gcode"))
+        expected = toolpath.beads["x0"].sum()
+        found = []
+
+        def work():
+            for _ in range(20):
+                found.append(toolpath.beads["x0"].sum() == expected and len(toolpath.select(layers="1:5")) > 0)
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(found), 80)
+        self.assertTrue(all(found))
+
+
+if __name__ == "__main__":
+    unittest.main()
