@@ -203,6 +203,20 @@ def voxelize(
     grids: str | Sequence[str] | None = ..., unit: Literal["mm", "cm", "m"] | None = ...,
     up: Literal["z", "y"] | None = ..., origin: Literal["bed", "center", "min"] | None = ...,
 ) -> LevelSet: ...
+def report(
+    toolpath: Toolpath, *, progress: _Progress | None = ..., density: float | None = ..., price: float | None = ...,
+    voxel_size: float | None = ..., voxels_per_layer: int | None = ..., tolerance: float | None = ...,
+    memory_budget: str | None = ..., half_width: float | None = ..., layers: str | None = ...,
+    features: str | Sequence[str] | None = ..., objects: str | Sequence[str] | None = ...,
+    tools: int | Sequence[int] | None = ..., interior: Literal["keep", "cull"] | None = ...,
+) -> dict[str, Any]: ...
+def compare(
+    toolpath: Toolpath, model: _Path, *, progress: _Progress | None = ..., at: Literal["fit", "bed"] | None = ...,
+    voxel_size: float | None = ..., voxels_per_layer: int | None = ..., tolerance: float | None = ...,
+    memory_budget: str | None = ..., half_width: float | None = ..., layers: str | None = ...,
+    features: str | Sequence[str] | None = ..., objects: str | Sequence[str] | None = ...,
+    tools: int | Sequence[int] | None = ...,
+) -> dict[str, Any]: ...
 def voxelize_block(
     toolpath: Toolpath, box: _Box | None = ..., *, progress: _Progress | None = ..., voxel_size: float | None = ...,
     voxels_per_layer: int | None = ..., tolerance: float | None = ..., memory_budget: str | None = ...,

@@ -1,4 +1,5 @@
 // The Python module stratum._stratum: the package stratum takes everything from it.
+#include "python/bind_measures.h"
 #include "python/bind_picture.h"
 #include "python/errors.h"
 #include "python/level_set_object.h"
@@ -15,6 +16,7 @@ PYBIND11_MODULE(_stratum, module) {
     bindErrors(module);
     bindToolpath(module);
     bindLevelSet(module);
+    bindMeasures(module);
     bindPrintField(module);
     bindIntersector(module);
     bindPicture(module);

@@ -223,6 +223,19 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
     return beads;
 }
 
+std::vector<std::uint32_t> beadsOfModel(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+    using gcode::Feature;
+    std::vector<std::uint32_t> of_model;
+    for (const std::uint32_t bead : selection) {
+        const Feature feature = toolpath.runOf(toolpath.beads[bead]).feature;
+        if (feature != Feature::skirt && feature != Feature::brim && feature != Feature::support &&
+            feature != Feature::support_interface && feature != Feature::wipe_tower)
+            of_model.push_back(bead);
+    }
+    if (of_model.empty()) of_model.assign(selection.begin(), selection.end());
+    return of_model;
+}
+
 bool needsTiming(std::string_view snapshots) { return snapshots.find("time:") != std::string_view::npos; }
 
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath, std::string_view option) {

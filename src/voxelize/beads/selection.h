@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,10 @@ void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpa
 
 /// Indices of the selected beads, ascending. Throws InputError, with a list of what the print has, if there are none.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
+
+/// Those of a selection that print the model: without what slicers add to it (skirts, brims, supports, wipe towers);
+/// all if there is nothing else.
+std::vector<std::uint32_t> beadsOfModel(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
 /// Whether such a list names a time, which needs a planned motion (Toolpath::timing) to be accurate.
 bool needsTiming(std::string_view snapshots);

@@ -1,7 +1,7 @@
 // -o part.inp: the solid voxels of a print as hexahedra for CalculiX and Abaqus.
 #pragma once
 
-#include "conversion.h"
+#include "convert/conversion.h"
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"

@@ -1,7 +1,7 @@
 // --compare: how far a print is from its model.
 #pragma once
 
-#include "conversion.h"
+#include "convert/conversion.h"
 
 #include "compare/closed_model.h"
 #include "compare/comparison.h"

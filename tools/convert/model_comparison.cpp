@@ -1,4 +1,4 @@
-#include "model_comparison.h"
+#include "convert/model_comparison.h"
 
 #include "choices.h"
 #include "progress.h"
@@ -6,25 +6,17 @@
 #include "base/error.h"
 #include "compare/comparison_report.h"
 #include "compare/model_file.h"
+#include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace stratum::tools {
 namespace {
-
-// What slicers add to a model.
-bool isOfModel(gcode::Feature feature) {
-    using gcode::Feature;
-    return feature != Feature::skirt && feature != Feature::brim && feature != Feature::support &&
-           feature != Feature::support_interface && feature != Feature::wipe_tower;
-}
 
 std::string lineOf(const char* what, const compare::Deviations& found) {
     if (found.samples == 0) return fmt::format("    {:8} none", what);
@@ -87,14 +79,11 @@ ModelComparison compareWithModel(const ConvertCommand& o, const gcode::Toolpath&
     ModelComparison comparison;
     comparison.model =
         std::make_unique<const compare::ClosedModel>(compare::readModel(o.compare.model), o.compare.model);
-    std::vector<std::uint32_t> of_model;
-    std::copy_if(selection.begin(), selection.end(), std::back_inserter(of_model),
-                 [&toolpath](std::uint32_t bead) { return isOfModel(toolpath.runOf(toolpath.beads[bead]).feature); });
-    if (of_model.empty()) of_model.assign(selection.begin(), selection.end());
     const ProgressNote note("comparing", o.common.quiet);
     voxelize::VoxelizeOptions outside;
     outside.interior = voxelize::Interior::cull;
-    const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, of_model, lattice, outside);
+    const openvdb::FloatGrid::Ptr grid =
+        voxelize::voxelize(toolpath, voxelize::beadsOfModel(toolpath, selection), lattice, outside);
     compare::CompareOptions options;
     if (o.compare.placement == "bed") options.placement = compare::ModelPlacement::bed;
     comparison.found = compare::compareToModel(*grid, *comparison.model, options);

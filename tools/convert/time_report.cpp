@@ -1,4 +1,4 @@
-#include "time_report.h"
+#include "convert/time_report.h"
 
 #include "gcode/toolpath/toolpath.h"
 

@@ -1,4 +1,4 @@
-#include "toolpath_report.h"
+#include "convert/toolpath_report.h"
 
 #include "gcode/summary.h"
 

@@ -1,4 +1,4 @@
-#include "convert_shard.h"
+#include "convert/convert_shard.h"
 
 #include "shard_option.h"
 

@@ -1,4 +1,4 @@
-#include "grid_report.h"
+#include "convert/grid_report.h"
 
 #include "voxelize/beads/estimate.h"
 #include "voxelize/grid/enclosed_volume.h"

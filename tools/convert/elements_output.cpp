@@ -1,4 +1,4 @@
-#include "elements_output.h"
+#include "convert/elements_output.h"
 
 #include "progress.h"
 

@@ -1,7 +1,7 @@
 // gcode2vdb --shard: which part of a print is this process's, and whether it is there already.
 #pragma once
 
-#include "conversion.h"
+#include "convert/conversion.h"
 
 #include "export/parts/part_of_print.h"
 

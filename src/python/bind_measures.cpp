@@ -1,0 +1,99 @@
+#include "python/bind_measures.h"
+
+#include "python/conversion.h"
+#include "python/keywords.h"
+#include "python/long_call.h"
+#include "python/toolpath_object.h"
+
+#include "compare/comparison_report.h"
+#include "compare/model_file.h"
+#include "report/print_report.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/voxelizer.h"
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace stratum::python {
+
+namespace py = pybind11;
+using namespace py::literals;
+
+namespace {
+
+constexpr const char* kReport = R"(report(toolpath, *, density=None, price=None, progress=None, **options) -> dict
+
+Numbers of a print, as gcode2vdb --report writes them: each with its title, value, unit and definition; columns by layer
+and by height; and what could not be told, with the reason. density in g/cm3 and price of a kg replace the file's. Options
+of voxelize(). A toolpath that was read with timed=True has its time in it.
+
+Raises UsageError for options that don't fit the print or the memory.)";
+
+constexpr const char* kCompare = R"(compare(toolpath, model, *, at="fit", progress=None, **options) -> dict
+
+How far a print is from its model (.stl, .3mf, .obj), and the model from the print, as gcode2vdb --compare tells: mean, RMS,
+what 95 % stay within, extremes and their places, in mm, by the side that the model's surface looks to. at: "fit" places
+the model where it fits best, "bed" as its file has it. Options: voxel_size (mm), voxels_per_layer, tolerance (mm),
+memory_budget, half_width (voxels); layers, features, objects, tools.
+
+Raises InputError for a model that is open or inside out.)";
+
+constexpr std::array<std::pair<std::string_view, compare::ModelPlacement>, 2> kPlacements = {
+    {{"fit", compare::ModelPlacement::fit}, {"bed", compare::ModelPlacement::bed}}};
+
+py::object dictOf(const nlohmann::ordered_json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
+
+py::object reportPrint(const ToolpathObject& print, const py::object& progress, const py::kwargs& given) {
+    Keywords keywords("report", given);
+    report::ReportOptions options;
+    options.density = keywords.number("density", 0.01, 25);
+    options.price = keywords.number("price", 0, 1e9);
+    ConversionOptions conversion = conversionOptionsOf(keywords);
+    keywords.finish();
+    conversion.attributes.emplace();
+    options.source = print.source;
+    options.selection = voxelize::describeSelection(conversion.print);
+    options.culled = conversion.interior == voxelize::Interior::cull;
+    return dictOf(callLong(progress, [&](const Report& report) {
+        Conversion made(print, std::move(conversion));
+        const openvdb::GridPtrVec grids = made.makeGrids(report);
+        return report::reportOf(static_cast<const openvdb::FloatGrid&>(*grids.front()), *print.toolpath,
+                                made.selection(), made.lattice(), print.times, options);
+    }));
+}
+
+py::object comparePrint(const ToolpathObject& print, const py::object& model, const py::object& progress,
+                        const py::kwargs& given) {
+    Keywords keywords("compare", given);
+    compare::CompareOptions options;
+    assign(options.placement, keywords.choice("at", kPlacements));
+    ConversionOptions conversion;
+    conversion.print = printOptionsOf(keywords);
+    conversion.interior = voxelize::Interior::cull;
+    conversion.attributes.emplace();
+    keywords.finish();
+    const auto path = py::module_::import("os").attr("fspath")(model).cast<std::string>();
+    return dictOf(callLong(progress, [&](const Report& report) {
+        const compare::ClosedModel closed(compare::readModel(path), path);
+        const Conversion chosen(print, std::move(conversion));
+        voxelize::VoxelizeOptions outside;
+        outside.interior = voxelize::Interior::cull;
+        outside.progress = report;
+        const auto grid = voxelize::voxelize(
+            *print.toolpath, voxelize::beadsOfModel(*print.toolpath, chosen.selection()), chosen.lattice(), outside);
+        return compare::describe(compare::compareToModel(*grid, closed, options));
+    }));
+}
+
+}  // namespace
+
+void bindMeasures(py::module_& module) {
+    module.def("report", &reportPrint, kReport, "toolpath"_a, py::kw_only(), "progress"_a = py::none());
+    module.def("compare", &comparePrint, kCompare, "toolpath"_a, "model"_a, py::kw_only(), "progress"_a = py::none());
+}
+
+}  // namespace stratum::python
