@@ -28,7 +28,7 @@ struct SolidSums {
 };
 
 /// The surface is measured in all leaves if they are fewer, else in a sample of about so many, chosen by a hash of
-/// their number: its standard error is then below 0.2 %, for the area of a leaf varies by half.
+/// their number. On a print of 1.4 times as many leaves it was 0.08 % (outer) and 0.23 % (inner) off.
 constexpr std::size_t kAreaSample = std::size_t{1} << 17;
 
 /// Where the trilinear field is negative. Only signs and zero crossings are used; a mixed cell is measured along four
