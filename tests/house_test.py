@@ -24,7 +24,7 @@ MAY_INCLUDE = {
     "shade": {"base", "trace"},
     "assemble": {"base", "gcode", "motion", "deposit", "voxelize", "trace", "march", "ondemand", "shade"},
     "serve": {"base"},
-    "python": {"base", "gcode", "motion", "deposit", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
+    "python": {"compare", "report", "base", "gcode", "motion", "deposit", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
     "view": {"base", "gcode", "voxelize", "trace", "march", "ondemand", "shade", "assemble", "serve"},
     "study": {"base", "gcode", "voxelize", "export", "report", "trace", "march", "ondemand", "shade", "assemble"},
 }

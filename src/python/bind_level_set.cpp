@@ -3,8 +3,8 @@
 #include "python/dense_block.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
+#include "python/options/print_options.h"
 #include "python/point_loop.h"
-#include "python/print_options.h"
 
 #include "base/error.h"
 #include "march/file/level_set_file.h"

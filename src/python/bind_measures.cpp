@@ -1,8 +1,8 @@
 #include "python/bind_measures.h"
 
 #include "python/conversion.h"
-#include "python/keywords.h"
 #include "python/long_call.h"
+#include "python/options/keywords.h"
 #include "python/toolpath_object.h"
 
 #include "compare/comparison_report.h"

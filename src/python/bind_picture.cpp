@@ -2,7 +2,7 @@
 
 #include "python/arrays.h"
 #include "python/long_call.h"
-#include "python/picture_options.h"
+#include "python/options/picture_options.h"
 #include "python/toolpath_object.h"
 
 #include "assemble/finished_picture.h"

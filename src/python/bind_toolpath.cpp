@@ -1,8 +1,8 @@
 #include "python/arrays.h"
-#include "python/keywords.h"
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
-#include "python/print_options.h"
+#include "python/options/keywords.h"
+#include "python/options/print_options.h"
 #include "python/toolpath_object.h"
 
 #include "base/checksum.h"

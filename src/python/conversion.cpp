@@ -1,6 +1,6 @@
 #include "python/conversion.h"
 
-#include "python/print_options.h"
+#include "python/options/print_options.h"
 
 #include "export/vdb_stream.h"
 #include "gcode/slicer/bead_colors.h"

@@ -1,7 +1,7 @@
 // One conversion of a toolpath: the choices of gcode2vdb, and what it writes.
 #pragma once
 
-#include "python/keywords.h"
+#include "python/options/keywords.h"
 #include "python/long_call.h"
 #include "python/toolpath_object.h"
 

@@ -178,7 +178,7 @@ check(all(modulus <= 1.02 * share for share, modulus, _ in steps), "and stays be
 exponent = math.log(high / low) / math.log(high_share / low_share)
 check(1 <= exponent <= 3, f"as share^{exponent:.2f}, between 1 and 3")
 
-# Skirts are another piece; sets are those of the reader.
+# What no face joins is another piece; sets are those of the reader.
 _, made = elements(gcode("tile.gcode"), "one", "--voxel-size", "0.4", "--features", "+skirt,+perimeter,+external-perimeter")
 _, every = elements(gcode("tile.gcode"), "all", "--voxel-size", "0.4", "--features",
                     "+skirt,+perimeter,+external-perimeter", "--all-pieces")
@@ -186,7 +186,7 @@ check(made["pieces"] > 1 and made["elements"] + made["removed_elements"] == ever
       f"the largest of {made['pieces']} pieces is kept, {made['removed_elements']} elements are left out and said")
 with open(os.path.join(FOLDER, "all.inp"), encoding="ascii") as file:
     text = file.read()
-for name in ("LAYER_1", "FEATURE_SKIRT", "FEATURE_PERIMETER", "TOOL_0"):
+for name in ("LAYER_1", "FEATURE_EXTERNAL_PERIMETER", "FEATURE_PERIMETER", "TOOL_0"):
     check(f"*ELSET, ELSET={name}," in text and f"*NSET, NSET={name}," in text, f"  {name}")
 
 # What can't be: a message, no file.

@@ -1,7 +1,7 @@
 // Options of Python -> a picture.
 #pragma once
 
-#include "python/keywords.h"
+#include "python/options/keywords.h"
 
 #include "assemble/ready_scene.h"
 

@@ -1,4 +1,4 @@
-#include "python/print_options.h"
+#include "python/options/print_options.h"
 
 #include "base/error.h"
 #include "deposit/printer.h"

@@ -1,6 +1,6 @@
-#include "python/picture_options.h"
+#include "python/options/picture_options.h"
 
-#include "python/print_options.h"
+#include "python/options/print_options.h"
 
 #include "base/error.h"
 #include "shade/brdf/filament_color.h"

@@ -1,7 +1,7 @@
 // Options of Python -> what reads and selects prints.
 #pragma once
 
-#include "python/keywords.h"
+#include "python/options/keywords.h"
 
 #include "gcode/reader.h"
 #include "voxelize/grid/print_options.h"

@@ -1,4 +1,4 @@
-#include "python/keywords.h"
+#include "python/options/keywords.h"
 
 #include "base/error.h"
 #include "base/nearest_name.h"
