@@ -1,8 +1,8 @@
 // One conversion of a toolpath: the choices of gcode2vdb, and what it writes.
 #pragma once
 
-#include "python/options/keywords.h"
 #include "python/long_call.h"
+#include "python/options/keywords.h"
 #include "python/toolpath_object.h"
 
 #include "export/vdb_file.h"
