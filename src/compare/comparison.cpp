@@ -80,8 +80,9 @@ public:
     explicit Hidden(const openvdb::FloatGrid& print) : phi_(print), voxel_(print.voxelSize()[0]) {}
 
     bool operator()(const glm::dvec3& at, const glm::dvec3& normal, double distance) const {
-        for (double up = voxel_; up < voxel_ - distance; up += 0.5 * voxel_) {
-            const glm::dvec3 p = at + normal * up;
+        const auto steps = static_cast<int>(std::ceil(std::max(-distance, 0.0) / (0.5 * voxel_)));
+        for (int n = 0; n < steps; ++n) {
+            const glm::dvec3 p = at + normal * (voxel_ * (1 + 0.5 * n));
             if (phi_.wsSample({p.x, p.y, p.z}) < 0) return true;
         }
         return false;

@@ -3,8 +3,8 @@
 
 #include "gcode/toolpath/toolpath.h"
 
-#include <compare>
 #include <cstdint>
+#include <tuple>
 
 namespace stratum::mechanics {
 
@@ -13,7 +13,10 @@ namespace stratum::mechanics {
 struct BeadDirection {
     std::int16_t azimuth = 0;    ///< degrees from x to y, 0..179
     std::int16_t elevation = 0;  ///< degrees above the plan, -90..90; 0 for level beads
-    auto operator<=>(const BeadDirection&) const = default;
+    bool operator==(const BeadDirection&) const = default;
+    bool operator<(const BeadDirection& other) const {
+        return std::tie(azimuth, elevation) < std::tie(other.azimuth, other.elevation);
+    }
 };
 
 /// At the place of the bead that is nearest to (x, y), mm: arcs turn. Beads of no length: along x.

@@ -14,7 +14,8 @@ namespace {
 
 struct PlanPlace {
     std::int32_t j, i;
-    auto operator<=>(const PlanPlace&) const = default;
+    bool operator==(const PlanPlace&) const = default;
+    bool operator<(const PlanPlace& other) const { return std::tie(j, i) < std::tie(other.j, other.i); }
 };
 
 // The elements of each plane of cubes, and the nodes of each plane of corners.

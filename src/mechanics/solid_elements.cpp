@@ -69,7 +69,7 @@ private:
         for (int z = 0; z < kLeafDim; ++z)
             for (int x = 0; x < kLeafDim; ++x)
                 for (int y = 0; y < kLeafDim; ++y) {
-                    const auto at = static_cast<std::size_t>(x * kLeafDim + y);
+                    const std::size_t at = static_cast<std::size_t>(x) * kLeafDim + static_cast<std::size_t>(y);
                     if (!(phi.plane[z].v[at] < 0)) continue;
                     const std::uint32_t rank = owners[at * kLeafDim + static_cast<std::size_t>(z)];
                     // Inside, and yet no bead within the band: only where welds reach deeper than beads.

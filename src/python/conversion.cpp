@@ -27,17 +27,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> kUps = {{
 constexpr std::array<std::pair<std::string_view, voxelize::Interior>, 2> kInteriors = {
     {{"keep", voxelize::Interior::keep}, {"cull", voxelize::Interior::cull}}};
 
-voxelize::Placement placementOf(const ConversionOptions& options, const voxelize::Bounds& bounds) {
-    voxelize::Placement placement;
-    placement.unit = 1 / voxelize::millimetresIn(options.unit);
-    placement.up_y = options.up == "y";
-    if (options.origin == "bed") return placement;
-    for (int axis = 0; axis < 2; ++axis)
-        placement.offset[axis] = options.origin == "center" ? -bounds.center(axis) : -bounds.min[axis];
-    placement.offset[2] = -bounds.min[2];
-    return placement;
-}
-
 }  // namespace
 
 ConversionOptions conversionOptionsOf(Keywords& keywords) {
@@ -60,7 +49,7 @@ Conversion::Conversion(const ToolpathObject& print, ConversionOptions options)
       selection_(voxelize::selectBeads(toolpath_, voxelize::selectionOf(options_.print, toolpath_))),
       bounds_(voxelize::boundsOf(toolpath_, selection_)),
       lattice_(voxelize::latticeFor(options_.print, toolpath_, selection_, bounds_, options_.interior)),
-      placement_(placementOf(options_, bounds_)) {
+      placement_(voxelize::placementOf(options_.unit, options_.up, options_.origin, bounds_)) {
     const std::vector<std::optional<gcode::Rgb>> colors = gcode::distinctColors(toolpath_, selection_);
     if (options_.attributes)
         attributes_ = *options_.attributes;

@@ -51,16 +51,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-voxelize::Placement placementFor(const ConvertCommand& o, const voxelize::Bounds& bounds) {
-    voxelize::Placement placement;
-    placement.unit = 1 / voxelize::millimetresIn(o.unit);
-    if (o.origin == "bed") return placement;
-    for (int axis = 0; axis < 2; ++axis)
-        placement.offset[axis] = o.origin == "center" ? -bounds.center(axis) : -bounds.min[axis];
-    placement.offset[2] = -bounds.min[2];
-    return placement;
-}
-
 // One output: the whole selection, or what of it a snapshot has printed.
 struct Job {
     std::string label;
@@ -174,8 +164,9 @@ private:
     // Solid elements instead of a level set.
     Json makeElements(int threads) {
         provenance_.source_sha256 = o_.common.stats.empty() ? "" : sha256Hex(file_.bytes());
-        files_.push_back(
-            writeElements(o_, toolpath_, selection_, lattice_, placementFor(o_, bounds_), file_.name(), output_));
+        files_.push_back(writeElements(o_, toolpath_, selection_, lattice_,
+                                       voxelize::placementOf(o_.unit, o_.up, o_.origin, bounds_), file_.name(),
+                                       output_));
         seconds_.write = watch_.lap();
         const double total = total_.lap();
         say(o_.common, fmt::format("  done in {:.2f} s", total));
@@ -231,8 +222,7 @@ private:
 
     voxelize::VoxelizeOptions voxelizeOptions() {
         voxelize::VoxelizeOptions options;
-        options.placement = placementFor(o_, bounds_);
-        options.placement.up_y = o_.up == "y";
+        options.placement = voxelize::placementOf(o_.unit, o_.up, o_.origin, bounds_);
         options.interior = interior_;
         options.in_memory = !streams();
         if (part_) options.shard = part_->shard;

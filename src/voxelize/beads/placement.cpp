@@ -6,6 +6,19 @@
 
 namespace stratum::voxelize {
 
+double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
+
+Placement placementOf(const std::string& unit, const std::string& up, const std::string& origin, const Bounds& bounds) {
+    Placement placement;
+    placement.unit = 1 / millimetresIn(unit);
+    placement.up_y = up == "y";
+    if (origin == "bed") return placement;
+    for (int axis = 0; axis < 2; ++axis)
+        placement.offset[axis] = origin == "center" ? -bounds.center(axis) : -bounds.min[axis];
+    placement.offset[2] = -bounds.min[2];
+    return placement;
+}
+
 openvdb::math::Transform::Ptr makeTransform(const Lattice& lattice, const Placement& placement) {
     const double edge = lattice.voxel_size * placement.unit;
     // OpenVDB treats a transform whose determinant is below 3e-15 as singular.

@@ -9,8 +9,6 @@
 
 namespace stratum::voxelize {
 
-double millimetresIn(const std::string& unit) { return unit == "m" ? 1000.0 : unit == "cm" ? 10.0 : 1.0; }
-
 Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath) {
     Selection selection;
     if (!options.layers.empty()) parseLayers(options.layers, selection);

@@ -4,6 +4,7 @@
 #include "gcode/reader.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
+#include "voxelize/beads/placement.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -28,9 +29,6 @@ struct PrintOptions {
     std::vector<std::string> objects;  ///< names or numbers, see chooseObject(); empty: all
     std::vector<std::uint8_t> tools;   ///< T numbers; empty: all
 };
-
-/// Millimetres in a world unit by its name in files and on command lines: mm, cm or m; 1 for unknown names.
-double millimetresIn(const std::string& unit);
 
 /// The beads of a print that the lists of layers, features and objects select. Throws UsageError or InputError.
 Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpath);
