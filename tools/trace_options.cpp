@@ -219,11 +219,12 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("LENGTH")
         ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
-    materials.insert(materials.end(), {"lambert:", "plastic:"});
+    materials.insert(materials.end(), {"lambert:", "plastic:", "translucent:"});
     completes(
         app.add_option(
             "--brdf", o.scene.brdf,
-            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), a measured table (Mini-Diff, Zemax, ASTM E1392, "
+            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
+            "through; also natural-pla, clear-petg, lithophane-white), a measured table (Mini-Diff, Zemax, ASTM E1392, "
             "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
             "the file states them)"),
         Completion::preset, materials)

@@ -8,9 +8,9 @@
 namespace stratum::test {
 
 inline shade::Color meanRadiance(const trace::Intersector& print, const shade::Integrator& integrator,
-                                 const trace::Ray& ray, std::uint32_t samples) {
+                                 const trace::Ray& ray, std::uint32_t samples, std::uint32_t seed = 1) {
     const auto tracer = print.makeTracer();
-    shade::Sampler sampler(1, samples);
+    shade::Sampler sampler(seed, samples);
     shade::RayCounts rays;
     shade::TraceContext context{*tracer, sampler, rays};
     glm::dvec3 sum(0.0);

@@ -7,6 +7,7 @@
 #include "shade/brdf/plastic.h"
 #include "shade/brdf/preset.h"
 #include "shade/brdf/preset_names.h"
+#include "shade/brdf/translucent.h"
 #include "shade/camera/sampling.h"
 #include "shade/measured/brdf_file.h"
 
@@ -69,26 +70,30 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     if (!text.empty() && std::filesystem::is_regular_file(std::filesystem::path(text), error))
         return readBrdfFile(text);
     if (const auto color = parseNamedColor(text)) return std::make_shared<Plastic>(bodyOf(*color), kFilamentAlpha);
-    const std::vector<std::string> tables = namesIn(tableFolder());
-    std::vector<std::string_view> names(tables.begin(), tables.end());
-    names.insert(names.end(), {"lambert", "plastic"});
-    throw UsageError(
-        fmt::format("--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-                    "a colour (#ff6600, teal), a file, or one of: {}{}",
-                    text,
-                    tables.empty() ? fmt::format("none; {} has no tables", tableFolder().string())
-                                   : fmt::format("{}", fmt::join(tables, ", ")),
-                    didYouMean(text.substr(0, text.find(':')), names)));
+    const bool none = namesIn(tableFolder()).empty();
+    const std::vector<std::string> known = brdfNames();
+    std::vector<std::string_view> names(known.begin(), known.end());
+    names.insert(names.end(), {"lambert", "plastic", "translucent"});
+    throw UsageError(fmt::format(
+        "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+        "translucent:R,G,B,MEAN_FREE_PATH_MM, a colour (#ff6600, teal), a file, or one of: {}{}{}",
+        text, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
+        didYouMean(text.substr(0, text.find(':')), names)));
 }
 
 bool isFormula(std::string_view text) {
     const std::string_view name = text.substr(0, text.find(':'));
-    return name == "lambert" || name == "plastic";
+    return name == "lambert" || name == "plastic" || isTranslucent(text);
 }
 
 }  // namespace
 
-std::vector<std::string> brdfNames() { return namesIn(tableFolder()); }
+std::vector<std::string> brdfNames() {
+    std::vector<std::string> names = namesIn(tableFolder());
+    for (std::string& name : translucentNames()) names.push_back(std::move(name));
+    std::sort(names.begin(), names.end());
+    return names;
+}
 
 bool isBrdfPreset(std::string_view text) { return isFormula(text) || !tableNamed(text).empty(); }
 
@@ -107,6 +112,7 @@ const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     constexpr std::string_view kOption = "--brdf";
     if (text.empty()) text = kDefaultBrdf;
+    if (isTranslucent(text)) return makeTranslucent(text, kOption);
     if (!isFormula(text)) return readNamed(text);
     const Preset preset = parsePreset(text, kOption);
     const auto bodyColor = [&] {

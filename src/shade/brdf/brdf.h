@@ -14,6 +14,8 @@
 
 namespace stratum::shade {
 
+class Translucent;
+
 /// A direction drawn by Brdf::sample.
 struct BrdfSample {
     glm::vec3 wi{0.0f};  ///< towards the light, unit, local frame, wi.z > 0
@@ -39,6 +41,8 @@ public:
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
     /// The same with another body color (reflectance in [0, 1]); null for materials without a body color.
     virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
+    /// Itself, if light goes through it; see translucent.h.
+    virtual const Translucent* translucent() const { return nullptr; }
     /// Notes for reports: the source of a table, and whether it was measured.
     virtual const std::vector<std::string>& notes() const;
 };
@@ -52,6 +56,7 @@ extern const char* const kDefaultBrdf;
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
+///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in
 ///                        $STRATUM_DATA/brdf, or where it was installed or built

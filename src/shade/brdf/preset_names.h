@@ -14,7 +14,7 @@ bool isEnvironmentPreset(std::string_view text);
 /// Whether the text of --brdf names a material of the project: a formula with its numbers, or a table in data/brdf.
 bool isBrdfPreset(std::string_view text);
 
-/// The tables of the project by name, e.g. "pla-blue", sorted.
+/// The materials of the project that have a name, sorted: tables, e.g. "pla-blue", and translucent ones.
 std::vector<std::string> brdfNames();
 
 }  // namespace stratum::shade

@@ -16,6 +16,8 @@ namespace {
 /// samples of BedLight that miss the sun.
 constexpr float kBedShare = 0.25f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
+/// Surfaces that a path through translucent solids may meet: far more than roulette lets it.
+constexpr int kMostSurfaces = 1 << 14;
 
 /// Sets the members of the two groups: indices of things on the print, and of things on the bed.
 template <typename Groups, typename Things, typename IsBed>
@@ -31,6 +33,7 @@ PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Inter
     if (scene.bed) bed_light_ = scene.environment->makeBedLight();
     for (const auto& light : scene.lights)
         if (light->hasExtent()) extended_lights_.push_back(light.get());
+    if (scene.anyTranslucent()) walk_.emplace(surfaces_, print.bounds(), scene.mm_per_unit);
 }
 
 Pixel PathIntegrator::seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const {
@@ -59,6 +62,30 @@ void PathIntegrator::ShadowRays::clear() {
 void PathIntegrator::LightBatch::resize(std::size_t count) {
     normals.resize(count);
     samples.resize(count);
+}
+
+PathIntegrator::Path PathIntegrator::pathAt(const SurfacePoint& point, const glm::dvec3& direction,
+                                            const Color& throughput, std::size_t pixel, int scatterings,
+                                            const Translucent* inside) const {
+    Path path{point, direction, throughput, pixel, scatterings, nullptr, inside};
+    if (walk_) path.solid = point.brdf->translucent();
+    if (path.solid == nullptr) {
+        ++path.scatterings;
+        return path;
+    }
+    path.point.brdf = &path.solid->fromAir(path.side());
+    if (point.from_inside) {
+        path.point.normal = -point.normal;
+        path.point.geometric = -point.geometric;
+    }
+    return path;
+}
+
+PathIntegrator::PathVertex PathIntegrator::vertexOf(Path& path) {
+    const Frame frame{glm::vec3(path.point.normal)};
+    glm::vec3 wo = frame.toLocal(glm::vec3(-path.direction));
+    if (path.solid != nullptr && path.side() == Side::solid) wo.z = -wo.z;
+    return {&path, frame, wo};
 }
 
 void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const {
@@ -124,15 +151,34 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
     }
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(PathVertex& vertex, float lobe_draw,
+std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(PathVertex& vertex, const glm::vec2& lobe_draw,
                                                               const glm::vec2& brdf_draw) const {
     Path& path = *vertex.path;
-    const std::optional<BrdfSample> next = path.point.brdf->sample(vertex.wo, lobe_draw, brdf_draw);
+    if (path.solid != nullptr) return scatterThrough(vertex, lobe_draw, brdf_draw);
+    const std::optional<BrdfSample> next = path.point.brdf->sample(vertex.wo, lobe_draw.x, brdf_draw);
     if (!next) return std::nullopt;
     path.throughput *= next->f * (next->wi.z / next->pdf);
     if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
     const glm::vec3 direction = vertex.frame.toWorld(next->wi);
-    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f)};
+    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f), path.inside};
+    bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
+    return bounce;
+}
+
+std::optional<PathIntegrator::Bounce> PathIntegrator::scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw,
+                                                                     const glm::vec2& draw) const {
+    Path& path = *vertex.path;
+    const std::optional<InterfaceSample> next = path.solid->surface().sample(path.side(), vertex.wo, lobe_draw, draw);
+    if (!next) return std::nullopt;
+    const bool out = next->side == Side::air;
+    const glm::vec3 direction = vertex.frame.toWorld({next->wi.x, next->wi.y, out ? next->wi.z : -next->wi.z});
+    // With smooth normals it may be on the wrong side of the real surface.
+    if ((glm::dot(glm::dvec3(direction), path.point.geometric) > 0.0) != out) return std::nullopt;
+    if (!out) {
+        const Translucent* inside = path.side() == Side::solid && path.inside != nullptr ? path.inside : path.solid;
+        return Bounce{&vertex, surfaces_.enter(path.point, direction), direction, next->pdf, Color(0.0f), inside};
+    }
+    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f), nullptr};
     bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
     return bounce;
 }
@@ -176,7 +222,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     std::vector<Path> paths;
     paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeAt(points[n]) < 1.0f) paths.push_back({points[n], rays[n].direction, Color(1.0f), n});
+        if (fadeAt(points[n]) < 1.0f) paths.push_back(pathAt(points[n], rays[n].direction, Color(1.0f), n, 0, nullptr));
 
     ShadowRays shadow_rays;
     // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
@@ -190,17 +236,17 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     std::vector<trace::Ray> bounce_rays;
     std::vector<SurfacePoint> hits;
     std::vector<Path> next_paths;
-    for (int step = 1; step <= bounces_ && !paths.empty(); ++step) {
-        const bool last = step == bounces_;
+    std::vector<Walker> walkers;
+    const int steps = walk_ ? kMostSurfaces : bounces_;
+    for (int step = 1; step <= steps && !paths.empty(); ++step) {
+        // Where something is translucent, light may come through it to the last opaque surface.
+        const bool last = step == bounces_ && !walk_;
         shadow_rays.clear();
         escaped_rays.clear();
         vertices.clear();
         bounces.clear();
         vertices.reserve(paths.size());
-        for (Path& path : paths) {
-            const Frame frame{glm::vec3(path.point.normal)};
-            vertices.push_back({&path, frame, frame.toLocal(glm::vec3(-path.direction))});
-        }
+        for (Path& path : paths) vertices.push_back(vertexOf(path));
         // Every step draws the same dimensions in the same order, so that each dimension keeps its stratification.
         gatherGroups(groups, vertices, [](const PathVertex& vertex) { return vertex.path->point.bed; });
         for (const Group& group : groups) sampleEnvironment(group, vertices, samplers, shadow_rays, batch);
@@ -215,8 +261,13 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         next2DStream(samplers, batch.pixels, brdf_draws);
         for (std::size_t n = 0; n < vertices.size(); ++n) {
             PathVertex& vertex = vertices[n];
-            const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n].x, brdf_draws[n]);
+            const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n], brdf_draws[n]);
             if (!bounce) continue;
+            if (bounce->inside != nullptr) {
+                const Path& path = *vertex.path;
+                walkers.push_back({bounce->ray, bounce->inside, path.throughput, path.pixel, path.scatterings});
+                continue;
+            }
             sums[vertex.path->pixel] += vertex.path->throughput * scene_.ambient;
             bounces.push_back(*bounce);
         }
@@ -239,14 +290,15 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
         surfaces_.nearest(bounce_rays, tracer, hits);
-        continuePaths(bounces, hits, last, sums, next_paths);
+        continuePaths(bounces, hits, sums, next_paths);
+        if (!walkers.empty()) walk(walkers, samplers, tracer, counts, next_paths);
         paths.swap(next_paths);
     }
 
     blendBackdrop(rays, points, sums, pixels);
 }
 
-void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, bool last,
+void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits,
                                    std::span<Color> sums, std::vector<Path>& next_paths) const {
     next_paths.clear();
     for (std::size_t k = 0; k < bounces.size(); ++k) {
@@ -258,7 +310,26 @@ void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<co
         }
         // Lights occlude nothing, so one may lie in front of the surface.
         sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
-        if (!last) next_paths.push_back({hits[k], bounces[k].ray.direction, path.throughput, path.pixel});
+        goOn(pathAt(hits[k], bounces[k].ray.direction, path.throughput, path.pixel, path.scatterings, nullptr),
+             next_paths);
+    }
+}
+
+void PathIntegrator::goOn(const Path& path, std::vector<Path>& next_paths) const {
+    if (path.scatterings <= bounces_) next_paths.push_back(path);
+}
+
+void PathIntegrator::walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer,
+                          RayCounts& counts, std::vector<Path>& next_paths) const {
+    std::vector<Arrival> arrivals;
+    walk_->walk(walkers, samplers, tracer, counts, arrivals);
+    for (Arrival& arrival : arrivals) {
+        Walker& walker = arrival.walker;
+        // At a surface of little absorption a path may be reflected inwards again and again.
+        if (!survives(walker.throughput, samplers[walker.pixel])) continue;
+        goOn(pathAt(arrival.point, walker.ray.direction, walker.throughput, walker.pixel, walker.scatterings,
+                    walker.solid),
+             next_paths);
     }
 }
 

@@ -4,9 +4,11 @@
 #include "shade/environment/bed_light.h"
 #include "shade/frame.h"
 #include "shade/integrator/integrator.h"
+#include "shade/integrator/random_walk.h"
 #include "shade/integrator/surface.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace stratum::shade {
@@ -15,6 +17,11 @@ namespace stratum::shade {
 /// the BRDF's, combined by multiple importance sampling; on the bed BedLight takes the place of the environment's
 /// density. Every light is sampled at every vertex; lights with extent also by the BRDF. Unbiased for paths of that
 /// length; nothing is clamped.
+///
+/// Translucent solids let a path in at their rough surface; it walks inside (RandomWalk) until it meets the surface
+/// from there, is reflected inwards, or leaves. Such events do not count as bounces: the path ends by Russian roulette,
+/// or at the opaque surface that would be one too many. Lights are sampled from both sides of the surface, not from
+/// inside, where every ray would be refracted. A scene without such solids does nothing of this.
 ///
 /// All paths of a stream advance together by one vertex a step, so that rays of one kind are traced as a stream: first
 /// the shadow rays of a step, then the rays drawn from the BRDFs. The result of a path depends on its own ray and
@@ -36,6 +43,10 @@ private:
         glm::dvec3 direction;  // of the ray that met the point
         Color throughput{1.0f};
         std::size_t pixel = 0;
+        int scatterings = 0;                  // at opaque surfaces, this one included
+        const Translucent* solid = nullptr;   // of the point; null if it is opaque
+        const Translucent* inside = nullptr;  // where the ray came through; null for air
+        Side side() const { return point.from_inside ? Side::solid : Side::air; }
     };
     /// Rays, and the light that each adds to its pixel if it is unoccluded.
     struct ShadowRays {
@@ -49,7 +60,7 @@ private:
     struct PathVertex {
         Path* path;
         Frame frame;
-        glm::vec3 wo;  // unit, in `frame`, towards the previous vertex
+        glm::vec3 wo;  // unit, in `frame`, towards the previous vertex; z of the side that it is on (RoughInterface)
     };
     /// A ray drawn from the BRDF.
     struct Bounce {
@@ -57,7 +68,8 @@ private:
         trace::Ray ray;
         glm::vec3 direction;  // of ray
         float pdf;
-        Color escaped;  // radiance along it if it hits nothing, weighted by MIS
+        Color escaped;                        // radiance along it if it hits nothing, weighted by MIS
+        const Translucent* inside = nullptr;  // it goes through; null for air
     };
     /// Indices of vertices or bounces whose light comes from one density: on the bed BedLight's, else the
     /// environment's.
@@ -74,22 +86,32 @@ private:
         void resize(std::size_t count);
     };
 
+    /// A path at its next surface. Of a translucent solid the normals are made to point to the air.
+    Path pathAt(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput, std::size_t pixel,
+                int scatterings, const Translucent* inside) const;
+    static PathVertex vertexOf(Path& path);
     void sampleEnvironment(const Group& group, std::span<const PathVertex> vertices, std::span<Sampler> samplers,
                            ShadowRays& shadow_rays, LightBatch& batch) const;
     /// Adds one shadow ray for each light.
     void sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const;
     /// Draws the next direction of a path and updates its throughput; nothing if the path ends.
-    std::optional<Bounce> scatter(PathVertex& vertex, float lobe_draw, const glm::vec2& brdf_draw) const;
+    std::optional<Bounce> scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw) const;
+    /// The same at the surface of a translucent solid.
+    std::optional<Bounce> scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw) const;
+    /// Walks on inside of solids, and lists the paths that go on from where they meet a surface.
+    void walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+              std::vector<Path>& next_paths) const;
     /// Adds the environment's radiance to Bounce::escaped.
     void evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const;
     /// MIS-weighted radiance of the lights with extent that a ray drawn from the BRDF hits up to the distance t.
     Color hitLights(const trace::Ray& ray, double t, float pdf) const;
     /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels.
     void addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
-    /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits, unless they
-    /// are the last.
-    void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, bool last,
-                       std::span<Color> sums, std::vector<Path>& next_paths) const;
+    /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits, unless an
+    /// opaque one would be one too many.
+    void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, std::span<Color> sums,
+                       std::vector<Path>& next_paths) const;
+    void goOn(const Path& path, std::vector<Path>& next_paths) const;
     /// Share of the backdrop in what a camera ray sees.
     float fadeAt(const SurfacePoint& point) const;
     void blendBackdrop(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
@@ -98,6 +120,7 @@ private:
     const SceneDescription& scene_;
     std::unique_ptr<const BedLight> bed_light_;
     int bounces_;
+    std::optional<RandomWalk> walk_;             // only where something is translucent
     std::vector<const Light*> extended_lights_;  // of the scene, see Light::hasExtent
 };
 

@@ -10,7 +10,11 @@
 namespace stratum::shade {
 
 Surfaces::Surfaces(const SceneDescription& scene, const trace::Intersector& print)
-    : scene_(scene), offset_(print.surfaceOffset()), only_(scene.material) {}
+    : scene_(scene), offset_(print.surfaceOffset()), only_(scene.material) {
+    if (!scene.bed) return;
+    contact_ = scene.bed;
+    contact_->z += 0.05 * print.voxelSize();
+}
 
 SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const {
     SurfacePoint point;
@@ -30,6 +34,7 @@ SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, tra
     else
         point.normal = facing > 0.0 ? -hit.normal : hit.normal;
     point.geometric = point.normal;
+    point.from_inside = facing > 0.0;
     if (scene_.smooth_normals) {
         const glm::dvec3 smooth = tracer.shadingNormal(hit);
         const glm::dvec3 facing_us = facing > 0.0 ? -smooth : smooth;
@@ -40,16 +45,16 @@ SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, tra
     return point;
 }
 
-SurfacePoint Surfaces::onBed(const trace::Ray& ray, double t) const {
+SurfacePoint Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t) {
     SurfacePoint point;
     point.position = ray.origin + t * ray.direction;
-    point.position.z = scene_.bed->z;
+    point.position.z = bed.z;
     point.t = t;
     const glm::dvec2 xy(point.position.x, point.position.y);
-    const BedTexture::Finish& finish = scene_.bed->texture.at(xy);
+    const BedTexture::Finish& finish = bed.texture.at(xy);
     point.brdf = finish.brdf.get();
     point.albedo = finish.albedo;
-    const glm::dvec3 bump = scene_.bed->texture.normal(xy);
+    const glm::dvec3 bump = bed.texture.normal(xy);
     // As on the print: a normal that faces away from the viewer would render black.
     if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
     point.bed = true;
@@ -65,11 +70,21 @@ bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoin
     if (print)
         point = onPrint(ray, hit, tracer);
     else if (bed)
-        point = onBed(ray, *bed);
+        point = onBed(*scene_.bed, ray, *bed);
     return print || bed;
 }
 
 void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
+    nearest(rays, scene_.bed ? &*scene_.bed : nullptr, tracer, points);
+}
+
+void Surfaces::nearestInside(std::span<const trace::Ray> rays, trace::Tracer& tracer,
+                             std::span<SurfacePoint> points) const {
+    nearest(rays, contact_ ? &*contact_ : nullptr, tracer, points);
+}
+
+void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+                       std::span<SurfacePoint> points) const {
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<trace::Hit> hits;
     hits.resize(rays.size());
@@ -77,12 +92,12 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, 
     // fields.
     for (trace::Hit& hit : hits) hit.object = hit.part = 0;
     static thread_local std::vector<std::optional<double>> beds;
-    if (scene_.bed) {
+    if (bed != nullptr) {
         beds.resize(rays.size());
         static thread_local std::vector<trace::Ray> limited;
         limited.assign(rays.begin(), rays.end());
         for (std::size_t n = 0; n < rays.size(); ++n) {
-            beds[n] = scene_.bed->intersect(rays[n]);
+            beds[n] = bed->intersect(rays[n]);
             if (beds[n]) limited[n].t_max = *beds[n];
         }
         tracer.intersectStream(limited, hits);
@@ -92,8 +107,8 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, 
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
             points[n] = onPrint(rays[n], hits[n], tracer);
-        else if (scene_.bed && beds[n])
-            points[n] = onBed(rays[n], *beds[n]);
+        else if (bed != nullptr && beds[n])
+            points[n] = onBed(*bed, rays[n], *beds[n]);
         else
             points[n].t = std::numeric_limits<double>::infinity();
     }
@@ -123,6 +138,13 @@ void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
 trace::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {
     trace::Ray ray;
     ray.origin = point.position + offset_ * point.geometric;
+    ray.direction = glm::normalize(glm::dvec3(direction));
+    return ray;
+}
+
+trace::Ray Surfaces::enter(const SurfacePoint& point, const glm::vec3& direction) const {
+    trace::Ray ray;
+    ray.origin = point.position - offset_ * point.geometric;
     ray.direction = glm::normalize(glm::dvec3(direction));
     return ray;
 }

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace stratum::shade {
@@ -22,6 +23,7 @@ struct SurfacePoint {
     const Brdf* brdf = nullptr;
     Color albedo{0.0f};  ///< reflectanceFactor of brdf
     bool bed = false;
+    bool from_inside = false;  ///< the ray came through the solid; set for prints
     /// By Label: values at this point; -1 if the scene doesn't request the label or the object doesn't have it.
     std::array<float, kLabels> labels{-1.0f, -1.0f, -1.0f};
 };
@@ -35,12 +37,17 @@ public:
     bool nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoint& point) const;
     /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`.
     void nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
+    /// The same for rays inside of a translucent print. What stands on the bed touches it without a gap: a bottom less
+    /// than a twentieth of a voxel above the bed is the bed.
+    void nearestInside(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
     bool occluded(const trace::Ray& ray, trace::Tracer& tracer) const;
     /// blocked[i] is 1 or 0. `blocked` is as long as `rays`.
     void occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
     /// A ray from a point, offset so that it doesn't hit the same surface again.
     /// @param direction  world space, near unit length
     trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const;
+    /// The same into the solid behind it.
+    trace::Ray enter(const SurfacePoint& point, const glm::vec3& direction) const;
     /// Share of the backdrop in what the camera sees of this point, 0 to 1.
     float fade(const SurfacePoint& point) const;
     /// Radiance that the camera sees along a ray that hits nothing; false if there is no backdrop.
@@ -50,11 +57,14 @@ public:
 
 private:
     SurfacePoint onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const;
-    SurfacePoint onBed(const trace::Ray& ray, double t) const;
+    static SurfacePoint onBed(const Bed& bed, const trace::Ray& ray, double t);
+    void nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+                 std::span<SurfacePoint> points) const;
 
     const SceneDescription& scene_;
-    double offset_;        // world units
-    ObjectMaterial only_;  // of objects that scene_.objects doesn't have
+    double offset_;               // world units
+    ObjectMaterial only_;         // of objects that scene_.objects doesn't have
+    std::optional<Bed> contact_;  // the bed for rays inside, a little higher
 };
 
 }  // namespace stratum::shade

@@ -134,6 +134,11 @@ Color divergingColor(double t) {
     return between(kStops, t);
 }
 
+bool ObjectMaterial::anyTranslucent() const {
+    return std::any_of(materials_.begin(), materials_.end(),
+                       [](const Material& material) { return material.brdf->translucent() != nullptr; });
+}
+
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary) {
     using Kind = trace::AttributeSummary::Kind;

@@ -42,6 +42,8 @@ public:
                    std::function<std::size_t(const glm::vec3&)> choose);
 
     bool single() const { return !choose_; }
+    /// Whether light goes through one of them.
+    bool anyTranslucent() const;
     std::size_t attribute() const { return attribute_; }
     const Material& only() const { return materials_.front(); }
     const Material& of(const std::optional<glm::vec3>& value) const {

@@ -70,6 +70,11 @@ double restingHeight(const trace::Intersector& print) {
     }
 }
 
+bool SceneDescription::anyTranslucent() const {
+    return material->translucent() != nullptr ||
+           std::any_of(objects.begin(), objects.end(), [](const ObjectMaterial& m) { return m.anyTranslucent(); });
+}
+
 SceneDescription makeScene(const SceneOptions& options, const trace::Intersector& print, int width, int height) {
     const trace::Box box = print.bounds();
     CameraOptions camera = options.camera;
@@ -83,7 +88,8 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
                            .lights = {},
                            .ambient = Color(0.0f),
                            .bed = std::nullopt,
-                           .backdrop = std::nullopt};
+                           .backdrop = std::nullopt,
+                           .mm_per_unit = options.mm_per_unit};
     for (const std::string& light : options.lights) {
         if (const auto ambient = parseAmbient(light))
             scene.ambient += *ambient;

@@ -58,6 +58,10 @@ struct SceneDescription {
     Color ambient{0.0f};  ///< radiance that reaches every point from everywhere
     std::optional<Bed> bed;
     std::optional<Backdrop> backdrop;  ///< the background for the camera; without it, a visible environment or nothing
+    double mm_per_unit = 1.0;          ///< millimetres a world unit, for what goes on inside of translucent solids
+
+    /// Whether light goes through a material of it.
+    bool anyTranslucent() const;
 };
 
 /// Builds the scene around a print. The bed is at restingHeight(); it is invisible to a camera below it.

@@ -129,9 +129,7 @@ void readSelection(JsonSection& section, ViewState& state) {
 
 // Text that shade::makeBrdf() takes without opening a file that the page has named.
 bool namesMaterial(const std::string& text) {
-    if (text.starts_with("lambert:") || text.starts_with("plastic:")) return true;
-    const std::vector<std::string> tables = shade::brdfNames();
-    return shade::parseNamedColor(text).has_value() || std::find(tables.begin(), tables.end(), text) != tables.end();
+    return shade::isBrdfPreset(text) || shade::parseNamedColor(text).has_value();
 }
 
 // The same of shade::makeEnvironment().

@@ -1,0 +1,87 @@
+#include "shade/brdf/translucent.h"
+
+#include "shade/brdf/filament_color.h"
+#include "shade/brdf/plastic.h"
+#include "shade/brdf/preset.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace stratum::shade {
+namespace {
+
+struct NamedMedium {
+    std::string_view name;
+    Color color;
+    double mean_free_path;
+};
+
+// Chosen by eye beside photographs of such prints, not measured: no table of their scattering is at hand.
+const std::array<NamedMedium, 3> kNamed = {{
+    {"natural-pla", {0.78f, 0.74f, 0.64f}, 0.9},
+    {"clear-petg", {0.50f, 0.62f, 0.61f}, 5.0},
+    {"lithophane-white", {0.90f, 0.89f, 0.86f}, 0.2},
+}};
+
+}  // namespace
+
+Color scatteringAlbedo(const Color& color, float asymmetry) {
+    constexpr double kP = 0.4944;
+    constexpr double kQ = 4.070;
+    const auto g = static_cast<double>(asymmetry);
+    Color albedo;
+    for (int c = 0; c < 3; ++c) {
+        const double wanted = std::clamp(static_cast<double>(color[c]), 0.0, 1.0);
+        const double b = 1.0 + kP + kQ * wanted;
+        const double s = std::clamp((b - std::sqrt(b * b - 4.0 * kP * (1.0 - wanted))) / (2.0 * kP), 0.0, 1.0);
+        albedo[c] = static_cast<float>(std::clamp((1.0 - s * s) / (1.0 - g * s * s), 0.0, 1.0));
+    }
+    return albedo;
+}
+
+Translucent::Translucent(const Medium& inside, const Color& color, float eta, float alpha)
+    : stand_in_(std::make_shared<Plastic>(color, alpha)),
+      surface_(std::make_shared<RoughInterface>(eta, alpha)),
+      medium_(inside),
+      reflected_(surface_, Side::air),
+      transmitted_(surface_, Side::solid) {}
+
+std::shared_ptr<const Brdf> Translucent::recolored(const Color& color) const {
+    auto other = std::make_shared<Translucent>(*this);  // the surface's tables don't depend on the color
+    other->stand_in_ = stand_in_->recolored(color);
+    other->medium_.albedo = scatteringAlbedo(color, medium_.asymmetry);
+    return other;
+}
+
+std::vector<std::string> translucentNames() {
+    std::vector<std::string> names;
+    names.reserve(kNamed.size());
+    for (const NamedMedium& named : kNamed) names.emplace_back(named.name);
+    return names;
+}
+
+bool isTranslucent(std::string_view text) {
+    return text.substr(0, text.find(':')) == "translucent" ||
+           std::any_of(kNamed.begin(), kNamed.end(), [text](const NamedMedium& named) { return named.name == text; });
+}
+
+std::shared_ptr<const Translucent> makeTranslucent(std::string_view text, std::string_view option) {
+    const auto make = [](const Color& color, double mean_free_path, float asymmetry) {
+        const Medium inside{scatteringAlbedo(color, asymmetry), mean_free_path, asymmetry};
+        return std::make_shared<Translucent>(inside, color, Translucent::kEta, kFilamentAlpha);
+    };
+    for (const NamedMedium& named : kNamed)
+        if (named.name == text) return make(named.color, named.mean_free_path, 0.0f);
+    const Preset preset = parsePreset(text, option);
+    if (preset.values.size() != 5) requireValues(preset, 4, option, "translucent:R,G,B,MEAN_FREE_PATH_MM[,G]");
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
+    requireRange(preset, 3, Translucent::kMinMeanFreePath, Translucent::kMaxMeanFreePath, option, "MEAN_FREE_PATH_MM");
+    if (preset.values.size() == 5)
+        requireRange(preset, 4, -Translucent::kMaxAsymmetry, Translucent::kMaxAsymmetry, option,
+                     "G (mean cosine of scattering)");
+    return make(Color(preset.values[0], preset.values[1], preset.values[2]), static_cast<double>(preset.values[3]),
+                preset.values.size() == 5 ? preset.values[4] : 0.0f);
+}
+
+}  // namespace stratum::shade
