@@ -234,8 +234,13 @@ private:
             sum_kk += k * k * part[0];
             const auto share = static_cast<double>(part[0]);
             rows[z].solid += share;
-            if (air_ != nullptr) addAir(x, y, z, 1 - share, rows[z]);
-            if (with_area) addArea(x, y, z, sums);
+            // Most leaves have the outside's air alone.
+            const bool pores = air_ != nullptr && (air_->any_open || air_->any_closed);
+            if (!pores && !with_area) continue;
+            const Shares shares = pores ? sharesOf(*air_, negative_, x, y, z) : Shares{1, 0, 0};
+            rows[z].open += (1 - share) * shares.open;
+            rows[z].closed += (1 - share) * shares.closed;
+            if (with_area) addArea(x, y, z, shares.outside, sums);
         }
         column.addParts(sum, sum_k, sum_kk);
     }
@@ -252,11 +257,10 @@ private:
         row.closed += volume * shares.closed;
     }
 
-    void addArea(int x, int y, int z, SolidSums& sums) const {
+    void addArea(int x, int y, int z, double outer, SolidSums& sums) const {
         float corners[8];
         for (int n = 0; n < 8; ++n) corners[n] = s_[x + (n & 1)][y + (n >> 1 & 1)][z + (n >> 2)];
         const double area = cellSurface(corners);
-        const double outer = air_ == nullptr ? 1 : sharesOf(*air_, negative_, x, y, z).outside;
         sums.outer_area += area * outer;
         sums.inner_area += area * (1 - outer);
     }

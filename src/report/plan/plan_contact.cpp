@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -19,6 +20,7 @@ using voxelize::kColumnSamples;
 using voxelize::PlanField;
 
 constexpr std::size_t kPlanGrain = 16;
+constexpr float kFarPixels = 1e30F;  // nothing there
 // Integers, because their sum does not depend on the order of threads; parts of a pixel.
 constexpr double kUnit = 1.0 / (1 << 24);
 std::int64_t unitsOf(double pixels) { return std::llround(pixels / kUnit); }
@@ -56,9 +58,23 @@ voxelize::Lattice pixelsOf(const voxelize::Lattice& lattice) {
     return pixels;
 }
 
+// Four pixels in a register, by the compiler: choices among them without branches, which are hard to foretell here.
+using Four = float __attribute__((vector_size(16)));
+constexpr std::size_t kFours = kColumnSamples / 4;
+
+Four lesser(const Four& a, const Four& b) { return a < b ? a : b; }
+Four greater(const Four& a, const Four& b) { return a > b ? a : b; }
+Four clamped(const Four& a) { return lesser(greater(a, Four{}), Four{1, 1, 1, 1}); }
+float sumOf(const Four& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+Four pixelsAt(const PlanField& d, std::size_t four, float per_pixel) {
+    Four v;
+    std::memcpy(&v, d.v + 4 * four, sizeof v);
+    return v * per_pixel;
+}
+
 // The share of a pixel that lies within an edge at this distance of its middle, in pixels; exact on average over the
 // places that an edge may have, whatever its direction.
-double covered(double distance) { return std::clamp(0.5 - distance, 0.0, 1.0); }
+Four covered(const Four& distance) { return clamped(0.5F - distance); }
 
 // The fields of a column's layers, while those above may rest on them.
 class ColumnFields {
@@ -126,44 +142,52 @@ private:
         });
     }
 
-    // Whether some of the column lies within the layer's outline.
-    bool measureLayer(std::size_t c, std::uint32_t layer, const PlanField& d, const ColumnFields& fields, Sums& sums) {
-        const double per_pixel = 1 / pixels_.voxel_size;
-        const double radius = stack_.layers[layer].radius * per_pixel;
-        const bool bed = under_.bed[layer];
-        const PlanField* below[4];
-        double below_radius[4];
-        std::size_t belows = 0;
-        for (const std::uint32_t lower : under_.layers[layer])
-            if (const PlanField* field = fields.find(lower); field != nullptr && belows < 4) {
-                below_radius[belows] = stack_.layers[lower].radius * per_pixel;
-                below[belows++] = field;
+    // The flats and the edges of what lies below a layer, by pixel: the least distances to them, in pixels.
+    struct Below {
+        Four flat[kFours], edge[kFours];
+    };
+    void gatherBelow(std::uint32_t layer, const ColumnFields& fields, Below& below) const {
+        const float none = under_.bed[layer] ? -kFarPixels : kFarPixels;
+        for (std::size_t n = 0; n < kFours; ++n) below.flat[n] = below.edge[n] = Four{none, none, none, none};
+        if (under_.bed[layer]) return;
+        const auto per_pixel = static_cast<float>(1 / pixels_.voxel_size);
+        for (const std::uint32_t lower : under_.layers[layer]) {
+            const PlanField* field = fields.find(lower);
+            if (field == nullptr) continue;
+            const float radius = static_cast<float>(stack_.layers[lower].radius) * per_pixel;
+            for (std::size_t n = 0; n < kFours; ++n) {
+                const Four other = pixelsAt(*field, n, per_pixel);
+                below.flat[n] = lesser(below.flat[n], other);
+                below.edge[n] = lesser(below.edge[n], other - radius);
             }
-        double area = 0;
-        double supported = 0;
-        double contact = 0;
-        std::uint64_t within = 0;
-        for (std::size_t p = 0; p < kColumnSamples; ++p) {
-            const double flat = static_cast<double>(d.v[p]) * per_pixel;
-            const double edge = flat - radius;
-            if (!(edge < 0.5)) continue;
-            area += covered(edge);
-            if (edge < 0) within |= std::uint64_t{1} << p;
-            double flat_below = std::numeric_limits<double>::max();
-            double edge_below = flat_below;
-            for (std::size_t n = 0; n < belows; ++n) {
-                const double other = static_cast<double>(below[n]->v[p]) * per_pixel;
-                flat_below = std::min(flat_below, other);
-                edge_below = std::min(edge_below, other - below_radius[n]);
-            }
-            if (bed) flat_below = edge_below = std::numeric_limits<double>::lowest();
-            supported += covered(std::max(edge, edge_below));
-            contact += covered(std::max(flat, flat_below));
         }
-        if (!(area > 0)) return false;
-        sums.area[layer] += unitsOf(area);
-        sums.supported[layer] += unitsOf(supported);
-        sums.contact[layer] += unitsOf(contact);
+    }
+
+    // Whether some of the column lies within the layer's outline. In floats: a pixel's share is good to 1e-6.
+    bool measureLayer(std::size_t c, std::uint32_t layer, const PlanField& d, const ColumnFields& fields, Sums& sums) {
+        const auto per_pixel = static_cast<float>(1 / pixels_.voxel_size);
+        const float radius = static_cast<float>(stack_.layers[layer].radius) * per_pixel;
+        Four least{kFarPixels, kFarPixels, kFarPixels, kFarPixels};
+        for (std::size_t n = 0; n < kFours; ++n) least = lesser(least, pixelsAt(d, n, per_pixel));
+        if (!(std::min({least[0], least[1], least[2], least[3]}) - radius < 0.5F)) return false;
+        Below below;
+        gatherBelow(layer, fields, below);
+        Four area{};
+        Four supported{};
+        Four contact{};
+        std::uint64_t within = 0;
+        for (std::size_t n = 0; n < kFours; ++n) {
+            const Four flat = pixelsAt(d, n, per_pixel);
+            const Four edge = flat - radius;
+            area += covered(edge);
+            supported += covered(greater(edge, below.edge[n]));
+            contact += covered(greater(flat, below.flat[n]));
+            for (std::size_t lane = 0; lane < 4; ++lane)
+                within |= static_cast<std::uint64_t>(edge[lane] < 0) << (4 * n + lane);
+        }
+        sums.area[layer] += unitsOf(static_cast<double>(sumOf(area)));
+        sums.supported[layer] += unitsOf(static_cast<double>(sumOf(supported)));
+        sums.contact[layer] += unitsOf(static_cast<double>(sumOf(contact)));
         if (within != 0) bits_.add(c, layer, within);
         return true;
     }
