@@ -52,6 +52,7 @@ extern const char* const kDefaultBrdf;
 /// A material from the text of --brdf. R, G, B are linear reflectances in [0, 1].
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
+///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in
 ///                        $STRATUM_DATA/brdf, or where it was installed or built

@@ -129,7 +129,7 @@ void readSelection(JsonSection& section, ViewState& state) {
 
 // Text that shade::makeBrdf() takes without opening a file that the page has named.
 bool namesMaterial(const std::string& text) {
-    if (text.starts_with("lambert:") || text.starts_with("plastic:")) return true;
+    if (text.starts_with("lambert:") || text.starts_with("plastic:") || text.starts_with("metal:")) return true;
     const std::vector<std::string> tables = shade::brdfNames();
     return shade::parseNamedColor(text).has_value() || std::find(tables.begin(), tables.end(), text) != tables.end();
 }
@@ -150,7 +150,8 @@ void readLook(JsonSection& section, ViewState& state) {
     }
     state.material = text(section, "material");
     if (!state.material.empty() && !namesMaterial(state.material))
-        section.fail("material", "a colour, lambert:R,G,B, plastic:R,G,B,ALPHA or a material by its name");
+        section.fail("material",
+                     "a colour, lambert:R,G,B, plastic:R,G,B,ALPHA, metal:R,G,B,ALPHA or a material by its name");
     state.light = text(section, "light");
     if (!state.light.empty() && !namesLight(state.light))
         section.fail("light", "studio, sky, sky:ELEVATION,AZIMUTH or constant:R,G,B");
