@@ -11,8 +11,8 @@
 
 namespace stratum::assemble {
 
-/// A nozzle of brass, a heater block, a heat break and fins, by formulas; about the sizes of an E3D V6 (its drawings at
-/// e3d-online.com, 2016: nozzle 7 mm across flats, block 23 x 16 x 11.5 mm, sink 22 mm wide). Immutable.
+/// A nozzle of brass, 7 mm across flats with a tip 1 mm wide, a block that heats it, a heat break and a cold end, as
+/// solids of closed form: so slender that the print stays in sight. Immutable.
 class HotEnd {
 public:
     HotEnd();

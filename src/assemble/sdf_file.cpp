@@ -65,9 +65,6 @@ SdfPtr readShape(const std::string& kind, JsonSection& s, Depth depth) {
     if (kind == "box") return trace::sdfBox(center(s), needVector(s, "half_extents"));
     if (kind == "torus") return trace::sdfTorus(center(s), need(s, "radius"), need(s, "tube"), axis(s));
     if (kind == "cylinder") return trace::sdfCylinder(center(s), need(s, "radius"), need(s, "half_height"), axis(s));
-    if (kind == "cone")
-        return trace::sdfCone(center(s), need(s, "low_radius"), need(s, "high_radius"), need(s, "half_height"),
-                              axis(s));
     if (kind == "plane") {
         double offset = 0.0;
         s.read("offset", offset);
@@ -105,7 +102,7 @@ SdfPtr read(const Json& json, const std::string& path, const std::string& file, 
             if (*kind == 'u') return trace::sdfUnion(std::move(parts));
             return *kind == 'i' ? trace::sdfIntersection(std::move(parts)) : trace::sdfSubtraction(std::move(parts));
         }
-        for (const char* kind : {"sphere", "box", "torus", "cylinder", "cone", "plane", "move", "repeat"}) {
+        for (const char* kind : {"sphere", "box", "torus", "cylinder", "plane", "move", "repeat"}) {
             auto inner = section.section(kind);
             if (!inner) continue;
             SdfPtr shape = readShape(kind, *inner, depth);

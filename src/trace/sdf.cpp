@@ -107,36 +107,6 @@ private:
     int axis_;
 };
 
-class Cone final : public Sdf {
-public:
-    Cone(const glm::dvec3& center, double low, double high, double half, int axis)
-        : center_(center), low_(low), high_(high), half_(half), axis_(axis) {}
-    // In the half plane of the radial distance and the axis its outline is three straight pieces.
-    double distance(const glm::dvec3& p) const override {
-        const auto [rho, z] = cylindrical(p - center_, axis_);
-        const double slope = (high_ - low_) / (2 * half_);
-        const bool inside = std::abs(z) < half_ && rho < low_ + slope * (z + half_);
-        const double below = std::hypot(std::max(rho - low_, 0.0), z + half_);
-        const double above = std::hypot(std::max(rho - high_, 0.0), z - half_);
-        const double run = high_ - low_;
-        const double share =
-            std::clamp(((rho - low_) * run + (z + half_) * 2 * half_) / (run * run + 4 * half_ * half_), 0.0, 1.0);
-        const double side = std::hypot(rho - low_ - share * run, z + half_ - share * 2 * half_);
-        const double d = std::min({below, above, side});
-        return inside ? -d : d;
-    }
-    Box bounds() const override {
-        glm::dvec3 half(std::max(low_, high_));
-        half[axis_] = half_;
-        return {center_ - half, center_ + half};
-    }
-
-private:
-    glm::dvec3 center_;
-    double low_, high_, half_;
-    int axis_;
-};
-
 class Plane final : public Sdf {
 public:
     Plane(const glm::dvec3& normal, double offset) : normal_(normal), offset_(offset) {}
@@ -298,14 +268,6 @@ SdfPtr sdfCylinder(const glm::dvec3& center, double radius, double half_height, 
     requireSize(radius, "a cylinder's radius");
     requireSize(half_height, "a cylinder's half height");
     return std::make_shared<Cylinder>(center, radius, half_height, axis);
-}
-
-SdfPtr sdfCone(const glm::dvec3& center, double low, double high, double half_height, int axis) {
-    requirePlace(center, "a cone's center");
-    requireSize(low, "a cone's lower radius");
-    requireSize(high, "a cone's upper radius");
-    requireSize(half_height, "a cone's half height");
-    return std::make_shared<Cone>(center, low, high, half_height, axis);
 }
 
 SdfPtr sdfPlane(const glm::dvec3& normal, double offset) {

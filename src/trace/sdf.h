@@ -35,8 +35,6 @@ SdfPtr sdfBox(const glm::dvec3& center, const glm::dvec3& half_extents);
 SdfPtr sdfTorus(const glm::dvec3& center, double radius, double tube, int axis);
 /// A capped cylinder along `axis`.
 SdfPtr sdfCylinder(const glm::dvec3& center, double radius, double half_height, int axis);
-/// A cone with both ends cut off flat, along `axis`: its radius is `low` at the lower end, `high` at the upper one.
-SdfPtr sdfCone(const glm::dvec3& center, double low, double high, double half_height, int axis);
 /// The half space below: inside is where normal . p < offset, for the unit vector along `normal`.
 SdfPtr sdfPlane(const glm::dvec3& normal, double offset);
 

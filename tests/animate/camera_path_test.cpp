@@ -72,15 +72,19 @@ TEST(CameraPath, SaysWhatIsWrongWithAFile) {
         const std::string said = complaint(json);
         EXPECT_NE(said.find(text), std::string::npos) << said;
     };
-    mentions("did you mean 'look_at'?", R"({"keys": [{"time": 0, "eye": [0,0,0], "lok_at": [1,1,1]}, {"time": 1, "eye": [1,1,1]}]})");
+    mentions("did you mean 'look_at'?",
+             R"({"keys": [{"time": 0, "eye": [0,0,0], "lok_at": [1,1,1]}, {"time": 1, "eye": [1,1,1]}]})");
     mentions("keys[1].tim: unknown", R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"tim": 1, "eye": [1,1,1]}]})");
     mentions("did you mean 'keys'?", R"({"key": []})");
     mentions("keys: expected a list of two or more", R"({"keys": [{"time": 0, "eye": [0,0,0]}]})");
-    mentions("keys[1].time: is 1, and the key before has 1", R"({"keys": [{"time": 1, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1]}]})");
-    mentions("keys[0].eye: expected 3 numbers", R"({"keys": [{"time": 0, "eye": [0,0]}, {"time": 1, "eye": [1,1,1]}]})");
+    mentions("keys[1].time: is 1, and the key before has 1",
+             R"({"keys": [{"time": 1, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1]}]})");
+    mentions("keys[0].eye: expected 3 numbers",
+             R"({"keys": [{"time": 0, "eye": [0,0]}, {"time": 1, "eye": [1,1,1]}]})");
     mentions("keys[0].eye: expected 3 numbers", R"({"keys": [{"time": 0}, {"time": 1, "eye": [1,1,1]}]})");
     mentions("keys[1].time: expected a number", R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"eye": [1,1,1]}]})");
-    mentions("keys[1].fov: expected an angle", R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1], "fov": 180}]})");
+    mentions("keys[1].fov: expected an angle",
+             R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1], "fov": 180}]})");
     mentions("is no JSON", R"({"keys": [)");
     mentions("expected an object", "[]");
 }

@@ -56,7 +56,8 @@ TEST(KeptFrames, DamagedFramesAreMissing) {
     EXPECT_FALSE(KeptFrames(folder / "f", kScene, 6, 8).read(0));
     const std::filesystem::path file = std::filesystem::directory_iterator(folder / "f")->path();
     const auto size = std::filesystem::file_size(file);
-    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(static_cast<std::streamoff>(size / 2)) << '\xff' << '\x01';
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(static_cast<std::streamoff>(size / 2))
+        << '\xff' << '\x01';
     EXPECT_FALSE(frames.read(0));
     frames.keep(0, picture(3));
     EXPECT_TRUE(frames.read(0));

@@ -123,7 +123,7 @@ TEST(MovingScene, TheHotEndStandsOnTheLastBead) {
     motion.grow = true;
     motion.nozzle = true;
     MovingScene moving = sceneOf(motion, kFrames);
-    ASSERT_EQ(moving.scene().objects.size(), 5u);
+    ASSERT_EQ(moving.scene().objects.size(), 6u);
     const shade::Camera camera = moving.scene().camera;
     for (const std::size_t n : {std::size_t{0}, std::size_t{5}, kFrames - 1}) {
         moving.show(n);

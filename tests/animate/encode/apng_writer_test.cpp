@@ -82,8 +82,8 @@ Played play(const std::filesystem::path& path) {
         const std::string type(bytes.substr(at + 4, 4));
         const std::string_view body = bytes.substr(at + 8, length);
         const std::string_view checked = bytes.substr(at + 4, length + 4);
-        EXPECT_EQ(number(bytes, at + 8 + length), crc32(0, reinterpret_cast<const Bytef*>(checked.data()),
-                                                        static_cast<uInt>(checked.size())))
+        EXPECT_EQ(number(bytes, at + 8 + length),
+                  crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size())))
             << type;
         played.types.push_back(type);
         if (type == "IHDR") head = body;
