@@ -137,7 +137,9 @@ private:
         for (const std::string& line : objects.lines) say(o_.common, line);
         if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");
         load_seconds_ = objects.load_seconds;
-        assemble::Stage stage = assemble::makeStage(objects, options, reading.events);
+        assemble::StageOptions first = options;
+        if (!film.keys.empty()) animate::placeAt(film.keys.front(), first.scene.camera);
+        assemble::Stage stage = assemble::makeStage(objects, first, reading.events);
         if (stage.exposure) o_.tone.exposure = *stage.exposure;
         for (const std::string& note : stage.scene.material->notes()) say(o_.common, "  material: " + note);
         scene_.emplace(std::move(objects), std::move(stage), options, std::move(motion));

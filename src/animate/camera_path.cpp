@@ -96,6 +96,13 @@ std::vector<CameraKey> readCameraKeys(const std::filesystem::path& path) {
 
 double durationOf(const std::vector<CameraKey>& keys) { return keys.back().time - keys.front().time; }
 
+void placeAt(const CameraKey& key, shade::CameraOptions& options) {
+    options.eye = key.eye;
+    if (key.look_at) options.look_at = key.look_at;
+    if (key.up) options.up = key.up;
+    if (key.fov) options.fov = *key.fov;
+}
+
 CameraPath::CameraPath(const std::vector<CameraKey>& keys, const glm::dvec3& middle, double fov)
     : begin_(keys.front().time),
       duration_(durationOf(keys)),

@@ -32,6 +32,9 @@ std::vector<CameraKey> readCameraKeys(const std::filesystem::path& path);
 /// Seconds from the first key to the last.
 double durationOf(const std::vector<CameraKey>& keys);
 
+/// Places the camera of `options` where a key has it; what the key leaves open stays as it is.
+void placeAt(const CameraKey& key, shade::CameraOptions& options);
+
 /// The way of eye, look_at, up and fov through all keys, each coordinate by a MonotoneCubic over time: no coordinate
 /// leaves the range of the keys beside it, so that a camera whose keys are above the bed stays there.
 class CameraPath {

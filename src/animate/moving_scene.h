@@ -25,7 +25,8 @@ struct Motion {
 /// Light, bed and exposure are those of the whole print for all frames. Not while rays are traced.
 class MovingScene {
 public:
-    /// @param stage    made for `objects` with `options`
+    /// @param stage    made for `objects`; for a camera that goes a way, with its first key
+    /// @param options  of the stage; what keys leave open is taken from its camera
     /// Throws UsageError: a camera that can't look that way, with its frame; objects that don't fit the motion.
     MovingScene(assemble::TracedObjects objects, assemble::Stage stage, const assemble::StageOptions& options,
                 Motion motion);

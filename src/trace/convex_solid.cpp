@@ -139,7 +139,7 @@ private:
         const double b = o.x * d.x + o.y * d.y - growth * radius;
         const double c = o.x * o.x + o.y * o.y - radius * radius;
         const double root = b * b - a * c;
-        if (root <= 0.0) return a < 0.0 ? Inside{} : kNothing;
+        if (root <= 0.0) return a <= 0.0 && c <= 0.0 ? Inside{} : kNothing;
         if (a == 0.0) {
             // Parallel to a line of the cone: it is crossed once.
             const double t = c / (-2.0 * b);

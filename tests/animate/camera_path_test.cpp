@@ -61,7 +61,9 @@ TEST(CameraPath, MovesSmoothlyAndStaysAboveTheBed) {
         path.place(n / 3000.0, camera);
         EXPECT_GE(camera.eye->z, 1.0);
         const glm::dvec3 step = *camera.eye - before;
-        if (n > 1) EXPECT_LT(glm::length(step - step_before), 0.05);  // of up to 0.6 a step
+        if (n > 1) {
+            EXPECT_LT(glm::length(step - step_before), 0.05);  // of up to 0.6 a step
+        }
         before = *camera.eye;
         step_before = step;
     }

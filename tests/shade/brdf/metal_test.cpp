@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace stratum {
@@ -31,17 +32,18 @@ TEST(Metal, AMirrorReflectsItsColor) {
     // Almost smooth, from above: the reflectance at normal incidence; from the side almost all.
     const Metal brdf(Color(0.6f), 0.02f);
     EXPECT_NEAR(test::sampledAlbedo(brdf, test::direction(1.0, 0.0)), 0.6, 1e-3);
-    EXPECT_GT(test::sampledAlbedo(brdf, test::direction(0.05, 0.0)), 0.85);
+    EXPECT_GT(test::sampledAlbedo(brdf, test::direction(0.05, 0.0)), 0.8);
 }
 
-TEST(Metal, LosesLittleAndGainsNothing) {
+TEST(Metal, GainsNothingAndLosesWhatIsReflectedTwice) {
     for (const float alpha : {0.001f, 0.05f, 0.25f, 0.5f, 1.0f})
         for (const double cosine : {0.01, 0.1, 0.4, 0.7, 1.0}) {
             const double albedo = test::sampledAlbedo(Metal(Color(1.0f), alpha), test::direction(cosine, 0.4));
             EXPECT_LE(albedo, 1.001) << alpha << " " << cosine;
-            if (alpha <= 0.25f && cosine > 0.3) EXPECT_GT(albedo, 0.96) << alpha << " " << cosine;
-            if (alpha == 1.0f && cosine == 1.0) EXPECT_GT(albedo, 0.5) << cosine;
+            EXPECT_GT(albedo, alpha <= 0.25f && cosine > 0.3 ? 0.84 : 0.3) << alpha << " " << cosine;
         }
+    // Known in closed form.
+    EXPECT_NEAR(test::sampledAlbedo(Metal(Color(1.0f), 1.0f), test::direction(1.0, 0.0)), 1.0 - std::log(2.0), 2e-3);
 }
 
 TEST(Metal, SamplesItsDensity) {
