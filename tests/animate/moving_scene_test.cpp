@@ -132,14 +132,14 @@ TEST(MovingScene, TheHotEndStandsOnTheLastBead) {
         const auto& toolpath = *print.finest().layout().toolpath;
         const gcode::Bead& last = toolpath.beads[print.beadsAt(n) - 1];
         EXPECT_EQ(tip, glm::dvec3(last.x1, last.y1, last.z1));
-        // From the side, low: brass; and the print's own object number stays 0.
+        // From the side: the nozzle's sides are 3.5 mm from its axis.
         trace::Ray ray;
-        ray.origin = tip + glm::dvec3(-100, 0, 3);
+        ray.origin = tip + glm::dvec3(-100, 0, 4.5);
         ray.direction = {1, 0, 0};
         trace::Hit hit;
         ASSERT_TRUE(moving.objects().intersector->makeTracer()->intersect(ray, hit));
-        EXPECT_EQ(hit.object, 1u);
-        EXPECT_NEAR(hit.position.x, tip.x - 3.5, 0.6);
+        EXPECT_EQ(hit.object, 2u);
+        EXPECT_NEAR(hit.position.x, tip.x - 3.5, 1e-9);
         EXPECT_EQ(moving.scene().camera.eye(), camera.eye());
     }
 }

@@ -57,7 +57,8 @@ void ApngWriter::writeChunk(std::string_view type, std::string_view data) {
     append32(head, static_cast<std::uint32_t>(data.size()));
     head += type;
     std::string tail;
-    append32(tail, checksumOf(data, checksumOf(type)));
+    // The sum of no bytes would begin anew.
+    append32(tail, data.empty() ? checksumOf(type) : checksumOf(data, checksumOf(type)));
     out_.write(head.data(), static_cast<std::streamsize>(head.size()));
     out_.write(data.data(), static_cast<std::streamsize>(data.size()));
     out_.write(tail.data(), static_cast<std::streamsize>(tail.size()));
