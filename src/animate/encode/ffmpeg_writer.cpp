@@ -20,6 +20,11 @@ void appendColors(std::vector<std::string>& words) {
                    "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"});
 }
 
+// Of all frames, which are kept until it is known.
+constexpr const char* kOnePalette =
+    "[0:v]split[frames][seen];[seen]palettegen=stats_mode=full[palette];"
+    "[frames][palette]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle";
+
 std::vector<std::string> argumentsOf(FilmKind kind, const FilmFormat& format, const std::string& output) {
     std::vector<std::string> words;
     append(words, {"-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24"});
@@ -34,10 +39,7 @@ std::vector<std::string> argumentsOf(FilmKind kind, const FilmFormat& format, co
                            "-row-mt", "1", "-f", "webm"});
             break;
         case FilmKind::gif:
-            append(words, {"-filter_complex",
-                           "[0:v]split[frames][seen];[seen]palettegen=stats_mode=full[palette];"
-                           "[frames][palette]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
-                           "-loop", "0", "-f", "gif"});
+            append(words, {"-filter_complex", kOnePalette, "-loop", "0", "-f", "gif"});
             break;
         default:
             appendColors(words);
