@@ -6,9 +6,10 @@
 
 namespace stratum::shade {
 
-/// f = F D G2 / (4 cos cos), with Schlick's F from the colour at normal incidence to white at grazing angles. Light that
-/// is reflected between facets more than once is lost: from above 8 % at alpha 0.25, and ln 2 at alpha 1 (metal_test).
-/// Sources: as microfacet.h; C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", EG 1994.
+/// f = F D G2 / (4 cos cos), with Schlick's F from the colour at normal incidence to white at grazing angles. Light
+/// that is reflected between facets more than once is lost: from above 8 % at alpha 0.25, and ln 2 at alpha 1
+/// (metal_test). Sources: as microfacet.h; C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", EG
+/// 1994.
 class Metal final : public Brdf {
 public:
     /// @param color  reflectance at normal incidence, in [0, 1]
