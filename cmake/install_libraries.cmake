@@ -2,7 +2,7 @@
 # as stratum::ROOM.
 include(CMakePackageConfigHelpers)
 
-set(rooms base vdb gcode motion deposit voxelize export report compare mechanics trace march ondemand shade assemble)
+set(rooms base vdb gcode motion deposit voxelize export report compare mechanics trace march ondemand shade assemble animate)
 foreach(room ${rooms})
   add_library(stratum::${room} ALIAS stratum_${room})
   set_target_properties(stratum_${room} PROPERTIES EXPORT_NAME ${room})

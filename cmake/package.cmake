@@ -17,7 +17,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME stratum)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "blender, python3-numpy")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "blender, ffmpeg, python3-numpy")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION
   "gcode2vdb turns the G-code of a slicer into a level set of the part as printed,
 vdbtrace ray-traces it, vdbstudy measures both. With an add-on for Blender.")

@@ -48,6 +48,10 @@ tiles() {
 
 boat=$corpus/gcode/gcode-preview-benchy_slic3r.gcode
 picture hull data/gcode/hull.gcode --size 900x675
+if asked growing; then
+    "$bin/vdbtrace" data/gcode/hull.gcode --film "$out/growing.png" --nozzle --turntable --grow time --size 240x180 \
+        --seconds 3 --fps 8
+fi
 for percent in 25 50 75 100; do
     picture "benchy_$percent" "$boat" --printed "$percent%" --frame all --size 720x540
 done

@@ -23,6 +23,7 @@ MAY_INCLUDE = {
     "ondemand": {"base", "gcode", "voxelize", "trace", "march"},
     "shade": {"base", "trace"},
     "assemble": {"base", "gcode", "motion", "deposit", "voxelize", "trace", "march", "ondemand", "shade"},
+    "animate": {"base", "trace", "shade", "assemble"},
     "serve": {"base"},
     "python": {"compare", "report", "base", "gcode", "motion", "deposit", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
     "view": {"base", "gcode", "voxelize", "trace", "march", "ondemand", "shade", "assemble", "serve"},

@@ -11,6 +11,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <utility>
 
 namespace stratum::tools {
 namespace fs = std::filesystem;
@@ -18,8 +21,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-shade::Progress progressOf(ProgressBar& bar) {
-    const auto show = bar.callback();
+shade::Progress progressOf(const std::function<void(double)>& show) {
     if (!show) return {};
     return
         [show](std::uint64_t done, std::uint64_t all) { show(static_cast<double>(done) / static_cast<double>(all)); };
@@ -62,8 +64,7 @@ Json reportOf(const TraceCommand& o, const Frame& frame, const std::string& outp
               {"mean_spp", result.mean_spp},
               {"exposure", o.tone.exposure},
               {"denoised", o.denoise.value_or(false)}}},
-            {"rays",
-             {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}}},
+            {"rays", raysReport(rays)},
             {"march", objects.intersector->name()},
             {"march_bytes", objects.intersector->bytes()},
             {"on_demand", assemble::onDemandReport(objects)},
@@ -94,26 +95,48 @@ std::string numbered(const std::string& output, std::size_t number, std::size_t 
         .string();
 }
 
+Json raysReport(const shade::RayCounts& rays) {
+    return {{"primary", rays.primary}, {"shadow", rays.shadow}, {"bounce", rays.bounce}, {"total", rays.total()}};
+}
+
+Rendered renderPicture(const TraceCommand& o, const trace::Intersector& print, const shade::SceneDescription& scene,
+                       const std::function<void(double)>& rendering, const std::function<void(double)>& denoising) {
+    Stopwatch watch;
+    Rendered rendered;
+    rendered.result = shade::render(print, scene, renderOptionsOf(o), progressOf(rendering));
+    rendered.render_seconds = watch.lap();
+    if (!o.denoise.value_or(false) || o.shard.pieces) return rendered;
+    shade::Film& film = rendered.result.film;
+    shade::denoise(film, progressOf(denoising));
+    if (o.render.crop && film.region() != *o.render.crop) film = film.part(*o.render.crop);
+    rendered.denoise_seconds = watch.lap();
+    return rendered;
+}
+
 Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
                  const shade::SceneDescription& scene, int threads) {
     Stopwatch watch;
     const std::string output = outputOf(o, frame.number);
     shade::PictureFile picture(output);
     const shade::RenderOptions options = renderOptionsOf(o);
-    shade::RenderResult result;
-    Seconds seconds;
-    {
-        ProgressBar bar("rendering", o.common.quiet);
-        result = shade::render(*objects.intersector, scene, options, progressOf(bar));
-    }
-    seconds.render = watch.lap();
     const bool denoised = o.denoise.value_or(false);
-    if (denoised && !o.shard.pieces) {
-        ProgressBar bar("denoising", o.common.quiet);
-        shade::denoise(result.film, progressOf(bar));
-        if (o.render.crop && result.film.region() != *o.render.crop) result.film = result.film.part(*o.render.crop);
-    }
-    seconds.denoise = watch.lap();
+    Seconds seconds;
+    const Rendered rendered = [&] {
+        std::optional<ProgressBar> bar;
+        bar.emplace("rendering", o.common.quiet);
+        const auto rendering = bar->callback();
+        std::function<void(double)> denoising;
+        if (rendering)
+            denoising = [&bar, &o, begun = false](double done) mutable {
+                if (!std::exchange(begun, true)) bar.emplace("denoising", o.common.quiet);
+                bar->show(done);
+            };
+        return renderPicture(o, *objects.intersector, scene, rendering, denoising);
+    }();
+    const shade::RenderResult& result = rendered.result;
+    seconds.render = rendered.render_seconds;
+    seconds.denoise = rendered.denoise_seconds;
+    (void)watch.lap();
 
     shade::Metadata metadata =
         assemble::metadataOf(frame.source, o.render, o.scene.env, objects, scene, result, denoised);

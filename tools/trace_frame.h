@@ -8,12 +8,29 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace stratum::tools {
 
 /// The picture's name with a number, if there are several.
 std::string numbered(const std::string& output, std::size_t number, std::size_t count);
+
+/// A picture of a scene, finished but not written.
+struct Rendered {
+    shade::RenderResult result;  ///< denoised, of the crop without the margin that the denoiser needed
+    double render_seconds = 0.0, denoise_seconds = 0.0;
+};
+
+/// Renders a picture as the command says, and denoises it, unless it is a piece for a merge. Throws what render()
+/// throws.
+/// @param progress  of rendering: fractions
+Rendered renderPicture(const TraceCommand& command, const trace::Intersector& print,
+                       const shade::SceneDescription& scene, const std::function<void(double)>& rendering,
+                       const std::function<void(double)>& denoising);
+
+/// How much of it, for --stats.
+nlohmann::ordered_json raysReport(const shade::RayCounts& rays);
 
 struct Frame {
     std::string source;

@@ -27,11 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kOnce = "once";  // --turntable without a number
+
 constexpr const char* kExamples = R"(
 Examples:
   vdbtrace part.vdb                                 part.png, 1280 x 960, studio light
   vdbtrace part.gcode                               the same without a .vdb: voxels are made where rays come
   vdbtrace part.gcode --printed 50% --voxel-size 0.05
+  vdbtrace part.gcode --film part.mp4 --nozzle      the print as it grows, 8 s
   vdbtrace part.vdb -o part.png --view front --spp 64
   vdbtrace part.vdb -o part.exr --integrator ao     linear values, for compositing and measuring
   vdbtrace part.vdb --brdf plastic:0.8,0.1,0.05,0.2 --env constant:1,1,1
@@ -172,9 +175,11 @@ void addCameraOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--focus", o.focus, "Distance that is sharp, or a point (default: the middle of the part)")
         ->type_name("LENGTH|X,Y,Z")
         ->group(camera);
-    app.add_option("--turntable", o.turntable, "N numbered pictures from all around")
-        ->check(CLI::Range(1, 10000))
-        ->type_name("N")
+    app.add_option("--turntable", o.turns,
+                   "N numbered pictures from all around; of a film: the camera goes round N times (default 1)")
+        ->expected(0, 1)
+        ->default_str(kOnce)
+        ->type_name("[N]")
         ->group(camera);
     app.add_option("--fov", o.scene.camera.fov, "Vertical angle of view (default 28)")->type_name("DEG")->group(camera);
     app.add_option("--frame", o.frame,
@@ -186,6 +191,26 @@ void addCameraOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--zoom", o.scene.camera.zoom, "All F times larger, from the same place (default 1)")
         ->type_name("F")
         ->group(camera);
+}
+
+// Before the camera's options are checked.
+void applyTurns(TraceCommand& o) {
+    o.turntable = 1;
+    o.film.turn = !o.turns.empty();
+    if (o.turns.empty()) return;
+    const bool film = !o.film.output.empty();
+    const bool once = o.turns == kOnce;
+    if (once && !film)
+        throw UsageError(
+            "--turntable: how many pictures? write --turntable 36, or make a film with --film part.mp4 --turntable");
+    const int turns = once ? 1
+                           : parseIntegers<1>(o.turns, ',', "--turntable",
+                                              "a whole number; put FILE before it, or write --turntable 1")[0];
+    if (turns < 1 || turns > 10000) throw UsageError(fmt::format("--turntable {}: must be from 1 to 10000", o.turns));
+    if (film)
+        o.film.turns = turns;
+    else
+        o.turntable = turns;
 }
 
 void addClipOption(CLI::App& app, TraceCommand& o) {
@@ -219,11 +244,12 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("LENGTH")
         ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
-    materials.insert(materials.end(), {"lambert:", "plastic:", "translucent:"});
+    materials.insert(materials.end(), {"lambert:", "plastic:", "metal:", "translucent:"});
     completes(
         app.add_option(
             "--brdf", o.scene.brdf,
-            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
+            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), metal:R,G,B,ALPHA, "
+            "translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
             "through; also natural-pla, clear-petg, lithophane-white), a measured table (Mini-Diff, Zemax, ASTM E1392, "
             "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
             "the file states them)"),
@@ -332,10 +358,11 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addTracingOptions(app, o);
     addShardOptions(app, o);
     addTracePrintOptions(app, o.prints, o.bricks);
+    addFilmOptions(app, o.film, o.nozzle);
     addCommonOptions(app, o.common,
-                     {"--output",  "--size",      "--spp",        "--noise",   "--denoise",  "--view",    "--eye",
-                      "--look-at", "--turntable", "--integrator", "--brdf",    "--color-by", "--env",     "--bed",
-                      "--threads", "--stats",     "--quiet",      "--version", "--help",     "--help-all"});
+                     {"--output",  "--size",      "--spp",   "--noise",      "--denoise", "--view",     "--eye",
+                      "--look-at", "--turntable", "--film",  "--integrator", "--brdf",    "--color-by", "--env",
+                      "--bed",     "--threads",   "--stats", "--quiet",      "--version", "--help",     "--help-all"});
     app.footer(kExamples);
 }
 
@@ -365,7 +392,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     if (over.grid.empty()) over.grid = file.grid;
     if (!over.objects.empty() && !over.grid.empty())
         throw UsageError("--grid: the scene has objects; each names its own");
-    if (over.output.empty())
+    if (over.output.empty() && over.film.output.empty())
         over.output = file.output.empty() ? path.filename().replace_extension(".png").string() : file.output;
     o = std::move(over);
 }
@@ -418,6 +445,7 @@ void applyText(TraceCommand& o) {
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
     if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);
+    applyTurns(o);
     o.scene.camera.all_around = o.turntable > 1;
     o.render.validate();
     o.scene.camera.validate();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command_line.h"
+#include "trace_film_options.h"
 #include "trace_print_options.h"
 
 #include "assemble/object_file.h"
@@ -45,12 +46,15 @@ struct TraceCommand {
     std::string said;                   // the options that are given, for checkpoints
     bool legend = false;
     bool linear = false;  // the output keeps linear values: an .exr. Set when its name is checked
-    int turntable = 1;
+    std::string turns;    // --turntable, as given
+    int turntable = 1;    // pictures of each camera
+    bool nozzle = false;
     bool spp_given = false, exposure_given = false;
     std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
     assemble::PrintRequest prints;
     BrickCommand bricks;
+    FilmCommand film;
     ShardCommand shard;
     std::vector<assemble::ObjectOptions> objects;  // of a scene file; empty: the inputs
     shade::SceneOptions scene;

@@ -4,6 +4,7 @@
 #include "trace_frame.h"
 #include "trace_shard.h"
 
+#include "assemble/hot_end.h"
 #include "assemble/ready_scene.h"
 #include "base/error.h"
 #include "shade/camera/pixel_size.h"
@@ -21,8 +22,6 @@
 #include <vector>
 
 namespace stratum::tools {
-namespace {
-
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
@@ -42,6 +41,23 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
     return reading;
 }
 
+std::vector<assemble::ObjectOptions> objectsOf(const TraceCommand& o, std::size_t n) {
+    std::vector<assemble::ObjectOptions> wanted = o.objects;
+    if (wanted.empty()) {
+        wanted.emplace_back();
+        wanted.back().vdb = o.inputs[n];
+        wanted.back().grid = o.grid;
+        wanted.back().up = o.file_up;
+    }
+    return wanted;
+}
+
+assemble::StageOptions stageOptionsOf(const TraceCommand& o) {
+    return {o.scene, o.render, o.frame == "all", !o.linear && !o.exposure_given};
+}
+
+namespace {
+
 class Series {
 public:
     Series(const TraceCommand& o, int threads) : o_(o), threads_(threads), reading_(readingOf(o)) {
@@ -57,16 +73,8 @@ public:
         bool needed = !scene_;
         for (std::size_t k = n * each; k < (n + 1) * each; ++k) needed = needed || makes(o_, k);
         if (!needed) return;
-        std::vector<assemble::ObjectOptions> wanted = o_.objects;
-        if (wanted.empty()) {
-            wanted.emplace_back();
-            wanted.back().vdb = o_.inputs[n];
-            wanted.back().grid = o_.grid;
-            wanted.back().up = o_.file_up;
-        }
-        const assemble::TracedObjects objects = assemble::readTracedObjects(wanted, reading_);
-        const std::shared_ptr<assemble::LazyPrint> growing = assemble::growingPrint(objects);
-        if (o_.prints.series > 1 && !growing)
+        assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, n), reading_);
+        if (o_.prints.series > 1 && !assemble::growingPrint(objects))
             throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
         if (!o_.bricks.picture.empty() && objects.prints.empty())
             throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
@@ -77,7 +85,13 @@ public:
         if (!o_.render.checkpoint.empty()) o_.render.source = sourceOf(o_, objects.source);
         scene_->objects = objects.materials;
         scene_->labels = objects.labels;
-        frames(n, objects, growing.get(), watch);
+        if (o_.nozzle) {
+            if (objects.prints.empty())
+                throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
+            assemble::HotEnd::addMaterials(*scene_);
+            if (!hot_end_) hot_end_.emplace();
+        }
+        frames(n, objects, watch);
         if (!o_.bricks.picture.empty() && n == 0)
             objects.prints.back()->writeBrickPicture(o_.bricks.picture, {{"Software", "vdbtrace " STRATUM_VERSION}});
     }
@@ -85,17 +99,14 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    assemble::StageOptions stageOptions() const {
-        return {o_.scene, o_.render, o_.frame == "all", !o_.linear && !o_.exposure_given};
-    }
-
     shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part) const {
         if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        return assemble::pixelSpreadOf(stageOptions(), print, part, scene_ ? &scene_->camera : nullptr, o_.turntable);
+        return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, scene_ ? &scene_->camera : nullptr,
+                                       o_.turntable);
     }
 
     void begin(const assemble::TracedObjects& objects) {
-        assemble::Stage stage = assemble::makeStage(objects, stageOptions(), reading_.events);
+        assemble::Stage stage = assemble::makeStage(objects, stageOptionsOf(o_), reading_.events);
         scene_ = std::move(stage.scene);
         middle_ = stage.middle;
         if (stage.exposure) o_.tone.exposure = *stage.exposure;
@@ -103,8 +114,10 @@ private:
         if (!o_.write_brdf.empty()) shade::writeBrdfFile(o_.write_brdf, *scene_->material);
     }
 
-    /// @param growing  print that has several moments; may be null
-    void frames(std::size_t n, const assemble::TracedObjects& objects, assemble::LazyPrint* growing, Stopwatch& watch) {
+    /// @param objects  whose intersector becomes that of each picture
+    void frames(std::size_t n, assemble::TracedObjects& objects, Stopwatch& watch) {
+        const std::shared_ptr<assemble::LazyPrint> growing = assemble::growingPrint(objects);
+        const std::shared_ptr<const trace::Intersector> print = objects.intersector;
         const std::size_t moments = growing != nullptr ? growing->moments() : 1;
         const auto turns = static_cast<std::size_t>(o_.turntable);
         double before_seconds = watch.lap();
@@ -119,6 +132,7 @@ private:
                 growing->show(moment);
                 before_seconds = watch.lap();
             }
+            if (o_.nozzle) objects.intersector = hot_end_->above(print, objects.prints.front()->tipAt(moment));
             for (std::size_t turn = 0; turn < turns; ++turn) {
                 if (!makes(o_, before + turn)) continue;
                 shade::SceneDescription view = *scene_;
@@ -140,6 +154,7 @@ private:
     int threads_;
     assemble::TracingOptions reading_;
     std::optional<shade::SceneDescription> scene_;
+    std::optional<assemble::HotEnd> hot_end_;  // with --nozzle
     glm::dvec3 middle_{0.0};
     Json reports_ = Json::array();
 };

@@ -57,13 +57,12 @@ private:
     std::map<std::string, std::string> hashes_;
 };
 
-/// A hash of all that picture n depends on. The camera of a series is of its last input.
-std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
-    const std::size_t count = pictures(o);
-    std::string text = fmt::format("vdbtrace {}\n{}{}\n{} picture {} of {}\n", STRATUM_VERSION, o.said, o.scene_text,
-                                   o.linear ? "linear" : "shown", n, count);
+/// A hash of `what`, the options, and all files that a picture of these inputs depends on.
+std::string hashOf(const TraceCommand& o, const std::string& what, const std::vector<std::string>& inputs,
+                   Contents& contents) {
+    std::string text = fmt::format("vdbtrace {}\n{}{}\n{}\n", STRATUM_VERSION, o.said, o.scene_text, what);
     const auto add = [&](const std::string& path) { text += contents.of(path) + "\n"; };
-    for (const std::string& input : {o.inputs[n * o.inputs.size() / count], o.inputs.back()}) {
+    for (const std::string& input : inputs) {
         text += fs::path(input).filename().string() + "\n";
         if (o.objects.empty()) add(input);
     }
@@ -78,7 +77,15 @@ std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
     add(o.scene.brdf);
     add(o.scene.env);
     add(o.prints.print.printer);
+    add(o.film.camera_path);
     return sha256Hex(text);
+}
+
+/// A hash of all that picture n depends on. The camera of a series is of its last input.
+std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
+    const std::size_t count = pictures(o);
+    return hashOf(o, fmt::format("{} picture {} of {}", o.linear ? "linear" : "shown", n, count),
+                  {o.inputs[n * o.inputs.size() / count], o.inputs.back()}, contents);
 }
 
 }  // namespace
@@ -138,6 +145,11 @@ void identify(TraceCommand& o) {
         o.shard.made[n] = false;
         say(o.common, fmt::format("  {}: is this shard of this scene already, skipped", output));
     }
+}
+
+std::string filmIdentity(const TraceCommand& o) {
+    Contents contents;
+    return hashOf(o, fmt::format("a film of {} frames, grow {}", o.film.frames, o.film.grow), o.inputs, contents);
 }
 
 std::string recordOf(const TraceCommand& o) {

@@ -28,6 +28,9 @@ void divide(std::vector<TraceCommand>& commands);
 /// what is there. To be called when all options are decided. Throws UsageError and InputError.
 void identify(TraceCommand& command);
 
+/// A hash of all that the frames of a planned film depend on.
+std::string filmIdentity(const TraceCommand& command);
+
 /// Where --resume notes the finished pictures of a series; empty if it doesn't.
 std::string recordOf(const TraceCommand& command);
 

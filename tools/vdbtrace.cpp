@@ -4,6 +4,7 @@
 #include "output_names.h"
 #include "run_files.h"
 #include "shard_option.h"
+#include "trace_film.h"
 #include "trace_options.h"
 #include "trace_series.h"
 #include "trace_shard.h"
@@ -37,7 +38,27 @@ bool isLevelSet(const std::string& path) {
     }
 }
 
-// What is asked of the pictures fits together, and what is asked of G-code has some. Before the work.
+// What is asked of G-code has some.
+void checkPrints(const tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
+    if (given_of_prints.empty()) return;
+    if (o.objects.empty()) {
+        for (const std::string& input : o.inputs)
+            if (isLevelSet(input)) tools::refusePrintOptions(given_of_prints, input);
+    } else if (std::none_of(o.objects.begin(), o.objects.end(), [](const assemble::ObjectOptions& object) {
+                   return !object.sdf && !isLevelSet(object.vdb);
+               })) {
+        tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
+    }
+}
+
+void checkNozzle(const tools::TraceCommand& o) {
+    if (!o.nozzle) return;
+    if (o.objects.size() > 1 || (o.objects.size() == 1 && !o.objects.front().placement.isIdentity()))
+        throw UsageError("--nozzle is of one print alone, which stands where its file says");
+    if (!o.file_up.empty()) throw UsageError("--nozzle stands above a print, whose z is up; leave out --file-up");
+}
+
+// What is asked of the pictures fits together. Before the work.
 void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
     o.linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     shade::requirePictureSize(o.output, o.render.width, o.render.height);
@@ -50,19 +71,14 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
         throw UsageError("--checkpoint is for one picture; render the frames of a series one by one");
     if (o.prints.series > 1 && o.inputs.size() * std::max<std::size_t>(1, o.objects.size()) > 1)
         throw UsageError("--progress-series is of one print alone");
+    checkNozzle(o);
+    if (const std::string given = tools::givenFilmOptions(o.film); !given.empty())
+        throw UsageError(fmt::format("{}: of films alone; name one, e.g. --film part.mp4", given));
     if (!o.bricks.picture.empty() && !o.bricks.picture.ends_with(".png"))
         throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.bricks.picture));
     if (o.legend && o.linear)
         throw UsageError(fmt::format("--legend is drawn into pictures to look at, e.g. a .png, not {}", o.output));
-    if (given_of_prints.empty()) return;
-    if (o.objects.empty()) {
-        for (const std::string& input : o.inputs)
-            if (isLevelSet(input)) tools::refusePrintOptions(given_of_prints, input);
-    } else if (std::none_of(o.objects.begin(), o.objects.end(), [](const assemble::ObjectOptions& object) {
-                   return !object.sdf && !isLevelSet(object.vdb);
-               })) {
-        tools::refusePrintOptions(given_of_prints, "every object of " + o.inputs.front());
-    }
+    checkPrints(o, given_of_prints);
 }
 
 // Whether any of its pictures are this process's: of a series, some shards have none of an input.
@@ -84,6 +100,8 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     }
     material(o.scene.brdf);
     if (!shade::isEnvironmentPreset(o.scene.env)) files.reads(o.scene.env);
+    files.reads(o.film.camera_path);
+    if (!o.film.output.empty()) return files.writes(o.film.output, "--film");
     for (std::size_t n = 0; n < tools::pictures(o); ++n) files.writes(tools::outputOf(o, n), option);
     files.writes(tools::recordOf(o), "--resume");
     files.writes(o.render.checkpoint, "--checkpoint");
@@ -127,10 +145,25 @@ void nameOutput(tools::TraceCommand& o) {
     o.output = (folder ? fs::path(o.output) / name : fs::path(name)).string();
 }
 
+void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints, int argc, char** argv) {
+    prepare(o, argc, argv);
+    tools::planFilm(o);
+    const tools::ThreadLimit limit(o.common.threads);
+    tools::RunFiles files;
+    listFiles(files, o, "--film");
+    files.writes(o.common.stats, "--stats");
+    checkPrints(o, given_of_prints);
+    checkNozzle(o);
+    o.denoise = assemble::chooseDenoising({o.denoise, o.linear, o.spp_given}, o.render);
+    for (const std::string& note : o.notes) tools::say(o.common, note);
+    tools::writeStats(o.common, tools::traceFilm(o, limit.threads()));
+}
+
 void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv) {
     // Before standard input is read: the process starts itself once more. Bricks have huge pages of their own.
     if (whole.march != "auto" && whole.march != "brick") tools::useHugePages(argv);
     const std::vector<std::string> given_of_prints = tools::givenPrintOptions(app);
+    if (!whole.film.output.empty()) return runFilm(whole, given_of_prints, argc, argv);
     const bool folder = whole.each || tools::namesFolder(whole.output);
     const bool named = !folder && !whole.output.empty();
     tools::Batch batch("vdbtrace", whole.inputs.size());

@@ -29,8 +29,8 @@ Shard givenShard(const std::string& text) {
 
 std::string saidOf(const CLI::App& app) {
     // Where the output goes, what is reported, on how many threads and machines changes nothing of it.
-    constexpr std::array<std::string_view, 10> kOther = {"output", "checkpoint", "threads",  "stats",  "quiet",
-                                                         "IN",     "shard",      "shard-by", "resume", "summary"};
+    constexpr std::array<std::string_view, 11> kOther = {"output", "film",  "checkpoint", "threads", "stats",  "quiet",
+                                                         "IN",     "shard", "shard-by",   "resume",  "summary"};
     std::string said;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_single_name();

@@ -47,9 +47,13 @@ std::string ofLevel(const std::string& path, std::size_t level) {
 
 }  // namespace
 
-LazyPrint::LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, Times times,
-                     std::size_t cache_bytes)
-    : levels_(std::move(levels)), moments_(std::move(moments)), times_(times), cache_bytes_(cache_bytes) {}
+LazyPrint::LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, std::vector<glm::dvec3> tips,
+                     Times times, std::size_t cache_bytes)
+    : levels_(std::move(levels)),
+      moments_(std::move(moments)),
+      tips_(std::move(tips)),
+      times_(times),
+      cache_bytes_(cache_bytes) {}
 
 void LazyPrint::show(std::size_t moment) {
     for (const LazyLevel& level : levels_) level.bricks->update(level.field->printUntil(moments_[moment]));

@@ -5,6 +5,7 @@
 #include "ondemand/print_field.h"
 #include "shade/film/picture.h"
 
+#include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -32,10 +33,16 @@ public:
     /// @param levels       from the finest; at least one
     /// @param moments      of a growing print: the beads before this index are printed; ascending, the last one is all
     /// @param cache_bytes  bound on the samples of each level
-    LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, Times times, std::size_t cache_bytes);
+    /// @param tips         mm, by moment: where the nozzle is
+    LazyPrint(std::vector<LazyLevel> levels, std::vector<std::uint32_t> moments, std::vector<glm::dvec3> tips,
+              Times times, std::size_t cache_bytes);
 
     /// The number of moments of a growing print; 1 for others.
     std::size_t moments() const { return moments_.size(); }
+    /// The beads before this index are printed at a moment.
+    std::uint32_t beadsAt(std::size_t moment) const { return moments_[moment]; }
+    /// Where the nozzle is at a moment, mm in print space: at the end of the last bead.
+    const glm::dvec3& tipAt(std::size_t moment) const { return tips_[moment]; }
     /// Shows a moment, 0..moments() - 1. Bricks that don't change are kept.
     void show(std::size_t moment);
 
@@ -52,6 +59,7 @@ public:
 private:
     std::vector<LazyLevel> levels_;
     std::vector<std::uint32_t> moments_;
+    std::vector<glm::dvec3> tips_;
     Times times_;
     std::size_t cache_bytes_;
 };

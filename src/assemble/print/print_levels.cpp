@@ -10,6 +10,7 @@
 #include "gcode/container/input_bytes.h"
 #include "gcode/toolpath/warning_log.h"
 #include "ondemand/detail_levels.h"
+#include "voxelize/beads/growth.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxel_choice.h"
@@ -50,6 +51,19 @@ std::vector<std::uint32_t> momentsOf(int series, bool by_time, const gcode::Tool
             moments.push_back(static_cast<std::uint32_t>(step.bead_count));
     moments.push_back(static_cast<std::uint32_t>(toolpath.beads.size()));
     return moments;
+}
+
+// Ends of the last selected beads before each moment; of the first one, if there is none.
+std::vector<glm::dvec3> tipsOf(const std::vector<std::uint32_t>& moments, const std::vector<std::uint32_t>& selection,
+                               const gcode::Toolpath& toolpath) {
+    std::vector<glm::dvec3> tips;
+    tips.reserve(moments.size());
+    for (const std::uint32_t moment : moments) {
+        const auto after = std::lower_bound(selection.begin(), selection.end(), moment);
+        const gcode::Bead& bead = toolpath.beads[after == selection.begin() ? selection.front() : *(after - 1)];
+        tips.emplace_back(bead.x1, bead.y1, bead.z1);
+    }
+    return tips;
 }
 
 /// What all fields of one print are made from.
@@ -171,8 +185,13 @@ public:
         chooseLattice();
         chooseLevels();
         describe();
+        result_.moments = request_.series_of_selection
+                              ? voxelize::growthMoments(
+                                    *toolpath_, selection_, static_cast<std::size_t>(request_.series),
+                                    request_.series_by_time ? voxelize::GrowthBy::time : voxelize::GrowthBy::volume)
+                              : momentsOf(request_.series, request_.series_by_time, *toolpath_);
+        result_.tips = tipsOf(result_.moments, selection_, *toolpath_);
         result_.selection = std::move(selection_);
-        result_.moments = momentsOf(request_.series, request_.series_by_time, *toolpath_);
         result_.toolpath = std::move(toolpath_);
         return std::move(result_);
     }

@@ -28,6 +28,9 @@ struct PrintRequest {
     bool timed = false;           ///< print times of the beads are needed
     int series = 1;               ///< of a growing print: the number of moments; the last one is the end
     bool series_by_time = false;  ///< equal times between them instead of equal volumes
+    /// Exactly that many moments, of the selected beads, of which some may be equal, see voxelize::growthMoments().
+    /// Else they are shares of the whole file, each with more beads than the one before.
+    bool series_of_selection = false;
     /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; the second box is that of the part,
     /// see voxelize::partBounds().
     std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
@@ -48,6 +51,7 @@ struct PrintLevels {
     std::vector<PrintLevel> levels;        ///< from the nearest and finest outwards; the last one is of all beads
     glm::dvec3 eye{0.0};                   ///< mm; if there are several levels
     std::vector<std::uint32_t> moments;    ///< of the series: the beads before this index are printed; the last is all
+    std::vector<glm::dvec3> tips;          ///< mm, by moment: where the nozzle is when the last bead is finished
     std::vector<std::uint32_t> selection;  ///< indices of its beads, ascending
     std::shared_ptr<const gcode::Toolpath> toolpath;
     voxelize::Bounds part;          ///< mm, of its beads without what is printed beside the part

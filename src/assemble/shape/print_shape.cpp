@@ -48,7 +48,7 @@ std::shared_ptr<TracedPrint> tracedOf(const ObjectOptions& object, const PrintRe
         traced->shapes.push_back(std::move(bricks.intersector));
         lazy.push_back({level.field, std::move(bricks.bricks)});
     }
-    traced->lazy = std::make_shared<LazyPrint>(std::move(lazy), print.moments,
+    traced->lazy = std::make_shared<LazyPrint>(std::move(lazy), print.moments, print.tips,
                                                LazyPrint::Times{print.parse_seconds, watch.lap()}, cache);
     if (keep) request.kept->keep(object.vdb, request, traced);
     return traced;

@@ -4,6 +4,7 @@
 #include "base/nearest_name.h"
 #include "shade/brdf/filament_color.h"
 #include "shade/brdf/lambert.h"
+#include "shade/brdf/metal.h"
 #include "shade/brdf/plastic.h"
 #include "shade/brdf/preset.h"
 #include "shade/brdf/preset_names.h"
@@ -73,9 +74,10 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     const bool none = namesIn(tableFolder()).empty();
     const std::vector<std::string> known = brdfNames();
     std::vector<std::string_view> names(known.begin(), known.end());
-    names.insert(names.end(), {"lambert", "plastic", "translucent"});
+    names.insert(names.end(), {"lambert", "plastic", "metal", "translucent"});
     throw UsageError(fmt::format(
         "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+        "metal:R,G,B,ALPHA, "
         "translucent:R,G,B,MEAN_FREE_PATH_MM, a colour (#ff6600, teal), a file, or one of: {}{}{}",
         text, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
         didYouMean(text.substr(0, text.find(':')), names)));
@@ -83,7 +85,7 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
 
 bool isFormula(std::string_view text) {
     const std::string_view name = text.substr(0, text.find(':'));
-    return name == "lambert" || name == "plastic" || isTranslucent(text);
+    return name == "lambert" || name == "plastic" || name == "metal" || isTranslucent(text);
 }
 
 }  // namespace
@@ -123,8 +125,10 @@ std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
         requireValues(preset, 3, kOption, "lambert:R,G,B");
         return std::make_shared<Lambert>(bodyColor());
     }
-    requireValues(preset, 4, kOption, "plastic:R,G,B,ALPHA");
+    const bool metal = preset.name == "metal";
+    requireValues(preset, 4, kOption, metal ? "metal:R,G,B,ALPHA" : "plastic:R,G,B,ALPHA");
     requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
+    if (metal) return std::make_shared<Metal>(bodyColor(), preset.values[3]);
     return std::make_shared<Plastic>(bodyColor(), preset.values[3]);
 }
 

@@ -57,6 +57,7 @@ extern const char* const kDefaultBrdf;
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
 ///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
+///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in
 ///                        $STRATUM_DATA/brdf, or where it was installed or built

@@ -56,6 +56,12 @@ void requirePictureSize(const std::filesystem::path& path, int width, int height
                                      path.string(), most, width, height));
 }
 
+std::vector<std::uint8_t> displayPixels(const Film& film, const ToneOptions& tone, const Legend* legend) {
+    std::vector<std::uint8_t> rgb = toDisplay(film, tone);
+    if (legend) draw(*legend, film.width(), film.height(), rgb);
+    return rgb;
+}
+
 PictureFile::PictureFile(const std::filesystem::path& path) : kind_(pictureKindOf(path)), file_(path) {}
 
 void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone, const Legend* legend) {
@@ -66,8 +72,7 @@ void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOp
             writeExr(to, film, metadata);
             return;
         }
-        std::vector<std::uint8_t> rgb = toDisplay(film, tone);
-        if (legend) draw(*legend, width, height, rgb);
+        const std::vector<std::uint8_t> rgb = displayPixels(film, tone, legend);
         switch (kind_) {
             case PictureKind::jpeg:
                 return writeBytes(to, encodeJpeg(width, height, rgb, kJpegQuality, metadata));

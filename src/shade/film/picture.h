@@ -11,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace stratum::shade {
 
@@ -25,6 +26,10 @@ PictureKind pictureKindOf(const std::filesystem::path& path);
 
 /// Throws UsageError if the kind has no pictures so large.
 void requirePictureSize(const std::filesystem::path& path, int width, int height);
+
+/// The pixels of a picture to look at: 8-bit RGB, row by row from the top.
+/// @param legend  drawn into the upper left corner, if given
+std::vector<std::uint8_t> displayPixels(const Film& film, const ToneOptions& tone, const Legend* legend);
 
 /// A picture file to be written. Construct it before rendering, so that a bad name fails at once.
 class PictureFile {

@@ -9,6 +9,12 @@
 
 namespace stratum::shade {
 
+/// How a picture is compressed.
+enum class PngEffort {
+    quick,  ///< half the time of zlib's and libpng's defaults, for files from 3 % smaller to 5 % larger
+    small,  ///< for what is looked at more often than made
+};
+
 /// Overwrites `path`. Marks the file as sRGB.
 /// @param rgb       3 * width * height bytes, row by row from the top
 /// @param metadata  keyword -> UTF-8 text; written as tEXt, or as iTXt where it isn't ASCII
@@ -18,6 +24,7 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
 
 /// The same bytes in memory.
 std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& rgb,
-                                    const std::map<std::string, std::string>& metadata);
+                                    const std::map<std::string, std::string>& metadata,
+                                    PngEffort effort = PngEffort::quick);
 
 }  // namespace stratum::shade

@@ -1,0 +1,44 @@
+// Another program that reads what this one makes.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stratum::animate {
+
+/// The program of that name in the folders of $PATH; nothing if there is none.
+std::optional<std::filesystem::path> findProgram(std::string_view name);
+
+/// A running program. This process writes to its standard input; its standard output is thrown away.
+class ChildProcess {
+public:
+    /// Throws OutputError if it can't be started.
+    ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+    /// Ends it, if it still runs.
+    ~ChildProcess();
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    /// Returns when the program has taken all bytes, or the system keeps them for it. False if it reads no more.
+    bool send(std::span<const std::uint8_t> bytes) const;
+    /// Ends its input, and waits until it has ended. "" if it did so with status 0; else how: "ended with status 1".
+    std::string finish();
+    /// The last of what it wrote to standard error, a line at most.
+    std::string lastWords() const;
+
+private:
+    void closeInput();
+
+    pid_t id_ = -1;
+    int input_ = -1;   // our end of its standard input: a socket, whose errors are no signals
+    int errors_ = -1;  // its standard error: a file without a name
+};
+
+}  // namespace stratum::animate

@@ -1,0 +1,50 @@
+#include "trace_film_options.h"
+
+#include "choices.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace stratum::tools {
+
+void addFilmOptions(CLI::App& app, FilmCommand& film, bool& nozzle) {
+    const char* group = "Film";
+    app.add_option(
+           "--film", film.output,
+           "Instead of pictures a film: .mp4, .webm or .gif by the system's ffmpeg, or an animated .png. Of G-code "
+           "the print grows, a level set turns, unless --grow, --turntable or --camera-path say otherwise")
+        ->type_name("FILE")
+        ->group(group);
+    app.add_option("--seconds", film.seconds, "How long (default 8, or as long as --camera-path)")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->each([&film](const std::string&) { film.seconds_given = true; })
+        ->type_name("S")
+        ->group(group);
+    app.add_option("--fps", film.rate, "Frames a second (default 30, of .gif and .png 20)")
+        ->check(CLI::Range(1, 240))
+        ->type_name("N")
+        ->group(group);
+    app.add_option("--grow", film.grow,
+                   "G-code: the print grows bead by bead, by the time that it takes to print, or by filament")
+        ->check(oneOf({"time", "filament"}))
+        ->type_name("time|filament")
+        ->group(group);
+    app.add_option("--camera-path", film.camera_path,
+                   "The camera moves smoothly through {\"keys\": [{\"time\": 0, \"eye\": [X,Y,Z], \"look_at\": ..., "
+                   "\"up\": ..., \"fov\": ...}, ...]}")
+        ->type_name("FILE.json")
+        ->group(group);
+    app.add_flag("--nozzle", nozzle, "G-code: a hot end stands where the last bead ends; of pictures, too")
+        ->group(group);
+}
+
+std::string givenFilmOptions(const FilmCommand& film) {
+    std::vector<std::string> given;
+    if (film.seconds_given) given.emplace_back("--seconds");
+    if (film.rate > 0) given.emplace_back("--fps");
+    if (!film.grow.empty()) given.emplace_back("--grow");
+    if (!film.camera_path.empty()) given.emplace_back("--camera-path");
+    return fmt::format("{}", fmt::join(given, ", "));
+}
+
+}  // namespace stratum::tools
