@@ -37,6 +37,7 @@ struct Job {
     png_bytepp rows;
     png_textp texts;
     int text_count;
+    int color_type;
 };
 
 /// False if libpng reported an error.
@@ -53,7 +54,7 @@ bool run(const Job& job) {
     png_init_io(png, job.file);
     // The format allows 2^31 - 1; libpng's own default limit is lower than ours.
     png_set_user_limits(png, 0x7fffffffu, 0x7fffffffu);
-    png_set_IHDR(png, info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(png, info, job.width, job.height, 8, job.color_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     // Half the time of zlib's and libpng's defaults, for files from 3 % smaller to 5 % larger (the noisier the picture
     // the larger).
@@ -69,13 +70,18 @@ bool run(const Job& job) {
 }
 
 /// False if libpng or the stream reported an error.
-bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint8_t>& rgb,
+bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint8_t>& given,
              const std::map<std::string, std::string>& metadata) {
-    const std::size_t stride = 3 * static_cast<std::size_t>(width);
-    if (width < 1 || height < 1 || rgb.size() != stride * static_cast<std::size_t>(height))
-        throw std::invalid_argument(fmt::format("{} bytes are no RGB picture of {} x {}", rgb.size(), width, height));
+    const std::size_t area = width < 1 || height < 1
+                                 ? 0
+                                 : static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (area == 0 || (given.size() != 3 * area && given.size() != 4 * area))
+        throw std::invalid_argument(
+            fmt::format("{} bytes are no RGB or RGBA picture of {} x {}", given.size(), width, height));
+    const bool alpha = given.size() == 4 * area;
+    const std::size_t stride = (alpha ? 4 : 3) * static_cast<std::size_t>(width);
     // libpng takes pointers to non-const, but doesn't write to them.
-    std::vector<std::uint8_t> pixels = rgb;
+    std::vector<std::uint8_t> pixels = given;
     std::vector<png_bytep> rows;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) rows.push_back(pixels.data() + y * stride);
     std::map<std::string, std::string> strings = metadata;
@@ -99,29 +105,30 @@ bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint
     }
 
     const Job job{file,         static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), rows.data(),
-                  texts.data(), static_cast<int>(texts.size())};
+                  texts.data(), static_cast<int>(texts.size()),
+                  alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB};
     errno = 0;
     return run(job) && std::fflush(file) == 0;
 }
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
+void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& pixels,
               const std::map<std::string, std::string>& metadata) {
     const File file(std::fopen(path.c_str(), "wb"));
     if (!file) throw OutputError(fmt::format("{}: can't be written ({})", path.string(), std::strerror(errno)));
-    if (!writeTo(file.get(), width, height, rgb, metadata))
+    if (!writeTo(file.get(), width, height, pixels, metadata))
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
                                       errno ? std::strerror(errno) : "libpng failed"));
 }
 
-std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& rgb,
+std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& pixels,
                                     const std::map<std::string, std::string>& metadata) {
     char* bytes = nullptr;
     std::size_t size = 0;
     File file(open_memstream(&bytes, &size));
     if (!file) throw std::bad_alloc();
-    const bool written = writeTo(file.get(), width, height, rgb, metadata);
+    const bool written = writeTo(file.get(), width, height, pixels, metadata);
     file.reset();  // sets `bytes`
     const std::unique_ptr<char, decltype(&std::free)> owner(bytes, &std::free);
     if (!written || !bytes) throw std::bad_alloc();

@@ -28,6 +28,7 @@ struct PartWhole {
     bool linear = false;           ///< it is an .exr, else a picture to look at
     bool denoised = false;
     double exposure = 0.0;  ///< stops, of a picture to look at
+    std::optional<float> bare_bed;  ///< Film::bareBed(), of a transparent picture
     std::optional<Legend> legend;
     int shards = 1;
     int spp = 0;  ///< samples a pixel that the parts share; 0 if each has all samples of its piece
