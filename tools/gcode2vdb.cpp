@@ -6,6 +6,7 @@
 #include "convert/convert_shard.h"
 #include "convert/elements_output.h"
 #include "convert/model_comparison.h"
+#include "convert/thumbnail_output.h"
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
@@ -46,6 +47,7 @@ Examples:
   gcode2vdb part.gcode --compare part.stl --grids deviation   how far the print is from its model
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
   gcode2vdb part.gcode --report part.html --density 1.24    mass, porosity, walls, bonding ... as a page
+  gcode2vdb part.gcode --thumbnail 300x300,16x16 -o new.gcode   the print with new pictures for the printer's screen
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
@@ -141,6 +143,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::addElementOptions(app, o.elements);
     addShardOptions(app, o);
     tools::addReportOptions(app, o.report);
+    tools::addThumbnailOptions(app, o.thumbnail);
     tools::addCommonOptions(app, o.common, {"--output",
                                             "--voxel-size",
                                             "--voxels-per-layer",
@@ -157,6 +160,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
                                             "--filament-diameter",
                                             "--summary",
                                             "--report",
+                                            "--thumbnail",
                                             "--threads",
                                             "--stats",
                                             "--quiet",
@@ -275,8 +279,9 @@ int main(int argc, char** argv) {
     tools::ConvertCommand options;
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {
+        if (app.count("--thumbnail") > 0) return tools::writeThumbnails(options);
         tools::useHugePages(argv);
         options.shard.said = tools::saidOf(app);
-        run(options);
+        return run(options);
     });
 }
