@@ -7,8 +7,8 @@
 
 namespace stratum::tools {
 
-/// Steps are lines of progress.h, if such lines are shown. `tool` begins the warnings. Quiet: no steps, and of warnings only those of thin narrow
-/// bands.
+/// Steps are lines of progress.h, if such lines are shown. `tool` begins the warnings. Quiet: no steps, and of warnings
+/// only those of thin narrow bands.
 assemble::ReadEvents terminalEvents(bool quiet, const std::string& tool = "vdbtrace");
 
 }  // namespace stratum::tools

@@ -170,9 +170,10 @@ void bindPicture(py::module_& module) {
         .def_property_readonly(
             "alpha", [](const py::object& self) { return channelsOf(self, 3, 1); },
             "Read-only float32 (height, width), without a copy: 0 where nothing is.")
-        .def_property_readonly("srgb", &displayOf,
-                               "uint8 (height, width, 3): tone-mapped sRGB, the pixels of vdbtrace's .png; with background "
-                               "'none' (height, width, 4), colors not multiplied by alpha.")
+        .def_property_readonly(
+            "srgb", &displayOf,
+            "uint8 (height, width, 3): tone-mapped sRGB, the pixels of vdbtrace's .png; with background "
+            "'none' (height, width, 4), colors not multiplied by alpha.")
         .def_property_readonly("layers", &layersOf,
                                "Of aov, and of the denoiser: read-only float32 (height, width) or (height, width, "
                                "channels), without a copy, by name.")

@@ -51,9 +51,10 @@ void checkName(const std::string& input, const fs::path& output) {
     if (isStandardOutput(output)) return;
     const std::string to = endingOf(output);
     if (isOneOf(to, kOthers))
-        throw UsageError(fmt::format("-o {}: --thumbnail writes G-code again, a copy of {} with new pictures; name it so, "
-                                     "and make the {} without --thumbnail",
-                                     output.string(), input, to));
+        throw UsageError(
+            fmt::format("-o {}: --thumbnail writes G-code again, a copy of {} with new pictures; name it so, "
+                        "and make the {} without --thumbnail",
+                        output.string(), input, to));
     const std::string from = endingOf(input);
     if (input != "-" && from != to && (isOneOf(from, kContainers) || isOneOf(to, kContainers)))
         throw UsageError(fmt::format("-o {}: --thumbnail keeps the container of {}; give a name that ends in {}",
@@ -131,35 +132,33 @@ Json writeOne(const ConvertCommand& o, const std::string& input, const fs::path&
     }
     const double seconds = total.lap();
     say(o.common, fmt::format("  {}: {}, {:.2f} s", output.string(), text, seconds));
-    return {{"input",
-             {{"path", input},
-              {"bytes", file.bytes().size()},
-              {"slicer", toolpath->slicer},
-              {"format", toolpath->format}}},
-            {"output", output.string()},
-            {"bytes", patched.size()},
-            {"thumbnails", list},
-            {"seconds", {{"parse", parse}, {"render", render}, {"write", write}, {"total", seconds}}},
-            {"peak_rss_bytes", peakRssBytes()},
-            {"threads", threads}};
+    return {
+        {"input",
+         {{"path", input}, {"bytes", file.bytes().size()}, {"slicer", toolpath->slicer}, {"format", toolpath->format}}},
+        {"output", output.string()},
+        {"bytes", patched.size()},
+        {"thumbnails", list},
+        {"seconds", {{"parse", parse}, {"render", render}, {"write", write}, {"total", seconds}}},
+        {"peak_rss_bytes", peakRssBytes()},
+        {"threads", threads}};
 }
 
 }  // namespace
 
 void addThumbnailOptions(CLI::App& app, ThumbnailCommand& o) {
     const char* group = "Thumbnails";
-    auto* sizes = app.add_option("--thumbnail", o.sizes,
-                                 "Instead of a level set, a copy of the print with pictures of what it really prints, "
-                                 "for screens of printers: 300x300,16x16/QOI, each PNG, JPG or QOI. They take the place "
-                                 "of the file's own; all else stays")
-                      ->type_name("WxH[/KIND],...")
-                      ->group(group);
+    auto* sizes =
+        app.add_option("--thumbnail", o.sizes,
+                       "Instead of a level set, a copy of the print with pictures of what it really prints, "
+                       "for screens of printers: 300x300,16x16/QOI, each PNG, JPG or QOI. They take the place "
+                       "of the file's own; all else stays")
+            ->type_name("WxH[/KIND],...")
+            ->group(group);
     app.add_flag("--in-place", o.in_place, "Replaces the input")->needs(sizes)->group(group);
     // All that is of level sets.
-    for (const char* other : {"--unit",     "--up",       "--origin",  "--interior",   "--interior-distance",
-                              "--grids",    "--precision", "--compression", "--usda",  "--mesh-error",
-                              "--forecast", "--snapshots", "--summary", "--dump-toolpath", "--compare",
-                              "--report",   "--elastic",  "--shard"})
+    for (const char* other : {"--unit", "--up", "--origin", "--interior", "--interior-distance", "--grids",
+                              "--precision", "--compression", "--usda", "--mesh-error", "--forecast", "--snapshots",
+                              "--summary", "--dump-toolpath", "--compare", "--report", "--elastic", "--shard"})
         sizes->excludes(app.get_option(other));
 }
 
@@ -177,9 +176,8 @@ void writeThumbnails(ConvertCommand& o) {
     Batch batch("gcode2vdb", o.inputs.size());
     Json reports = Json::array();
     for (std::size_t n = 0; n < o.inputs.size(); ++n)
-        batch.attempt(o.inputs[n], [&] {
-            reports.push_back(writeOne(o, o.inputs[n], outputs[n], asked, limit.threads()));
-        });
+        batch.attempt(o.inputs[n],
+                      [&] { reports.push_back(writeOne(o, o.inputs[n], outputs[n], asked, limit.threads())); });
     for (const Json& failure : batch.failures()) reports.push_back(failure);
     writeStats(o.common, reports.size() == 1 ? reports.front() : reports);
     batch.finish();

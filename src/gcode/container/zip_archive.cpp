@@ -98,7 +98,7 @@ const ZipPlate& chooseZipPlate(const std::vector<ZipPlate>& plates, std::string_
 }
 
 void unpackZipEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std::size_t most, ByteBuffer& text,
-                 const Progress& progress) {
+                    const Progress& progress) {
     const char* raw = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
     const std::string entry = raw != nullptr ? raw : "";
     const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}: {}", name, entry, what)); };

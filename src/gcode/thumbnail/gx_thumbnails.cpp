@@ -46,19 +46,17 @@ std::vector<ThumbnailSize> gxPictures(std::string_view bytes, std::span<const Th
                         "as .gcode",
                         name));
     std::vector<ThumbnailSize> pictures{kBitmap};
-    if (layout->hasPng())
-        pictures.push_back(*pngSize(bytes.substr(layout->png, layout->text - layout->png)));
+    if (layout->hasPng()) pictures.push_back(*pngSize(bytes.substr(layout->png, layout->text - layout->png)));
     bool png_given = false;
     for (const ThumbnailSize& size : asked) {
         if (size.width == kBitmap.width && size.height == kBitmap.height) continue;
         if (!layout->hasPng() || png_given || size.coding != ThumbnailCoding::png)
-            throw UsageError(fmt::format("--thumbnail {}x{}/{}: {} is a .gx, whose picture has 80x60 pixels{}; give "
-                                         "--thumbnail 80x60{}",
-                                         size.width, size.height, codingName(size.coding), name,
-                                         layout->hasPng() ? ", with one PNG beside it" : "",
-                                         layout->hasPng() ? fmt::format(" or 80x60,{}x{}", pictures.back().width,
-                                                                        pictures.back().height)
-                                                          : ""));
+            throw UsageError(fmt::format(
+                "--thumbnail {}x{}/{}: {} is a .gx, whose picture has 80x60 pixels{}; give "
+                "--thumbnail 80x60{}",
+                size.width, size.height, codingName(size.coding), name,
+                layout->hasPng() ? ", with one PNG beside it" : "",
+                layout->hasPng() ? fmt::format(" or 80x60,{}x{}", pictures.back().width, pictures.back().height) : ""));
         pictures.back() = size;
         png_given = true;
     }

@@ -87,12 +87,10 @@ private:
             if (!trim(said, kWhite).starts_with(';')) break;
             at = line.next;
         }
-        throw InputError(
-            fmt::format("{}: line {}: a thumbnail begins here and has no end, '; {} end'; delete its lines, or export "
-                        "the file again",
-                        name_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(begin.begin),
-                                              '\n'),
-                        tag));
+        throw InputError(fmt::format(
+            "{}: line {}: a thumbnail begins here and has no end, '; {} end'; delete its lines, or export "
+            "the file again",
+            name_, 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(begin.begin), '\n'), tag));
     }
 
     // The lines around a block that slicers write with it.
@@ -194,9 +192,9 @@ PatchedBytes withTextThumbnails(std::string_view text, std::span<const Thumbnail
 
 std::string base64Of(std::string_view bytes) {
     std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock ends it with a zero
-    const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                       reinterpret_cast<const unsigned char*>(bytes.data()),
-                                       static_cast<int>(bytes.size()));
+    const int length =
+        EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                        reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
     text.resize(static_cast<std::size_t>(length));
     return text;
 }

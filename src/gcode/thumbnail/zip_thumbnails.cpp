@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <memory>
 #include <new>
@@ -115,9 +117,15 @@ using Source = std::unique_ptr<zip_source_t, FreeSource>;
 class ZipEdit {
 public:
     ZipEdit(std::string_view bytes, std::string_view name) : name_(name) {
-        // A copy is made as soon as it is written to; `bytes` stay as they are.
-        source_.reset(zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr));
-        if (!source_) throw std::bad_alloc();
+        // A copy that it owns: libzip 1.7 frees what the new container keeps of the old one, even if it is not its own.
+        void* const copy = std::malloc(bytes.size());
+        if (copy == nullptr) throw std::bad_alloc();
+        std::memcpy(copy, bytes.data(), bytes.size());
+        source_.reset(zip_source_buffer_create(copy, bytes.size(), 1, nullptr));
+        if (!source_) {
+            std::free(copy);
+            throw std::bad_alloc();
+        }
         zip_source_keep(source_.get());  // the archive owns the other reference
         archive_.reset(zip_open_from_source(source_.get(), 0, nullptr));
         if (!archive_) {

@@ -9,9 +9,8 @@
 namespace stratum::shade {
 
 std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<std::uint8_t>& pixels, int quality) {
-    const std::size_t area = width < 1 || height < 1
-                                 ? 0
-                                 : static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const std::size_t area =
+        width < 1 || height < 1 ? 0 : static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (area == 0 || (pixels.size() != 3 * area && pixels.size() != 4 * area))
         throw std::invalid_argument("these bytes are no RGB or RGBA picture of that size");
     const bool alpha = pixels.size() == 4 * area;
@@ -32,8 +31,7 @@ std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<st
     picture.custom_ptr = &writer;
     const bool imported = alpha ? WebPPictureImportRGBA(&picture, pixels.data(), 4 * width)
                                 : WebPPictureImportRGB(&picture, pixels.data(), 3 * width);
-    if (!imported || !WebPEncode(&config, &picture))
-        throw std::runtime_error("libwebp can't encode the picture");
+    if (!imported || !WebPEncode(&config, &picture)) throw std::runtime_error("libwebp can't encode the picture");
     return {writer.mem, writer.mem + writer.size};
 }
 

@@ -27,7 +27,7 @@ struct PartWhole {
     std::optional<PixelBox> crop;  ///< of the finished picture
     bool linear = false;           ///< it is an .exr, else a picture to look at
     bool denoised = false;
-    double exposure = 0.0;  ///< stops, of a picture to look at
+    double exposure = 0.0;          ///< stops, of a picture to look at
     std::optional<float> bare_bed;  ///< Film::bareBed(), of a transparent picture
     std::optional<Legend> legend;
     int shards = 1;

@@ -129,8 +129,7 @@ void denoise(Film& film, const Progress& progress) {
                             for (int x = 0; x < width; ++x) {
                                 const auto from = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
                                 Pixel& pixel = film.at(film.region().x0 + x0 + x, film.region().y0 + y0 + y);
-                                pixel.rgb = {scratch.colors[0][from], scratch.colors[1][from],
-                                             scratch.colors[2][from]};
+                                pixel.rgb = {scratch.colors[0][from], scratch.colors[1][from], scratch.colors[2][from]};
                                 if (alpha) pixel.alpha = std::min(scratch.colors[3][from], 1.0f);
                             }
                         if (!progress) continue;

@@ -156,8 +156,7 @@ HWY_INLINE void sumRight(const DenoisePlanes& in, int x, int y, const float* wei
         for (int k = 0; k < DenoisePlanes::kTerms; ++k)
             t[2 + k] = hn::LoadU(f, in.at(DenoisePlanes::terms + k, x + to.dx, y + to.dy)) - own[k];
         for (std::size_t c = 0; c < kChannels; ++c) {
-            const auto wc =
-                w * hn::LoadU(f, in.at(DenoisePlanes::color + static_cast<int>(c), x + to.dx, y + to.dy));
+            const auto wc = w * hn::LoadU(f, in.at(DenoisePlanes::color + static_cast<int>(c), x + to.dx, y + to.dy));
             V* sums = right + c * kUnknowns;
             for (std::size_t i = 0; i < kSlopes; ++i) sums[i] = hn::MulAdd(wc, t[i], sums[i]);
             sums[kSlopes] = sums[kSlopes] + wc;

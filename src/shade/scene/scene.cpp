@@ -119,9 +119,9 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
     }
     if (options.transparent) {
         if (scene.bed)
-            scene.catcher = ShadowCatcher{
-                irradianceFromAbove(*scene.environment) + kPi * scene.ambient,
-                luminance(paperRadiance(scene, bed.texture.mean(), {bed.center.x, bed.center.y, bed.z}))};
+            scene.catcher =
+                ShadowCatcher{irradianceFromAbove(*scene.environment) + kPi * scene.ambient,
+                              luminance(paperRadiance(scene, bed.texture.mean(), {bed.center.x, bed.center.y, bed.z}))};
         return scene;
     }
     // The paper's own color a little darker, as the light of a real lamp falls off behind the subject.

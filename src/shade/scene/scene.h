@@ -48,10 +48,10 @@ std::string_view labelName(Label label);
 
 /// What a bed is in a transparent picture: black, with alpha where the print keeps light from it.
 ///
-/// Alpha of a point on the bed is Y(B - L) / Y(E rho / pi): B is the radiance of the point without the print, L with it,
-/// both as PathIntegrator finds them by the same samples, so that alpha is exactly 0 where nothing is shaded; E is the
-/// unoccluded irradiance there, rho the reflectance of the bed, Y luminance. L has the light that the print reflects
-/// onto the bed. Over a bed of that brightness, the picture has the luminance of one with a bed.
+/// Alpha of a point on the bed is Y(B - L) / Y(E rho / pi): B is the radiance of the point without the print, L with
+/// it, both as PathIntegrator finds them by the same samples, so that alpha is exactly 0 where nothing is shaded; E is
+/// the unoccluded irradiance there, rho the reflectance of the bed, Y luminance. L has the light that the print
+/// reflects onto the bed. Over a bed of that brightness, the picture has the luminance of one with a bed.
 struct ShadowCatcher {
     Color irradiance{0.0f};  ///< of the bare bed by all but the lights
     float bare = 0.0f;       ///< luminance of the bare bed below the middle of the print

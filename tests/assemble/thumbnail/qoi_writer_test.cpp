@@ -66,13 +66,15 @@ TEST(Qoi, IsThePictureByEveryKindOfChunk) {
             if (y < 5) {
                 rgba.insert(rgba.end(), {0, 0, 0, 0});  // long runs
             } else if (y < 15) {
-                for (int c = 0; c < 3; ++c) rgba.push_back(static_cast<std::uint8_t>(rgba[rgba.size() - 4] + (noise >> (8 + 4 * c)) % 4 - 2));
+                for (int c = 0; c < 3; ++c)
+                    rgba.push_back(static_cast<std::uint8_t>(rgba[rgba.size() - 4] + (noise >> (8 + 4 * c)) % 4 - 2));
                 rgba.push_back(200);
             } else if (y < 25) {
                 const int green = static_cast<int>((noise >> 8) % 64) - 32;
                 for (int c = 0; c < 3; ++c)
-                    rgba.push_back(static_cast<std::uint8_t>(rgba[rgba.size() - 4] + green +
-                                                             (c == 1 ? 0 : static_cast<int>(noise >> (16 + 2 * c)) % 16 - 8)));
+                    rgba.push_back(
+                        static_cast<std::uint8_t>(rgba[rgba.size() - 4] + green +
+                                                  (c == 1 ? 0 : static_cast<int>(noise >> (16 + 2 * c)) % 16 - 8)));
                 rgba.push_back(200);
             } else if (y < 32) {
                 for (int c = 0; c < 3; ++c) rgba.push_back(static_cast<std::uint8_t>(noise >> (8 * c + 8)));

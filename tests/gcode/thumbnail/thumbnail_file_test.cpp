@@ -40,9 +40,9 @@ std::string png(int width, int height) {
 TEST(ThumbnailFile, EveryContainerHoldsTheSamePrint) {
     const std::string text = sample::program(12);
     const Toolpath expected = readProgram(text);
-    for (const std::string& file : {text, sample::gzip(text), sample::bgcode(text, 3, 2), sample::bgcode(text, 1, 0, false),
-                                    sample::zip({{"Metadata/plate_1.gcode", text}, {"Metadata/plate_1.png", png(4, 4)}}),
-                                    sample::ufp(text)}) {
+    for (const std::string& file :
+         {text, sample::gzip(text), sample::bgcode(text, 3, 2), sample::bgcode(text, 1, 0, false),
+          sample::zip({{"Metadata/plate_1.gcode", text}, {"Metadata/plate_1.png", png(4, 4)}}), sample::ufp(text)}) {
         const std::string made = patch(file, {kAsked});
         EXPECT_NE(made, file);
         EXPECT_TRUE(sample::samePrint(readProgram(made), expected));
@@ -56,8 +56,8 @@ TEST(ThumbnailFile, BlocksOfBinaryGcode) {
     const std::string text = sample::program(3);
     for (const bool checksum : {true, false}) {
         const std::string file = sample::bgcode(text, 2, 2, checksum);
-        const std::string old = sample::block(5, 0, little(0, 2) + little(16, 2) + little(16, 2), "\x89PNG and so on",
-                                              checksum);
+        const std::string old =
+            sample::block(5, 0, little(0, 2) + little(16, 2) + little(16, 2), "\x89PNG and so on", checksum);
         std::string expected = file;
         expected.replace(
             file.find(old), old.size(),
@@ -134,8 +134,9 @@ TEST(ThumbnailFile, PicturesOfAPlate) {
 
 TEST(ThumbnailFile, ContainersWithoutAPlace) {
     const std::string text = sample::program(2);
-    for (const std::string& file : {sample::zip({{"Metadata/plate_1.gcode", text}}), sample::zip({{"/3D/model.gcode", text}}),
-                                    sample::zip({{"3D/3dmodel.model", "<model/>"}})}) {
+    for (const std::string& file :
+         {sample::zip({{"Metadata/plate_1.gcode", text}}), sample::zip({{"/3D/model.gcode", text}}),
+          sample::zip({{"3D/3dmodel.model", "<model/>"}})}) {
         const ThumbnailFile holder(file, "a.3mf", {kAsked});
         EXPECT_THROW((void)holder.pictures(), InputError);
     }
