@@ -175,10 +175,10 @@ void writePiece(shade::PictureFile& file, const TraceCommand& o, std::size_t n, 
                   o.linear,
                   o.denoise.value_or(false),
                   o.tone.exposure,
-                  result.film.transparent() ? std::optional(result.film.bareBed()) : std::nullopt,
                   legend ? std::optional(*legend) : std::nullopt,
                   o.shard.shard->count,
-                  o.shard.samples ? o.render.spp : 0};
+                  o.shard.samples ? o.render.spp : 0,
+                  result.film.transparent() ? std::optional(result.film.bareBed()) : std::nullopt};
     part.index = o.shard.shard->index;
     part.samples = result.samples;
     part.pixels = result.pixels;

@@ -27,11 +27,11 @@ struct PartWhole {
     std::optional<PixelBox> crop;  ///< of the finished picture
     bool linear = false;           ///< it is an .exr, else a picture to look at
     bool denoised = false;
-    double exposure = 0.0;          ///< stops, of a picture to look at
-    std::optional<float> bare_bed;  ///< Film::bareBed(), of a transparent picture
+    double exposure = 0.0;  ///< stops, of a picture to look at
     std::optional<Legend> legend;
     int shards = 1;
     int spp = 0;  ///< samples a pixel that the parts share; 0 if each has all samples of its piece
+    std::optional<float> bare_bed = std::nullopt;  ///< Film::bareBed(), of a transparent picture
 };
 
 struct Part {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -22,8 +23,11 @@ const ThumbnailSize kTiny{16, 16, ThumbnailCoding::qoi};
 // Any bytes; what they are is not looked at.
 std::vector<Thumbnail> drawn(const std::vector<ThumbnailSize>& sizes) {
     std::vector<Thumbnail> pictures;
-    for (const ThumbnailSize& size : sizes)
-        pictures.push_back({size, "picture of " + std::to_string(size.width) + std::string(codingName(size.coding))});
+    for (const ThumbnailSize& size : sizes) {
+        std::string bytes = "picture of " + std::to_string(size.width) + std::string(codingName(size.coding));
+        if (size.coding == ThumbnailCoding::bmp) bytes = "BM" + little(14454, 4) + std::string(14448, '\0');
+        pictures.push_back({size, std::move(bytes)});
+    }
     return pictures;
 }
 

@@ -34,7 +34,7 @@ TEST(Thumbnail, WhatIsNone) {
     EXPECT_NE(thumbnailError("0x16").find("from 1 to 4096"), std::string::npos);
     EXPECT_NE(thumbnailError("16x4097").find("from 1 to 4096"), std::string::npos);
     EXPECT_NE(thumbnailError("16x99999999999999999999").find("from 1 to 4096"), std::string::npos);
-    EXPECT_NE(thumbnailError("16x16/PGN").find("did you mean 'PNG'"), std::string::npos);
+    EXPECT_NE(thumbnailError("16x16/PMG").find("did you mean 'PNG'"), std::string::npos);
     EXPECT_NE(thumbnailError("16x16/").find("is no kind of picture"), std::string::npos);
     EXPECT_NE(thumbnailError("16x16,16x16/PNG").find("twice"), std::string::npos);
     std::string many = "1x1";
