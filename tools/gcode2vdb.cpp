@@ -15,6 +15,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "export/mesh_file.h"
+#include "export/nano_file.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
@@ -38,6 +39,7 @@ Examples:
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
+  gcode2vdb part.gcode -o part.nvdb --precision half   NanoVDB for GPUs
   gcode2vdb part.gcode -o part.inp --voxel-size 0.4 --elastic 3500   solid elements for CalculiX and Abaqus
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      part_025pct.vdb, ..., three partial prints beside the whole one
@@ -56,7 +58,7 @@ void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
     const char* writing = "Writing";
     app.add_option_function<std::string>(
            "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
-           "float or half (default float)")
+           "float or half; of a .nvdb half is Fp16, 16 bits over the range of each leaf (default float)")
         ->check(tools::oneOf({"float", "half"}))
         ->type_name("KIND")
         ->group(writing);
@@ -97,11 +99,12 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
                    "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
         ->required()
         ->type_name("FILE");
-    app.add_option("-o,--output", o.output,
-                   "A .vdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
-                   ".vdb files of several "
-                   "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
-                   "of several inputs beside each)")
+    app.add_option(
+           "-o,--output", o.output,
+           "A .vdb or .nvdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
+           ".vdb files of several "
+           "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
+           "of several inputs beside each)")
         ->type_name("FILE|DIR");
     tools::addPrintOptions(app, o.print);
     const char* lattice = "Lattice";
@@ -208,9 +211,15 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
     const bool mesh = exporter::isMeshPath(output);
     const bool standard = isStandardOutput(output);
     tools::checkElementOptions(o, output);
-    if (!mesh && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
+    const bool nano = exporter::isNanoPath(output);
+    if (!mesh && !nano && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
         throw UsageError(
-            fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj, or .inp", output.string()));
+            fmt::format("-o {}: the name must end in .vdb, .nvdb, .stl, .ply, .obj or .inp", output.string()));
+    if (nano && standard)
+        throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
+    if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
+    if (nano && !o.shard.text.empty())
+        throw UsageError(fmt::format("--shard: parts are of a .vdb, not of {}; vdbmerge joins them", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
     if (mesh) refuseGridsOfMeshes(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
