@@ -245,10 +245,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         paths.swap(next_paths);
     }
 
-    if (scene_.catcher)
-        catchShadows(points, sums, bare, pixels);
-    else
-        blendBackdrop(rays, points, sums, pixels);
+    scene_.catcher ? catchShadows(points, sums, bare, pixels) : blendBackdrop(rays, points, sums, pixels);
 }
 
 void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays,
