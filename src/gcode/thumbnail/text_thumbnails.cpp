@@ -174,8 +174,8 @@ std::string_view lineEndOf(std::string_view text) {
 
 }  // namespace
 
-bool hasThumbnailPlace(std::string_view text) {
-    return findComment(text, kOrcaStart).has_value() || !BlockFinder(text, "").all().empty();
+bool hasThumbnailPlace(std::string_view text, std::string_view name) {
+    return findComment(text, kOrcaStart).has_value() || !BlockFinder(text, name).all().empty();
 }
 
 PatchedBytes withTextThumbnails(std::string_view text, std::span<const Thumbnail> thumbnails, std::string_view name) {

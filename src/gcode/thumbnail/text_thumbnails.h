@@ -18,8 +18,9 @@
 
 namespace stratum::gcode {
 
-/// Whether the text has thumbnails, or the place that Orca leaves for them.
-bool hasThumbnailPlace(std::string_view text);
+/// Whether the text has thumbnails, or the place that Orca leaves for them. Throws InputError for a block without an
+/// end.
+bool hasThumbnailPlace(std::string_view text, std::string_view name);
 
 /// The text with these thumbnails and no others, where its own stood; else where the text's slicer writes them, or
 /// behind the first line if it is unknown. Line ends are the text's. The same thumbnails again change nothing. `name`

@@ -75,7 +75,7 @@ Entries entriesOf(zip_t* archive, std::string_view bytes, std::string_view name,
         if (!entries.small_size) entries.small.reset();  // of another kind: nothing is known to read it
     }
     unpackZipEntry(archive, entries.text, name, ContainerLimits{}.bytesFrom(bytes.size()), entries.program, {});
-    entries.in_text = hasThumbnailPlace(entries.program.view());
+    entries.in_text = hasThumbnailPlace(entries.program.view(), name);
     return entries;
 }
 
@@ -118,15 +118,13 @@ class ZipEdit {
 public:
     ZipEdit(std::string_view bytes, std::string_view name) : name_(name) {
         // A copy that it owns: libzip 1.7 frees what the new container keeps of the old one, even if it is not its own.
-        void* const copy = std::malloc(bytes.size());
-        if (copy == nullptr) throw std::bad_alloc();
-        std::memcpy(copy, bytes.data(), bytes.size());
-        source_.reset(zip_source_buffer_create(copy, bytes.size(), 1, nullptr));
-        if (!source_) {
-            std::free(copy);
-            throw std::bad_alloc();
-        }
-        zip_source_keep(source_.get());  // the archive owns the other reference
+        std::unique_ptr<void, decltype(&std::free)> copy(std::malloc(bytes.size()), &std::free);
+        if (!copy) throw std::bad_alloc();
+        std::memcpy(copy.get(), bytes.data(), bytes.size());
+        source_.reset(zip_source_buffer_create(copy.get(), bytes.size(), 1, nullptr));
+        if (!source_) throw std::bad_alloc();
+        static_cast<void>(copy.release());  // the source frees it
+        zip_source_keep(source_.get());     // the archive owns the other reference
         archive_.reset(zip_open_from_source(source_.get(), 0, nullptr));
         if (!archive_) {
             zip_source_free(source_.get());

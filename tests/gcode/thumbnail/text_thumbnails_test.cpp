@@ -64,9 +64,9 @@ TEST(TextThumbnails, ThoseThatAreThereAreReplaced) {
     // Cura's.
     EXPECT_EQ(patched(";Generated with Cura\n;\n; thumbnail begin 32 32 4\n; AAAA\n; thumbnail end\n;\n\nM82\n"),
               ";Generated with Cura\n;\n; thumbnail begin 16 8 8\n; YWJjZGVm\n; thumbnail end\n;\n\nM82\n");
-    EXPECT_TRUE(hasThumbnailPlace(before + old));
-    EXPECT_TRUE(hasThumbnailPlace("; THUMBNAIL_BLOCK_START\n"));
-    EXPECT_FALSE(hasThumbnailPlace(before + after));
+    EXPECT_TRUE(hasThumbnailPlace(before + old, "a"));
+    EXPECT_TRUE(hasThumbnailPlace("; THUMBNAIL_BLOCK_START\n", "a"));
+    EXPECT_FALSE(hasThumbnailPlace(before + after, "a"));
 }
 
 TEST(TextThumbnails, TheSameAgainChangeNothing) {
