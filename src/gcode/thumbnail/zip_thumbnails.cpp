@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <memory>
 #include <new>
@@ -117,14 +115,15 @@ using Source = std::unique_ptr<zip_source_t, FreeSource>;
 class ZipEdit {
 public:
     ZipEdit(std::string_view bytes, std::string_view name) : name_(name) {
-        // A copy that it owns: libzip 1.7 frees what the new container keeps of the old one, even if it is not its own.
-        std::unique_ptr<void, decltype(&std::free)> copy(std::malloc(bytes.size()), &std::free);
-        if (!copy) throw std::bad_alloc();
-        std::memcpy(copy.get(), bytes.data(), bytes.size());
-        source_.reset(zip_source_buffer_create(copy.get(), bytes.size(), 1, nullptr));
+        // Written into it, so that it owns the copy: libzip 1.7 frees what the new container keeps of the old one, even
+        // if it is not its own.
+        source_.reset(zip_source_buffer_create(nullptr, 0, 0, nullptr));
         if (!source_) throw std::bad_alloc();
-        static_cast<void>(copy.release());  // the source frees it
-        zip_source_keep(source_.get());     // the archive owns the other reference
+        if (zip_source_begin_write(source_.get()) != 0 ||
+            zip_source_write(source_.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()) ||
+            zip_source_commit_write(source_.get()) != 0)
+            throw std::bad_alloc();
+        zip_source_keep(source_.get());  // the archive owns the other reference
         archive_.reset(zip_open_from_source(source_.get(), 0, nullptr));
         if (!archive_) {
             zip_source_free(source_.get());
