@@ -35,6 +35,15 @@ add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/${addon} VERBATIM
   COMMENT "Blender add-on")
 add_custom_target(blender_addon ALL DEPENDS ${PROJECT_BINARY_DIR}/${addon})
 install(FILES ${PROJECT_BINARY_DIR}/${addon} DESTINATION ${data}/blender COMPONENT tools)
+# How desktops know the viewer and the files it opens: https://specifications.freedesktop.org
+configure_file(data/desktop/org.stratum.vdbview.metainfo.xml ${PROJECT_BINARY_DIR}/desktop/org.stratum.vdbview.metainfo.xml @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/desktop/org.stratum.vdbview.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo
+  COMPONENT tools)
+install(FILES data/desktop/org.stratum.vdbview.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT tools)
+install(FILES data/desktop/org.stratum.vdbview.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps
+  COMPONENT tools)
+install(FILES data/desktop/stratum.mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME stratum.xml
+  COMPONENT tools)
 # With all that they link to, as it lies in the sources: pictures, and the pages and tables of the studies.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)

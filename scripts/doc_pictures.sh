@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of README.md, docs/gallery.md and docs/shading.md, made anew with the tools of this tree. Those of files
+# The pictures of README.md, docs/gallery.md, docs/shading.md and docs/thumbnails.md, made anew with the tools of this tree. Those of files
 # of the corpus are left as they are where it is not there. Minutes.
 # scripts/doc_pictures.sh [NAME...]   only these, e.g. gallery_gear
 set -euo pipefail
@@ -51,6 +51,10 @@ picture hull data/gcode/hull.gcode --size 900x675
 if asked growing; then
     "$bin/vdbtrace" data/gcode/hull.gcode --film "$out/growing.png" --nozzle --turntable --grow time --size 240x180 \
         --seconds 3 --fps 8
+fi
+if asked thumbnail; then
+    "$bin/gcode2vdb" data/gcode/hull.gcode --thumbnail 300x300 -o "$work/hull.gcode"
+    sed -n '/^; thumbnail begin/,/^; thumbnail end/{/thumbnail/d;s/^; //p}' "$work/hull.gcode" | base64 -d >"$out/thumbnail.png"
 fi
 for percent in 25 50 75 100; do
     picture "benchy_$percent" "$boat" --printed "$percent%" --frame all --size 720x540

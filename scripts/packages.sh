@@ -18,13 +18,14 @@ install_packages() {
 }
 
 # What the tools are built with.
-BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
+BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
     libassimp-dev libhwy-dev libdeflate-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libzip-dev libstb-dev pkg-config
     pybind11-dev python3-dev python3-numpy)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
 # are started by their test, not as services of the machine.
-TEST_PACKAGES=(admesh calculix-ccx ffmpeg libgtest-dev libopenvdb-tools blender python3 python3-openvdb mypy prusa-slicer
-    slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium)
+TEST_PACKAGES=(admesh calculix-ccx ffmpeg libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
+    prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium appstream desktop-file-utils
+    shared-mime-info libxml2-utils xvfb locales libgl1-mesa-dri)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.
 BENCH_PACKAGES=(libembree-dev python3-matplotlib)

@@ -6,6 +6,7 @@
 #include "convert/convert_shard.h"
 #include "convert/elements_output.h"
 #include "convert/model_comparison.h"
+#include "convert/thumbnail_output.h"
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
@@ -14,6 +15,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "export/mesh_file.h"
+#include "export/nano_file.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
@@ -37,6 +39,7 @@ Examples:
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
+  gcode2vdb part.gcode -o part.nvdb --precision half   NanoVDB for GPUs
   gcode2vdb part.gcode -o part.inp --voxel-size 0.4 --elastic 3500   solid elements for CalculiX and Abaqus
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      part_025pct.vdb, ..., three partial prints beside the whole one
@@ -46,6 +49,7 @@ Examples:
   gcode2vdb part.gcode --compare part.stl --grids deviation   how far the print is from its model
   gcode2vdb plates.gcode.3mf --plate 2              one plate of several
   gcode2vdb part.gcode --report part.html --density 1.24    mass, porosity, walls, bonding ... as a page
+  gcode2vdb part.gcode --thumbnail 300x300,16x16 -o new.gcode   the print with new pictures for the printer's screen
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
   gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
@@ -54,7 +58,7 @@ void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
     const char* writing = "Writing";
     app.add_option_function<std::string>(
            "--precision", [&o](const std::string& text) { o.file.half = text == "half"; },
-           "float or half (default float)")
+           "float or half; of a .nvdb half is Fp16, 16 bits over the range of each leaf (default float)")
         ->check(tools::oneOf({"float", "half"}))
         ->type_name("KIND")
         ->group(writing);
@@ -95,11 +99,12 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
                    "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
         ->required()
         ->type_name("FILE");
-    app.add_option("-o,--output", o.output,
-                   "A .vdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
-                   ".vdb files of several "
-                   "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
-                   "of several inputs beside each)")
+    app.add_option(
+           "-o,--output", o.output,
+           "A .vdb or .nvdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
+           ".vdb files of several "
+           "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
+           "of several inputs beside each)")
         ->type_name("FILE|DIR");
     tools::addPrintOptions(app, o.print);
     const char* lattice = "Lattice";
@@ -141,6 +146,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::addElementOptions(app, o.elements);
     addShardOptions(app, o);
     tools::addReportOptions(app, o.report);
+    tools::addThumbnailOptions(app, o.thumbnail);
     tools::addCommonOptions(app, o.common, {"--output",
                                             "--voxel-size",
                                             "--voxels-per-layer",
@@ -157,6 +163,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
                                             "--filament-diameter",
                                             "--summary",
                                             "--report",
+                                            "--thumbnail",
                                             "--threads",
                                             "--stats",
                                             "--quiet",
@@ -204,9 +211,15 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
     const bool mesh = exporter::isMeshPath(output);
     const bool standard = isStandardOutput(output);
     tools::checkElementOptions(o, output);
-    if (!mesh && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
+    const bool nano = exporter::isNanoPath(output);
+    if (!mesh && !nano && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
         throw UsageError(
-            fmt::format("-o {}: the name must end in .vdb, or .stl, .ply or .obj, or .inp", output.string()));
+            fmt::format("-o {}: the name must end in .vdb, .nvdb, .stl, .ply, .obj or .inp", output.string()));
+    if (nano && standard)
+        throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
+    if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
+    if (nano && !o.shard.text.empty())
+        throw UsageError(fmt::format("--shard: parts are of a .vdb, not of {}; vdbmerge joins them", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
     if (mesh) refuseGridsOfMeshes(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
@@ -275,8 +288,9 @@ int main(int argc, char** argv) {
     tools::ConvertCommand options;
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {
+        if (app.count("--thumbnail") > 0) return tools::writeThumbnails(options);
         tools::useHugePages(argv);
         options.shard.said = tools::saidOf(app);
-        run(options);
+        return run(options);
     });
 }

@@ -11,11 +11,11 @@
 
 namespace stratum::tools {
 
-assemble::ReadEvents terminalEvents(bool quiet) {
+assemble::ReadEvents terminalEvents(bool quiet, const std::string& tool) {
     assemble::ReadEvents events;
-    events.warning = [quiet](const assemble::Warning& warning) {
+    events.warning = [quiet, tool](const assemble::Warning& warning) {
         if (!quiet || warning.kind == assemble::Warning::Kind::narrow_band)
-            fmt::print(stderr, "vdbtrace: {}\n", warning.text);
+            fmt::print(stderr, "{}: {}\n", tool, warning.text);
     };
     if (!showsProgress(quiet)) return events;
     struct Line {

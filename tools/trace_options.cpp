@@ -304,6 +304,13 @@ void addLightOptions(CLI::App& app, TraceCommand& o) {
         ->check(oneOf({"paper", "pei", "grid"}))
         ->type_name("NAME")
         ->group(kLight);
+    app.add_option_function<std::string>(
+           "--background", [&o](const std::string& text) { o.scene.transparent = text == "none"; },
+           "What is behind the print: scene, the bed and its backdrop or the map of light, or none: transparent, with "
+           "the shadow on the bed (default scene)")
+        ->check(oneOf({"scene", "none"}))
+        ->type_name("NAME")
+        ->group(kLight);
 }
 
 void addShardOptions(CLI::App& app, TraceCommand& o) {

@@ -189,7 +189,8 @@ void writePiece(shade::PictureFile& file, const TraceCommand& o, std::size_t n, 
                   o.tone.exposure,
                   legend ? std::optional(*legend) : std::nullopt,
                   o.shard.shard->count,
-                  o.shard.samples ? o.render.spp : 0};
+                  o.shard.samples ? o.render.spp : 0,
+                  result.film.transparent() ? std::optional(result.film.bareBed()) : std::nullopt};
     part.index = o.shard.shard->index;
     part.samples = result.samples;
     part.pixels = result.pixels;

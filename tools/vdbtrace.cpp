@@ -62,6 +62,9 @@ void checkNozzle(const tools::TraceCommand& o) {
 void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prints) {
     o.linear = shade::PictureFile(o.output).linear();  // a bad name fails before the work
     shade::requirePictureSize(o.output, o.render.width, o.render.height);
+    if (o.scene.transparent) shade::requireAlpha(o.output);
+    if (o.scene.transparent && o.legend)
+        throw UsageError("--legend is drawn onto what is behind the print; leave --background none or the legend out");
     if (!o.render.aovs.empty() && !o.linear)
         throw UsageError(fmt::format("--aov: layers need a picture that holds them; write an .exr, not {}", o.output));
     if (isStandardOutput(o.output) && tools::pictures(o) > 1)

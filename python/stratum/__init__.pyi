@@ -247,6 +247,7 @@ def render(
     normals: Literal["geometric", "smooth"] | None = ..., env: str | PathLike[str] | None = ...,
     env_rotation: float | None = ..., env_exposure: float | None = ..., lights: str | Sequence[str] | None = ...,
     bed: bool | None = ..., bed_surface: Literal["paper", "pei", "grid"] | None = ...,
+    background: Literal["scene", "none"] | None = ...,
     march: Literal["auto", "brick", "sphere", "vdb"] | None = ...,
     brick_values: Literal["int16", "float"] | None = ..., brick_cache: str | None = ...,
     clip: Sequence[float] | None = ..., grid: str | None = ..., file_up: Literal["z", "y"] | None = ...,

@@ -12,6 +12,7 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
     seen.mm_per_unit = objects.mm_per_unit;
     seen.brdf = objects.brdf;
     if (!options.frame_all) seen.frame = objects.part;
+    if (seen.transparent && !shade::catchesShadows(options.render.integrator)) seen.bed = false;
     // An integrator without light needs no environment.
     if (!needs_light && seen.env == "studio") seen.env = "constant:0,0,0";
     Stage stage = [&] {

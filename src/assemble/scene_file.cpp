@@ -190,6 +190,10 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     std::string surface;
     top.read("bed_surface", surface);
     if (!surface.empty()) file.scene.bed_surface = shade::parseBedSurface(surface);
+    std::string background = "scene";
+    top.read("background", background);
+    if (background != "scene" && background != "none") top.fail("background", "scene or none");
+    file.scene.transparent = background == "none";
     if (auto camera = top.section("camera")) readCamera(std::move(*camera), file.scene.camera, file.notes);
     readLight(top, folder, name, file);
     if (const Json* integrator = top.find("integrator")) readIntegrator(*integrator, name, file.render.integrator);

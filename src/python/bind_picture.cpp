@@ -33,8 +33,8 @@ Ray-traces a Toolpath, or the file of that path: G-code in any container, or a .
 voxels that rays meet are made. The options are those of vdbtrace, with its defaults: size (width, height), spp, noise,
 seconds, seed, crop, aov, denoise, exposure (stops), legend; view, eye, look_at, up, fov (degrees), f_number, aperture,
 focus, frame, zoom; integrator, bounces, phong, environment_rows, ao_distance; brdf, color, color_by, normals; env,
-env_rotation (degrees), env_exposure (stops), lights, bed, bed_surface; march, brick_values, brick_cache, clip (nx, ny,
-nz, d), grid, file_up; of G-code those of read() and voxelize(), voxel_size "auto", and printed.
+env_rotation (degrees), env_exposure (stops), lights, bed, bed_surface, background; march, brick_values, brick_cache,
+clip (nx, ny, nz, d), grid, file_up; of G-code those of read() and voxelize(), voxel_size "auto", and printed.
 
 Raises InputError for files that can't be traced, UsageError for options that don't fit.)";
 
@@ -127,13 +127,14 @@ py::array channelsOf(const py::object& self, std::size_t first, py::ssize_t coun
 }
 
 py::array displayOf(const PictureObject& self) {
-    std::vector<std::uint8_t> rgb;
+    std::vector<std::uint8_t> pixels;
+    const bool alpha = self.film.transparent();
     {
         const py::gil_scoped_release release;
-        rgb = shade::toDisplay(self.film, self.tone);
-        if (self.legend) shade::draw(*self.legend, self.film.width(), self.film.height(), rgb);
+        pixels = alpha ? shade::toDisplayWithAlpha(self.film, self.tone) : shade::toDisplay(self.film, self.tone);
+        if (self.legend && !alpha) shade::draw(*self.legend, self.film.width(), self.film.height(), pixels);
     }
-    return arrayOf(std::move(rgb), shapeOf(self.film, 3));
+    return arrayOf(std::move(pixels), shapeOf(self.film, alpha ? 4 : 3));
 }
 
 py::dict layersOf(const py::object& self) {
@@ -169,8 +170,10 @@ void bindPicture(py::module_& module) {
         .def_property_readonly(
             "alpha", [](const py::object& self) { return channelsOf(self, 3, 1); },
             "Read-only float32 (height, width), without a copy: 0 where nothing is.")
-        .def_property_readonly("srgb", &displayOf,
-                               "uint8 (height, width, 3): tone-mapped sRGB, the pixels of vdbtrace's .png.")
+        .def_property_readonly(
+            "srgb", &displayOf,
+            "uint8 (height, width, 3): tone-mapped sRGB, the pixels of vdbtrace's .png; with background "
+            "'none' (height, width, 4), colors not multiplied by alpha.")
         .def_property_readonly("layers", &layersOf,
                                "Of aov, and of the denoiser: read-only float32 (height, width) or (height, width, "
                                "channels), without a copy, by name.")

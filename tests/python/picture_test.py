@@ -19,28 +19,29 @@ def path_of(name):
 
 
 def pixels_of(path):
-    """The 8-bit RGB pixels of a PNG."""
+    """The 8-bit RGB or RGBA pixels of a PNG."""
     data = read_bytes(path)
     width, height = struct.unpack(">II", data[16:24])
+    n = 4 if data[25] == 6 else 3
     packed, at = b"", 8
     while at < len(data):
         size, kind = struct.unpack(">I4s", data[at:at + 8])
         if kind == b"IDAT":
             packed += data[at + 8:at + 8 + size]
         at += 12 + size
-    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + 3 * width)
-    image = np.zeros((height, 3 * width), np.uint8)
+    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + n * width)
+    image = np.zeros((height, n * width), np.uint8)
     for y, row in enumerate(rows):
         kind, line = row[0], row[1:].astype(int)
-        above = image[y - 1].astype(int) if y else np.zeros(3 * width, int)
-        out = np.zeros(3 * width, int)
-        for x in range(3 * width):
-            left, upper, corner = (out[x - 3] if x > 2 else 0), above[x], (above[x - 3] if x > 2 else 0)
+        above = image[y - 1].astype(int) if y else np.zeros(n * width, int)
+        out = np.zeros(n * width, int)
+        for x in range(n * width):
+            left, upper, corner = (out[x - n] if x >= n else 0), above[x], (above[x - n] if x >= n else 0)
             guess = left + upper - corner
             paeth = min((left, upper, corner), key=lambda v: abs(guess - v))
             out[x] = (line[x] + (0, left, upper, (left + upper) // 2, paeth)[kind]) & 255
         image[y] = out
-    return image.reshape(height, width, 3)
+    return image.reshape(height, width, n)
 
 
 class Pictures(unittest.TestCase):
@@ -53,6 +54,15 @@ class Pictures(unittest.TestCase):
         picture.write(ours)
         self.assertEqual(read_bytes(ours), read_bytes(theirs))
         return picture
+
+    def test_nothing_behind_the_print(self):
+        picture = self.same(gcode("tile.gcode"), ["--background", "none"], background="none")
+        self.assertEqual(picture.srgb.shape, (72, 96, 4))
+        self.assertEqual(picture.alpha[0, 0], 0)
+        shadow = (picture.alpha > 0.05) & (picture.alpha < 0.9) & (picture.linear.max(axis=2) < 0.01)
+        self.assertGreater(shadow.sum(), 100)
+        with self.assertRaises(stratum.UsageError):
+            picture.write(path_of("refused.jpg"))
 
     def test_defaults(self):
         picture = self.same(gcode("tile.gcode"), [])

@@ -31,7 +31,7 @@ std::string identityOf(const std::string& path) {
     return failed ? path : whole.string();
 }
 
-// No tool writes such files.
+// Only --thumbnail writes such files.
 bool namesPrint(const std::string& path) {
     constexpr std::array<std::string_view, 8> kEndings = {".gcode",  ".gco", ".g",   ".gx",
                                                           ".bgcode", ".3mf", ".ufp", ".nc"};
@@ -46,7 +46,7 @@ void RunFiles::reads(const std::string& path) {
     if (!identity.empty()) uses_.try_emplace(identity, Use{path, "", true});
 }
 
-void RunFiles::writes(const std::string& path, std::string_view option) {
+void RunFiles::writes(const std::string& path, std::string_view option, Kind kind) {
     if (path.empty()) return;
     const bool standard = isStandardOutput(path);
     const std::string identity = standard ? "-" : identityOf(path);
@@ -54,7 +54,7 @@ void RunFiles::writes(const std::string& path, std::string_view option) {
     const auto [found, fresh] = uses_.try_emplace(identity, Use{path, std::string(option), false});
     if (fresh) {
         // "--stats a.gcode b.gcode" means two prints, and takes the first for the report's name.
-        if (!standard && namesPrint(path) && fs::exists(path))
+        if (kind != Kind::print && !standard && namesPrint(path) && fs::exists(path))
             throw UsageError(fmt::format(
                 "{} {}: is there already, and a print by its name; it would be overwritten, give another name", option,
                 path));

@@ -15,6 +15,7 @@
 #include "compare/comparison_report.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
+#include "export/nano_file.h"
 #include "export/parts/part_file.h"
 #include "export/surface_mesh.h"
 #include "export/usd_file.h"
@@ -127,8 +128,8 @@ private:
     bool culls() const { return interior_ == voxelize::Interior::cull; }
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const {
-        return !as_mesh_ && !culls() && attributes_.empty() && !o_.compare.grid && o_.snapshots.empty() &&
-               !o_.interior_distance && !o_.forecast && !o_.report.asked() &&
+        return !as_mesh_ && !exporter::isNanoPath(output_) && !culls() && attributes_.empty() && !o_.compare.grid &&
+               o_.snapshots.empty() && !o_.interior_distance && !o_.forecast && !o_.report.asked() &&
                (part_ || !(settles() && !o_.common.stats.empty()));
     }
     bool settles() const { return toolpath_.deposit.settles(); }
@@ -349,7 +350,10 @@ private:
             grids.push_back(compare::deviationGrid(*grid, *voxelize::makeTransform(lattice_, {}), *comparison_->model,
                                                    comparison_->found));
         grids.insert(grids.begin(), grid);
-        exporter::writeVdb(grids, job.path, o_.file);
+        if (exporter::isNanoPath(job.path))
+            exporter::writeNano(grids, job.path, o_.file);
+        else
+            exporter::writeVdb(grids, job.path, o_.file);
         writeUsda(grids, job);
     }
 

@@ -40,6 +40,12 @@ struct CompareCommand {
     bool grid = false;  // --grids deviation
 };
 
+/// --thumbnail (thumbnail_output.h).
+struct ThumbnailCommand {
+    std::string sizes;  // empty: not asked for
+    bool in_place = false;
+};
+
 /// As the command line gives it.
 struct ConvertCommand {
     CommonOptions common;
@@ -61,6 +67,7 @@ struct ConvertCommand {
     ConvertShard shard;
     ElementOptions elements;
     CompareCommand compare;
+    ThumbnailCommand thumbnail;
     ConvertReport report;
 
     /// Whether a level set is written: not if only a report is asked for.

@@ -1,8 +1,9 @@
-// Little-endian integers from unaligned bytes.
+// Little-endian integers in unaligned bytes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace stratum::gcode {
@@ -12,6 +13,11 @@ inline std::uint32_t littleEndian(std::string_view bytes, std::size_t offset, st
     std::uint32_t value = 0;
     for (std::size_t i = count; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[offset + i]);
     return value;
+}
+
+/// Appends the lowest `count` (1 to 4) bytes of a number.
+inline void appendLittleEndian(std::string& bytes, std::uint32_t value, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
 }
 
 }  // namespace stratum::gcode

@@ -1,175 +1,31 @@
 #include "gcode/container/zip_container.h"
 
 #include "base/error.h"
-#include "gcode/container/inflate.h"
+#include "gcode/container/zip_archive.h"
 
 #include <fmt/format.h>
-#include <zip.h>
 
-#include <algorithm>
-#include <charconv>
-#include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace stratum::gcode {
 namespace {
 
 using namespace std::string_view_literals;
 
-constexpr zip_int64_t kMostEntries = 65536;
-constexpr std::size_t kZipChunk = std::size_t{16} << 20;  // between two reports of progress
-
-// libzip's error texts are valid only during the lifetime of the error object.
-std::string reasonOf(zip_error_t& error) {
-    std::string reason = zip_error_strerror(&error);
-    zip_error_fini(&error);
-    return reason;
-}
-
-struct Discard {
-    void operator()(zip_t* archive) const { zip_discard(archive); }
-    void operator()(zip_file_t* file) const { zip_fclose(file); }
-};
-using Archive = std::unique_ptr<zip_t, Discard>;
-
-Archive openArchive(std::string_view bytes, std::string_view name) {
-    zip_error_t error;
-    zip_error_init(&error);
-    const auto fail = [&]() {
-        throw InputError(
-            fmt::format("{}: zip container of {} bytes: its directory can't be read ({}); the file is cut off "
-                        "or damaged: copy or export it again",
-                        name, bytes.size(), reasonOf(error)));
-    };
-    zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
-    if (source == nullptr) fail();
-    Archive archive(zip_open_from_source(source, ZIP_RDONLY, &error));
-    if (!archive) {
-        zip_source_free(source);
-        fail();
-    }
-    zip_error_fini(&error);
-    return archive;
-}
-
-struct Plate {
-    int number = 0;
-    zip_uint64_t index = 0;
-};
-
-// The relevant entries of a zip file.
-struct Contents {
-    std::vector<Plate> plates;
-    std::optional<zip_uint64_t> ufp_model;
-    std::optional<zip_uint64_t> slice_info;  // of a 3mf
-    std::optional<zip_uint64_t> relations;   // of a ufp's model
-    std::vector<std::pair<std::string, zip_uint64_t>> materials;
-    bool model = false;  // an unsliced 3MF project
-    zip_int64_t entries = 0;
-};
-
-// The N of "Metadata/plate_N.gcode", or 0.
-int plateNumber(std::string_view entry) {
-    constexpr auto before = "Metadata/plate_"sv;
-    constexpr auto after = ".gcode"sv;
-    if (!entry.starts_with(before) || !entry.ends_with(after) || entry.size() <= before.size() + after.size()) return 0;
-    const std::string_view digits = entry.substr(before.size(), entry.size() - before.size() - after.size());
-    int number = 0;
-    const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    return status == std::errc() && end == digits.data() + digits.size() && number > 0 ? number : 0;
-}
-
-Contents listContents(zip_t* archive, std::string_view name) {
-    Contents contents;
-    contents.entries = zip_get_num_entries(archive, 0);
-    if (contents.entries > kMostEntries)
-        throw InputError(fmt::format("{}: zip container with {} entries, more than {}; this is no print", name,
-                                     contents.entries, kMostEntries));
-    for (zip_int64_t i = 0; i < contents.entries; ++i) {
-        const auto index = static_cast<zip_uint64_t>(i);
-        const char* raw = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
-        if (raw == nullptr) continue;
-        std::string_view entry = raw;
-        if (entry.starts_with('/')) entry.remove_prefix(1);
-        if (entry == "3D/model.gcode") contents.ufp_model = index;
-        if (entry == "Metadata/slice_info.config") contents.slice_info = index;
-        if (entry == "3D/_rels/model.gcode.rels") contents.relations = index;
-        if (entry.starts_with("Materials/")) contents.materials.emplace_back(entry, index);
-        if (entry == "3D/3dmodel.model") contents.model = true;
-        if (const int number = plateNumber(entry); number > 0) contents.plates.push_back({number, index});
-    }
-    std::sort(contents.plates.begin(), contents.plates.end(),
-              [](const Plate& a, const Plate& b) { return a.number < b.number; });
-    return contents;
-}
-
-std::string listPlates(const std::vector<Plate>& plates) {
-    std::string list;
-    for (std::size_t i = 0; i < plates.size(); ++i) list += fmt::format("{}{}", i == 0 ? "" : ", ", plates[i].number);
-    return list;
-}
-
-const Plate& choosePlate(const std::vector<Plate>& plates, std::string_view name, std::optional<int> wanted) {
-    if (!wanted && plates.size() > 1)
-        throw UsageError(fmt::format("{}: has {} plates ({}); choose one, e.g. --plate {}", name, plates.size(),
-                                     listPlates(plates), plates.front().number));
-    for (const Plate& plate : plates)
-        if (!wanted || plate.number == *wanted) return plate;
-    throw UsageError(
-        fmt::format("{}: --plate {}: there is no such plate; it has {}", name, *wanted, listPlates(plates)));
-}
-
-void unpackEntry(zip_t* archive, zip_uint64_t index, std::string_view name, std::size_t most, ByteBuffer& text,
-                 const Progress& progress) {
-    const char* raw = zip_get_name(archive, index, ZIP_FL_ENC_RAW);
-    const std::string entry = raw != nullptr ? raw : "";
-    const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}: {}", name, entry, what)); };
-    zip_stat_t status;
-    zip_stat_init(&status);
-    constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_CRC;
-    if (zip_stat_index(archive, index, 0, &status) != 0 || (status.valid & needed) != needed)
-        fail("the zip directory does not state its size; copy or export the file again");
-    if (status.size > most || status.size / kDeflateMostRatio > status.comp_size)
-        fail(fmt::format("would unpack to {} bytes from {}, more than the {} of any print; unzip it to see what it is",
-                         status.size, status.comp_size, most));
-    const std::unique_ptr<zip_file_t, Discard> file(zip_fopen_index(archive, index, 0));
-    if (!file) fail(fmt::format("can't be unzipped ({}); copy or export the file again", zip_strerror(archive)));
-    // One byte more than the size: libzip checks size and CRC32 only in the read that reaches the end.
-    char* const start = text.extend(status.size + 1);
-    std::size_t done = 0;
-    while (done <= status.size) {
-        const zip_int64_t got =
-            zip_fread(file.get(), start + done, std::min<zip_uint64_t>(status.size + 1 - done, kZipChunk));
-        if (got < 0)
-            fail(fmt::format("unzipping stops after {} of {} bytes ({}); the file is damaged: copy or export it again",
-                             done, status.size, zip_file_strerror(file.get())));
-        if (got == 0) break;
-        done += static_cast<std::size_t>(got);
-        if (progress) progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(status.size)));
-    }
-    const auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(start), std::min<std::size_t>(done, status.size));
-    if (done != status.size || crc != status.crc)
-        fail(fmt::format(
-            "{} bytes with CRC32 {:08x}, expected {} with {:08x}; the file is damaged: copy or export it again", done,
-            crc, status.size, status.crc));
-    text.truncate(done);
-}
-
 // A small file beside the G-code; empty if it can't be read, because the print does not need it.
 std::string unpackAside(zip_t* archive, zip_uint64_t index, std::string_view name) {
     constexpr std::size_t kMost = std::size_t{1} << 20;
     try {
         ByteBuffer text;
-        unpackEntry(archive, index, name, kMost, text, {});
+        unpackZipEntry(archive, index, name, kMost, text, {});
         return std::string(text.view());
     } catch (const InputError&) {
         return {};
     }
 }
 
-PackageFacts readMaterials(zip_t* archive, const Contents& contents, std::string_view name) {
+PackageFacts readMaterials(zip_t* archive, const ZipContents& contents, std::string_view name) {
     PackageFacts facts;
     if (!contents.relations) return facts;
     for (const std::string& path : materialPaths(unpackAside(archive, *contents.relations, name)))
@@ -184,13 +40,13 @@ bool isZip(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"sv) ||
 
 Program openZip(std::string_view bytes, std::string_view name, std::optional<int> plate, const ContainerLimits& limits,
                 const Progress& progress) {
-    const Archive archive = openArchive(bytes, name);
-    const Contents contents = listContents(archive.get(), name);
+    const ZipArchive archive = openZipArchive(bytes, name);
+    const ZipContents contents = listZip(archive.get(), name);
     Program program;
     zip_uint64_t index = 0;
     if (!contents.plates.empty()) {
         program.format = "3mf";
-        const Plate& chosen = choosePlate(contents.plates, name, plate);
+        const ZipPlate& chosen = chooseZipPlate(contents.plates, name, plate);
         index = chosen.index;
         if (contents.slice_info)
             program.facts = readSliceInfo(unpackAside(archive.get(), *contents.slice_info, name), chosen.number);
@@ -206,7 +62,7 @@ Program openZip(std::string_view bytes, std::string_view name, std::optional<int
                         "/3D/model.gcode (ufp); unzip the G-code from it first",
                         name, contents.entries));
     }
-    unpackEntry(archive.get(), index, name, limits.bytesFrom(bytes.size()), program.unpacked, progress);
+    unpackZipEntry(archive.get(), index, name, limits.bytesFrom(bytes.size()), program.unpacked, progress);
     program.text = program.unpacked.view();
     return program;
 }

@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::array<std::pair<std::string_view, bool>, 2> kFrames = {{{"part", false}, {"all", true}}};
 constexpr std::array<std::pair<std::string_view, bool>, 2> kNormals = {{{"geometric", false}, {"smooth", true}}};
+constexpr std::array<std::pair<std::string_view, bool>, 2> kBackgrounds = {{{"scene", false}, {"none", true}}};
 constexpr std::array<std::pair<std::string_view, march::BrickValues>, 2> kBrickValues = {
     {{"int16", march::BrickValues::Int16}, {"float", march::BrickValues::Float32}}};
 
@@ -114,6 +115,7 @@ void readScene(Keywords& options, RenderCall& call) {
     scene.lights = options.texts("lights");
     assign(scene.bed, options.flag("bed"));
     if (const auto surface = options.text("bed_surface")) scene.bed_surface = shade::parseBedSurface(*surface);
+    assign(scene.transparent, options.choice("background", kBackgrounds));
 }
 
 void readTracing(Keywords& options, RenderCall& call) {

@@ -13,6 +13,7 @@ Film::Film(int frame_width, int frame_height, const PixelBox& region, FilmConten
 
 Film Film::part(const PixelBox& region) const {
     Film film(frame_width_, frame_height_, region, content_);
+    film.bare_bed_ = bare_bed_;
     for (const FilmLayer& layer : layers_)
         film.layers_.push_back(
             {layer.name, layer.channels, std::vector<float>(film.pixels_.size() * layer.channels.size())});

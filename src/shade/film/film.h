@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,12 +72,20 @@ public:
     std::vector<FilmLayer>& layers() { return layers_; }
     const std::vector<FilmLayer>& layers() const { return layers_; }
 
+    /// Whether nothing is to be seen behind the print: pictures to look at then keep alpha.
+    bool transparent() const { return bare_bed_.has_value(); }
+    /// Of a transparent film, the luminance of what shadows fall on, where nothing shades it: what light a pixel stands
+    /// for is that of rgb and (1 - alpha) of this. 0 without a bed.
+    float bareBed() const { return bare_bed_.value_or(0.0f); }
+    void makeTransparent(float bare_bed) { bare_bed_ = bare_bed; }
+
 private:
     int frame_width_ = 0, frame_height_ = 0;
     PixelBox region_;
     FilmContent content_ = FilmContent::radiance;
     std::vector<Pixel> pixels_;
     std::vector<FilmLayer> layers_;
+    std::optional<float> bare_bed_;
 };
 
 }  // namespace stratum::shade

@@ -57,14 +57,22 @@ void requirePictureSize(const std::filesystem::path& path, int width, int height
 }
 
 std::vector<std::uint8_t> displayPixels(const Film& film, const ToneOptions& tone, const Legend* legend) {
+    if (film.transparent()) return toDisplayWithAlpha(film, tone);
     std::vector<std::uint8_t> rgb = toDisplay(film, tone);
     if (legend) draw(*legend, film.width(), film.height(), rgb);
     return rgb;
 }
 
+void requireAlpha(const std::filesystem::path& path) {
+    if (pictureKindOf(path) == PictureKind::jpeg)
+        throw UsageError(
+            fmt::format("--background none: {}: a JPEG has no alpha; write a .png, .webp or .exr", path.string()));
+}
+
 PictureFile::PictureFile(const std::filesystem::path& path) : kind_(pictureKindOf(path)), file_(path) {}
 
 void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOptions& tone, const Legend* legend) {
+    if (film.transparent()) requireAlpha(file_.destination());
     file_.write([&](const std::filesystem::path& to) {
         const int width = film.width();
         const int height = film.height();
@@ -72,15 +80,15 @@ void PictureFile::write(const Film& film, const Metadata& metadata, const ToneOp
             writeExr(to, film, metadata);
             return;
         }
-        const std::vector<std::uint8_t> rgb = displayPixels(film, tone, legend);
+        const std::vector<std::uint8_t> pixels = displayPixels(film, tone, legend);
         switch (kind_) {
             case PictureKind::jpeg:
-                return writeBytes(to, encodeJpeg(width, height, rgb, kJpegQuality, metadata));
+                return writeBytes(to, encodeJpeg(width, height, pixels, kJpegQuality, metadata));
             case PictureKind::webp:
-                return writeBytes(to, encodeWebp(width, height, rgb, kWebpQuality));
+                return writeBytes(to, encodeWebp(width, height, pixels, kWebpQuality));
             case PictureKind::png:
             case PictureKind::exr:
-                return writePng(to, width, height, rgb, metadata);
+                return writePng(to, width, height, pixels, metadata);
         }
     });
 }

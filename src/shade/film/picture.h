@@ -24,6 +24,9 @@ enum class PictureKind : std::uint8_t { exr, png, jpeg, webp };
 /// By its ending, .exr, .png, .jpg or .jpeg, .webp; "-" is a PNG. Throws UsageError for others.
 PictureKind pictureKindOf(const std::filesystem::path& path);
 
+/// Throws UsageError if the kind has no alpha: a transparent film can't be written to it.
+void requireAlpha(const std::filesystem::path& path);
+
 /// Throws UsageError if the kind has no pictures so large.
 void requirePictureSize(const std::filesystem::path& path, int width, int height);
 
@@ -38,8 +41,9 @@ public:
     explicit PictureFile(const std::filesystem::path& path);
     /// Whether it keeps linear values and layers: an EXR.
     bool linear() const { return kind_ == PictureKind::exr; }
-    /// Writes the picture and commits the file. `tone` is for pictures to look at. Throws OutputError.
-    /// @param legend  drawn into the upper left corner of such a picture, if given
+    /// Writes the picture and commits the file. `tone` is for pictures to look at. A transparent film keeps its alpha
+    /// (requireAlpha()). Throws OutputError.
+    /// @param legend  drawn into the upper left corner of such a picture, if given; not into transparent ones
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
                const Legend* legend = nullptr);
     /// Commits a file that `writer` writes under the name that it is given. Throws what it throws, and OutputError.

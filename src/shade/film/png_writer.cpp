@@ -38,6 +38,7 @@ struct Job {
     png_textp texts;
     int text_count;
     PngEffort effort;
+    int color_type;
 };
 
 /// False if libpng reported an error.
@@ -54,8 +55,8 @@ bool run(const Job& job) {
     png_init_io(png, job.file);
     // The format allows 2^31 - 1; libpng's own default limit is lower than ours.
     png_set_user_limits(png, 0x7fffffffu, 0x7fffffffu);
-    png_set_IHDR(png, info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, job.width, job.height, 8, job.color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
     // The noisier the picture the larger the file of the quick way, compared with the defaults.
     const bool quick = job.effort == PngEffort::quick;
     png_set_compression_level(png, quick ? 3 : 6);
@@ -70,13 +71,17 @@ bool run(const Job& job) {
 }
 
 /// False if libpng or the stream reported an error.
-bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint8_t>& rgb,
+bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint8_t>& given,
              const std::map<std::string, std::string>& metadata, PngEffort effort) {
-    const std::size_t stride = 3 * static_cast<std::size_t>(width);
-    if (width < 1 || height < 1 || rgb.size() != stride * static_cast<std::size_t>(height))
-        throw std::invalid_argument(fmt::format("{} bytes are no RGB picture of {} x {}", rgb.size(), width, height));
+    const std::size_t area =
+        width < 1 || height < 1 ? 0 : static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (area == 0 || (given.size() != 3 * area && given.size() != 4 * area))
+        throw std::invalid_argument(
+            fmt::format("{} bytes are no RGB or RGBA picture of {} x {}", given.size(), width, height));
+    const bool alpha = given.size() == 4 * area;
+    const std::size_t stride = (alpha ? 4 : 3) * static_cast<std::size_t>(width);
     // libpng takes pointers to non-const, but doesn't write to them.
-    std::vector<std::uint8_t> pixels = rgb;
+    std::vector<std::uint8_t> pixels = given;
     std::vector<png_bytep> rows;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) rows.push_back(pixels.data() + y * stride);
     std::map<std::string, std::string> strings = metadata;
@@ -105,29 +110,30 @@ bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint
                   rows.data(),
                   texts.data(),
                   static_cast<int>(texts.size()),
-                  effort};
+                  effort,
+                  alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB};
     errno = 0;
     return run(job) && std::fflush(file) == 0;
 }
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& rgb,
+void writePng(const std::filesystem::path& path, int width, int height, const std::vector<std::uint8_t>& pixels,
               const std::map<std::string, std::string>& metadata) {
     const File file(std::fopen(path.c_str(), "wb"));
     if (!file) throw OutputError(fmt::format("{}: can't be written ({})", path.string(), std::strerror(errno)));
-    if (!writeTo(file.get(), width, height, rgb, metadata, PngEffort::quick))
+    if (!writeTo(file.get(), width, height, pixels, metadata, PngEffort::quick))
         throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
                                       errno ? std::strerror(errno) : "libpng failed"));
 }
 
-std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& rgb,
+std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& pixels,
                                     const std::map<std::string, std::string>& metadata, PngEffort effort) {
     char* bytes = nullptr;
     std::size_t size = 0;
     File file(open_memstream(&bytes, &size));
     if (!file) throw std::bad_alloc();
-    const bool written = writeTo(file.get(), width, height, rgb, metadata, effort);
+    const bool written = writeTo(file.get(), width, height, pixels, metadata, effort);
     file.reset();  // sets `bytes`
     const std::unique_ptr<char, decltype(&std::free)> owner(bytes, &std::free);
     if (!written || !bytes) throw std::bad_alloc();

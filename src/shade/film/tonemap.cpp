@@ -128,4 +128,30 @@ std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options
     return bytes;
 }
 
+std::vector<std::uint8_t> toDisplayWithAlpha(const Film& film, const ToneOptions& options) {
+    Film straight(film.frameWidth(), film.frameHeight(), film.region(), film.content());
+    for (std::size_t n = 0; n < film.pixels().size(); ++n) {
+        const Pixel& pixel = film.pixels()[n];
+        if (pixel.alpha > 0.0f) straight.pixels()[n] = {pixel.rgb / pixel.alpha, 1.0f};
+    }
+    const std::vector<std::uint8_t> rgb = toDisplay(straight, options);
+    std::vector<std::uint8_t> rgba;
+    rgba.reserve(4 * film.pixels().size());
+    for (std::size_t n = 0; n < film.pixels().size(); ++n) {
+        const std::uint8_t alpha = toByte(film.pixels()[n].alpha, 0.0f);
+        for (std::size_t c = 0; c < 3; ++c) rgba.push_back(alpha > 0 ? rgb[3 * n + c] : std::uint8_t{0});
+        rgba.push_back(alpha);
+    }
+    return rgba;
+}
+
+std::vector<std::uint8_t> overBlack(const std::vector<std::uint8_t>& rgba) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t n = 0; n + 3 < rgba.size(); n += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            rgb.push_back(static_cast<std::uint8_t>((rgba[n + c] * rgba[n + 3] + 127) / 255));
+    return rgb;
+}
+
 }  // namespace stratum::shade

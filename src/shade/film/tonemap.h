@@ -30,4 +30,11 @@ float encodeSrgb(float linear);
 /// Light gets a fixed dither of half a step so that a smooth backdrop shows no bands.
 std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options = {});
 
+/// 8-bit RGBA of the same, for transparent films: the colors are those of what is there, not multiplied by alpha
+/// ("straight", as PNG, WebP and QOI have them); 0 where alpha rounds to 0.
+std::vector<std::uint8_t> toDisplayWithAlpha(const Film& film, const ToneOptions& options = {});
+
+/// 8-bit RGB of 8-bit RGBA over black: for kinds of pictures that have no alpha.
+std::vector<std::uint8_t> overBlack(const std::vector<std::uint8_t>& rgba);
+
 }  // namespace stratum::shade

@@ -8,9 +8,12 @@
 
 namespace stratum::shade {
 
-std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<std::uint8_t>& rgb, int quality) {
-    if (width < 1 || height < 1 || rgb.size() != 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-        throw std::invalid_argument("these bytes are no RGB picture of that size");
+std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<std::uint8_t>& pixels, int quality) {
+    const std::size_t area =
+        width < 1 || height < 1 ? 0 : static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    if (area == 0 || (pixels.size() != 3 * area && pixels.size() != 4 * area))
+        throw std::invalid_argument("these bytes are no RGB or RGBA picture of that size");
+    const bool alpha = pixels.size() == 4 * area;
     WebPConfig config;
     WebPPicture picture;
     if (!WebPConfigPreset(&config, WEBP_PRESET_PICTURE, static_cast<float>(quality)) || !WebPPictureInit(&picture))
@@ -26,8 +29,9 @@ std::vector<std::uint8_t> encodeWebp(int width, int height, const std::vector<st
                                                                                            &WebPMemoryWriterClear);
     picture.writer = WebPMemoryWrite;
     picture.custom_ptr = &writer;
-    if (!WebPPictureImportRGB(&picture, rgb.data(), 3 * width) || !WebPEncode(&config, &picture))
-        throw std::runtime_error("libwebp can't encode the picture");
+    const bool imported = alpha ? WebPPictureImportRGBA(&picture, pixels.data(), 4 * width)
+                                : WebPPictureImportRGB(&picture, pixels.data(), 3 * width);
+    if (!imported || !WebPEncode(&config, &picture)) throw std::runtime_error("libwebp can't encode the picture");
     return {writer.mem, writer.mem + writer.size};
 }
 

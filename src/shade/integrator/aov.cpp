@@ -109,7 +109,7 @@ void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t 
 }
 
 AovRecorder::AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs)
-    : surfaces_(scene, print), aovs_(std::move(aovs)) {
+    : surfaces_(scene, print), aovs_(std::move(aovs)), bare_bed_(scene.catcher ? scene.catcher->bare : 0.0f) {
     if (std::find(aovs_.begin(), aovs_.end(), Aov::shading) != aovs_.end()) {
         const trace::Box box = print.bounds();
         const glm::dvec3 middle = 0.5 * (box.min + box.max);

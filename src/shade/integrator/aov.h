@@ -62,6 +62,8 @@ class AovRecorder {
 public:
     AovRecorder(const SceneDescription& scene, const trace::Intersector& print, std::vector<Aov> aovs);
     const std::vector<Aov>& aovs() const { return aovs_; }
+    /// Film::bareBed() of the scene.
+    float bareBed() const { return bare_bed_; }
     /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to the sums of a pixel
     /// from `at` on.
     void add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const;
@@ -70,6 +72,7 @@ private:
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
     std::optional<BareLight> bare_light_;  // only for Aov::shading
+    float bare_bed_;
 };
 
 }  // namespace stratum::shade

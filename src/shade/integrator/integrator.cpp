@@ -47,6 +47,8 @@ bool needsLight(const IntegratorOptions& options) {
     return std::find(kGeometry.begin(), kGeometry.end(), options.name) == kGeometry.end();
 }
 
+bool catchesShadows(const IntegratorOptions& options) { return options.name == "path" || options.name == "direct"; }
+
 Pixel Integrator::radiance(const trace::Ray& ray, TraceContext& context) const {
     SurfacePoint point;
     ++context.rays.primary;

@@ -60,6 +60,10 @@ struct IntegratorOptions {
 /// Whether the integrator of that name evaluates lights; false for those of geometry and ambient occlusion.
 bool needsLight(const IntegratorOptions& options);
 
+/// Whether the integrator of that name makes a bed a ShadowCatcher: path and direct. The others see no bed in a
+/// transparent picture.
+bool catchesShadows(const IntegratorOptions& options);
+
 /// Immutable; shared by all threads.
 class Integrator {
 public:

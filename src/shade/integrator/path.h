@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace stratum::shade {
@@ -112,6 +113,13 @@ private:
     void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, std::span<Color> sums,
                        std::vector<Path>& next_paths) const;
     void goOn(const Path& path, std::vector<Path>& next_paths) const;
+    /// Adds what the first vertices would receive if nothing were in the way, in the order in which light is added to
+    /// the sums: without a shadow the two are equal to the last bit.
+    void addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays, std::span<const Bounce> bounces,
+                 std::span<Color> bare) const;
+    /// The pixels of a transparent picture, see ShadowCatcher.
+    void catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums, std::span<const Color> bare,
+                      std::span<Pixel> pixels) const;
     /// Share of the backdrop in what a camera ray sees.
     float fadeAt(const SurfacePoint& point) const;
     void blendBackdrop(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,

@@ -22,7 +22,8 @@ void PixelSums::add(std::size_t pixel, const Pixel& sample, const AovRecorder& r
     sums_.add(at + kGreen, static_cast<double>(sample.rgb.g));
     sums_.add(at + kBlue, static_cast<double>(sample.rgb.b));
     sums_.add(at + kAlpha, static_cast<double>(sample.alpha));
-    const auto y = static_cast<double>(shade::luminance(sample.rgb));
+    // Of a transparent picture, that of the picture with a bed: the noise of shadows counts.
+    const auto y = static_cast<double>(shade::luminance(sample.rgb) + (1.0f - sample.alpha) * recorder.bareBed());
     sums_.add(at + kLuminance, y);
     sums_.add(at + kSquare, y * y);
     recorder.add(point, direction, sums_, at + kOwn);
@@ -50,7 +51,8 @@ double PixelSums::variance(std::size_t pixel, int count) const {
 void PixelSums::store(std::size_t pixel, int count, Film& film, int x, int y) const {
     const std::size_t at = pixel * each_;
     const auto mean = [&](std::size_t n) { return static_cast<float>(sums_.value(at + n) / count); };
-    film.at(x, y) = {Color(mean(kRed), mean(kGreen), mean(kBlue)), mean(kAlpha)};
+    // Light that the print reflects onto the bed may exceed what it keeps from it.
+    film.at(x, y) = {Color(mean(kRed), mean(kGreen), mean(kBlue)), std::clamp(mean(kAlpha), 0.0f, 1.0f)};
     storeAovs(aovs_, sums_, at + kOwn, {variance(pixel, count), static_cast<std::uint32_t>(count)}, film.layers(),
               film.index(x, y));
 }

@@ -45,6 +45,7 @@ public:
           pixels_(static_cast<std::uint64_t>(region_.width()) * static_cast<std::uint64_t>(region_.height())),
           workers_([this] { return makeWorker(); }) {
         state_.film = Film(options.width, options.height, region_, integrator_->content());
+        if (scene.transparent) state_.film.makeTransparent(recorder_.bareBed());
         // A share of the samples has no means, only sums.
         state_.film.layers() = makeLayers(options.aovs, options.samples ? 0 : state_.film.pixels().size());
         if (options.samples) sums_ = PixelSums(state_.film.pixels().size(), options.aovs);

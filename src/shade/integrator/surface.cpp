@@ -163,7 +163,7 @@ bool Surfaces::backdrop(std::span<const trace::Ray> rays, std::span<Color> radia
             radiances[n] = scene_.backdrop->radiance(glm::vec3(rays[n].direction));
         return true;
     }
-    if (!scene_.environment->visible()) return false;
+    if (scene_.transparent || !scene_.environment->visible()) return false;
     std::vector<glm::vec3> directions;
     directions.reserve(rays.size());
     for (const trace::Ray& ray : rays) directions.emplace_back(ray.direction);

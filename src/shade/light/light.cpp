@@ -75,8 +75,8 @@ std::optional<Color> parseAmbient(std::string_view text) {
     return colorAt(preset, 0, "a radiance");
 }
 
-Color irradianceFrom(const Light& light, const glm::dvec3& point) {
-    const int side = light.hasExtent() ? 32 : 1;
+Color irradianceFrom(const Light& light, const glm::dvec3& point, int side) {
+    if (!light.hasExtent()) side = 1;
     glm::dvec3 sum(0.0);
     for (int i = 0; i < side; ++i) {
         for (int j = 0; j < side; ++j) {

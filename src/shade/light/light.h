@@ -56,6 +56,7 @@ std::shared_ptr<const Light> parseLight(std::string_view text);
 std::optional<Color> parseAmbient(std::string_view text);
 
 /// Unoccluded irradiance of a horizontal surface that faces up at this point.
-Color irradianceFrom(const Light& light, const glm::dvec3& point);
+/// @param side  of a light with extent: side * side places on it are used
+Color irradianceFrom(const Light& light, const glm::dvec3& point, int side = 32);
 
 }  // namespace stratum::shade

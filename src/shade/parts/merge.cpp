@@ -33,6 +33,7 @@ Film assemble(const std::vector<PartFile>& parts) {
     const Part& any = parts.front().part;
     Film film(any.whole.width, any.whole.height, any.whole.region, any.content);
     addLayers(any, film);
+    if (any.whole.bare_bed) film.makeTransparent(*any.whole.bare_bed);
     if (any.whole.spp > 0) {
         const std::vector<std::string> problems = addUp(parts, film);
         if (!problems.empty()) refuseParts(problems);

@@ -25,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kAttribute = "StratumPart";
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr std::size_t kMostPixels = std::size_t{1} << 30;  // 32768 x 32768, what a render may have
 
 Json jsonOf(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
@@ -64,6 +64,7 @@ Json jsonOf(const PartWhole& whole) {
             {"linear", whole.linear},
             {"denoised", whole.denoised},
             {"exposure", whole.exposure},
+            {"bare_bed", whole.bare_bed ? Json(*whole.bare_bed) : Json()},
             {"legend", whole.legend ? jsonOf(*whole.legend) : Json()},
             {"shards", whole.shards},
             {"spp", whole.spp}};
@@ -80,6 +81,7 @@ PartWhole wholeOf(const Json& json) {
     whole.linear = json.at("linear");
     whole.denoised = json.at("denoised");
     whole.exposure = json.at("exposure");
+    if (!json.at("bare_bed").is_null()) whole.bare_bed = json.at("bare_bed").get<float>();
     if (!json.at("legend").is_null()) whole.legend = legendOf(json.at("legend"));
     whole.shards = json.at("shards");
     whole.spp = json.at("spp");

@@ -31,6 +31,7 @@ struct PartWhole {
     std::optional<Legend> legend;
     int shards = 1;
     int spp = 0;  ///< samples a pixel that the parts share; 0 if each has all samples of its piece
+    std::optional<float> bare_bed = std::nullopt;  ///< Film::bareBed(), of a transparent picture
 };
 
 struct Part {

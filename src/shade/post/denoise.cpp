@@ -44,11 +44,14 @@ DenoisePlanes planesOf(const Film& film) {
         return static_cast<std::size_t>(mirrored(y, film.height())) * static_cast<std::size_t>(film.width()) +
                static_cast<std::size_t>(mirrored(x, film.width()));
     };
-    DenoisePlanes planes(film.width(), film.height());
+    const float bare = film.bareBed();
+    DenoisePlanes planes(film.width(), film.height(), bare > 0.0f);
     const auto fill = [&](int x, int y) {
         const std::size_t n = index(x, y);
         const Color& color = film.pixels()[n].rgb;
-        *planes.at(DenoisePlanes::brightness, x, y) = luminance(color);
+        const float alpha = film.pixels()[n].alpha;
+        *planes.at(DenoisePlanes::brightness, x, y) = luminance(color) + (1.0f - alpha) * bare;
+        if (bare > 0.0f) *planes.at(DenoisePlanes::alpha, x, y) = alpha;
         // The variance of a few samples is itself noisy: a mean over 3 x 3 pixels.
         const int column = mirrored(x, film.width());
         const int row = mirrored(y, film.height());
@@ -105,6 +108,7 @@ void denoise(Film& film, const Progress& progress) {
     noisy.values.reserve(3 * count);
     for (const Pixel& p : film.pixels()) noisy.values.insert(noisy.values.end(), {p.rgb.r, p.rgb.g, p.rgb.b});
 
+    const bool alpha = planes.channels() == 4;
     constexpr int kWidth = DenoisePlanes::kBlockWidth;
     constexpr int kHeight = DenoisePlanes::kBlockHeight;
     const int columns = (film.width() + kWidth - 1) / kWidth;
@@ -124,8 +128,9 @@ void denoise(Film& film, const Progress& progress) {
                         for (int y = 0; y < height; ++y)
                             for (int x = 0; x < width; ++x) {
                                 const auto from = static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x);
-                                film.at(film.region().x0 + x0 + x, film.region().y0 + y0 + y).rgb = {
-                                    scratch.colors[0][from], scratch.colors[1][from], scratch.colors[2][from]};
+                                Pixel& pixel = film.at(film.region().x0 + x0 + x, film.region().y0 + y0 + y);
+                                pixel.rgb = {scratch.colors[0][from], scratch.colors[1][from], scratch.colors[2][from]};
+                                if (alpha) pixel.alpha = std::min(scratch.colors[3][from], 1.0f);
                             }
                         if (!progress) continue;
                         const std::lock_guard lock(mutex);

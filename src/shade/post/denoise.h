@@ -18,7 +18,8 @@ bool canDenoise(const IntegratorOptions& integrator);
 void addDenoisingGuides(RenderOptions& options);
 
 /// Replaces the film's colors by estimates with less noise, and keeps the old ones as a layer "noisy". Alpha is not
-/// changed.
+/// changed, but for that of shadows in a transparent film (Film::bareBed()): it is fitted like a color, and colors are
+/// compared as those of the picture with a bed.
 ///
 /// Each pixel is the value of a linear function of position, Aov::shading and albedo, fitted by weighted least squares
 /// to the pixels around it. The weights decrease with the difference in color of the patches around two pixels, beyond

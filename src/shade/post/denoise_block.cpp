@@ -140,10 +140,11 @@ HWY_INLINE void sumMatrix(const DenoisePlanes& in, int x, int y, const float* we
 }
 
 /// Adds w * t_i * color of all neighbours: unknowns fastest, then channels.
+template <std::size_t kChannels>
 HWY_INLINE void sumRight(const DenoisePlanes& in, int x, int y, const float* weights, V* right) {
     const F f;
     constexpr float kFar = Denoising::kRadius;
-    for (std::size_t n = 0; n < 3 * kUnknowns; ++n) right[n] = hn::Zero(f);
+    for (std::size_t n = 0; n < kChannels * kUnknowns; ++n) right[n] = hn::Zero(f);
     V own[DenoisePlanes::kTerms];
     for (int k = 0; k < DenoisePlanes::kTerms; ++k) own[k] = hn::LoadU(f, in.at(DenoisePlanes::terms + k, x, y));
     for (const Neighbor& to : neighbors()) {
@@ -154,9 +155,9 @@ HWY_INLINE void sumRight(const DenoisePlanes& in, int x, int y, const float* wei
         t[1] = hn::Set(f, static_cast<float>(to.dy) / kFar);
         for (int k = 0; k < DenoisePlanes::kTerms; ++k)
             t[2 + k] = hn::LoadU(f, in.at(DenoisePlanes::terms + k, x + to.dx, y + to.dy)) - own[k];
-        for (int c = 0; c < 3; ++c) {
-            const auto wc = w * hn::LoadU(f, in.at(DenoisePlanes::color + c, x + to.dx, y + to.dy));
-            V* sums = right + static_cast<std::size_t>(c) * kUnknowns;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const auto wc = w * hn::LoadU(f, in.at(DenoisePlanes::color + static_cast<int>(c), x + to.dx, y + to.dy));
+            V* sums = right + c * kUnknowns;
             for (std::size_t i = 0; i < kSlopes; ++i) sums[i] = hn::MulAdd(wc, t[i], sums[i]);
             sums[kSlopes] = sums[kSlopes] + wc;
         }
@@ -164,6 +165,7 @@ HWY_INLINE void sumRight(const DenoisePlanes& in, int x, int y, const float* wei
 }
 
 /// The constants of the fits, by Cholesky's factorization of the ridged matrix.
+template <std::size_t kChannels>
 HWY_INLINE void solve(const V* matrix, const V* right, V* values) {
     const F f;
     V l[kUnknowns * (kUnknowns + 1) / 2];
@@ -185,7 +187,7 @@ HWY_INLINE void solve(const V* matrix, const V* right, V* values) {
                 l[at] = sum * inverse[j];
             }
         }
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
         V y[kUnknowns];
         for (std::size_t i = 0; i < kUnknowns; ++i) {
             V rest = right[c * kUnknowns + i];
@@ -196,21 +198,29 @@ HWY_INLINE void solve(const V* matrix, const V* right, V* values) {
     }
 }
 
-void Denoise(const DenoisePlanes& in, int x0, int y0, DenoiseScratch& scratch) {
+template <std::size_t kChannels>
+HWY_INLINE void fit(const DenoisePlanes& in, int x0, int y0, DenoiseScratch& scratch) {
     const F f;
     const std::vector<Neighbor>& around = neighbors();
     for (std::size_t n = 0; n < around.size(); ++n) weigh(in, x0, y0, around[n], scratch.weights.data() + n * kArea);
     V matrix[kUnknowns * (kUnknowns + 1) / 2];
-    V right[3 * kUnknowns];
-    V values[3];
+    V right[kChannels * kUnknowns];
+    V values[kChannels];
     for (std::size_t y = 0; y < kHeight; ++y)
         for (std::size_t x = 0; x < kWidth; x += hn::Lanes(f)) {
             const float* weights = scratch.weights.data() + y * kWidth + x;
             sumMatrix(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), weights, matrix);
-            sumRight(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), weights, right);
-            solve(matrix, right, values);
-            for (std::size_t c = 0; c < 3; ++c) hn::StoreU(values[c], f, &scratch.colors[c][y * kWidth + x]);
+            sumRight<kChannels>(in, x0 + static_cast<int>(x), y0 + static_cast<int>(y), weights, right);
+            solve<kChannels>(matrix, right, values);
+            for (std::size_t c = 0; c < kChannels; ++c) hn::StoreU(values[c], f, &scratch.colors[c][y * kWidth + x]);
         }
+}
+
+void Denoise(const DenoisePlanes& in, int x0, int y0, DenoiseScratch& scratch) {
+    if (in.channels() == 3)
+        fit<3>(in, x0, y0, scratch);
+    else
+        fit<4>(in, x0, y0, scratch);
 }
 
 }  // namespace
@@ -226,14 +236,15 @@ HWY_EXPORT(Denoise);
 int roundedUp(int n, int to) { return (n + to - 1) / to * to; }
 }  // namespace
 
-DenoisePlanes::DenoisePlanes(int width, int height)
+DenoisePlanes::DenoisePlanes(int width, int height, bool with_alpha)
     : width_(width),
       height_(height),
       end_x_(roundedUp(width, kBlockWidth) + 2 * kMargin),
       end_y_(roundedUp(height, kBlockHeight) + kMargin),
       stride_(static_cast<std::size_t>(end_x_ + kMargin)) {
     static_assert(Denoising::kRadius + Denoising::kPatch <= kMargin);
-    for (std::vector<float>& plane : values_) plane.resize(stride_ * static_cast<std::size_t>(end_y_ + kMargin));
+    for (int plane = 0; plane < (with_alpha ? kPlanes : alpha); ++plane)
+        values_[static_cast<std::size_t>(plane)].resize(stride_ * static_cast<std::size_t>(end_y_ + kMargin));
 }
 
 void denoiseBlock(const DenoisePlanes& planes, int x0, int y0, DenoiseScratch& scratch) {

@@ -28,14 +28,18 @@ public:
         closeness,  // kCloseness planes: the distance of two pixels in guides is the sum of their squared differences
         terms = closeness + 7,  // kTerms planes: variables of the linear function, beside the position
         color = terms + 3,      // 3 planes
-        kPlanes = color + 3
+        alpha = color + 3,      // of transparent films
+        kPlanes = alpha + 1
     };
     static constexpr int kCloseness = 7;
     static constexpr int kTerms = 3;
     static constexpr int kBlockWidth = 64, kBlockHeight = 16;  // pixels
     static constexpr int kMargin = 16;                         // pixels, left and above; more on the other sides
 
-    DenoisePlanes(int width, int height);
+    /// @param with_alpha  alpha is fitted like a color; else there is no such plane
+    DenoisePlanes(int width, int height, bool with_alpha = false);
+    /// Planes that are fitted, from `color` on: 3 or 4.
+    std::size_t channels() const { return values_[alpha].empty() ? 3 : 4; }
     int width() const { return width_; }
     int height() const { return height_; }
     /// Rows and columns that exist: from -kMargin to these, exclusive.
@@ -58,7 +62,7 @@ private:
 /// Scratch memory of one thread.
 struct DenoiseScratch {
     std::vector<float> weights;                ///< of each neighbour, of each pixel
-    std::array<std::vector<float>, 3> colors;  ///< the result: kBlockHeight rows of kBlockWidth
+    std::array<std::vector<float>, 4> colors;  ///< the result by channel: kBlockHeight rows of kBlockWidth
 };
 
 /// Denoises the block whose upper left pixel is (x0, y0); the block may extend beyond the film. A pixel's result

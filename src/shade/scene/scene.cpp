@@ -89,6 +89,8 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
                            .ambient = Color(0.0f),
                            .bed = std::nullopt,
                            .backdrop = std::nullopt,
+                           .transparent = options.transparent,
+                           .catcher = std::nullopt,
                            .mm_per_unit = options.mm_per_unit};
     for (const std::string& light : options.lights) {
         if (const auto ambient = parseAmbient(light))
@@ -120,6 +122,13 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
         bed.fade_begin = 1.0 * reach;
         bed.fade_end = 7.0 * reach;
         scene.bed = bed;
+    }
+    if (options.transparent) {
+        if (scene.bed)
+            scene.catcher =
+                ShadowCatcher{irradianceFromAbove(*scene.environment) + kPi * scene.ambient,
+                              luminance(paperRadiance(scene, bed.texture.mean(), {bed.center.x, bed.center.y, bed.z}))};
+        return scene;
     }
     // The paper's own color a little darker, as the light of a real lamp falls off behind the subject.
     if (options.backdrop && (scene.bed || !scene.environment->visible())) {

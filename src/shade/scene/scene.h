@@ -33,6 +33,7 @@ struct SceneOptions {
     BedSurface bed_surface = BedSurface::paper;  ///< --bed-surface
     double mm_per_unit = 1.0;                    ///< millimetres a world unit, for the texture of the bed
     bool backdrop = true;                        ///< false: nothing behind the print, alpha 0 there
+    bool transparent = false;  ///< --background none: only the print, and its shadow on the bed, see ShadowCatcher
     CameraOptions camera;
     /// The box that a named view is fitted to, world space: the part without skirts and towers. Empty: everything.
     std::optional<trace::Box> frame;
@@ -44,6 +45,17 @@ inline constexpr std::size_t kLabels = 3;
 /// Throws UsageError if the text is none of "layer", "tool", "feature".
 Label parseLabel(std::string_view text);
 std::string_view labelName(Label label);
+
+/// What a bed is in a transparent picture: black, with alpha where the print keeps light from it.
+///
+/// Alpha of a point on the bed is Y(B - L) / Y(E rho / pi): B is the radiance of the point without the print, L with
+/// it, both as PathIntegrator finds them by the same samples, so that alpha is exactly 0 where nothing is shaded; E is
+/// the unoccluded irradiance there, rho the reflectance of the bed, Y luminance. L has the light that the print
+/// reflects onto the bed. Over a bed of that brightness, the picture has the luminance of one with a bed.
+struct ShadowCatcher {
+    Color irradiance{0.0f};  ///< of the bare bed by all but the lights
+    float bare = 0.0f;       ///< luminance of the bare bed below the middle of the print
+};
 
 /// A scene ready to be rendered. Everything is immutable and shared by all threads.
 struct SceneDescription {
@@ -58,13 +70,16 @@ struct SceneDescription {
     Color ambient{0.0f};  ///< radiance that reaches every point from everywhere
     std::optional<Bed> bed;
     std::optional<Backdrop> backdrop;  ///< the background for the camera; without it, a visible environment or nothing
-    double mm_per_unit = 1.0;          ///< millimetres a world unit, for what goes on inside of translucent solids
+    bool transparent = false;          ///< the camera sees nothing behind the print
+    std::optional<ShadowCatcher> catcher;  ///< of the bed in a transparent picture; only PathIntegrator has it
+    double mm_per_unit = 1.0;              ///< millimetres a world unit, for what goes on inside of translucent solids
 
     /// Whether light goes through a material of it.
     bool anyTranslucent() const;
 };
 
-/// Builds the scene around a print. The bed is at restingHeight(); it is invisible to a camera below it.
+/// Builds the scene around a print. The bed is at restingHeight(); it is invisible to a camera below it. A transparent
+/// scene has no backdrop; its bed is a shadow catcher.
 /// @param width, height  pixels of the whole frame
 /// Throws UsageError.
 SceneDescription makeScene(const SceneOptions& options, const trace::Intersector& print, int width, int height);

@@ -1,0 +1,142 @@
+#include "assemble/thumbnail/print_thumbnails.h"
+
+#include "assemble/finished_picture.h"
+#include "assemble/ready_scene.h"
+#include "assemble/thumbnail/bmp_writer.h"
+#include "assemble/thumbnail/qoi_writer.h"
+#include "shade/camera/camera.h"
+#include "shade/film/jpeg_writer.h"
+#include "shade/film/png_writer.h"
+#include "shade/post/denoise.h"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace stratum::assemble {
+namespace {
+
+using Pixels = std::vector<std::uint8_t>;
+
+constexpr int kJpegQuality = 90;
+
+StageOptions stageOf(int width, int height) {
+    StageOptions stage;
+    stage.scene.bed = false;
+    stage.scene.transparent = true;
+    stage.render.width = width;
+    stage.render.height = height;
+    return stage;
+}
+
+// What slicers leave out of their thumbnails, too: skirts and prime towers.
+void leaveOutWhatIsBeside(voxelize::PrintOptions& print, const gcode::Toolpath& toolpath) {
+    if (!print.features.empty()) return;
+    bool any = false;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        const gcode::Feature feature = toolpath.runOf(bead).feature;
+        any |= feature != gcode::Feature::skirt && feature != gcode::Feature::wipe_tower;
+        if (any) break;
+    }
+    if (any)
+        print.features = fmt::format("-{},-{}", gcode::featureName(gcode::Feature::skirt),
+                                     gcode::featureName(gcode::Feature::wipe_tower));
+}
+
+// A thumbnail has no room to spare: the box of the part reaches nearly to its edges. Named views leave more.
+void fill(StageOptions& options, const trace::Box& box) {
+    constexpr double kFilled = 0.96;
+    const glm::dvec2 half = 0.5 * glm::dvec2(options.render.width, options.render.height);
+    const shade::Camera camera =
+        shade::Camera::make(options.scene.camera, box, options.render.width, options.render.height);
+    double reach = 0.0;  // of the farthest corner, from the middle to the edge
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const auto seen =
+            camera.project({(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                            (corner & 4) != 0 ? box.max.z : box.min.z});
+        if (!seen) return;
+        const glm::dvec2 from_middle = glm::abs(*seen - half) / half;
+        reach = std::max({reach, from_middle.x, from_middle.y});
+    }
+    if (reach > 0.0) options.scene.camera.zoom = std::clamp(kFilled / reach, 0.5, 4.0);
+}
+
+// RGBA of the print in one size.
+Pixels drawn(const TracedObjects& objects, StageOptions options, const ReadEvents& events) {
+    // Below this a pixel of the denoiser's window is a layer or a wall: samples are cheaper than what it would blur.
+    constexpr int kSmall = 96 * 96;
+    constexpr int kSamples = 128;
+    const bool small = options.render.width * options.render.height <= kSmall;
+    if (small) options.render.spp = kSamples;
+    fill(options, objects.part.value_or(objects.intersector->bounds()));
+    const bool denoised = chooseDenoising({small ? std::optional(false) : std::nullopt, false, small}, options.render);
+    const Stage stage = makeStage(objects, options, events);
+    const Step step(events, "rendering", false);
+    shade::RenderResult result = shade::render(*objects.intersector, stage.scene, options.render);
+    if (denoised) shade::denoise(result.film);
+    return shade::toDisplayWithAlpha(result.film, {stage.exposure.value_or(0.0)});
+}
+
+std::string textOf(const Pixels& bytes) { return {bytes.begin(), bytes.end()}; }
+
+std::string encoded(const gcode::ThumbnailSize& size, const Pixels& rgba) {
+    switch (size.coding) {
+        case gcode::ThumbnailCoding::jpg:
+            return textOf(shade::encodeJpeg(size.width, size.height, shade::overBlack(rgba), kJpegQuality));
+        case gcode::ThumbnailCoding::qoi:
+            return encodeQoi(size.width, size.height, rgba);
+        case gcode::ThumbnailCoding::bmp:
+            return encodeBmp(size.width, size.height, shade::overBlack(rgba));
+        case gcode::ThumbnailCoding::png:
+            break;
+    }
+    return textOf(shade::encodePng(size.width, size.height, rgba, {}));
+}
+
+bool choosesVoxels(const voxelize::PrintOptions& print) {
+    return print.lattice.voxel_size || print.lattice.voxels_per_layer || print.tolerance ||
+           !print.memory_budget.empty();
+}
+
+}  // namespace
+
+std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::Toolpath>& toolpath,
+                                             const std::string& name, std::span<const gcode::ThumbnailSize> sizes,
+                                             const ThumbnailOptions& options) {
+    const auto largest =
+        *std::max_element(sizes.begin(), sizes.end(), [](const gcode::ThumbnailSize& a, const gcode::ThumbnailSize& b) {
+            return a.width * a.height < b.width * b.height;
+        });
+    StageOptions sharpest = stageOf(largest.width, largest.height);
+    TracingOptions tracing;
+    tracing.events = options.events;
+    tracing.prints.print = options.print;
+    tracing.prints.print.voxel_auto = !choosesVoxels(options.print);
+    leaveOutWhatIsBeside(tracing.prints.print, *toolpath);
+    tracing.prints.toolpath = toolpath;
+    tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
+        fill(sharpest, boxOf(part));
+        return pixelSpreadOf(sharpest, print, part);
+    };
+    ObjectOptions object;
+    object.vdb = name;
+    const TracedObjects objects = readTracedObjects({object}, tracingFor(sharpest.scene, sharpest.render, tracing));
+
+    std::map<std::pair<int, int>, Pixels> pictures;
+    std::vector<gcode::Thumbnail> thumbnails;
+    thumbnails.reserve(sizes.size());
+    for (const gcode::ThumbnailSize& size : sizes) {
+        Pixels& rgba = pictures[{size.width, size.height}];
+        if (rgba.empty()) rgba = drawn(objects, stageOf(size.width, size.height), options.events);
+        thumbnails.push_back({size, encoded(size, rgba)});
+    }
+    return thumbnails;
+}
+
+}  // namespace stratum::assemble

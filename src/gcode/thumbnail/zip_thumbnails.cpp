@@ -1,0 +1,200 @@
+#include "gcode/thumbnail/zip_thumbnails.h"
+
+#include "base/error.h"
+#include "gcode/container/zip_archive.h"
+#include "gcode/thumbnail/png_size.h"
+#include "gcode/thumbnail/text_thumbnails.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+
+namespace stratum::gcode {
+namespace {
+
+constexpr std::size_t kMostPicture = std::size_t{1} << 26;
+
+std::optional<zip_uint64_t> find(zip_t* archive, std::string_view wanted) {
+    const zip_int64_t entries = zip_get_num_entries(archive, 0);
+    for (zip_int64_t i = 0; i < entries; ++i) {
+        const char* raw = zip_get_name(archive, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
+        if (raw == nullptr) continue;
+        std::string_view entry = raw;
+        if (entry.starts_with('/')) entry.remove_prefix(1);
+        if (entry == wanted) return static_cast<zip_uint64_t>(i);
+    }
+    return std::nullopt;
+}
+
+/// The entries of one program that have to do with its pictures.
+struct Entries {
+    zip_uint64_t text = 0;
+    zip_uint64_t picture = 0;
+    std::optional<zip_uint64_t> small, md5;
+    std::optional<ThumbnailSize> small_size;
+    ByteBuffer program;  // its text
+    bool in_text = false;
+};
+
+Entries entriesOf(zip_t* archive, std::string_view bytes, std::string_view name, std::optional<int> plate) {
+    const ZipContents contents = listZip(archive, name);
+    Entries entries;
+    std::string picture;
+    if (!contents.plates.empty()) {
+        const ZipPlate& chosen = chooseZipPlate(contents.plates, name, plate);
+        entries.text = chosen.index;
+        picture = fmt::format("Metadata/plate_{}.png", chosen.number);
+        entries.small = find(archive, fmt::format("Metadata/plate_{}_small.png", chosen.number));
+        entries.md5 = find(archive, fmt::format("Metadata/plate_{}.gcode.md5", chosen.number));
+    } else if (contents.ufp_model) {
+        entries.text = *contents.ufp_model;
+        picture = "Metadata/thumbnail.png";
+    } else {
+        throw InputError(fmt::format("{}: is a zip container without G-code; slice the model first", name));
+    }
+    const auto found = find(archive, picture);
+    if (!found)
+        throw InputError(
+            fmt::format("{}: has no {} to replace; export it again with pictures, or unzip its G-code and give that",
+                        name, picture));
+    entries.picture = *found;
+    if (entries.small) {
+        ByteBuffer small;
+        unpackZipEntry(archive, *entries.small, name, kMostPicture, small, {});
+        entries.small_size = pngSize(small.view());
+        if (!entries.small_size) entries.small.reset();  // of another kind: nothing is known to read it
+    }
+    unpackZipEntry(archive, entries.text, name, ContainerLimits{}.bytesFrom(bytes.size()), entries.program, {});
+    entries.in_text = hasThumbnailPlace(entries.program.view(), name);
+    return entries;
+}
+
+// For the picture, then for the small one, then for the text.
+std::vector<ThumbnailSize> picturesOf(const Entries& entries, std::span<const ThumbnailSize> asked,
+                                      std::string_view name) {
+    std::vector<ThumbnailSize> pngs;
+    std::copy_if(asked.begin(), asked.end(), std::back_inserter(pngs),
+                 [](const ThumbnailSize& size) { return size.coding == ThumbnailCoding::png; });
+    if (pngs.empty())
+        throw UsageError(fmt::format("--thumbnail: the picture of {} is a PNG; ask for one, e.g. 512x512", name));
+    std::stable_sort(pngs.begin(), pngs.end(), [](const ThumbnailSize& a, const ThumbnailSize& b) {
+        return a.width * a.height > b.width * b.height;
+    });
+    std::vector<ThumbnailSize> pictures{pngs.front()};
+    if (entries.small) pictures.push_back(pngs.size() > 1 ? pngs.back() : *entries.small_size);
+    if (entries.in_text) pictures.insert(pictures.end(), asked.begin(), asked.end());
+    return pictures;
+}
+
+std::string md5Of(const PatchedBytes& bytes) {
+    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned size = 0;
+    if (!context || EVP_DigestInit_ex(context.get(), EVP_md5(), nullptr) != 1) throw std::bad_alloc();
+    for (const std::string_view piece : bytes.pieces()) EVP_DigestUpdate(context.get(), piece.data(), piece.size());
+    EVP_DigestFinal_ex(context.get(), digest.data(), &size);
+    std::string text;
+    for (unsigned i = 0; i < size; ++i) text += fmt::format("{:02X}", digest[i]);
+    return text;
+}
+
+struct FreeSource {
+    void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+using Source = std::unique_ptr<zip_source_t, FreeSource>;
+
+/// An archive in memory, some of whose entries get new contents.
+class ZipEdit {
+public:
+    ZipEdit(std::string_view bytes, std::string_view name) : name_(name) {
+        // Written into it, so that it owns the copy: libzip 1.7 frees what the new container keeps of the old one, even
+        // if it is not its own.
+        source_.reset(zip_source_buffer_create(nullptr, 0, 0, nullptr));
+        if (!source_) throw std::bad_alloc();
+        if (zip_source_begin_write(source_.get()) != 0 ||
+            zip_source_write(source_.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size()) ||
+            zip_source_commit_write(source_.get()) != 0)
+            throw std::bad_alloc();
+        zip_source_keep(source_.get());  // the archive owns the other reference
+        archive_.reset(zip_open_from_source(source_.get(), 0, nullptr));
+        if (!archive_) {
+            zip_source_free(source_.get());
+            fail("can't be opened for writing");
+        }
+    }
+
+    void replace(zip_uint64_t index, std::string contents, bool stored) {
+        zip_stat_t status;
+        zip_stat_init(&status);
+        zip_stat_index(archive_.get(), index, 0, &status);
+        const std::string& kept = contents_.emplace_back(std::move(contents));
+        zip_source_t* source = zip_source_buffer(archive_.get(), kept.data(), kept.size(), 0);
+        if (source == nullptr) throw std::bad_alloc();
+        if (zip_file_replace(archive_.get(), index, source, 0) != 0) {
+            zip_source_free(source);
+            fail(zip_strerror(archive_.get()));
+        }
+        zip_set_file_compression(archive_.get(), index, stored ? ZIP_CM_STORE : ZIP_CM_DEFLATE, 0);
+        // Not the time of this run: the same input gives the same bytes.
+        if ((status.valid & ZIP_STAT_MTIME) != 0) zip_file_set_mtime(archive_.get(), index, status.mtime, 0);
+    }
+
+    std::string finish() {
+        if (zip_close(archive_.get()) != 0) fail(zip_strerror(archive_.get()));
+        static_cast<void>(archive_.release());
+        zip_stat_t status;
+        zip_stat_init(&status);
+        if (zip_source_stat(source_.get(), &status) != 0 || zip_source_open(source_.get()) != 0)
+            fail("the new container can't be read");
+        std::string packed(status.size, '\0');
+        const zip_int64_t got = zip_source_read(source_.get(), packed.data(), packed.size());
+        zip_source_close(source_.get());
+        if (got != static_cast<zip_int64_t>(packed.size())) fail("the new container can't be read");
+        return packed;
+    }
+
+private:
+    [[noreturn]] void fail(std::string_view why) const {
+        throw InputError(fmt::format("{}: its pictures can't be replaced ({}); export it again", name_, why));
+    }
+
+    std::string_view name_;
+    std::deque<std::string> contents_;  // the archive's sources point to them
+    Source source_;
+    ZipArchive archive_;
+};
+
+}  // namespace
+
+std::vector<ThumbnailSize> zipPictures(std::string_view bytes, std::span<const ThumbnailSize> asked,
+                                       std::string_view name, std::optional<int> plate) {
+    const ZipArchive archive = openZipArchive(bytes, name);
+    return picturesOf(entriesOf(archive.get(), bytes, name, plate), asked, name);
+}
+
+PatchedBytes withZipThumbnails(std::string_view bytes, std::span<const ThumbnailSize> asked,
+                               std::span<const Thumbnail> pictures, std::string_view name, std::optional<int> plate) {
+    const ZipArchive archive = openZipArchive(bytes, name);
+    const Entries entries = entriesOf(archive.get(), bytes, name, plate);
+    ZipEdit edit(bytes, name);
+    edit.replace(entries.picture, pictures[0].bytes, true);
+    if (entries.small) edit.replace(*entries.small, pictures[1].bytes, true);
+    if (entries.in_text) {
+        const PatchedBytes text = withTextThumbnails(entries.program.view(), pictures.last(asked.size()), name);
+        edit.replace(entries.text, text.text(), false);
+        if (entries.md5) edit.replace(*entries.md5, md5Of(text), false);
+    }
+    PatchedBytes result;
+    result.add(edit.finish());
+    return result;
+}
+
+}  // namespace stratum::gcode
