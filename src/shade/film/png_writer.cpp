@@ -31,7 +31,7 @@ void checkKeyword(const std::string& keyword) {
 }
 
 /// Output state of libpng. Trivially destructible, because libpng's errors longjmp over it.
-struct Job {
+struct PngJob {
     std::FILE* file;
     png_uint_32 width, height;
     png_bytepp rows;
@@ -42,7 +42,7 @@ struct Job {
 };
 
 /// False if libpng reported an error.
-bool run(const Job& job) {
+bool run(const PngJob& job) {
     png_structp png = png_create_write_struct(
         PNG_LIBPNG_VER_STRING, nullptr, [](png_structp p, png_const_charp) { png_longjmp(p, 1); },
         [](png_structp, png_const_charp) {});
@@ -104,14 +104,14 @@ bool writeTo(std::FILE* file, int width, int height, const std::vector<std::uint
         texts.push_back(text);
     }
 
-    const Job job{file,
-                  static_cast<png_uint_32>(width),
-                  static_cast<png_uint_32>(height),
-                  rows.data(),
-                  texts.data(),
-                  static_cast<int>(texts.size()),
-                  effort,
-                  alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB};
+    const PngJob job{file,
+                     static_cast<png_uint_32>(width),
+                     static_cast<png_uint_32>(height),
+                     rows.data(),
+                     texts.data(),
+                     static_cast<int>(texts.size()),
+                     effort,
+                     alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB};
     errno = 0;
     return run(job) && std::fflush(file) == 0;
 }

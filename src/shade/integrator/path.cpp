@@ -215,6 +215,23 @@ float PathIntegrator::fadeAt(const SurfacePoint& point) const {
     return std::isfinite(point.t) ? surfaces_.fade(point) : 1.0f;
 }
 
+void PathIntegrator::scatterAll(std::span<PathVertex> vertices, std::span<const glm::vec2> lobe_draws,
+                                std::span<const glm::vec2> brdf_draws, std::span<Color> sums,
+                                std::vector<Bounce>& bounces, std::vector<Walker>& walkers) const {
+    for (std::size_t n = 0; n < vertices.size(); ++n) {
+        PathVertex& vertex = vertices[n];
+        const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n], brdf_draws[n]);
+        if (!bounce) continue;
+        const Path& path = *vertex.path;
+        if (bounce->inside != nullptr) {
+            walkers.push_back({bounce->ray, bounce->inside, path.throughput, path.pixel, path.scatterings});
+            continue;
+        }
+        sums[path.pixel] += path.throughput * scene_.ambient;
+        bounces.push_back(*bounce);
+    }
+}
+
 void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
                                 std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
                                 std::span<Pixel> pixels) const {
@@ -260,18 +277,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         brdf_draws.resize(vertices.size());
         next2DStream(samplers, batch.pixels, lobe_draws);
         next2DStream(samplers, batch.pixels, brdf_draws);
-        for (std::size_t n = 0; n < vertices.size(); ++n) {
-            PathVertex& vertex = vertices[n];
-            const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n], brdf_draws[n]);
-            if (!bounce) continue;
-            if (bounce->inside != nullptr) {
-                const Path& path = *vertex.path;
-                walkers.push_back({bounce->ray, bounce->inside, path.throughput, path.pixel, path.scatterings});
-                continue;
-            }
-            sums[vertex.path->pixel] += vertex.path->throughput * scene_.ambient;
-            bounces.push_back(*bounce);
-        }
+        scatterAll(vertices, lobe_draws, brdf_draws, sums, bounces, walkers);
         gatherGroups(groups, bounces, [](const Bounce& bounce) { return bounce.from->path->point.bed; });
         for (const Group& group : groups) evalEscaped(group, bounces, batch);
         if (step == 1 && scene_.catcher) addBare(points, shadow_rays, bounces, bare);

@@ -99,6 +99,10 @@ private:
     std::optional<Bounce> scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw) const;
     /// The same at the surface of a translucent solid.
     std::optional<Bounce> scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw) const;
+    /// Bounces in air, and walkers inside of solids, of all paths that go on.
+    void scatterAll(std::span<PathVertex> vertices, std::span<const glm::vec2> lobe_draws,
+                    std::span<const glm::vec2> brdf_draws, std::span<Color> sums, std::vector<Bounce>& bounces,
+                    std::vector<Walker>& walkers) const;
     /// Walks on inside of solids, and lists the paths that go on from where they meet a surface.
     void walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
               std::vector<Path>& next_paths) const;
