@@ -13,7 +13,7 @@ using shade::RoughInterface;
 using shade::Side;
 
 constexpr Side kSides[] = {Side::air, Side::solid};
-constexpr double kCosines[] = {0.05, 0.3, 0.6, 0.76, 0.95, 1.0};
+constexpr double kInterfaceCosines[] = {0.05, 0.3, 0.6, 0.76, 0.95, 1.0};
 
 TEST(RoughInterface, ScattersAllLight) {
     // Samples have weight 1: hardly one may be refused.
@@ -22,7 +22,7 @@ TEST(RoughInterface, ScattersAllLight) {
         for (const float eta : {1.465f, 2.0f}) {
             const RoughInterface surface(eta, alpha);
             for (const Side side : kSides)
-                for (const double cosine : kCosines) {
+                for (const double cosine : kInterfaceCosines) {
                     double sum = 0.0;
                     shade::Sampler sampler(1, kSamples);
                     for (std::uint32_t i = 0; i < kSamples; ++i) {

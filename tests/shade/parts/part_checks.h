@@ -34,8 +34,9 @@ inline shade::Film wholeFilm() {
 
 inline shade::Part partOf(int index, int shards) {
     shade::Part part;
-    part.whole.version = "1";
-    part.whole.scene = "s";
+    // From strings: GCC 12 warns wrongly of an overflow where a literal is assigned.
+    part.whole.version = std::string("1");
+    part.whole.scene = std::string("s");
     part.whole.width = 100;
     part.whole.height = 70;
     part.whole.region = kPartFrame;
