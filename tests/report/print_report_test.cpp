@@ -116,6 +116,17 @@ TEST(PrintReport, InertiaOfATube) {
     EXPECT_NEAR(numberOf(report, "thinnest_wall"), tube.width, 0.01);
 }
 
+TEST(PrintReport, VolumeAtFewVoxelsALayer) {
+    const Tube tube;
+    const Tube usual{5, 0.45, 0.2, 12};
+    for (const auto& [one, voxels] : {std::pair{tube, 4}, {tube, 6}, {tube, 8}, {usual, 3}, {usual, 4}, {usual, 8}}) {
+        const PrintReport report =
+            reportOfAll(test::tube(one.radius, one.width, one.height, one.layers), layeredLattice(one.height, voxels));
+        const double expected = one.layers * one.volumeOfLayer();
+        EXPECT_NEAR(numberOf(report, "plastic_volume"), expected, 0.002 * expected) << voxels;
+    }
+}
+
 TEST(PrintReport, TurnedScaledAndMovedGridsSayTheSame) {
     const gcode::Toolpath path = test::tube(3, 0.6, 0.4, 4);
     const auto beads = allBeads(path);

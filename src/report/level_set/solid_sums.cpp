@@ -3,6 +3,7 @@
 #include "base/parallel_for.h"
 #include "report/level_set/cell_surface.h"
 #include "voxelize/grid/cell_volume.h"
+#include "voxelize/grid/interpolation_bias.h"
 
 #include <algorithm>
 #include <array>
@@ -79,9 +80,9 @@ struct ColumnSums {
     }
 };
 
-// Volume and first moments about its corner of what is solid of a cell, by four lines along z through a cell, on the
-// places of a Gauss rule: the field is linear on each.
-Four partOf(const float (&s)[9][9][9], int x, int y, int z) {
+// Volume and first moments about its corner of what is below `level` of a cell, by four lines along z through a cell,
+// on the places of a Gauss rule: the field is linear on each.
+Four partOf(const voxelize::CellSamples& s, int x, int y, int z, float level) {
     constexpr float kLow = 0.21132486540518713F;
     constexpr float kHigh = 0.78867513459481287F;
     constexpr Four kU = {kLow, kLow, kHigh, kHigh};
@@ -91,7 +92,7 @@ Four partOf(const float (&s)[9][9][9], int x, int y, int z) {
         const float c = s[x][y + 1][k];
         const Four low = a + kU * (s[x + 1][y][k] - a);
         const Four high = c + kU * (s[x + 1][y + 1][k] - c);
-        return low + kV * (high - low);
+        return low + kV * (high - low) - level;
     };
     const Four low = on(z);
     const Four high = on(z + 1);
@@ -187,6 +188,7 @@ public:
                 negative_[x][y] = bits;
                 mixed = mixed || bits != negative_[0][0] || (bits != 0 && bits != 0x1ffU);
             }
+        if (mixed) voxelize::interpolationBias(s_, bias_);
         const openvdb::Coord origin = map_.leaf(n).origin();
         RowSums* rows = sums.rows.data() + (origin.z() - sums.first_row);
         air_ = nullptr;
@@ -228,7 +230,7 @@ private:
         for (; mixed != 0; mixed &= mixed - 1) {
             const int z = std::countr_zero(mixed);
             const auto k = static_cast<float>(z);
-            const Four part = partOf(s_, x, y, z);
+            const Four part = partOf(s_, x, y, z, bias_[x][y][z]);
             sum += part;
             sum_k += k * part;
             sum_kk += k * k * part[0];
@@ -269,7 +271,8 @@ private:
     const float background_;
     const Outside* const outside_;
     const AirRows* air_ = nullptr;
-    float s_[9][9][9];
+    voxelize::CellSamples s_;
+    voxelize::CellNumbers bias_;
     std::uint32_t negative_[9][9];
 };
 

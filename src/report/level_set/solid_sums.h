@@ -31,7 +31,7 @@ struct SolidSums {
 /// their number. On a print of 1.4 times as many leaves it was 0.08 % (outer) and 0.23 % (inner) off.
 constexpr std::size_t kAreaSample = std::size_t{1} << 17;
 
-/// Where the trilinear field is negative. Only signs and zero crossings are used; a mixed cell is measured along four
+/// Of what is solid. A cell of eight negative samples is; a mixed one is measured along four
 /// lines along z, as in voxelize/grid/cell_volume.h, and its air belongs to the kinds of its corners that are not
 /// plastic, in equal parts. `background` of the grid, positive. Without `outside` (of a culled grid nothing can be told
 /// of pores), all surface is outer and no pore is counted. Parallel; the same sums for any number of threads.
