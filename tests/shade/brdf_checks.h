@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -19,6 +20,22 @@ namespace stratum::test {
 inline glm::vec3 direction(double cosine, double azimuth) {
     const double s = std::sqrt(1.0 - cosine * cosine);
     return {s * std::cos(azimuth), s * std::sin(azimuth), cosine};
+}
+
+/// The largest difference between eval(a, b) and eval(b, a), over the larger of 1 and the value, of random directions.
+inline double asymmetry(const shade::Brdf& brdf) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    double worst = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+        const glm::vec3 a = direction(uniform(random), 6.28 * uniform(random));
+        const glm::vec3 b = direction(uniform(random), 6.28 * uniform(random));
+        const shade::Color ab = brdf.eval(a, b);
+        const shade::Color ba = brdf.eval(b, a);
+        for (int c = 0; c < 3; ++c)
+            worst = std::max(worst, double(std::abs(ab[c] - ba[c])) / double(std::max(1.0f, ab[c])));
+    }
+    return worst;
 }
 
 /// Integral of g over the upper hemisphere, midpoint rule in (theta, phi).

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace stratum::shade {
 namespace {
@@ -24,6 +25,12 @@ const std::array<NamedMedium, 3> kNamed = {{
     {"lithophane-white", {0.90f, 0.89f, 0.86f}, 0.2},
 }};
 
+/// Filament's surface. All materials of a scene share it: its tables take 0.1 s.
+std::shared_ptr<const RoughInterface> filamentSurface() {
+    static const auto surface = std::make_shared<const RoughInterface>(Translucent::kEta, kFilamentAlpha);
+    return surface;
+}
+
 }  // namespace
 
 Color scatteringAlbedo(const Color& color, float asymmetry) {
@@ -40,9 +47,9 @@ Color scatteringAlbedo(const Color& color, float asymmetry) {
     return albedo;
 }
 
-Translucent::Translucent(const Medium& inside, const Color& color, float eta, float alpha)
-    : stand_in_(std::make_shared<Plastic>(color, alpha)),
-      surface_(std::make_shared<RoughInterface>(eta, alpha)),
+Translucent::Translucent(const Medium& inside, const Color& color, std::shared_ptr<const RoughInterface> surface)
+    : stand_in_(std::make_shared<Plastic>(color, surface->alpha())),
+      surface_(std::move(surface)),
       medium_(inside),
       reflected_(surface_, Side::air),
       transmitted_(surface_, Side::solid) {}
@@ -69,7 +76,7 @@ bool isTranslucent(std::string_view text) {
 std::shared_ptr<const Translucent> makeTranslucent(std::string_view text, std::string_view option) {
     const auto make = [](const Color& color, double mean_free_path, float asymmetry) {
         const Medium inside{scatteringAlbedo(color, asymmetry), mean_free_path, asymmetry};
-        return std::make_shared<Translucent>(inside, color, Translucent::kEta, kFilamentAlpha);
+        return std::make_shared<Translucent>(inside, color, filamentSurface());
     };
     for (const NamedMedium& named : kNamed)
         if (named.name == text) return make(named.color, named.mean_free_path, 0.0f);

@@ -36,9 +36,7 @@ public:
     static constexpr float kMaxAsymmetry = 0.99f;
 
     /// @param color  of its stand-in
-    /// @param eta    index of refraction
-    /// @param alpha  GGX's, of the surface
-    Translucent(const Medium& inside, const Color& color, float eta, float alpha);
+    Translucent(const Medium& inside, const Color& color, std::shared_ptr<const RoughInterface> surface);
 
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override { return stand_in_->eval(wo, wi); }
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override {

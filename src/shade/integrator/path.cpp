@@ -64,21 +64,21 @@ void PathIntegrator::LightBatch::resize(std::size_t count) {
     samples.resize(count);
 }
 
-PathIntegrator::Path PathIntegrator::pathAt(const SurfacePoint& point, const glm::dvec3& direction,
-                                            const Color& throughput, std::size_t pixel, int scatterings,
-                                            const Translucent* inside) const {
-    Path path{point, direction, throughput, pixel, scatterings, nullptr, inside};
-    if (walk_) path.solid = point.brdf->translucent();
-    if (path.solid == nullptr) {
-        ++path.scatterings;
-        return path;
+void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput,
+                             std::size_t pixel, int scatterings, const Translucent* inside,
+                             std::vector<Path>& paths) const {
+    const Translucent* solid = walk_ ? point.brdf->translucent() : nullptr;
+    if (solid == nullptr) {
+        if (scatterings < bounces_)
+            paths.push_back({point, direction, throughput, pixel, scatterings + 1, nullptr, inside});
+        return;
     }
-    path.point.brdf = &path.solid->fromAir(path.side());
+    Path& path = paths.emplace_back(Path{point, direction, throughput, pixel, scatterings, solid, inside});
+    path.point.brdf = &solid->fromAir(path.side());
     if (point.from_inside) {
         path.point.normal = -point.normal;
         path.point.geometric = -point.geometric;
     }
-    return path;
 }
 
 PathIntegrator::PathVertex PathIntegrator::vertexOf(Path& path) {
@@ -240,7 +240,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     std::vector<Path> paths;
     paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeAt(points[n]) < 1.0f) paths.push_back(pathAt(points[n], rays[n].direction, Color(1.0f), n, 0, nullptr));
+        if (fadeAt(points[n]) < 1.0f) addPath(points[n], rays[n].direction, Color(1.0f), n, 0, nullptr, paths);
 
     ShadowRays shadow_rays;
     // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
@@ -354,13 +354,8 @@ void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<co
         }
         // Lights occlude nothing, so one may lie in front of the surface.
         sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
-        goOn(pathAt(hits[k], bounces[k].ray.direction, path.throughput, path.pixel, path.scatterings, nullptr),
-             next_paths);
+        addPath(hits[k], bounces[k].ray.direction, path.throughput, path.pixel, path.scatterings, nullptr, next_paths);
     }
-}
-
-void PathIntegrator::goOn(const Path& path, std::vector<Path>& next_paths) const {
-    if (path.scatterings <= bounces_) next_paths.push_back(path);
 }
 
 void PathIntegrator::walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer,
@@ -371,9 +366,8 @@ void PathIntegrator::walk(std::vector<Walker>& walkers, std::span<Sampler> sampl
         Walker& walker = arrival.walker;
         // At a surface of little absorption a path may be reflected inwards again and again.
         if (!survives(walker.throughput, samplers[walker.pixel])) continue;
-        goOn(pathAt(arrival.point, walker.ray.direction, walker.throughput, walker.pixel, walker.scatterings,
-                    walker.solid),
-             next_paths);
+        addPath(arrival.point, walker.ray.direction, walker.throughput, walker.pixel, walker.scatterings, walker.solid,
+                next_paths);
     }
 }
 

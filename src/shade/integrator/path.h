@@ -87,9 +87,10 @@ private:
         void resize(std::size_t count);
     };
 
-    /// A path at its next surface. Of a translucent solid the normals are made to point to the air.
-    Path pathAt(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput, std::size_t pixel,
-                int scatterings, const Translucent* inside) const;
+    /// Adds a path at its next surface, unless that is an opaque one too many. Of a translucent solid the normals are
+    /// made to point to the air.
+    void addPath(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput, std::size_t pixel,
+                 int scatterings, const Translucent* inside, std::vector<Path>& paths) const;
     static PathVertex vertexOf(Path& path);
     void sampleEnvironment(const Group& group, std::span<const PathVertex> vertices, std::span<Sampler> samplers,
                            ShadowRays& shadow_rays, LightBatch& batch) const;
@@ -112,11 +113,9 @@ private:
     Color hitLights(const trace::Ray& ray, double t, float pdf) const;
     /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels.
     void addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
-    /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits, unless an
-    /// opaque one would be one too many.
+    /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits.
     void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, std::span<Color> sums,
                        std::vector<Path>& next_paths) const;
-    void goOn(const Path& path, std::vector<Path>& next_paths) const;
     /// Adds what the first vertices would receive if nothing were in the way, in the order in which light is added to
     /// the sums: without a shadow the two are equal to the last bit.
     void addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays, std::span<const Bounce> bounces,

@@ -66,7 +66,7 @@ void RandomWalk::walk(std::vector<Walker>& walkers, std::span<Sampler> samplers,
             walker.ray.t_max = -std::log1p(-u) * walker.solid->medium().mean_free_path / mm_per_unit_;
             rays.push_back(walker.ray);
         }
-        points.assign(rays.size(), SurfacePoint{});
+        points.resize(rays.size());
         counts.bounce += rays.size();
         surfaces_.nearestInside(rays, tracer, points);
         std::size_t kept = 0;

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 namespace stratum {
 namespace {
@@ -14,18 +13,8 @@ using shade::Color;
 using shade::Metal;
 
 TEST(Metal, IsReciprocal) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (const float alpha : {0.001f, 0.05f, 0.25f, 1.0f}) {
-        const Metal brdf(Color(0.9f, 0.7f, 0.4f), alpha);
-        for (int i = 0; i < 20000; ++i) {
-            const glm::vec3 a = test::direction(uniform(random), 6.28 * uniform(random));
-            const glm::vec3 b = test::direction(uniform(random), 6.28 * uniform(random));
-            const Color ab = brdf.eval(a, b);
-            const Color ba = brdf.eval(b, a);
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(ab[c], ba[c], 1e-6f * std::max(1.0f, ab[c]));
-        }
-    }
+    for (const float alpha : {0.001f, 0.05f, 0.25f, 1.0f})
+        EXPECT_LT(test::asymmetry(Metal(Color(0.9f, 0.7f, 0.4f), alpha)), 1e-6) << alpha;
 }
 
 TEST(Metal, AMirrorReflectsItsColor) {

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 namespace stratum {
 namespace {
 
@@ -16,18 +14,8 @@ constexpr float kAlphas[] = {0.1f, 0.2f, 0.3f, 0.5f, 1.0f};
 constexpr double kCosines[] = {0.02, 0.1, 0.3, 0.6, 0.9, 1.0};
 
 TEST(Plastic, IsReciprocal) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (const float alpha : {0.001f, 0.05f, 0.25f, 1.0f}) {
-        const Plastic brdf(Color(0.8f, 0.4f, 0.1f), alpha);
-        for (int i = 0; i < 20000; ++i) {
-            const glm::vec3 a = test::direction(uniform(random), 6.28 * uniform(random));
-            const glm::vec3 b = test::direction(uniform(random), 6.28 * uniform(random));
-            const Color ab = brdf.eval(a, b);
-            const Color ba = brdf.eval(b, a);
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(ab[c], ba[c], 1e-6f * std::max(1.0f, ab[c]));
-        }
-    }
+    for (const float alpha : {0.001f, 0.05f, 0.25f, 1.0f})
+        EXPECT_LT(test::asymmetry(Plastic(Color(0.8f, 0.4f, 0.1f), alpha)), 1e-6) << alpha;
 }
 
 TEST(Plastic, WhiteBodyLosesAndGainsNothing) {

@@ -41,7 +41,7 @@ struct Shares {
 /// What comes out of a slab without a surface, of light that falls in vertically.
 Shares throughSlab(const Medium& medium, double depth, int count) {
     const auto print = slab(depth);
-    const Translucent solid(medium, Color(0.5f), 1.465f, 0.2f);
+    const Translucent solid(medium, Color(0.5f), std::make_shared<shade::RoughInterface>(1.465f, 0.2f));
     shade::SceneDescription scene = test::plainScene(print, "natural-pla", "constant:1,1,1", false);
     const shade::Surfaces surfaces(scene, print);
     const shade::RandomWalk walk(surfaces, print.bounds(), 1.0);
@@ -115,7 +115,8 @@ TEST(RandomWalk, DirectionsHaveTheMeanCosineAskedFor) {
 double seenOnSlab(const Medium& medium, double depth, float eta, std::uint32_t samples) {
     const auto print = slab(depth);
     shade::SceneDescription scene = test::plainScene(print, "natural-pla", "constant:1,1,1", false);
-    scene.material = std::make_shared<Translucent>(medium, Color(0.5f), eta, 0.001f);
+    scene.material =
+        std::make_shared<Translucent>(medium, Color(0.5f), std::make_shared<shade::RoughInterface>(eta, 0.001f));
     scene.backdrop.reset();
     trace::Ray ray;
     ray.origin = {0.0, 0.0, depth + 1.0};
