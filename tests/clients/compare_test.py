@@ -4,20 +4,14 @@ import json
 import math
 import os
 import subprocess
-import sys
 import tempfile
 
-try:
-    import numpy
-    import pyopenvdb
-except ImportError:
-    # Debian's packages are for Debian's interpreter.
-    if sys.executable != "/usr/bin/python3":
-        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
-    print("python3-numpy and python3-openvdb are not there")
-    sys.exit(77)
+from run_tools import BIN, check, run, skip_without
 
-from run_tools import BIN, check, run
+skip_without(modules=("numpy", "pyopenvdb"))
+
+import numpy
+import pyopenvdb
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_compare_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")

@@ -4,18 +4,14 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import xml.etree.ElementTree
 
-from run_tools import BIN, check, gcode, run
+from run_tools import BIN, check, gcode, run, skip_without
 
 BUILD = os.path.dirname(BIN)
 FOLDER = tempfile.mkdtemp(prefix="stratum_desktop_")
-for program in ("appstreamcli", "desktop-file-validate", "update-mime-database", "xmllint"):
-    if not shutil.which(program):
-        print(f"skipped: {program} is not there")
-        sys.exit(77)
+skip_without(("appstreamcli", "desktop-file-validate", "update-mime-database", "xmllint"))
 
 prefix = os.path.join(FOLDER, "usr")
 run("cmake", "--install", BUILD, "--prefix", prefix, "--component", "tools")

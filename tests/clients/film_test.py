@@ -7,24 +7,14 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 
-from run_tools import BIN, check, gcode
+from run_tools import BIN, check, gcode, skip_without
 
-try:
-    from chromium import browser
-except ImportError:
-    # Debian's package is of the system's Python, which need not be the first one.
-    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/lib/python3/dist-packages/selenium"):
-        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
-    print("python3-selenium is not there")
-    sys.exit(77)
-for program in ("ffmpeg", "ffprobe", "chromium", "chromedriver"):
-    if shutil.which(program) is None:
-        print(f"skipped: there is no {program}")
-        raise SystemExit(77)
+skip_without(("ffmpeg", "ffprobe", "chromium", "chromedriver"), ("selenium",))
+
+from chromium import browser
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_film_")
 VDBTRACE = os.path.join(BIN, "vdbtrace")

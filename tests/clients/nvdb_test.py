@@ -7,12 +7,9 @@ import subprocess
 import sys
 import tempfile
 
-from run_tools import BIN, check, gcode, run
+from run_tools import BIN, check, gcode, run, skip_without
 
-for program in ("nanovdb_validate", "nanovdb_print", "nanovdb_convert"):
-    if not shutil.which(program):
-        print(f"skipped: {program} is not there")
-        sys.exit(77)
+skip_without(("nanovdb_validate", "nanovdb_print", "nanovdb_convert"))
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_nvdb_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")

@@ -1,13 +1,28 @@
 """What the client tests share: paths and running the project's tools."""
 
+import importlib.util
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BIN = os.environ["STRATUM_BIN"]
+
+
+def skip_without(programs=(), modules=()):
+    """Ends the test as skipped, and says why, unless these programs and Python modules are there. Debian's modules are
+    for Debian's interpreter, which need not be the first one: the test is begun again with that."""
+    absent = [name for name in modules if importlib.util.find_spec(name) is None]
+    if absent and sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):
+        sys.stdout.flush()
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
+    absent += [name for name in programs if shutil.which(name) is None]
+    if absent:
+        print(f"skipped: {', '.join(absent)}: not installed; scripts/packages.sh has the packages")
+        sys.exit(77)  # SKIP_RETURN_CODE of CTest
 
 
 def run(*command):

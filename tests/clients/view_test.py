@@ -14,19 +14,11 @@ import time
 import urllib.error
 import urllib.request
 
-from run_tools import BIN, check, gcode, run
+from run_tools import BIN, check, gcode, run, skip_without
 
-try:
-    from chromium import browser
-except ImportError:
-    # Debian's package is of the system's Python, which need not be the first one.
-    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/lib/python3/dist-packages/selenium"):
-        os.execv("/usr/bin/python3", ["/usr/bin/python3", *sys.argv])
-    print("python3-selenium is not there")
-    sys.exit(77)
-if not shutil.which("chromium") or not shutil.which("chromedriver"):
-    print("chromium and chromium-driver are not there")
-    sys.exit(77)
+skip_without(("chromium", "chromedriver"), ("selenium",))
+
+from chromium import browser
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_view_")
 PART = os.path.join(FOLDER, "part.gcode")
