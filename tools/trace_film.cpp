@@ -156,15 +156,14 @@ private:
             const auto share = [this, n](double done) {
                 return (static_cast<double>(n - first_) + done) / static_cast<double>(last_ - first_);
             };
-            std::optional<std::vector<std::uint8_t>> known;
-            if (!(file == nullptr && kept_.has(n))) known = kept_.read(n);
-            if (known) {
-                pixels = *std::move(known);
-                ++reused_;
-            } else if (file == nullptr && kept_.has(n)) {
+            if (file == nullptr && kept_.has(n)) {
                 ++reused_;
                 before = false;
                 continue;
+            }
+            if (std::optional<std::vector<std::uint8_t>> known = kept_.read(n)) {
+                pixels = *std::move(known);
+                ++reused_;
             } else {
                 if (!scene_) {
                     bar.reset();

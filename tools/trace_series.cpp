@@ -85,12 +85,7 @@ public:
         if (!o_.render.checkpoint.empty()) o_.render.source = sourceOf(o_, objects.source);
         scene_->objects = objects.materials;
         scene_->labels = objects.labels;
-        if (o_.nozzle) {
-            if (objects.prints.empty())
-                throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
-            assemble::HotEnd::addMaterials(*scene_);
-            if (!hot_end_) hot_end_.emplace();
-        }
+        if (o_.nozzle) hot_end_.emplace(objects, *scene_);
         frames(n, objects, watch);
         if (!o_.bricks.picture.empty() && n == 0)
             objects.prints.back()->writeBrickPicture(o_.bricks.picture, {{"Software", "vdbtrace " STRATUM_VERSION}});
@@ -117,7 +112,6 @@ private:
     /// @param objects  whose intersector becomes that of each picture
     void frames(std::size_t n, assemble::TracedObjects& objects, Stopwatch& watch) {
         const std::shared_ptr<assemble::LazyPrint> growing = assemble::growingPrint(objects);
-        const std::shared_ptr<const trace::Intersector> print = objects.intersector;
         const std::size_t moments = growing != nullptr ? growing->moments() : 1;
         const auto turns = static_cast<std::size_t>(o_.turntable);
         double before_seconds = watch.lap();
@@ -132,7 +126,7 @@ private:
                 growing->show(moment);
                 before_seconds = watch.lap();
             }
-            if (o_.nozzle) objects.intersector = hot_end_->above(print, objects.prints.front()->tipAt(moment));
+            if (o_.nozzle) objects.intersector = hot_end_->at(moment);
             for (std::size_t turn = 0; turn < turns; ++turn) {
                 if (!makes(o_, before + turn)) continue;
                 shade::SceneDescription view = *scene_;
@@ -154,7 +148,7 @@ private:
     int threads_;
     assemble::TracingOptions reading_;
     std::optional<shade::SceneDescription> scene_;
-    std::optional<assemble::HotEnd> hot_end_;  // with --nozzle
+    std::optional<assemble::HotEnd> hot_end_;  // of the input that is traced, with --nozzle
     glm::dvec3 middle_{0.0};
     Json reports_ = Json::array();
 };

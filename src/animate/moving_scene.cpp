@@ -12,19 +12,13 @@ MovingScene::MovingScene(assemble::TracedObjects objects, assemble::Stage stage,
                          Motion motion)
     : motion_(std::move(motion)),
       objects_(std::move(objects)),
-      print_(objects_.intersector),
       scene_(std::move(stage.scene)),
       middle_(stage.middle),
       first_(scene_.camera) {
     if (motion_.grow) growing_ = assemble::growingPrint(objects_);
     if (motion_.grow && motion_.frames > 1 && (!growing_ || growing_->moments() != motion_.frames))
         throw UsageError("a film of a print that grows needs one print of G-code, and as many moments as frames");
-    if (motion_.nozzle) {
-        if (objects_.prints.empty())
-            throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
-        assemble::HotEnd::addMaterials(scene_);
-        hot_end_.emplace();
-    }
+    if (motion_.nozzle) hot_end_.emplace(objects_, scene_);
     if (!motion_.path.empty()) planCameras(options);
 }
 
@@ -54,7 +48,7 @@ bool MovingScene::repeats(std::size_t n) const {
 
 void MovingScene::show(std::size_t n) {
     if (growing_) growing_->show(n);
-    if (hot_end_) objects_.intersector = hot_end_->above(print_, objects_.prints.front()->tipAt(growing_ ? n : 0));
+    if (hot_end_) objects_.intersector = hot_end_->at(growing_ ? n : 0);
     if (!cameras_.empty())
         scene_.camera = cameras_[n];
     else if (motion_.turns != 0.0)

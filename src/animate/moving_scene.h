@@ -45,7 +45,6 @@ private:
 
     Motion motion_;
     assemble::TracedObjects objects_;
-    std::shared_ptr<const trace::Intersector> print_;  // without the hot end
     std::shared_ptr<assemble::LazyPrint> growing_;
     std::optional<assemble::HotEnd> hot_end_;
     shade::SceneDescription scene_;

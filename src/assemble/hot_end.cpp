@@ -1,11 +1,14 @@
 #include "assemble/hot_end.h"
 
+#include "assemble/print/lazy_print.h"
+#include "base/error.h"
 #include "shade/brdf/brdf.h"
 #include "trace/convex_solid.h"
 #include "trace/scene_intersector.h"
 
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace stratum::assemble {
 namespace {
@@ -31,20 +34,23 @@ std::vector<Part> makeParts() {
 
 }  // namespace
 
-HotEnd::HotEnd() {
-    for (Part& part : makeParts()) parts_.push_back(std::move(part.solid));
-}
-
-std::shared_ptr<const trace::Intersector> HotEnd::above(const std::shared_ptr<const trace::Intersector>& print,
-                                                        const glm::dvec3& tip) const {
-    std::vector<trace::SceneObject> objects{{print, {}}};
-    for (const auto& part : parts_) objects.push_back({part, {glm::dmat3(1.0), tip}});
-    return trace::makeSceneIntersector(std::move(objects));
-}
-
-void HotEnd::addMaterials(shade::SceneDescription& scene) {
+HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene) : print_(objects.intersector) {
+    if (objects.prints.empty())
+        throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
+    layers_ = objects.prints.front();
     if (scene.objects.empty()) scene.objects.emplace_back(scene.material);
     for (const Part& part : makeParts()) scene.objects.emplace_back(shade::makeBrdf(part.metal));
+}
+
+std::shared_ptr<const trace::Intersector> HotEnd::at(std::size_t moment) const {
+    return withHotEnd(print_, layers_->tipAt(moment));
+}
+
+std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
+                                                     const glm::dvec3& tip) {
+    std::vector<trace::SceneObject> objects{{print, {}}};
+    for (Part& part : makeParts()) objects.push_back({std::move(part.solid), {glm::dmat3(1.0), tip}});
+    return trace::makeSceneIntersector(std::move(objects));
 }
 
 }  // namespace stratum::assemble

@@ -12,9 +12,8 @@ namespace {
 
 TEST(HotEnd, StandsWithItsTipOnAPlace) {
     const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, 0}, 5));
-    const HotEnd hot_end;
     const glm::dvec3 tip(3, 4, 8);
-    const auto both = hot_end.above(ball, tip);
+    const auto both = withHotEnd(ball, tip);
     const auto tracer = both->makeTracer();
     trace::Ray ray;
     ray.origin = {3, 4, 7};
@@ -40,12 +39,11 @@ TEST(HotEnd, StandsWithItsTipOnAPlace) {
 }
 
 TEST(HotEnd, IsOfMetalAndLeavesThePrintItsMaterial) {
-    shade::SceneDescription scene =
-        makeStage(
-            readTracedObjects({test::objectOf(test::sourceDir() / "data/gcode/tile.gcode")}, test::coarseTracing()), {})
-            .scene;
+    const TracedObjects objects =
+        readTracedObjects({test::objectOf(test::sourceDir() / "data/gcode/tile.gcode")}, test::coarseTracing());
+    shade::SceneDescription scene = makeStage(objects, {}).scene;
     ASSERT_TRUE(scene.objects.empty());
-    HotEnd::addMaterials(scene);
+    const HotEnd hot_end(objects, scene);
     ASSERT_EQ(scene.objects.size(), 6u);
     EXPECT_EQ(scene.objects.front().only().brdf, scene.material);
     const shade::Color brass = scene.objects[1].only().albedo;
