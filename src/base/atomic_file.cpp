@@ -150,9 +150,7 @@ void AtomicFile::pour() {
         while (got > 0 && done < got) {
             const ssize_t put = ::write(stream_, buffer.data() + done, static_cast<std::size_t>(got - done));
             if (put < 0 && errno == EINTR) continue;
-            if (put < 0)
-                throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", nameOf(destination_),
-                                              std::strerror(errno)));
+            if (put < 0) throw writeError(nameOf(destination_), std::strerror(errno));
             done += put;
         }
         if (got < 0 && errno != EINTR)

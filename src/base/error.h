@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace stratum {
 
@@ -27,5 +28,14 @@ class OutputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
+
+/// The error of a write that failed.
+/// @param name  of the file
+/// @param why   what the system says, if it says anything
+inline OutputError writeError(const std::string& name, std::string_view why = {}) {
+    std::string text = name + ": could not be written";
+    if (!why.empty()) text.append(" (").append(why).append(")");
+    return OutputError(text + "; is the disk full?");
+}
 
 }  // namespace stratum

@@ -120,7 +120,7 @@ void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {
         writeObj(mesh, out);
     out.flush();
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/text.h"
 
-#include <fmt/format.h>
-
 #define NANOVDB_USE_BLOSC
 #define NANOVDB_USE_ZIP
 #include <nanovdb/util/IO.h>
@@ -55,8 +53,7 @@ void writeNano(const openvdb::GridPtrVec& grids, const std::filesystem::path& pa
         try {
             nanovdb::io::writeGrids(to.string(), handles, codecOf(options.compression));
         } catch (const std::exception& error) {
-            throw OutputError(
-                fmt::format("{}: could not be written ({}); is the disk full?", to.string(), error.what()));
+            throw writeError(to.string(), error.what());
         }
     });
 }

@@ -3,7 +3,6 @@
 #include "base/error.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,10 +27,7 @@ PositionedFile::~PositionedFile() {
     if (fd_ >= 0) ::close(fd_);
 }
 
-void PositionedFile::fail(int error) const {
-    throw OutputError(
-        fmt::format("{}: could not be written ({}); is the disk full?", shown_.string(), std::strerror(error)));
-}
+void PositionedFile::fail(int error) const { throw writeError(shown_.string(), std::strerror(error)); }
 
 void PositionedFile::write(std::uint64_t at, std::string_view bytes) {
     while (!bytes.empty()) {

@@ -68,7 +68,7 @@ void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vd
     std::ofstream stream(file.temporary(), std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", usda.string()));
+    if (!stream) throw writeError(usda.string());
     file.commit();
 }
 

@@ -159,7 +159,7 @@ InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const g
     report.node_sets = of_nodes.size();
     if (options.elastic) report.directions = writeMaterial(elements, toolpath, *options.elastic, out);
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
     return report;
 }

@@ -191,7 +191,7 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
     std::ofstream stream(file.temporary(), std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", options.stats));
+    if (!stream) throw writeError(options.stats);
     file.commit();
 }
 

@@ -1,10 +1,9 @@
 #include "animate/encode/apng_writer.h"
 
+#include "base/big_endian.h"
 #include "base/checksum.h"
 #include "base/error.h"
 #include "shade/film/png_writer.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,10 +16,6 @@ namespace stratum::animate {
 namespace {
 
 constexpr std::size_t kSignatureBytes = 8;
-
-void append32(std::string& bytes, std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
-}
 
 void append16(std::string& bytes, std::uint32_t value) {
     bytes.push_back(static_cast<char>(value >> 8 & 0xff));
@@ -35,8 +30,7 @@ struct Chunk {
 std::vector<Chunk> chunksOf(std::string_view png) {
     std::vector<Chunk> chunks;
     for (std::size_t at = kSignatureBytes; at + 12 <= png.size();) {
-        std::size_t length = 0;
-        for (std::size_t n = 0; n < 4; ++n) length = length << 8 | static_cast<unsigned char>(png[at + n]);
+        const std::size_t length = bigEndian32(png, at);
         chunks.push_back({png.substr(at + 4, 4), png.substr(at + 8, length)});
         at += 12 + length;
     }
@@ -54,24 +48,22 @@ ApngWriter::ApngWriter(const std::filesystem::path& path, FilmFormat format)
 
 void ApngWriter::writeChunk(std::string_view type, std::string_view data) {
     std::string head;
-    append32(head, static_cast<std::uint32_t>(data.size()));
+    appendBigEndian32(head, static_cast<std::uint32_t>(data.size()));
     head += type;
     std::string tail;
     // The sum of no bytes would begin anew.
-    append32(tail, data.empty() ? checksumOf(type) : checksumOf(data, checksumOf(type)));
+    appendBigEndian32(tail, data.empty() ? checksumOf(type) : checksumOf(data, checksumOf(type)));
     out_.write(head.data(), static_cast<std::streamsize>(head.size()));
     out_.write(data.data(), static_cast<std::streamsize>(data.size()));
     out_.write(tail.data(), static_cast<std::streamsize>(tail.size()));
-    if (!out_)
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", file_.destination().string(),
-                                      errno != 0 ? std::strerror(errno) : "unknown error"));
+    if (!out_) throw writeError(file_.destination().string(), errno != 0 ? std::strerror(errno) : "unknown error");
 }
 
 void ApngWriter::writeControl(const Rectangle& at) {
     constexpr char kLeave = 0;    // what is drawn stays for the next frame
     constexpr char kReplace = 0;  // and is not blended
     std::string data;
-    for (const std::uint32_t value : {sequence_++, at.width, at.height, at.x, at.y}) append32(data, value);
+    for (const std::uint32_t value : {sequence_++, at.width, at.height, at.x, at.y}) appendBigEndian32(data, value);
     append16(data, 1);
     append16(data, static_cast<std::uint32_t>(format_.rate));
     data.push_back(kLeave);
@@ -116,8 +108,8 @@ void ApngWriter::addFirst(const std::vector<std::uint8_t>& rgb) {
         writeChunk(chunk.type, chunk.data);
         if (chunk.type != "IHDR") continue;
         std::string control;
-        append32(control, static_cast<std::uint32_t>(format_.frames));
-        append32(control, 0);  // plays: for ever
+        appendBigEndian32(control, static_cast<std::uint32_t>(format_.frames));
+        appendBigEndian32(control, 0);  // plays: for ever
         writeChunk("acTL", control);
     }
 }
@@ -143,7 +135,7 @@ void ApngWriter::add(const std::vector<std::uint8_t>& rgb) {
         shade::encodePng(static_cast<int>(at.width), static_cast<int>(at.height), part, {}, shade::PngEffort::small);
     writeControl(at);
     std::string data;
-    append32(data, sequence_++);
+    appendBigEndian32(data, sequence_++);
     for (const Chunk& chunk : chunksOf(textOf(png)))
         if (chunk.type == "IDAT") data += chunk.data;
     writeChunk("fdAT", data);
@@ -154,8 +146,7 @@ void ApngWriter::finish() {
     if (added_ != format_.frames) throw std::logic_error("an animated PNG has fewer frames than it says");
     writeChunk("IEND", {});
     out_.close();
-    if (!out_)
-        throw OutputError(fmt::format("{}: could not be written; is the disk full?", file_.destination().string()));
+    if (!out_) throw writeError(file_.destination().string());
     file_.commit();
 }
 

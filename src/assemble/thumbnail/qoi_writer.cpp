@@ -1,5 +1,7 @@
 #include "assemble/thumbnail/qoi_writer.h"
 
+#include "base/big_endian.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -40,9 +42,6 @@ public:
         run_ = 0;
     }
     void put(unsigned byte) { bytes += static_cast<char>(byte); }
-    void put32(std::uint32_t value) {
-        for (int shift = 24; shift >= 0; shift -= 8) put(value >> shift & 0xff);
-    }
 
     std::string bytes;
 
@@ -85,8 +84,8 @@ std::string encodeQoi(int width, int height, const std::vector<std::uint8_t>& rg
         throw std::invalid_argument("these bytes are no RGBA picture of that size");
     Encoder encoder;
     encoder.bytes = "qoif";
-    encoder.put32(static_cast<std::uint32_t>(width));
-    encoder.put32(static_cast<std::uint32_t>(height));
+    appendBigEndian32(encoder.bytes, static_cast<std::uint32_t>(width));
+    appendBigEndian32(encoder.bytes, static_cast<std::uint32_t>(height));
     encoder.put(4);  // channels
     encoder.put(0);  // sRGB with linear alpha
     for (std::size_t at = 0; at < rgba.size(); at += 4)

@@ -11,16 +11,9 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kBitmapAt = 0x10;
-constexpr std::size_t kTextAt = 0x18;
-constexpr std::size_t kSeconds = 0x1c;
-constexpr std::size_t kRightFilament = 0x20;
-constexpr std::size_t kLeftFilament = 0x24;
-constexpr std::size_t kHeader = 58;
-
 // The text must start where an image ends, or at once behind the header.
 bool followsTheThumbnail(std::string_view bytes, std::size_t text, std::size_t bitmap) {
-    if (text == bitmap || text == kHeader) return true;
+    if (text == bitmap || text == gx::kHeaderBytes) return true;
     if (bitmap + 6 <= text && bytes.substr(bitmap, 2) == "BM" && bitmap + littleEndian(bytes, bitmap + 2, 4) == text)
         return true;
     constexpr std::size_t kPngEnd = 8;  // "IEND" and its CRC
@@ -44,30 +37,30 @@ bool cutsIntoText(std::string_view bytes, std::size_t text) {
 bool isGx(std::string_view bytes) { return bytes.starts_with("xgcode "); }
 
 Program openGx(std::string_view bytes, std::string_view name) {
-    if (bytes.size() < kHeader)
+    if (bytes.size() < gx::kHeaderBytes)
         throw InputError(
             fmt::format("{}: the FlashPrint header needs {} bytes, but the file ends after {}; copy or export "
                         "it again",
-                        name, kHeader, bytes.size()));
-    const std::size_t text = littleEndian(bytes, kTextAt, 4);
-    const std::size_t bitmap = littleEndian(bytes, kBitmapAt, 4);
-    if (text < kHeader || text >= bytes.size())
+                        name, gx::kHeaderBytes, bytes.size()));
+    const std::size_t text = littleEndian(bytes, gx::kTextAt, 4);
+    const std::size_t bitmap = littleEndian(bytes, gx::kBitmapAt, 4);
+    if (text < gx::kHeaderBytes || text >= bytes.size())
         throw InputError(
             fmt::format("{}: byte {}: the FlashPrint header says that the text starts at byte {}, expected {} "
                         "to {}; the file is cut off or damaged: copy or export it again",
-                        name, kTextAt, text, kHeader, bytes.size() - 1));
+                        name, gx::kTextAt, text, gx::kHeaderBytes, bytes.size() - 1));
     if (!followsTheThumbnail(bytes, text, bitmap) && cutsIntoText(bytes, text))
         throw InputError(
             fmt::format("{}: byte {}: the FlashPrint header says that the text starts at byte {}, which is in "
                         "the midst of it; the file is damaged: copy or export it again",
-                        name, kTextAt, text));
+                        name, gx::kTextAt, text));
     Program program;
     program.format = "gx";
     program.text = bytes.substr(text);
     const double filament =
-        static_cast<double>(littleEndian(bytes, kRightFilament, 4)) + littleEndian(bytes, kLeftFilament, 4);
+        static_cast<double>(littleEndian(bytes, gx::kRightFilamentAt, 4)) + littleEndian(bytes, gx::kLeftFilamentAt, 4);
     if (filament > 0) program.filament_mm = filament;
-    const auto seconds = static_cast<double>(littleEndian(bytes, kSeconds, 4));
+    const auto seconds = static_cast<double>(littleEndian(bytes, gx::kSecondsAt, 4));
     if (seconds > 0) program.facts.stated.seconds = seconds;
     return program;
 }

@@ -7,7 +7,16 @@
 
 #include "gcode/container/container.h"
 
+#include <cstddef>
+
 namespace stratum::gcode {
+
+/// Offsets in its head, of numbers of four bytes.
+namespace gx {
+inline constexpr std::size_t kBitmapAt = 0x10, kPngAt = 0x14, kTextAt = 0x18, kSecondsAt = 0x1c;
+inline constexpr std::size_t kRightFilamentAt = 0x20, kLeftFilamentAt = 0x24;
+inline constexpr std::size_t kHeaderBytes = 58;
+}  // namespace gx
 
 bool isGx(std::string_view bytes);
 

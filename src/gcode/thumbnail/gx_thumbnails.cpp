@@ -1,6 +1,7 @@
 #include "gcode/thumbnail/gx_thumbnails.h"
 
 #include "base/error.h"
+#include "gcode/container/gx.h"
 #include "gcode/container/little_endian.h"
 #include "gcode/thumbnail/png_size.h"
 
@@ -14,10 +15,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kBitmapAt = 0x10;
-constexpr std::size_t kPngAt = 0x14;
-constexpr std::size_t kTextAt = 0x18;
-constexpr std::size_t kHeader = 58;
 constexpr ThumbnailSize kBitmap{80, 60, ThumbnailCoding::bmp};
 
 struct Layout {
@@ -27,9 +24,10 @@ struct Layout {
 
 // Where the pictures are; nothing if they aren't where the head says.
 std::optional<Layout> layoutOf(std::string_view bytes) {
-    const Layout layout{littleEndian(bytes, kBitmapAt, 4), littleEndian(bytes, kPngAt, 4),
-                        littleEndian(bytes, kTextAt, 4)};
-    const bool ordered = layout.bitmap >= kHeader && layout.bitmap + 6 <= layout.png && layout.png <= layout.text;
+    const Layout layout{littleEndian(bytes, gx::kBitmapAt, 4), littleEndian(bytes, gx::kPngAt, 4),
+                        littleEndian(bytes, gx::kTextAt, 4)};
+    const bool ordered =
+        layout.bitmap >= gx::kHeaderBytes && layout.bitmap + 6 <= layout.png && layout.png <= layout.text;
     if (!ordered || bytes.substr(layout.bitmap, 2) != "BM") return std::nullopt;
     if (layout.hasPng() && !pngSize(bytes.substr(layout.png, layout.text - layout.png))) return std::nullopt;
     return layout;
@@ -71,9 +69,9 @@ PatchedBytes withGxThumbnails(std::string_view bytes, std::span<const Thumbnail>
     appendLittleEndian(head, static_cast<std::uint32_t>(png), 4);
     appendLittleEndian(head, static_cast<std::uint32_t>(text), 4);
     PatchedBytes result;
-    result.keep(bytes.substr(0, kPngAt));
+    result.keep(bytes.substr(0, gx::kPngAt));
     result.add(head);
-    result.keep(bytes.substr(kTextAt + 4, layout.bitmap - kTextAt - 4));
+    result.keep(bytes.substr(gx::kTextAt + 4, layout.bitmap - gx::kTextAt - 4));
     for (const Thumbnail& picture : pictures) result.add(picture.bytes);
     result.keep(bytes.substr(layout.text));
     return result;

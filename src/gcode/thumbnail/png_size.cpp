@@ -1,6 +1,7 @@
 #include "gcode/thumbnail/png_size.h"
 
-#include <cstddef>
+#include "base/big_endian.h"
+
 #include <cstdint>
 
 namespace stratum::gcode {
@@ -9,13 +10,8 @@ std::optional<ThumbnailSize> pngSize(std::string_view bytes) {
     using namespace std::string_view_literals;
     constexpr std::string_view kStart = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv;
     if (!bytes.starts_with(kStart) || bytes.size() < kStart.size() + 8) return std::nullopt;
-    const auto side = [&](std::size_t at) {
-        std::uint32_t value = 0;
-        for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-        return value;
-    };
-    const std::uint32_t width = side(kStart.size());
-    const std::uint32_t height = side(kStart.size() + 4);
+    const std::uint32_t width = bigEndian32(bytes, kStart.size());
+    const std::uint32_t height = bigEndian32(bytes, kStart.size() + 4);
     if (width < 1 || height < 1 || width > kMostThumbnailSide || height > kMostThumbnailSide) return std::nullopt;
     return ThumbnailSize{static_cast<int>(width), static_cast<int>(height), ThumbnailCoding::png};
 }

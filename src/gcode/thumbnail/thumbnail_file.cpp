@@ -10,9 +10,7 @@
 #include "gcode/thumbnail/bgcode_thumbnails.h"
 #include "gcode/thumbnail/gx_thumbnails.h"
 #include "gcode/thumbnail/text_thumbnails.h"
-#include "gcode/thumbnail/zip_thumbnails.h"
 
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -83,16 +81,18 @@ PatchedBytes gzipped(const PatchedBytes& text) {
 
 ThumbnailFile::ThumbnailFile(std::string_view bytes, std::string_view name, std::vector<ThumbnailSize> asked,
                              std::optional<int> plate)
-    : bytes_(bytes), name_(name), asked_(std::move(asked)), plate_(plate) {}
+    : bytes_(bytes), name_(name), asked_(std::move(asked)) {
+    if (isZip(bytes_)) zip_.emplace(bytes_, name_, plate);
+}
 
 std::vector<ThumbnailSize> ThumbnailFile::pictures() const {
-    if (isZip(bytes_)) return zipPictures(bytes_, asked_, name_, plate_);
+    if (zip_) return zip_->pictures(asked_);
     if (isGx(bytes_)) return gxPictures(bytes_, asked_, name_);
     return asked_;
 }
 
 PatchedBytes ThumbnailFile::patched(std::span<const Thumbnail> pictures) const {
-    if (isZip(bytes_)) return withZipThumbnails(bytes_, asked_, pictures, name_, plate_);
+    if (zip_) return zip_->patched(asked_, pictures);
     if (isGx(bytes_)) return withGxThumbnails(bytes_, pictures);
     if (isBgcode(bytes_)) return withBgcodeThumbnails(bytes_, pictures, name_);
     if (!isGzip(bytes_)) return withTextThumbnails(bytes_, pictures, name_);
@@ -107,9 +107,7 @@ void writePatched(const PatchedBytes& bytes, const std::filesystem::path& path) 
         for (const std::string_view piece : bytes.pieces())
             out.write(piece.data(), static_cast<std::streamsize>(piece.size()));
         out.close();
-        if (!out)
-            throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", to.string(),
-                                          errno != 0 ? std::strerror(errno) : "unknown error"));
+        if (!out) throw writeError(to.string(), errno != 0 ? std::strerror(errno) : "unknown error");
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include "gcode/thumbnail/patched_bytes.h"
 #include "gcode/thumbnail/thumbnail.h"
+#include "gcode/thumbnail/zip_thumbnails.h"
 
 #include <filesystem>
 #include <optional>
@@ -16,6 +17,7 @@ namespace stratum::gcode {
 /// The bytes and the name, for messages, must outlive it.
 class ThumbnailFile {
 public:
+    /// Throws InputError for a zip container without pictures.
     /// @param plate  of a .gcode.3mf with several
     ThumbnailFile(std::string_view bytes, std::string_view name, std::vector<ThumbnailSize> asked,
                   std::optional<int> plate = {});
@@ -31,7 +33,7 @@ public:
 private:
     std::string_view bytes_, name_;
     std::vector<ThumbnailSize> asked_;
-    std::optional<int> plate_;
+    std::optional<ZipThumbnails> zip_;  // if that is its container
 };
 
 /// Writes the pieces one after the other, see AtomicFile. Throws OutputError.

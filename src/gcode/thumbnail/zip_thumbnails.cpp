@@ -34,66 +34,6 @@ std::optional<zip_uint64_t> find(zip_t* archive, std::string_view wanted) {
     return std::nullopt;
 }
 
-/// The entries of one program that have to do with its pictures.
-struct Entries {
-    zip_uint64_t text = 0;
-    zip_uint64_t picture = 0;
-    std::optional<zip_uint64_t> small, md5;
-    std::optional<ThumbnailSize> small_size;
-    ByteBuffer program;  // its text
-    bool in_text = false;
-};
-
-Entries entriesOf(zip_t* archive, std::string_view bytes, std::string_view name, std::optional<int> plate) {
-    const ZipContents contents = listZip(archive, name);
-    Entries entries;
-    std::string picture;
-    if (!contents.plates.empty()) {
-        const ZipPlate& chosen = chooseZipPlate(contents.plates, name, plate);
-        entries.text = chosen.index;
-        picture = fmt::format("Metadata/plate_{}.png", chosen.number);
-        entries.small = find(archive, fmt::format("Metadata/plate_{}_small.png", chosen.number));
-        entries.md5 = find(archive, fmt::format("Metadata/plate_{}.gcode.md5", chosen.number));
-    } else if (contents.ufp_model) {
-        entries.text = *contents.ufp_model;
-        picture = "Metadata/thumbnail.png";
-    } else {
-        throw InputError(fmt::format("{}: is a zip container without G-code; slice the model first", name));
-    }
-    const auto found = find(archive, picture);
-    if (!found)
-        throw InputError(
-            fmt::format("{}: has no {} to replace; export it again with pictures, or unzip its G-code and give that",
-                        name, picture));
-    entries.picture = *found;
-    if (entries.small) {
-        ByteBuffer small;
-        unpackZipEntry(archive, *entries.small, name, kMostPicture, small, {});
-        entries.small_size = pngSize(small.view());
-        if (!entries.small_size) entries.small.reset();  // of another kind: nothing is known to read it
-    }
-    unpackZipEntry(archive, entries.text, name, ContainerLimits{}.bytesFrom(bytes.size()), entries.program, {});
-    entries.in_text = hasThumbnailPlace(entries.program.view(), name);
-    return entries;
-}
-
-// For the picture, then for the small one, then for the text.
-std::vector<ThumbnailSize> picturesOf(const Entries& entries, std::span<const ThumbnailSize> asked,
-                                      std::string_view name) {
-    std::vector<ThumbnailSize> pngs;
-    std::copy_if(asked.begin(), asked.end(), std::back_inserter(pngs),
-                 [](const ThumbnailSize& size) { return size.coding == ThumbnailCoding::png; });
-    if (pngs.empty())
-        throw UsageError(fmt::format("--thumbnail: the picture of {} is a PNG; ask for one, e.g. 512x512", name));
-    std::stable_sort(pngs.begin(), pngs.end(), [](const ThumbnailSize& a, const ThumbnailSize& b) {
-        return a.width * a.height > b.width * b.height;
-    });
-    std::vector<ThumbnailSize> pictures{pngs.front()};
-    if (entries.small) pictures.push_back(pngs.size() > 1 ? pngs.back() : *entries.small_size);
-    if (entries.in_text) pictures.insert(pictures.end(), asked.begin(), asked.end());
-    return pictures;
-}
-
 std::string md5Of(const PatchedBytes& bytes) {
     const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -174,23 +114,80 @@ private:
 
 }  // namespace
 
-std::vector<ThumbnailSize> zipPictures(std::string_view bytes, std::span<const ThumbnailSize> asked,
-                                       std::string_view name, std::optional<int> plate) {
-    const ZipArchive archive = openZipArchive(bytes, name);
-    return picturesOf(entriesOf(archive.get(), bytes, name, plate), asked, name);
+/// The entries of one program that have to do with its pictures.
+struct ZipThumbnails::Entries {
+    zip_uint64_t text = 0;
+    zip_uint64_t picture = 0;
+    std::optional<zip_uint64_t> small, md5;
+    std::optional<ThumbnailSize> small_size;
+    ByteBuffer program;  // its text
+    bool in_text = false;
+};
+
+ZipThumbnails::~ZipThumbnails() = default;
+ZipThumbnails::ZipThumbnails(ZipThumbnails&&) noexcept = default;
+ZipThumbnails& ZipThumbnails::operator=(ZipThumbnails&&) noexcept = default;
+
+ZipThumbnails::ZipThumbnails(std::string_view bytes, std::string_view name, std::optional<int> plate)
+    : bytes_(bytes), name_(name) {
+    const ZipArchive holder = openZipArchive(bytes, name);
+    zip_t* archive = holder.get();
+    const ZipContents contents = listZip(archive, name);
+    auto made = std::make_unique<Entries>();
+    Entries& entries = *made;
+    std::string picture;
+    if (!contents.plates.empty()) {
+        const ZipPlate& chosen = chooseZipPlate(contents.plates, name, plate);
+        entries.text = chosen.index;
+        picture = fmt::format("Metadata/plate_{}.png", chosen.number);
+        entries.small = find(archive, fmt::format("Metadata/plate_{}_small.png", chosen.number));
+        entries.md5 = find(archive, fmt::format("Metadata/plate_{}.gcode.md5", chosen.number));
+    } else if (contents.ufp_model) {
+        entries.text = *contents.ufp_model;
+        picture = "Metadata/thumbnail.png";
+    } else {
+        throw InputError(fmt::format("{}: is a zip container without G-code; slice the model first", name));
+    }
+    const auto found = find(archive, picture);
+    if (!found)
+        throw InputError(
+            fmt::format("{}: has no {} to replace; export it again with pictures, or unzip its G-code and give that",
+                        name, picture));
+    entries.picture = *found;
+    if (entries.small) {
+        ByteBuffer small;
+        unpackZipEntry(archive, *entries.small, name, kMostPicture, small, {});
+        entries.small_size = pngSize(small.view());
+        if (!entries.small_size) entries.small.reset();  // of another kind: nothing is known to read it
+    }
+    unpackZipEntry(archive, entries.text, name, ContainerLimits{}.bytesFrom(bytes.size()), entries.program, {});
+    entries.in_text = hasThumbnailPlace(entries.program.view(), name);
+    entries_ = std::move(made);
 }
 
-PatchedBytes withZipThumbnails(std::string_view bytes, std::span<const ThumbnailSize> asked,
-                               std::span<const Thumbnail> pictures, std::string_view name, std::optional<int> plate) {
-    const ZipArchive archive = openZipArchive(bytes, name);
-    const Entries entries = entriesOf(archive.get(), bytes, name, plate);
-    ZipEdit edit(bytes, name);
-    edit.replace(entries.picture, pictures[0].bytes, true);
-    if (entries.small) edit.replace(*entries.small, pictures[1].bytes, true);
-    if (entries.in_text) {
-        const PatchedBytes text = withTextThumbnails(entries.program.view(), pictures.last(asked.size()), name);
-        edit.replace(entries.text, text.text(), false);
-        if (entries.md5) edit.replace(*entries.md5, md5Of(text), false);
+std::vector<ThumbnailSize> ZipThumbnails::pictures(std::span<const ThumbnailSize> asked) const {
+    std::vector<ThumbnailSize> pngs;
+    std::copy_if(asked.begin(), asked.end(), std::back_inserter(pngs),
+                 [](const ThumbnailSize& size) { return size.coding == ThumbnailCoding::png; });
+    if (pngs.empty())
+        throw UsageError(fmt::format("--thumbnail: the picture of {} is a PNG; ask for one, e.g. 512x512", name_));
+    std::stable_sort(pngs.begin(), pngs.end(), [](const ThumbnailSize& a, const ThumbnailSize& b) {
+        return a.width * a.height > b.width * b.height;
+    });
+    std::vector<ThumbnailSize> pictures{pngs.front()};
+    if (entries_->small) pictures.push_back(pngs.size() > 1 ? pngs.back() : *entries_->small_size);
+    if (entries_->in_text) pictures.insert(pictures.end(), asked.begin(), asked.end());
+    return pictures;
+}
+
+PatchedBytes ZipThumbnails::patched(std::span<const ThumbnailSize> asked, std::span<const Thumbnail> pictures) const {
+    ZipEdit edit(bytes_, name_);
+    edit.replace(entries_->picture, pictures[0].bytes, true);
+    if (entries_->small) edit.replace(*entries_->small, pictures[1].bytes, true);
+    if (entries_->in_text) {
+        const PatchedBytes text = withTextThumbnails(entries_->program.view(), pictures.last(asked.size()), name_);
+        edit.replace(entries_->text, text.text(), false);
+        if (entries_->md5) edit.replace(*entries_->md5, md5Of(text), false);
     }
     PatchedBytes result;
     result.add(edit.finish());

@@ -25,7 +25,7 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
     fmt::memory_buffer text;
     const auto flush = [&] {
         if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size())
-            throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+            throw writeError(path.string());
         text.clear();
     };
     fmt::format_to(std::back_inserter(text),
@@ -48,8 +48,7 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
         if (text.size() >= kChunk) flush();
     }
     flush();
-    if (std::fclose(file.release()) != 0)
-        throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    if (std::fclose(file.release()) != 0) throw writeError(path.string());
     output.commit();
 }
 

@@ -30,7 +30,7 @@ void writeReport(const PrintReport& report, const std::filesystem::path& path) {
     std::ofstream stream(file.temporary(), std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 

@@ -66,7 +66,7 @@ void writeExrChannels(const std::filesystem::path& path, const Film& film, const
         file.setFrameBuffer(buffer);
         file.writePixels(film.height());
     } catch (const std::exception& error) {
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+        throw writeError(path.string(), error.what());
     }
 }
 

@@ -28,9 +28,7 @@ void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_
     std::ofstream out(path, std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out)
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
-                                      errno != 0 ? std::strerror(errno) : "unknown error"));
+    if (!out) throw writeError(path.string(), errno != 0 ? std::strerror(errno) : "unknown error");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void requireAlpha(const std::filesystem::path& path);
 /// Throws UsageError if the kind has no pictures so large.
 void requirePictureSize(const std::filesystem::path& path, int width, int height);
 
-/// The pixels of a picture to look at: 8-bit RGB, row by row from the top.
+/// The pixels of a picture to look at: 8-bit RGB, of a transparent film RGBA, row by row from the top.
 /// @param legend  drawn into the upper left corner, if given
 std::vector<std::uint8_t> displayPixels(const Film& film, const ToneOptions& tone, const Legend* legend);
 

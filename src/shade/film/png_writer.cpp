@@ -123,8 +123,7 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
     const File file(std::fopen(path.c_str(), "wb"));
     if (!file) throw OutputError(fmt::format("{}: can't be written ({})", path.string(), std::strerror(errno)));
     if (!writeTo(file.get(), width, height, pixels, metadata, PngEffort::quick))
-        throw OutputError(fmt::format("{}: could not be written ({}); is the disk full?", path.string(),
-                                      errno ? std::strerror(errno) : "libpng failed"));
+        throw writeError(path.string(), errno ? std::strerror(errno) : "libpng failed");
 }
 
 std::vector<std::uint8_t> encodePng(int width, int height, const std::vector<std::uint8_t>& pixels,

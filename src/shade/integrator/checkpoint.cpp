@@ -88,7 +88,7 @@ void Checkpoint::write(const std::string& bytes) const {
     std::ofstream out(file.temporary(), std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path_.string()));
+    if (!out) throw writeError(path_.string());
     file.commit();
 }
 

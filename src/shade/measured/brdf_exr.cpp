@@ -229,8 +229,7 @@ void writeBrdfExr(const std::filesystem::path& path, const BrdfScan& scan) {
             out.setFrameBuffer(buffer);
             out.writePixels(height);
         } catch (const std::exception& error) {
-            throw OutputError(
-                fmt::format("{}: could not be written ({}); is the disk full?", path.string(), error.what()));
+            throw writeError(path.string(), error.what());
         }
     });
 }

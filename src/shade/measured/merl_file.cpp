@@ -62,7 +62,7 @@ void writeMerl(const std::filesystem::path& path, const HalfDiffTable& table) {
                   static_cast<std::streamsize>(channel.size() * sizeof(double)));
     }
     out.close();
-    if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    if (!out) throw writeError(path.string());
     file.commit();
 }
 

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 
-#include <fmt/format.h>
-
 #include <fstream>
 #include <utility>
 
@@ -37,7 +35,7 @@ void FrameRecord::add(const std::filesystem::path& picture, const std::string& s
         std::ofstream out(to, std::ios::binary);
         for (const auto& [name, entry] : entries_) out << entry.scene << ' ' << entry.bytes << ' ' << name << '\n';
         out.close();
-        if (!out) throw OutputError(fmt::format("{}: could not be written; is the disk full?", to.string()));
+        if (!out) throw writeError(to.string());
     });
 }
 

@@ -122,7 +122,7 @@ void Page::write(const std::filesystem::path& path) const {
     std::ofstream stream(file.temporary(), std::ios::binary);
     stream << html();
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: could not be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 

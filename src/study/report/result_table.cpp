@@ -129,7 +129,7 @@ void ResultTable::write(std::string_view text) {
     // One call: a kill leaves the line whole, or cut short at the end of the file, never mixed.
     if (::write(descriptor_, text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
         ::fsync(descriptor_) != 0)
-        throw OutputError(fmt::format("{}: could not be written; is the disk full?", path_.string()));
+        throw writeError(path_.string());
 }
 
 }  // namespace stratum::study

@@ -149,7 +149,8 @@ void readLook(JsonSection& section, ViewState& state) {
     state.material = text(section, "material");
     if (!state.material.empty() && !namesMaterial(state.material))
         section.fail("material",
-                     "a colour, lambert:R,G,B, plastic:R,G,B,ALPHA, metal:R,G,B,ALPHA or a material by its name");
+                     "a colour, lambert:R,G,B, plastic:R,G,B,ALPHA, metal:R,G,B,ALPHA, "
+                     "translucent:R,G,B,MEAN_FREE_PATH_MM or a material by its name");
     state.light = text(section, "light");
     if (!state.light.empty() && !namesLight(state.light))
         section.fail("light", "studio, sky, sky:ELEVATION,AZIMUTH or constant:R,G,B");
