@@ -114,6 +114,9 @@ Four partOf(const voxelize::CellSamples& s, int x, int y, int z, float level) {
 struct AirRows {
     std::uint32_t outside[9][9] = {}, open[9][9] = {};
     bool any_outside = false, any_open = false, any_closed = false;
+
+    bool hasPores() const { return any_open || any_closed; }
+    bool oneKind() const { return int{any_outside} + int{any_open} + int{any_closed} == 1; }
 };
 
 AirRows airOf(const LeafMap::CellPlaces& places, const Outside& outside, const std::uint32_t (&negative)[9][9]) {
@@ -163,6 +166,8 @@ unsigned cornersOf(const std::uint32_t (&rows)[9][9], int x, int y, int z) {
            (rows[x + 1][y + 1] >> z & 3U) << 6;
 }
 Shares sharesOf(const AirRows& air, const std::uint32_t (&negative)[9][9], int x, int y, int z) {
+    // Most leaves have one kind alone.
+    if (air.oneKind()) return {air.any_outside ? 1.0 : 0.0, air.any_open ? 1.0 : 0.0, air.any_closed ? 1.0 : 0.0};
     constexpr double kInverse[9] = {0, 1, 1.0 / 2, 1.0 / 3, 1.0 / 4, 1.0 / 5, 1.0 / 6, 1.0 / 7, 1.0 / 8};
     const int outside = kBits[cornersOf(air.outside, x, y, z)].count;
     const int open = kBits[cornersOf(air.open, x, y, z)].count;
@@ -217,7 +222,7 @@ private:
             for (std::uint32_t bits = solid; bits != 0; bits &= bits - 1) rows[std::countr_zero(bits)].solid += 1;
         }
         if (mixed != 0) addMixed(x, y, mixed, with_area, rows, column, sums);
-        if (air_ == nullptr || (!air_->any_open && !air_->any_closed)) return;
+        if (air_ == nullptr || !air_->hasPores()) return;
         for (std::uint32_t bits = ~(solid | mixed) & 0xffU; bits != 0; bits &= bits - 1)
             addAir(x, y, std::countr_zero(bits), 1, rows[std::countr_zero(bits)]);
     }
@@ -236,8 +241,7 @@ private:
             sum_kk += k * k * part[0];
             const auto share = static_cast<double>(part[0]);
             rows[z].solid += share;
-            // Most leaves have the outside's air alone.
-            const bool pores = air_ != nullptr && (air_->any_open || air_->any_closed);
+            const bool pores = air_ != nullptr && air_->hasPores();
             if (!pores && !with_area) continue;
             const Shares shares = pores ? sharesOf(*air_, negative_, x, y, z) : Shares{1, 0, 0};
             rows[z].open += (1 - share) * shares.open;
@@ -248,12 +252,6 @@ private:
     }
 
     void addAir(int x, int y, int z, double volume, RowSums& row) const {
-        // Most leaves have one kind alone.
-        if (!air_->any_open && !air_->any_closed) return;
-        if (!air_->any_outside && !air_->any_closed) {
-            row.open += volume;
-            return;
-        }
         const Shares shares = sharesOf(*air_, negative_, x, y, z);
         row.open += volume * shares.open;
         row.closed += volume * shares.closed;

@@ -5,51 +5,67 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr int kStride[3] = {81, 9, 1};  // of samples
+constexpr float kShare = 1.0F / 48;  // a twelfth, of the mean over four edges
 
-// Adds the part of one axis. The inner loops go along z, so that the compiler makes vectors of them.
-template <int Axis>
-void addAxis(const float* samples, int edge, CellNumbers& bias) {
-    constexpr int kAlong = kStride[Axis];
-    constexpr int kAside = kStride[(Axis + 1) % 3];
-    constexpr int kAcross = kStride[(Axis + 2) % 3];
-    // Second differences, summed over the four edges of a cell: at sample planes 1 to 7 of the axis.
-    float second[9][9][9];
-    for (int x = Axis == 0 ? 1 : 0; x < edge; ++x)
-        for (int y = Axis == 1 ? 1 : 0; y < edge; ++y)
-            for (int z = Axis == 2 ? 1 : 0; z < 8; ++z) {
-                const float* s = samples + 81 * x + 9 * y + z;
-                const auto edges = [s](int plane) {
-                    const float* p = s + plane;
-                    return p[0] + p[kAside] + p[kAcross] + p[kAside + kAcross];
-                };
-                second[x][y][z] = edges(-kAlong) - 2 * edges(0) + edges(kAlong);
-            }
-    constexpr float kShare = 1.0F / 48;
+float smaller(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
+
+// Each of these sets or adds the part of one axis: samples are summed over the four edges of a cell along that axis,
+// then second differences are taken at the inner sample planes. The inner loops go along z, so that the compiler makes
+// vectors.
+
+void setAlongX(const CellSamples& s, int edge, CellNumbers& bias) {
+    float sums[9][8];
+    float second[9][8];  // of one y
+    for (int y = 0; y < edge; ++y) {
+        for (int x = 0; x <= edge; ++x)
+            for (int z = 0; z < 8; ++z)
+                sums[x][z] = s[x][y][z] + s[x][y][z + 1] + (s[x][y + 1][z] + s[x][y + 1][z + 1]);
+        for (int x = 1; x < edge; ++x)
+            for (int z = 0; z < 8; ++z) second[x][z] = sums[x - 1][z] - 2 * sums[x][z] + sums[x + 1][z];
+        for (int x = 0; x < edge; ++x) {
+            const float(&low)[8] = second[x == 0 ? 1 : x];
+            const float(&high)[8] = second[x == edge - 1 ? x : x + 1];
+            for (int z = 0; z < 8; ++z) bias[x][y][z] = kShare * smaller(low[z], high[z]);
+        }
+    }
+}
+
+void addAlongY(const CellSamples& s, int edge, CellNumbers& bias) {
+    float sums[9][8];
+    float second[9][8];  // of one x
+    for (int x = 0; x < edge; ++x) {
+        for (int y = 0; y <= edge; ++y)
+            for (int z = 0; z < 8; ++z)
+                sums[y][z] = s[x][y][z] + s[x][y][z + 1] + (s[x + 1][y][z] + s[x + 1][y][z + 1]);
+        for (int y = 1; y < edge; ++y)
+            for (int z = 0; z < 8; ++z) second[y][z] = sums[y - 1][z] - 2 * sums[y][z] + sums[y + 1][z];
+        for (int y = 0; y < edge; ++y) {
+            const float(&low)[8] = second[y == 0 ? 1 : y];
+            const float(&high)[8] = second[y == edge - 1 ? y : y + 1];
+            for (int z = 0; z < 8; ++z) bias[x][y][z] += kShare * smaller(low[z], high[z]);
+        }
+    }
+}
+
+void addAlongZ(const CellSamples& s, int edge, CellNumbers& bias) {
     for (int x = 0; x < edge; ++x)
-        for (int y = 0; y < edge; ++y)
-            for (int z = 0; z < 8; ++z) {
-                const int n = Axis == 0 ? x : Axis == 1 ? y : z;
-                const int below = n == 0 ? 1 : 0;  // at the leaf's ends both are the same
-                const int above = n == (Axis == 2 ? 7 : edge - 1) ? 0 : 1;
-                const float near =
-                    second[x + (Axis == 0 ? below : 0)][y + (Axis == 1 ? below : 0)][z + (Axis == 2 ? below : 0)];
-                const float far =
-                    second[x + (Axis == 0 ? above : 0)][y + (Axis == 1 ? above : 0)][z + (Axis == 2 ? above : 0)];
-                bias[x][y][z] += kShare * (std::abs(near) < std::abs(far) ? near : far);
-            }
+        for (int y = 0; y < edge; ++y) {
+            float sums[9];
+            for (int z = 0; z < 9; ++z) sums[z] = s[x][y][z] + s[x][y + 1][z] + (s[x + 1][y][z] + s[x + 1][y + 1][z]);
+            float second[9];
+            for (int z = 1; z < 8; ++z) second[z] = sums[z - 1] - 2 * sums[z] + sums[z + 1];
+            second[0] = second[1];
+            second[8] = second[7];
+            for (int z = 0; z < 8; ++z) bias[x][y][z] += kShare * smaller(second[z], second[z + 1]);
+        }
 }
 
 }  // namespace
 
 void interpolationBias(const CellSamples& samples, CellNumbers& bias, int edge) {
-    for (auto& plane : bias)
-        for (auto& row : plane)
-            for (float& value : row) value = 0;
-    const float* const first = &samples[0][0][0];
-    addAxis<0>(first, edge, bias);
-    addAxis<1>(first, edge, bias);
-    addAxis<2>(first, edge, bias);
+    setAlongX(samples, edge, bias);
+    addAlongY(samples, edge, bias);
+    addAlongZ(samples, edge, bias);
 }
 
 }  // namespace stratum::voxelize
