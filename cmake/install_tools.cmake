@@ -12,10 +12,14 @@ foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
     DEPENDS ${tool}
     COMMENT "Manual of ${tool}")
   list(APPEND manuals ${man} ${completion})
-  install(TARGETS ${tool} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
-  install(FILES ${man} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+  set(component tools)
+  if(tool STREQUAL vdbview)
+    set(component viewer)
+  endif()
+  install(TARGETS ${tool} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+  install(FILES ${man} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
   install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${tool}
-    COMPONENT tools)
+    COMPONENT ${component})
 endforeach()
 add_custom_target(manuals ALL DEPENDS ${manuals})
 
@@ -38,13 +42,14 @@ install(FILES ${PROJECT_BINARY_DIR}/${addon} DESTINATION ${data}/blender COMPONE
 # How desktops know the viewer and the files it opens: https://specifications.freedesktop.org
 configure_file(data/desktop/org.stratum.vdbview.metainfo.xml ${PROJECT_BINARY_DIR}/desktop/org.stratum.vdbview.metainfo.xml @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/desktop/org.stratum.vdbview.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo
-  COMPONENT tools)
-install(FILES data/desktop/org.stratum.vdbview.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT tools)
+  COMPONENT viewer)
+install(FILES data/desktop/org.stratum.vdbview.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT viewer)
 install(FILES data/desktop/org.stratum.vdbview.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps
-  COMPONENT tools)
+  COMPONENT viewer)
 install(FILES data/desktop/stratum.mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME stratum.xml
-  COMPONENT tools)
+  COMPONENT viewer)
 # With all that they link to, as it lies in the sources: pictures, and the pages and tables of the studies.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/stratum-viewer RENAME copyright COMPONENT viewer)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)

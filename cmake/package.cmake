@@ -1,12 +1,12 @@
-# `cpack` makes Debian packages: stratum (the tools), libstratum-dev (the static libraries and their headers), and
-# python3-stratum (the Python module).
+# `cpack` makes Debian packages: stratum (the tools), stratum-viewer (vdbview), libstratum-dev (the static libraries and
+# their headers), and python3-stratum (the Python module).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME stratum)
 set(CPACK_PACKAGE_CONTACT "The Stratum developers <stratum@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "printer G-code to OpenVDB level sets to ray-traced pictures")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL tools dev)
+set(CPACK_COMPONENTS_ALL tools viewer dev)
 if(STRATUM_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
@@ -22,6 +22,15 @@ set(CPACK_COMPONENT_TOOLS_DESCRIPTION
   "gcode2vdb turns the G-code of a slicer into a level set of the part as printed,
 vdbtrace ray-traces it, vdbstudy measures both. With an add-on for Blender.")
 
+# The tables of materials and the documents are in the package of the tools.
+set(CPACK_DEBIAN_VIEWER_PACKAGE_NAME stratum-viewer)
+set(CPACK_DEBIAN_VIEWER_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_VIEWER_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "stratum (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_VIEWER_PACKAGE_SUGGESTS "www-browser")
+set(CPACK_COMPONENT_VIEWER_DESCRIPTION
+  "vdbview shows prints, level sets and scenes in a browser: layers, sections, the line of G-code under a click.")
+
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstratum-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libtbb-dev, libblosc-dev, \
@@ -31,7 +40,7 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION
   "The libraries behind the tools: find_package(stratum) gives stratum::gcode, stratum::voxelize, stratum::march
 and stratum::shade.")
 
-# A module is for one minor version of the interpreter. The tables of materials are in the package of the tools.
+# A module is for one minor version of the interpreter.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-stratum)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)

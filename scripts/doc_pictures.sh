@@ -52,6 +52,10 @@ if asked growing; then
     "$bin/vdbtrace" data/gcode/hull.gcode --film "$out/growing.png" --nozzle --turntable --grow time --size 240x180 \
         --seconds 3 --fps 8
 fi
+if asked lamp; then
+    "$bin/vdbtrace" data/gcode/vase.gcode --brdf natural-pla --light rectangle:100,100,24,4,0,0,0,0,14,11,7.5,4.5 \
+        --env constant:0.16,0.2,0.28 --exposure 0.2 --size 480x600 --spp 96 -o "$out/lamp.jpg"
+fi
 if asked thumbnail; then
     "$bin/gcode2vdb" data/gcode/hull.gcode --thumbnail 300x300 -o "$work/hull.gcode"
     sed -n '/^; thumbnail begin/,/^; thumbnail end/{/thumbnail/d;s/^; //p}' "$work/hull.gcode" | base64 -d >"$out/thumbnail.png"

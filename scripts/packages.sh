@@ -26,6 +26,6 @@ BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev
 # are started by their test, not as services of the machine.
 TEST_PACKAGES=(admesh calculix-ccx ffmpeg libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
     prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium appstream desktop-file-utils
-    shared-mime-info libxml2-utils xvfb locales libgl1-mesa-dri)
+    shared-mime-info libxml2-utils mmdebstrap xvfb locales libgl1-mesa-dri)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.
 BENCH_PACKAGES=(libembree-dev python3-matplotlib)

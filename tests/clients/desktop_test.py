@@ -14,7 +14,7 @@ FOLDER = tempfile.mkdtemp(prefix="stratum_desktop_")
 skip_without(("appstreamcli", "desktop-file-validate", "update-mime-database", "xmllint"))
 
 prefix = os.path.join(FOLDER, "usr")
-run("cmake", "--install", BUILD, "--prefix", prefix, "--component", "tools")
+run("cmake", "--install", BUILD, "--prefix", prefix, "--component", "viewer")
 share = os.path.join(prefix, "share")
 entry = os.path.join(share, "applications", "org.stratum.vdbview.desktop")
 metainfo = os.path.join(share, "metainfo", "org.stratum.vdbview.metainfo.xml")

@@ -133,30 +133,4 @@ for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
               f"  makes a picture of {os.path.getsize(picture)} bytes")
     else:
         check(words == ["1", "3.000", report["input"]["sha256"]], f"  traces and hashes: {words}")
-
-# --- Debian packages -----------------------------------------------------------------------------------------------------
-if shutil.which("dpkg-shlibdeps") and shutil.which("cpack"):
-    packages = os.path.join(FOLDER, "packages")
-    run("cpack", "--config", os.path.join(BUILD, "CPackConfig.cmake"), "-B", packages,
-        "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
-    names = sorted(name for name in os.listdir(packages) if name.endswith(".deb"))
-    check([name.split("_")[0] for name in names] == ["libstratum-dev", "python3-stratum", "stratum"], f"packages: {names}")
-    deb = os.path.join(packages, names[1])
-    depends = run("dpkg-deb", "-f", deb, "Depends")
-    for library in ("libopenvdb10.0", "python3 (>= 3.", "python3-numpy"):
-        check(library in depends, f"  the module depends on {library}")
-    contents = run("dpkg-deb", "-c", deb)
-    for path in ("_stratum.cpython-", "__init__.py", "__init__.pyi", "py.typed"):
-        check("./usr/lib/python3/dist-packages/stratum/" + path in contents, f"  has {path}")
-    deb = os.path.join(packages, names[2])
-    depends = run("dpkg-deb", "-f", deb, "Depends")
-    for library in ("libopenvdb10.0", "libtbb12", "libopenexr-3-1-30", "libc6"):
-        check(library in depends, f"  depends on {library}")
-    check("-dev" not in depends, "  and on nothing for developers")
-    contents = run("dpkg-deb", "-c", deb)
-    for path in ("./usr/bin/gcode2vdb", "./usr/share/man/man1/vdbtrace.1.gz", "./usr/share/doc/stratum/copyright",
-                 "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/blender/stratum_import-",
-                 "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"):
-        check(path in contents, f"  has {path}")
-    check("/include/" not in contents, "  and no headers")
 shutil.rmtree(FOLDER)
