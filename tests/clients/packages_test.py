@@ -37,7 +37,7 @@ NEED = {
 }
 run("cpack", "--config", os.path.join(os.path.dirname(BIN), "CPackConfig.cmake"), "-B", PACKAGES,
     "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
-debs = sorted(glob.glob(os.path.join(PACKAGES, "*.deb")))
+debs = sorted(glob.glob(os.path.join(PACKAGES, "*.deb")), key=lambda path: os.path.basename(path).split("_")[0])
 names = [os.path.basename(deb).split("_")[0] for deb in debs]
 check(names == sorted(HOLD), f"packages: {names}")
 for name, deb in zip(names, debs):
