@@ -5,6 +5,7 @@
 #include "scratch_folder.h"
 #include "study/geometry/field_error.h"
 #include "study/geometry/handmade.h"
+#include "study/geometry/union_field.h"
 #include "study/print.h"
 #include "study/report/result_table.h"
 #include "voxelize/beads/selection.h"
