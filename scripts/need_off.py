@@ -8,6 +8,7 @@ callgrind, which counts instructions: the figures are the same every time. Of th
 and the C library's start are left out) those inside the functions of a capability are summed, with all that they call: an
 upper bound, for what one of them calls is counted twice. Functions that were merged into their callers can't be told apart.
 """
+import concurrent.futures
 import csv
 import datetime
 import os
@@ -35,9 +36,9 @@ PICTURE = {
     "lens": r"Camera::ray\([^)]*, glm::vec<2, float|Camera::withLens",
     "grid in memory (bricks come from the file)": r"readLevelSet",
     "translucent plastic": r"RandomWalk|random_walk|TranslucentBrdf|RoughInterface",
-    "transparent pictures (--background none)": r"ShadowCatcher|makeCatcher",
+    "transparent pictures (--background none)": r"catchShadows|addBare|toDisplayWithAlpha|bareBed",
     "films": r"stratum::animate::",
-    "shards of pictures": r"shade::PartSums|shade::mergeParts|shade::writePart|parseShard",
+    "shards of pictures": r"shade::(mergePicture|mergeParts|isPartOf|writePart|readPart|shardRegion|PartSums)|parseShard",
     "reading G-code": r"gcode::readToolpath|gcode::Lexer|motion::Planner|deposit::",
 }
 STRAIGHT = PICTURE | {
@@ -71,11 +72,9 @@ LEAST = ["--size", "160x120", "--spp", "16", "--no-denoise", "--brdf", "lambert:
          "--no-bed", "--threads", "1", "--quiet"]
 
 
-def profile(command, scratch):
-    out = scratch / "callgrind.out"
+def profile(command, out):
     subprocess.run(["valgrind", "--trace-children=yes", "--tool=callgrind", f"--callgrind-out-file={out}", *command],
                    check=True, capture_output=True)
-    return out
 
 
 def functions(out, inclusive):
@@ -129,19 +128,19 @@ def run_number(folder, print_file, version):
     return number
 
 
-def counted(command, capabilities, scratch):
-    """capability -> functions, instructions, per cent of the program's own."""
-    out = profile(command, scratch)
+def counted(what, command, capabilities, out):
+    """Rows of work, capability, functions, instructions, per cent of the program's own."""
+    profile(command, out)
     own = functions(out, False)
     inclusive = functions(out, True)
     total = sum(count for name, count in own.items() if not OUTSIDE.match(name))
+    rows = []
     for capability, pattern in capabilities.items():
         names = [name for name in inclusive if re.search(pattern, name)]
         # One of them may call another: the sum is an upper bound.
         count = sum(inclusive[name] for name in names)
-        yield capability, len(names), count, f"{100 * count / total:.3f}"
-    for capability in ABSENT[pathlib.Path(command[0]).name]:
-        yield capability, 0, 0, "0.000"
+        rows.append([what, capability, len(names), count, f"{100 * count / total:.3f}"])
+    return rows + [[what, capability, 0, 0, "0.000"] for capability in ABSENT[pathlib.Path(command[0]).name]]
 
 
 def main():
@@ -157,12 +156,14 @@ def main():
         folder = pathlib.Path(name)
         grid = folder / "print.vdb"
         convert = [binaries / "gcode2vdb", print_file, "--voxels-per-layer", "2", "--threads", "1", "-o", grid, "--quiet"]
-        picture = folder / "picture.png"
-        runs = [("conversion", convert, CONVERSION),
-                ("picture of a level set", [binaries / "vdbtrace", grid, "-o", picture, *LEAST], PICTURE),
-                ("picture from G-code", [binaries / "vdbtrace", print_file, "-o", picture, "--voxels-per-layer", "2", *LEAST],
+        subprocess.run(convert, check=True)
+        runs = [("conversion", [*convert[:-2], folder / "again.vdb", "--quiet"], CONVERSION),
+                ("picture of a level set", [binaries / "vdbtrace", grid, "-o", folder / "a.png", *LEAST], PICTURE),
+                ("picture from G-code", [binaries / "vdbtrace", print_file, "-o", folder / "b.png", "--voxels-per-layer", "2", *LEAST],
                  STRAIGHT)]
-        rows = [[what, *row] for what, command, capabilities in runs for row in counted(command, capabilities, folder)]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:  # valgrind runs one thread at a time
+            jobs = [pool.submit(counted, *run, folder / f"callgrind.{n}") for n, run in enumerate(runs)]
+            rows = [row for job in jobs for row in job.result()]
     csv_path.parent.mkdir(parents=True, exist_ok=True)
     run = run_number(csv_path.parent, print_file, re.sub(r"^\S+ ", "", version.strip()))
     with csv_path.open("w", newline="", encoding="utf-8") as file:

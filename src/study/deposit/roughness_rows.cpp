@@ -166,10 +166,11 @@ double wallRoughness(double height, double radius) {
 
 PartTable studyRoughness(const StudyOptions& common, Page& page, StudyReport&) {
     auto table = std::make_unique<ResultTable>(common, "deposit_roughness.csv", kRoughnessColumns, kRoughnessKeys);
-    const int per_layer = common.quick ? 4 : 8;
     const std::vector<Wall> walls = wallsToMeasure(common.quick);
     double done = 0;
     for (const Wall& wall : walls) {
+        // Corners of two voxels; of one in a quick look.
+        const int per_layer = std::max(common.quick ? 4 : 8, (common.quick ? 200 : 400) / wall.section);
         Row row{fmt::format("{:g}", wall.layer), std::to_string(wall.section), std::to_string(wall.flow),
                 std::to_string(per_layer)};
         if (table->find(row) == nullptr) {

@@ -41,7 +41,10 @@ Row timesOfPrint(const std::string& path) {
     }
     // As --stats compares them.
     const gcode::StatedFacts& facts = print.toolpath.stated;
-    const double stated = facts.model_seconds.value_or(facts.seconds.value_or(0));
+    // CuraEngine without Cura, which would fill it in, states the same time for all prints.
+    constexpr double kNoTime = 6666;
+    const bool filled = !(print.toolpath.slicer.starts_with("Cura") && facts.seconds == kNoTime);
+    const double stated = filled ? facts.model_seconds.value_or(facts.seconds.value_or(0)) : 0;
     const double planned = print.times->total;
     return {print.toolpath.slicer,
             print.times->rule,
