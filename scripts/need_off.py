@@ -13,7 +13,6 @@ import csv
 import datetime
 import os
 import pathlib
-import platform
 import re
 import shutil
 import subprocess
@@ -101,12 +100,21 @@ def require_functions(program, capabilities):
             sys.exit(f"need_off: {program} has functions of {capability!r}, which it needs for nothing")
 
 
-def processor():
-    with open("/proc/cpuinfo", encoding="utf-8") as file:
+def value_in(path, key):
+    """The value of a "key : value" line of a system file."""
+    with open(path, encoding="utf-8") as file:
         for line in file:
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return "unknown processor"
+            match = re.match(rf"{key}\s*[:=]\s*(.*)", line)
+            if match:
+                return match.group(1).strip(' "\n')
+    return "unknown"
+
+
+def machine():
+    """As machineLine() of src/study/report/run_log.cpp, but for the compiler."""
+    memory = int(value_in("/proc/meminfo", "MemTotal").split()[0]) * 1024e-9
+    return (f"{value_in('/proc/cpuinfo', 'model name')}, {os.cpu_count()} threads, {memory:.0f} GB of memory, "
+            f"{value_in('/etc/os-release', 'PRETTY_NAME')}")
 
 
 def run_number(folder, print_file, version):
@@ -123,8 +131,7 @@ def run_number(folder, print_file, version):
         writer = csv.writer(file, lineterminator="\n")
         if not rows:
             writer.writerow(columns)
-        writer.writerow([number, date, version, f"{processor()}, {os.cpu_count()} threads, {platform.system()}",
-                         f"need_off.py {print_file.name}"])
+        writer.writerow([number, date, version, machine(), f"need_off.py {print_file.name}"])
     return number
 
 

@@ -15,7 +15,7 @@ import re
 import statistics
 import sys
 
-OLD = "not measured by this version"
+OLD = "not measured here by this version"
 
 
 class Table:
@@ -298,7 +298,7 @@ def plastic_line(folder):
         rows = sorted((r for r in rows if int(r["per_layer"]) == finest), key=lambda r: number(r, "of_fed_percent"))
         if rows:
             row = rows[len(rows) // 2]
-            line += [", " if line else "of what was fed the level set holds ", f"{name} ",
+            line += [", " if line else "beside what was fed the level set holds ", f"{name} ",
                      Number(percent(number(row, "of_fed_percent")), row, "deposit")]
     rough = Table(folder / "deposit_roughness.csv").where(layer_mm="0.2", section_percent="100", flow_percent="100")
     if rough:
@@ -318,6 +318,7 @@ def plastic_line(folder):
                    for r in runs.values() if "typical" in r and "capsule" in r)
     if pairs:
         ratio, _, row = pairs[len(pairs) // 2]
+        row = runs[row["print"], "1"]["typical"]  # the page has a row for all runs of a print, by its first
         line += ["; a typical printer's grid takes ", Number(f"{ratio:.2f} ×", row, "deposit"), " the time of capsules"]
     return ["How near is the model to plastic? ", *line, "."] if line else None
 
@@ -352,7 +353,8 @@ def runs_line(folder):
     runs = Table(folder / "runs.csv").rows
     if not runs:
         return "Measured before runs were recorded: each page says on which machine, when and by which command."
-    machines = sorted({r["machine"] for r in runs})
+    machines = {r["machine"] for r in runs}
+    machines = sorted(m for m in machines if not any(other != m and other.startswith(m) for other in machines))
     return (f"Measured from {min(r['date'] for r in runs)} to {max(r['date'] for r in runs)}, on {'; '.join(machines)}. Each row "
             "names its run, and [runs.csv](runs.csv) its date, version, machine and command.")
 
