@@ -36,6 +36,13 @@ class Table:
         return [r for r in self.rows if all(r.get(key) == value for key, value in wanted.items())]
 
 
+def prints_table(folder):
+    """The comparison of prints on all threads, and on one where it was made."""
+    table = Table(folder / "polygons_prints.csv")
+    table.rows += Table(folder / "one_thread" / "polygons_prints.csv").rows
+    return table
+
+
 class Number:
     """A number as it is shown, and the row that it is of."""
 
@@ -97,7 +104,7 @@ def print_matches(table, integrator, total):
 
 
 def prints_line(folder):
-    table = Table(folder / "polygons_prints.csv")
+    table = prints_table(folder)
     matches = print_matches(table, "path", print_total)
     if not matches:
         return None
@@ -107,6 +114,9 @@ def prints_line(folder):
             Number(f"{low[0]:.2f}", low[1], "polygons"), " to ", Number(f"{high[0]:.2f}", high[1], "polygons"),
             " × as fast as the best of beads and prisms (median ", Number(f"{middle[0]:.2f}", middle[1], "polygons"),
             f"), ahead in {ahead} of {len(matches)} cases of print and threads"]
+    fewer = {own["spp"] for _, own, _ in matches} - {"32"}
+    if fewer:
+        line.append(f" (told in proportion from {', '.join(sorted(fewer))} samples)")
     first = print_matches(table, "path", lambda row: number(row, "first_look_cpu"))
     if first:
         one = first[len(first) // 2]

@@ -139,7 +139,7 @@ void addPublished(Page& page) {
     page.table({"layer mm", "published Ra \u00b5m", "mean", "a stadium's", "off %"}, cells);
     const double change = (kPublishedFlow[1].ra_um / kPublishedFlow[0].ra_um - 1) * 100;
     page.paragraph(fmt::format(
-        "With the flow from 100 to 110 % a printed surface became {:+.0f} % rougher ({} \u00b1 {} to {} \u00b1 {} "
+        "With the flow from 100 to 110 % Ra of a printed surface changed by {:+.0f} % ({} \u00b1 {} to {} \u00b1 {} "
         "\u00b5m; {}; the layer height is not in its caption). A lone wall of this model does not change: more flow "
         "makes it wider, with the same corners. Only a smaller radius (--section) would follow the measurement.",
         change, kPublishedFlow[0].ra_um, kPublishedFlow[0].spread_um, kPublishedFlow[1].ra_um,

@@ -215,9 +215,8 @@ struct Kind {
     const char* lattice;
     const char* name;
 };
-constexpr std::array<Kind, 3> kKinds{{{kUnion, kAligned, "union, aligned"},
-                                      {kUnion, kShifted, "union, half a voxel off"},
-                                      {kSettled, kAligned, "settled, aligned"}}};
+constexpr std::array<Kind, 3> kKinds{
+    {{kUnion, kAligned, "union"}, {kUnion, kShifted, "union, shifted"}, {kSettled, kAligned, "settled"}}};
 
 bool isOf(const Row& row, const Kind& kind) {
     return row[kBeadsAre] == kind.beads_are && row[kLattice] == kind.lattice && row[kPrecision] == "float" &&
@@ -325,7 +324,9 @@ void writePage(const fs::path& path, const ResultTable& table, const std::vector
         "other way: at a crease between two beads, or where a thin spot of empty space is closed. \"Back\" are hits "
         "of rays from outside and their distance to the exact surface. Volumes are counted at quasi-random points, in "
         "the trilinear field and in the exact solid, with the standard error of the difference; beside it what "
-        "--stats reports. Seconds are the median of three builds.",
+        "--stats reports. Seconds are the median of three builds. Lattices are aligned with the layers; \"shifted\" "
+        "ones are "
+        "half a voxel off.",
         rows.front()[kPrint], rows.front()[kPoints], kResolved));
     addPlots(page, rows);
     addOrders(page, rows);
