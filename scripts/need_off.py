@@ -67,7 +67,7 @@ ABSENT = {"vdbtrace": {"viewer": r"stratum::(view|serve)::"}, "gcode2vdb": {"vie
 OUTSIDE = re.compile(r"^(_dl_|do_lookup|dl_|check_match|_start$|\(below main\)|__libc_start|call_init|_init)")
 
 
-LEAST = ["--size", "160x120", "--spp", "16", "--no-denoise", "--brdf", "lambert:0.5,0.5,0.5", "--env", "constant:1,1,1",
+LEAST = ["--size", "160x120", "--spp", "4", "--no-denoise", "--brdf", "lambert:0.5,0.5,0.5", "--env", "constant:1,1,1",
          "--no-bed", "--threads", "1", "--quiet"]
 
 

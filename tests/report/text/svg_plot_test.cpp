@@ -66,7 +66,7 @@ TEST(SvgPlot, DrawsBarsOfErrors) {
     EXPECT_EQ(countOf(svg, "h6M"), 2U);
     EXPECT_NE(svg.find(">1000<"), std::string::npos);
     EXPECT_EQ(bare.find(">1000<"), std::string::npos);
-    EXPECT_NE(svg.find("V384.0"), std::string::npos);
+    EXPECT_NE(svg.find(" 384.0V"), std::string::npos);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
