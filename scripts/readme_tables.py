@@ -29,7 +29,7 @@ def table(header, lines):
 def memory(folder):
     lines = []
     for row in rows(folder / "memory.csv"):
-        if row["status"] != "ok" or row["voxels_per_layer"] not in ("2", "4"):
+        if row["status"] != "ok" or row["voxels_per_layer"] not in ("2", "4") or row["interior"] not in ("keep", "cull"):
             continue
         lines.append([row["print"], f"{float(row['part_mm3']) / 1000:.1f}", f"{float(row['voxel_mm']):g}", row["interior"],
                       millions(row["active_voxels"]), f"{float(row['voxelize_seconds']):.2f} s",

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "study/cost/memory.h"
 #include "study/cost/need.h"
+#include "study/deposit/deposit.h"
 #include "study/geometry/geometry.h"
 #include "study/picture/render.h"
 #include "study/polygons/polygons.h"
@@ -37,6 +38,7 @@ Examples:
   vdbstudy stability -o studies                     a hundred cases that could go wrong
   vdbstudy render part.gcode -o studies             error of pictures against run time
   vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost
+  vdbstudy deposit part.gcode -o studies            volume, roughness, corners and times against published figures
   vdbstudy polygons --scenes data/scenes/*.json -o studies
   vdbstudy polygons prints/ -o studies              level sets beside beads and prisms)";
 
@@ -48,6 +50,7 @@ struct Options {
     study::NeedOptions need;
     study::RenderStudyOptions render;
     study::PolygonsOptions polygons;
+    study::DepositOptions deposit;
 };
 
 // A verb, and the study that it asks for.
@@ -66,6 +69,21 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
     verb->add_flag("--fresh", o.study.fresh, "Measure again what an earlier run has measured");
     tools::addCommonOptions(*verb, o.common);
     return verb;
+}
+
+void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
+    CLI::App* deposit =
+        addVerb(app, o, "deposit", "Volume, roughness, corners, times and cost of what the plastic does");
+    deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume, times and cost")
+        ->required()
+        ->type_name("FILE.gcode");
+    deposit->add_option("--times", o.deposit.timed, "More prints, for their times alone; may be given again")
+        ->type_name("FILE");
+    deposit->add_option("--layers", o.deposit.layers, "Of the volumes (default 1:20)")->type_name("A:B");
+    deposit->add_option("--repeats", o.deposit.repeats, "Runs of each effect (default 7)")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    verbs.push_back({deposit, [&o] { return study::studyDeposit(o.deposit, o.study); }});
 }
 
 std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
@@ -111,6 +129,7 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
     verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
+    addDeposit(app, o, verbs);
     CLI::App* polygons = addVerb(app, o, "polygons", "Level sets and formulas beside polygons and beads");
     polygons->add_option("PRINT", o.polygons.prints, "Prints, or folders of them; *.json are scenes")
         ->type_name("FILE.gcode|DIR|SCENE.json");
@@ -147,10 +166,12 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     o.polygons.scenes.insert(o.polygons.scenes.end(), scenes, prints.end());
     prints.erase(scenes, prints.end());
     tools::RunFiles files;
-    for (const auto* inputs : {&o.memory.prints, &o.need.prints, &o.polygons.prints, &o.polygons.scenes})
+    for (const auto* inputs : {&o.memory.prints, &o.need.prints, &o.polygons.prints, &o.deposit.prints,
+                               &o.deposit.timed, &o.polygons.scenes})
         for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
-    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html"})
+    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html", "_volume.csv", "_roughness.csv",
+                               "_corner.csv", "_time.csv", "_cost.csv"})
         files.writes((o.study.folder / (verb.app->get_name() + ending)).string(), "-o");
     files.writes(o.common.stats, "--stats");
     tools::makeFolder(o.study.folder);

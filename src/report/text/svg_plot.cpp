@@ -108,17 +108,31 @@ std::string colorOf(std::size_t shape) {
     return color == "#000000" ? "var(--plot-ink,black)" : color;
 }
 
-void drawSeries(std::string& svg, const Series& series, std::size_t shape, const Axis& x, const Axis& y) {
+// From the lowest to the highest value; what the axis can't show of it is cut off at `end`.
+std::string bar(double at, const std::pair<double, double>& range, const Axis& y, double end,
+                const std::string& color) {
+    const double high = y.pixel(range.second);
+    const double low = y.shows(range.first) ? y.pixel(range.first) : end;
+    return fmt::format(
+        "<path d='M{0:.1f} {1:.1f}V{2:.1f}M{3:.1f} {1:.1f}h6M{3:.1f} {2:.1f}h6' fill='none' style='stroke:{4}'/>", at,
+        low, high, at - 3, color);
+}
+
+void drawSeries(std::string& svg, const Series& series, std::size_t shape, const Axis& x, const Axis& y, double end) {
     std::string path;
     std::string marks;
     bool gap = true;
-    for (const auto& [px, py] : series.points) {
+    for (std::size_t n = 0; n < series.points.size(); ++n) {
+        const double px = series.points[n].first;
+        const double py = series.points[n].second;
         if (!x.shows(px) || !y.shows(py)) {
             gap = gap || std::isnan(py);
             continue;
         }
         path += fmt::format("{}{:.1f} {:.1f}", gap ? 'M' : 'L', x.pixel(px), y.pixel(py));
         gap = false;
+        if (n < series.bars.size() && y.shows(series.bars[n].second))
+            marks += bar(x.pixel(px), series.bars[n], y, end, colorOf(shape));
         if (series.marked) marks += mark(shape, x.pixel(px), y.pixel(py), colorOf(shape));
     }
     if (series.joined && !path.empty())
@@ -186,12 +200,16 @@ std::string drawSvg(const Plot& plot) {
     const Frame& f = plot.compact ? kCompact : kLarge;
     Axis x(plot.log_x, f.left, f.right);
     Axis y(plot.log_y, f.bottom, f.top);
-    for (const Series& series : plot.series)
+    for (const Series& series : plot.series) {
         for (const auto& [px, py] : series.points)
             if (x.shows(px) && y.shows(py)) {
                 x.include(px);
                 y.include(py);
             }
+        for (const auto& [low, high] : series.bars)
+            for (const double v : {low, high})
+                if (y.shows(v)) y.include(v);
+    }
     const double rows = f.top + 20 * static_cast<double>(plot.series.size()) + 10;
     // Two entries of the legend a row.
     const double below = 20 * std::floor(static_cast<double>(std::max<std::size_t>(plot.series.size(), 1) - 1) / 2);
@@ -211,7 +229,7 @@ std::string drawSvg(const Plot& plot) {
     std::size_t next = 0;
     for (std::size_t n = 0; n < plot.series.size(); ++n) {
         const std::size_t shape = plot.series[n].color >= 0 ? static_cast<std::size_t>(plot.series[n].color) : next++;
-        drawSeries(svg, plot.series[n], shape, x, y);
+        drawSeries(svg, plot.series[n], shape, x, y, f.bottom);
         const auto place = static_cast<double>(n);
         if (legend && plot.compact)
             drawLegend(svg, plot.series[n], shape, f.left + (n % 2 == 0 ? 0 : column),

@@ -19,6 +19,8 @@ struct Series {
     bool joined = true;
     int color = -1;  ///< index into the palette; -1: the next one
     bool marked = true;
+    /// Lowest and highest value at each point, drawn as a bar; empty: none. As many as there are points.
+    std::vector<std::pair<double, double>> bars = {};
 };
 
 struct Plot {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "export/vdb_file.h"
+#include "export/vdb_stream.h"
 #include "march/brick/brick_intersector.h"
 #include "study/cost/own_process.h"
 #include "study/cost/times.h"
@@ -20,6 +21,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -57,6 +59,11 @@ enum Column : std::size_t {
     kPart,
     kStatus
 };
+// How a file comes about: all leaves in a grid, what is seen in one, or block by block without a grid.
+constexpr const char* kKeep = "keep";
+constexpr const char* kCull = "cull";
+constexpr const char* kStreamed = "keep, no grid";
+constexpr std::array<const char*, 3> kWays{kKeep, kCull, kStreamed};
 constexpr const char* kOk = "ok";
 constexpr const char* kLeftOut = "left out: does not fit";
 
@@ -73,24 +80,63 @@ std::size_t writtenBytes(const openvdb::FloatGrid::Ptr& grid, const fs::path& pa
     return bytes;
 }
 
-// In the child. The cells after the key.
-std::string measure(const std::string& print, int count, Interior interior, const fs::path& scratch, double budget,
-                    int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()));
-    openvdb::initialize();
-    const gcode::Toolpath toolpath = readPrint(print);
-    const auto beads = voxelize::selectBeads(toolpath, {});
-    const voxelize::Lattice lattice = latticeOf(toolpath, beads, count);
-    const double part = voxelize::depositedVolume(toolpath, beads);
-    const double estimate = voxelize::estimateBytes(toolpath, beads, lattice, interior);
-    const auto line = [](const Row& cells) {
-        const std::string text = csvLine(cells);
-        return text.substr(0, text.size() - 1);
-    };
-    if (estimate > budget)
-        return line({fmt::format("{:.9g}", lattice.voxel_size), "", "", "", "", "", "", "",
-                     fmt::format("{:.0f}", estimate), "", "", "", "", fmt::format("{:.6g}", part), kLeftOut});
+Row leftOut(const voxelize::Lattice& lattice, double estimate, double part) {
+    return {fmt::format("{:.9g}", lattice.voxel_size),
+            "",
+            "",
+            "",
+            "",
+            "",
+            "",
+            "",
+            fmt::format("{:.0f}", estimate),
+            "",
+            "",
+            "",
+            "",
+            fmt::format("{:.6g}", part),
+            kLeftOut};
+}
+
+// As gcode2vdb writes a file when nothing asks for a grid.
+Row measureStream(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& beads,
+                  const voxelize::Lattice& lattice, const fs::path& scratch, double part) {
+    exporter::WrittenGrid written;
+    double finish_seconds = 0;
+    const double seconds = timesOf([&] {
+                               voxelize::VoxelizeOptions options;
+                               options.in_memory = false;
+                               voxelize::Voxelizer voxelizer(toolpath, beads, lattice, options);
+                               const openvdb::FloatGrid::Ptr empty = voxelizer.emptyGrid();
+                               exporter::describe(*empty, lattice, {});
+                               const voxelize::LeafBounds bounds = voxelizer.leafBounds();
+                               exporter::VdbStream file(empty, scratch, {}, bounds);
+                               voxelizer.stream(0xffffffff, bounds, file, false);
+                               finish_seconds = timesOf([&] { written = file.finish(); }).wall;
+                           }).wall;
+    const std::size_t peak = peakSoFar();
+    const auto bytes = fs::file_size(scratch);
+    fs::remove(scratch);
+    return {fmt::format("{:.9g}", lattice.voxel_size),
+            std::to_string(written.statistics.active_voxels),
+            std::to_string(written.leaves),
+            "",
+            "",
+            std::to_string(bytes),
+            "",
+            "",
+            "",
+            std::to_string(peak),
+            fmt::format("{:.4f}", seconds - finish_seconds),
+            fmt::format("{:.4f}", finish_seconds),
+            "",
+            fmt::format("{:.6g}", part),
+            kOk};
+}
+
+Row measureGrid(const gcode::Toolpath& toolpath, const std::vector<std::uint32_t>& beads,
+                const voxelize::Lattice& lattice, Interior interior, const fs::path& scratch, double estimate,
+                double part) {
     voxelize::VoxelizeOptions options;
     options.interior = interior;
     openvdb::FloatGrid::Ptr grid;
@@ -108,11 +154,40 @@ std::string measure(const std::string& print, int count, Interior interior, cons
     const double brick_seconds = timesOf([&] { brick_bytes = march::makeBrickIntersector(*grid)->bytes(); }).wall;
     // Last, for it rounds what it writes.
     const std::size_t half_bytes = writtenBytes(grid, scratch, true, half_seconds);
-    return line({fmt::format("{:.9g}", lattice.voxel_size), std::to_string(active), std::to_string(leaves),
-                 std::to_string(tiles), std::to_string(grid_bytes), std::to_string(float_bytes),
-                 std::to_string(half_bytes), std::to_string(brick_bytes), fmt::format("{:.0f}", estimate),
-                 std::to_string(peak), fmt::format("{:.4f}", voxelize_seconds), fmt::format("{:.4f}", write_seconds),
-                 fmt::format("{:.4f}", brick_seconds), fmt::format("{:.6g}", part), kOk});
+    return {fmt::format("{:.9g}", lattice.voxel_size),
+            std::to_string(active),
+            std::to_string(leaves),
+            std::to_string(tiles),
+            std::to_string(grid_bytes),
+            std::to_string(float_bytes),
+            std::to_string(half_bytes),
+            std::to_string(brick_bytes),
+            fmt::format("{:.0f}", estimate),
+            std::to_string(peak),
+            fmt::format("{:.4f}", voxelize_seconds),
+            fmt::format("{:.4f}", write_seconds),
+            fmt::format("{:.4f}", brick_seconds),
+            fmt::format("{:.6g}", part),
+            kOk};
+}
+
+// In the child. The cells after the key.
+std::string measure(const std::string& print, int count, std::string_view way, const fs::path& scratch, double budget,
+                    int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()));
+    openvdb::initialize();
+    const gcode::Toolpath toolpath = readPrint(print);
+    const auto beads = voxelize::selectBeads(toolpath, {});
+    const voxelize::Lattice lattice = latticeOf(toolpath, beads, count);
+    const double part = voxelize::depositedVolume(toolpath, beads);
+    const Interior interior = way == kCull ? Interior::cull : Interior::keep;
+    const double estimate = way == kStreamed ? 0 : voxelize::estimateBytes(toolpath, beads, lattice, interior);
+    const std::string text =
+        csvLine(way == kStreamed    ? measureStream(toolpath, beads, lattice, scratch, part)
+                : estimate > budget ? leftOut(lattice, estimate, part)
+                                    : measureGrid(toolpath, beads, lattice, interior, scratch, estimate, part));
+    return text.substr(0, text.size() - 1);
 }
 
 using Points = std::vector<std::pair<double, double>>;
@@ -124,7 +199,8 @@ struct Curve {
 
     Points of(std::size_t column, double scale = 1) const {
         Points points;
-        for (const Row* row : rows) points.emplace_back(numberIn(*row, kVoxel), scale * numberIn(*row, column));
+        for (const Row* row : rows)
+            if (!row->at(column).empty()) points.emplace_back(numberIn(*row, kVoxel), scale * numberIn(*row, column));
         return points;
     }
 };
@@ -133,7 +209,7 @@ std::vector<Curve> curvesOf(const ResultTable& table, const std::vector<std::pai
                             const std::vector<int>& counts) {
     std::vector<Curve> curves;
     for (const auto& [name, hash] : prints)
-        for (const char* interior : {"keep", "cull"}) {
+        for (const char* interior : kWays) {
             Curve curve{name, interior, 0, {}};
             for (const int count : counts) {
                 const Row* row = table.find({name, hash, std::to_string(count), interior});
@@ -161,6 +237,7 @@ void addLaws(Page& page, const std::vector<Curve>& curves) {
         if (curve.rows.size() < 3) continue;
         for (const auto& [what, column] : kinds) {
             const Points points = curve.of(column);
+            if (points.size() < 3) continue;
             const PowerLaw before = fitPowerLaw(std::span(points).first(points.size() - 1));
             const PowerLaw all = fitPowerLaw(points);
             const auto [finest, measured] = points.back();
@@ -187,10 +264,14 @@ void addPlots(Page& page, const std::vector<Curve>& curves) {
         Plot plot{curve.print, "voxel size, mm", "bytes", true, true, {}};
         for (const Curve& other : curves) {
             if (other.print != curve.print) continue;
-            const bool cull = other.interior == "cull";
+            const bool cull = other.interior == kCull;
             const auto add = [&](const char* what, std::size_t column, int color) {
-                plot.series.push_back(
-                    {fmt::format("{}, {}", what, other.interior), other.of(column), cull, true, color});
+                Points points = other.of(column);
+                if (points.empty()) return;
+                // Without a grid the file is the same.
+                if (other.interior == kStreamed && column != kPeak) return;
+                plot.series.push_back({fmt::format("{}, {}", what, other.interior), std::move(points), cull, true,
+                                       other.interior == kStreamed ? 5 : color});
             };
             add("grid", kGrid, 0);
             add("peak RSS", kPeak, 1);
@@ -209,8 +290,9 @@ void addPlots(Page& page, const std::vector<Curve>& curves) {
         if (curve.print != last) ++color;
         last = curve.print;
         const std::string name = fmt::format("{}, {}", curve.print, curve.interior);
-        each.series.push_back({name, curve.of(kGrid, 1 / curve.part), curve.interior == "cull", true, color});
-        time.series.push_back({name, curve.of(kVoxelizeSeconds), curve.interior == "cull", true, color});
+        if (curve.interior == kStreamed) continue;
+        each.series.push_back({name, curve.of(kGrid, 1 / curve.part), curve.interior == kCull, true, color});
+        time.series.push_back({name, curve.of(kVoxelizeSeconds), curve.interior == kCull, true, color});
     }
     page.plot(each);
     page.plot(time);
@@ -222,28 +304,35 @@ void writePage(const fs::path& path, const ResultTable& table, const std::vector
     page.paragraph(
         "Each configuration is a process of its own that reads the print, voxelizes, and writes; its peak is taken "
         "then. "
-        "keep: all surfaces; cull: what the outside can reach. Bricks are what rays are traced through, built after "
+        "keep: all surfaces; cull: what the outside can reach; no grid: leaves go to the file while they are made, as "
+        "gcode2vdb does where nothing needs a grid, so that voxelizing and writing are one. Bricks are what rays are "
+        "traced through, built after "
         "that peak was read. A cubic millimetre of plastic is one that the nozzle has extruded.");
     addPlots(page, curves);
     addLaws(page, curves);
     page.heading("Everything measured");
     std::vector<Row> rows;
+    std::vector<std::size_t> lines;
     for (const Row& row : table.rows()) {
         const bool ok = row[kStatus] == kOk;
+        lines.push_back(table.lineOf(row));
         const auto with = [&](std::size_t column, double scale, const char* format) {
-            return ok ? fmt::format(fmt::runtime(format), numberIn(row, column) * scale) : std::string("\u2013");
+            return ok && !row[column].empty() ? fmt::format(fmt::runtime(format), numberIn(row, column) * scale)
+                                              : std::string("\u2013");
         };
         rows.push_back({row[kPrint], row[kInterior], fmt::format("{:.4g}", numberIn(row, kVoxel)),
                         with(kActive, 1e-6, "{:.2f}"), with(kLeaves, 1e-3, "{:.1f}"), with(kTiles, 1, "{:.0f}"),
                         with(kGrid, 1e-6, "{:.1f}"), with(kEstimate, 1e-6, "{:.0f}"), with(kPeak, 1e-6, "{:.1f}"),
                         with(kFloatFile, 1e-6, "{:.1f}"), with(kHalfFile, 1e-6, "{:.1f}"),
                         with(kBricks, 1e-6, "{:.1f}"), with(kGrid, 1 / numberIn(row, kPart), "{:.0f}"),
-                        with(kVoxelizeSeconds, 1, "{:.3f}"), row[kStatus]});
+                        with(kVoxelizeSeconds, 1, "{:.3f}"), with(kWriteSeconds, 1, "{:.3f}"), row[kStatus],
+                        row.back()});
     }
     page.table({"print", "interior", "voxel mm", "active, M", "leaves, k", "active tiles", "grid MB", "estimate MB",
                 "peak RSS MB", "float file MB", "half file MB", "bricks MB", "grid bytes per mm\u00b3", "voxelize s",
-                "status"},
-               rows);
+                "write s", "status", "run"},
+               rows, {}, lines, "memory");
+    page.runs(table);
     page.write(path);
 }
 
@@ -256,20 +345,19 @@ StudyReport studyMemory(const MemoryOptions& options, const StudyOptions& common
     std::vector<std::pair<std::string, std::string>> prints;
     for (const std::string& print : options.prints)
         prints.emplace_back(fs::path(print).filename().string(), shortHash(print));
-    ResultTable table(common.folder / "memory.csv", kColumns, kKeys, common.fresh);
+    ResultTable table(common, "memory.csv", kColumns, kKeys);
     const fs::path scratch = common.folder / fmt::format(".memory-{}.vdb", ::getpid());
-    const std::size_t all = prints.size() * counts.size() * 2;
+    const std::size_t all = prints.size() * counts.size() * kWays.size();
     std::size_t done = 0;
     StudyReport report;
     for (std::size_t p = 0; p < prints.size(); ++p)
         for (const int count : counts)
-            for (const Interior interior : {Interior::keep, Interior::cull}) {
-                const std::string kind = interior == Interior::keep ? "keep" : "cull";
+            for (const std::string kind : kWays) {
                 const Row key{prints[p].first, prints[p].second, std::to_string(count), kind};
                 if (table.find(key) == nullptr) {
                     const Outcome outcome = inOwnProcess([&] {
-                        return measure(options.prints[p], count, interior, scratch,
-                                       options.memory_share * availableBytes(), common.threads);
+                        return measure(options.prints[p], count, kind, scratch, options.memory_share * availableBytes(),
+                                       common.threads);
                     });
                     std::error_code ignored;
                     fs::remove(scratch, ignored);

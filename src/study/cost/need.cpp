@@ -149,29 +149,40 @@ std::string writeMap(const fs::path& folder) {
     return path.string();
 }
 
-// What scripts/need_off.py has counted, if it has: capability, where, instructions, share of all.
+// What scripts/need_off.py has counted, if it has.
 void addSwitchedOff(Page& page, const fs::path& csv, StudyReport& report) {
+    static const Row kOffColumns{"work", "capability", "functions", "instructions", "percent", "run"};
+    constexpr std::size_t kWork = 0, kName = 1, kShare = 4;
     std::ifstream file(csv);
     std::vector<Row> rows;
     for (std::string line; std::getline(file, line);) rows.push_back(parseCsvLine(line));
     if (rows.size() < 2) return;
+    if (rows.front() != kOffColumns) {
+        report.findings.push_back(fmt::format("{}: of an older version; run scripts/need_off.py", csv.string()));
+        return;
+    }
     constexpr double kMost = 1;  // %
     std::vector<Row> cells;
+    std::vector<std::size_t> lines;
     for (std::size_t n = 1; n < rows.size(); ++n) {
         Row row = rows[n];
-        const bool over = std::atof(row.back().c_str()) > kMost;
-        row.emplace_back(over ? "over 1 %" : "ok");
-        if (over) report.findings.push_back(fmt::format("{} costs {} % when it is off", row[0], rows[n].back()));
+        const bool over = numberIn(row, kShare) > kMost;
+        if (over)
+            report.findings.push_back(
+                fmt::format("{}: {} costs {} % when it is off", row[kWork], row[kName], row[kShare]));
+        row.insert(row.end() - 1, over ? "over 1 %" : "ok");
         cells.push_back(std::move(row));
+        lines.push_back(n + 1);
     }
     page.heading("What it costs when it is off");
     page.paragraph(
-        "The least picture once more, counted instruction by instruction (valgrind's callgrind: the same figure every "
-        "time, whatever else the machine does): how many of the program's own instructions are spent in the functions "
-        "of "
-        "each capability while it is off, with what they call. Functions that the compiler has merged into their "
-        "callers, a test of a flag mostly, can't be told apart.");
-    page.table({"capability", "functions", "instructions", "% of all", "verdict"}, cells, "over 1 %");
+        "The least conversion, the least picture of a level set and the least one straight from G-code, counted "
+        "instruction by instruction (valgrind's callgrind: the same figure every time, whatever else the machine "
+        "does): how many of the program's own instructions are spent in the functions of each capability while it is "
+        "off, with what they call. Functions that the compiler has merged into their callers, a test of a flag mostly, "
+        "can't be told apart. What a program has no function of (the viewer) has none.");
+    page.table({"work", "capability", "functions", "instructions", "% of all", "verdict", "run"}, cells, "over 1 %",
+               lines, "need_off");
 }
 
 double median(std::vector<double> values) {
@@ -185,7 +196,7 @@ std::string percent(double with, double without) { return fmt::format("{:+.1f}",
 
 StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
     const int repeats = options.repeats > 0 ? options.repeats : common.quick ? 3 : 7;
-    ResultTable table(common.folder / "need.csv", kColumns, kKeys, common.fresh);
+    ResultTable table(common, "need.csv", kColumns, kKeys);
     // In a process of its own: writing starts threads, which would not survive the forks to come.
     const Outcome map = inOwnProcess([&] { return writeMap(common.folder / "references"); });
     if (!map.failure.empty()) throw OutputError(map.failure);
@@ -226,6 +237,7 @@ StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
             }
         const auto at = [&](std::size_t n, std::size_t column) { return median(columns[4 * n + column - kConvert]); };
         std::vector<Row> rows;
+        std::vector<std::size_t> lines;
         for (std::size_t n = 0; n < all.size(); ++n) {
             Row row{all[n].name, all[n].what};
             for (const std::size_t column : {kConvert, kBuild, kRender}) {
@@ -234,13 +246,21 @@ StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common) {
             }
             row.push_back(fmt::format("{:.1f}", at(n, kPeak) * 1e-6));
             row.push_back(percent(at(n, kPeak), at(0, kPeak)));
+            const std::vector<double>& times = columns[4 * n + kRender - kConvert];
+            const auto [low, high] = std::minmax_element(times.begin(), times.end());
+            row.push_back(fmt::format("{:.3f} .. {:.3f}", *low, *high));
+            const Row first{name, hash, all[n].name, "1"};
+            row.push_back(table.find(first)->back());
+            lines.push_back(table.lineOf(first));
             rows.push_back(std::move(row));
         }
         page.heading(name);
-        page.table({"capability", "how", "convert CPU s", "%", "build CPU s", "%", "render CPU s", "%", "peak MB", "%"},
-                   rows);
+        page.table({"capability", "how", "convert CPU s", "%", "build CPU s", "%", "render CPU s", "%", "peak MB", "%",
+                    "least .. largest render CPU s", "run"},
+                   rows, {}, lines, "need");
     }
     addSwitchedOff(page, common.folder / "need_off.csv", report);
+    page.runs(table);
     report.csv = table.path();
     report.html = common.folder / "need.html";
     report.rows = table.rows().size();

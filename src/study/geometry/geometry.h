@@ -1,7 +1,7 @@
 // How far the level set is from the beads that it was made of.
 #pragma once
 
-#include "study/geometry/union_field.h"
+#include "study/geometry/exact_solid.h"
 #include "study/study.h"
 
 #include "trace/intersector.h"
@@ -36,15 +36,16 @@ struct SurfaceError {
 /// For each point the nearest zero of the trilinear field: along the normal, both ways, and along 24 more directions,
 /// then towards its foot point in three steps. An upper bound of the distance; exact where the surface is smooth.
 /// Parallel. @param search  how far zeros are looked for, mm
-SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
+SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const ExactSolid::SurfacePoint> points,
                           double search);
 
 /// The way back: absolute distances of the union at the hits of rays from outside, mm.
-Spread backwardError(const trace::Intersector& level_set, const UnionField& exact, std::size_t rays);
+Spread backwardError(const trace::Intersector& level_set, const ExactSolid& exact, std::size_t rays);
 
 /// geometry.csv and geometry.html: errors against voxel size, on lattices aligned with the layers and half a voxel off,
-/// for several half-widths, as floats and halves; and against run time. Level beads only. Throws InputError,
-/// UsageError, OutputError.
+/// for several half-widths, as floats and halves, of the beads' union and of settled beads, each against its own exact
+/// surface; and against run time. Both ways: from the exact surface to the level set, with the share of it that is not
+/// there, and back. Level beads only. Throws InputError, UsageError, OutputError.
 StudyReport studyGeometry(const GeometryOptions& options, const StudyOptions& common);
 
 }  // namespace stratum::study

@@ -87,7 +87,7 @@ Spread spreadOf(std::vector<double> values) {
     return spread;
 }
 
-SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const UnionField::SurfacePoint> points,
+SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const ExactSolid::SurfacePoint> points,
                           double search) {
     static const auto kSpread = spreadDirections();
     std::vector<double> distances(points.size(), -1);
@@ -116,7 +116,7 @@ SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const U
     return error;
 }
 
-Spread backwardError(const trace::Intersector& level_set, const UnionField& exact, std::size_t rays) {
+Spread backwardError(const trace::Intersector& level_set, const ExactSolid& exact, std::size_t rays) {
     const trace::Box box = level_set.bounds();
     const double radius = 0.5 * glm::length(box.max - box.min);
     std::vector<double> errors(rays, -1);

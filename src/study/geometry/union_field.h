@@ -2,53 +2,32 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "study/geometry/exact_solid.h"
 #include "voxelize/beads/bead_field.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 namespace stratum::study {
 
-/// Everything in mm and print space, double. Immutable once made; safe to ask from all threads.
-///
 /// Outside, the distance is exact; inside it is negative but only a bound (the deepest bead's). Flats that touch within
 /// voxelize::kWeldGap are welded, as the voxelizer does it: the plane between them is inside, not surface.
-class UnionField {
+class UnionField : public ExactSolid {
 public:
     /// `reach`: how far from a bead distances are told. Beads are listed in cells of 1 mm, as far as they reach.
     UnionField(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads, double reach);
 
     /// Signed distance, or `reach` if no bead is that near.
-    double distance(const glm::dvec3& p) const;
+    double distance(const glm::dvec3& p) const override;
 
-    struct SurfacePoint {
-        glm::dvec3 position{0};
-        glm::dvec3 normal{0};  ///< unit, outwards
-    };
-    /// Points spread evenly by area over the surface of the level beads' union, inner surfaces included. Depends on
-    /// `seed` and the number alone. Parallel.
-    std::vector<SurfacePoint> samplePoints(std::size_t count, std::uint32_t seed = 1) const;
+    /// On the level beads' union.
+    std::vector<SurfacePoint> samplePoints(std::size_t count, std::uint32_t seed = 1) const override;
 
-    /// How far the empty space in front of a point of the surface goes, along its normal, mm; `limit` if farther. What
-    /// is narrower than a few voxels can't be on a grid: gaps between beads side by side narrow down to nothing.
-    double clearance(const SurfacePoint& point, double limit) const;
-
-    /// mm^3, and their standard errors: of the union, and by how much another solid is larger, both counted at the same
-    /// quasi-random points of the union's box, so that their difference is known better than either.
-    struct Volume {
-        double value = 0, error = 0;
-        double excess = 0, excess_error = 0;
-    };
-    using Inside = std::function<bool(const glm::dvec3&)>;
-    /// @param other  makes a function for one thread to ask whether a point is inside the other solid; may be empty
-    Volume volume(std::size_t points_of_each, const std::function<Inside()>& other = {}, int shifts = 16) const;
-
-    const voxelize::Bounds& bounds() const { return bounds_; }
+    const voxelize::Bounds& bounds() const override { return bounds_; }
 
 private:
     struct Solid {

@@ -55,7 +55,7 @@ public:
                  : common.quick    ? 2
                                    : 5),
           reference_spp_(kTimesMore * plan_.spp.back()),
-          table_(common.folder / "render.csv", kRenderColumns, kRenderKeys, common.fresh),
+          table_(common, "render.csv", kRenderColumns, kRenderKeys),
           name_(fs::path(options.print).filename().string()),
           hash_(shortHash(options.print)),
           size_(fmt::format("{}x{}", width(), height())),
@@ -71,9 +71,9 @@ public:
         // Seeds outermost: what disturbs the machine for a while disturbs all variants.
         for (int seed = 1; seed <= seeds_; ++seed)
             for (const Variant& v : plan_.variants)
-                for (const int spp : plan_.spp) {
-                    done += 1;
-                    if (spp < v.least_spp || spp > v.most_spp) continue;
+                for (const int spp : v.only_spp > 0 ? std::vector<int>{v.only_spp} : plan_.spp) {
+                    done += v.only_spp > 0 ? static_cast<double>(plan_.spp.size()) : 1;
+                    if (v.only_spp == 0 && (spp < v.least_spp || spp > v.most_spp)) continue;
                     const Row key{name_,
                                   hash_,
                                   size_,
@@ -91,7 +91,7 @@ public:
     void write(const fs::path& html);
 
 private:
-    int width() const { return common_.quick ? 48 : 200; }
+    int width() const { return pictureWidth(common_.quick); }
     int height() const { return width() / 4 * 3; }
     const shade::Film& referenceNamed(const std::string& name) { return references_.of(plan_.referenceNamed(name)); }
     Row measured(Row row, const Variant& v, int spp, int seed);
@@ -140,7 +140,7 @@ void RenderStudy::write(const fs::path& html) {
         "tone-mapped picture. Times are of the render alone, all threads; CPU time is what other work on the machine "
         "disturbs least.",
         name_, size_, seeds_, reference_spp_));
-    const RenderResults results(rows_);
+    const RenderResults results(rows_, table_);
     page.picture(references_.show("shown path", referenceNamed(ofSize(plan_.base))), "Reference");
     std::uint64_t rays = 0;
     const auto fewSamples = [&](const Variant& v) { return pictureOf(v, subject_, 4, 1, rays); };
@@ -159,10 +159,16 @@ void RenderStudy::write(const fs::path& html) {
     page.paragraph(
         "There is one sampler. \"Samples apart\" is what it would be without its stratification over the samples of a "
         "pixel: the mean of pictures of one sample and of seeds of their own.");
-    addComparison(page, results, "Denoiser", {"brick", "denoised"});
+    addComparison(page, results, "Denoiser", {"brick", "denoised", kDefaultPicture});
+    page.paragraph(fmt::format(
+        "The {} is what vdbtrace makes when nobody asks for samples or denoising: at this size {} samples a pixel, "
+        "denoised. \"brick\" is unbiased; the denoiser is a filter after it, whose bias is what is left when its "
+        "line gets flat.",
+        kDefaultPicture, plan_.variantNamed(kDefaultPicture).only_spp));
     addVoxels(page, results, plan_, references_);
     addSlopes(page, results, plan_.variants);
     addEverything(page, results, plan_.variants);
+    page.runs(table_);
     page.write(html);
 }
 

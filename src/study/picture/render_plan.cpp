@@ -1,5 +1,6 @@
 #include "study/picture/render_plan.h"
 
+#include "assemble/finished_picture.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -63,6 +64,11 @@ RenderPlan makePlan(std::vector<int> per_layer, bool quick) {
     }
     plan.variants.push_back({"samples apart", path, base, true});
     plan.variants.push_back({"denoised", path, base, false, true, 2});
+    shade::RenderOptions chosen;
+    chosen.width = pictureWidth(quick);
+    chosen.height = chosen.width / 4 * 3;
+    const bool denoised = assemble::chooseDenoising({}, chosen);
+    plan.variants.push_back({kDefaultPicture, path, base, false, denoised, 1, 1 << 30, chosen.spp});
     plan.variants.push_back({"direct", direct, "path, one bounce"});
     plan.variants.push_back({"ao", ao, "path, white"});
     for (const int rows : {8, 16, 32}) {

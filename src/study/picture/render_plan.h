@@ -17,6 +17,7 @@ struct Variant {
     bool denoised = false;
     int least_spp = 1;
     int most_spp = 1 << 30;
+    int only_spp = 0;  ///< above 0: this number alone, whatever the others have
 };
 
 /// A picture with many samples.
@@ -36,6 +37,12 @@ struct RenderPlan {
     const Reference& referenceNamed(const std::string& name) const;
     const Variant& variantNamed(const std::string& name) const;
 };
+
+/// Pixels of the pictures; they are three quarters as high.
+constexpr int pictureWidth(bool quick) { return quick ? 48 : 200; }
+
+/// The name of the picture that vdbtrace makes when nobody asks for samples or denoising.
+inline constexpr const char* kDefaultPicture = "default picture";
 
 /// @param per_layer  voxels a layer; empty: 1, 2, 4, 8, or 1, 2 if quick
 RenderPlan makePlan(std::vector<int> per_layer, bool quick);

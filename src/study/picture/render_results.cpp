@@ -15,18 +15,25 @@ namespace {
 
 constexpr std::size_t kVariant = 4, kSpp = 5, kWall = 7, kCpu = 8, kError = 10, kFlip = 11, kFineError = 12;
 
+// A single number of samples has none.
+std::string exponentText(const PowerLaw& law) {
+    return std::isfinite(law.exponent) ? fmt::format("{:.2f}", law.exponent) : "-";
+}
+
 }  // namespace
 
 const Row kRenderColumns{"print",   "sha256", "size",         "reference_spp", "variant",
                          "spp",     "seed",   "wall_seconds", "cpu_seconds",   "rays",
                          "rel_mse", "flip",   "rel_mse_fine", "flip_fine"};
 
-RenderResults::RenderResults(const std::vector<Row>& rows) {
+RenderResults::RenderResults(const std::vector<Row>& rows, const ResultTable& table) {
     std::map<std::pair<std::string, int>, std::vector<const Row*>> groups;
     for (const Row& row : rows) groups[{row[kVariant], std::atoi(row[kSpp].c_str())}].push_back(&row);
     for (const auto& [key, group] : groups) {
         RenderPoint p;
         p.spp = key.second;
+        p.line = table.lineOf(*group.front());
+        p.run = group.front()->back();
         const auto column = [&rows_of = group](std::size_t c) {
             std::vector<double> values;
             values.reserve(rows_of.size());
@@ -58,7 +65,12 @@ RenderResults::RenderResults(const std::vector<Row>& rows) {
 Series RenderResults::series(const std::string& variant, double RenderPoint::*x, double RenderPoint::*y,
                              const std::string& name, bool dashed, int color) const {
     Series s{name.empty() ? variant : name, {}, dashed, true, color};
-    for (const RenderPoint& p : of(variant)) s.points.emplace_back(p.*x, p.*y);
+    for (const RenderPoint& p : of(variant)) {
+        s.points.emplace_back(p.*x, p.*y);
+        const double spread = y == &RenderPoint::error ? p.spread : y == &RenderPoint::flip ? p.flip_spread : 0;
+        if (spread > 0) s.bars.emplace_back(p.*y - spread, p.*y + spread);
+    }
+    if (s.bars.size() != s.points.size()) s.bars.clear();
     return s;
 }
 
@@ -100,13 +112,12 @@ void addSlopes(Page& page, const RenderResults& results, const std::vector<Varia
         // Where its line reaches the plain one's best error; nothing where it does not fall.
         const double seconds = std::pow(aim / by_cpu.factor, 1 / by_cpu.exponent);
         const bool reaches = by_cpu.exponent < -0.3 && v.reference == variants.front().reference;
-        cells.push_back({v.name, v.reference, std::to_string(last.spp), fmt::format("{:.3f}", last.wall),
-                         fmt::format("{:.3f}", last.cpu), fmt::format("{:.2f}", ratio),
-                         fmt::format("{:.3e}", last.error),
-                         fmt::format("{:.1f}", last.error > 0 ? last.spread / last.error * 100 : 0),
-                         fmt::format("{:.4f}", last.flip), fmt::format("{:.2f}", by_cpu.exponent),
-                         fmt::format("{:.2f}", law(&RenderPoint::cpu, &RenderPoint::flip).exponent),
-                         reaches ? fmt::format("{:.2f}", seconds) : "-"});
+        cells.push_back(
+            {v.name, v.reference, std::to_string(last.spp), fmt::format("{:.3f}", last.wall),
+             fmt::format("{:.3f}", last.cpu), fmt::format("{:.2f}", ratio), fmt::format("{:.3e}", last.error),
+             fmt::format("{:.1f}", last.error > 0 ? last.spread / last.error * 100 : 0),
+             fmt::format("{:.4f}", last.flip), exponentText(by_cpu),
+             exponentText(law(&RenderPoint::cpu, &RenderPoint::flip)), reaches ? fmt::format("{:.2f}", seconds) : "-"});
     }
     page.heading("Slopes");
     page.paragraph(
@@ -123,18 +134,21 @@ void addSlopes(Page& page, const RenderResults& results, const std::vector<Varia
 
 void addEverything(Page& page, const RenderResults& results, const std::vector<Variant>& variants) {
     std::vector<Row> cells;
+    std::vector<std::size_t> lines;
     for (const Variant& v : variants)
         for (const RenderPoint& p : results.of(v.name)) {
+            lines.push_back(p.line);
             const auto percent = [](double deviation, double mean) {
                 return fmt::format("{:.1f}", mean > 0 ? deviation / mean * 100 : 0);
             };
             cells.push_back({v.name, std::to_string(p.spp), fmt::format("{:.4f}", p.wall), fmt::format("{:.4f}", p.cpu),
                              fmt::format("{:.3e}", p.error), percent(p.spread, p.error), fmt::format("{:.4f}", p.flip),
-                             percent(p.flip_spread, p.flip)});
+                             percent(p.flip_spread, p.flip), p.run});
         }
     page.heading("Everything measured");
     page.paragraph("Medians of the times; means of the errors, with their standard deviation from seed to seed.");
-    page.table({"variant", "spp", "wall s", "CPU s", "relMSE", "\u00b1 %", "FLIP", "\u00b1 %"}, cells);
+    page.table({"variant", "spp", "wall s", "CPU s", "relMSE", "\u00b1 %", "FLIP", "\u00b1 %", "run"}, cells, {}, lines,
+               "render");
 }
 
 void addVoxels(Page& page, const RenderResults& results, const RenderPlan& plan, References& references) {

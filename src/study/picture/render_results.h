@@ -22,15 +22,17 @@ struct RenderPoint {
     double error = 0, spread = 0;  ///< mean relMSE, and its standard deviation over the seeds
     double fine = 0;               ///< mean relMSE against the finest voxels' reference
     double flip = 0, flip_spread = 0;
+    std::size_t line = 0;  ///< of render.csv, its first row
+    std::string run;
 };
 
 class RenderResults {
 public:
-    explicit RenderResults(const std::vector<Row>& rows);
+    RenderResults(const std::vector<Row>& rows, const ResultTable& table);
 
     /// Ascending by samples.
     const std::vector<RenderPoint>& of(const std::string& variant) const { return points_.at(variant); }
-    /// `name`: of the legend; empty: the variant's.
+    /// `name`: of the legend; empty: the variant's. With bars of a standard deviation where there is one of `y`.
     Series series(const std::string& variant, double RenderPoint::*x, double RenderPoint::*y,
                   const std::string& name = {}, bool dashed = false, int color = -1) const;
 

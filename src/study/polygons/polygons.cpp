@@ -43,8 +43,10 @@ StudyReport studyPolygons(const PolygonsOptions& options, const PeerTracers& pee
     report.csv = common.folder / (given.prints.empty() ? "polygons_scenes.csv" : "polygons_prints.csv");
     Page page("Level sets beside polygons and beads", common.command);
     // Prints first: each is measured in a process of its own, which wants no threads to have been started before.
-    if (!given.prints.empty()) studyPrints(given, peers, common, page, report);
-    if (!given.scenes.empty()) studyScenes(given, peers, common, page, report);
+    std::vector<std::unique_ptr<ResultTable>> tables;
+    if (!given.prints.empty()) tables.push_back(studyPrints(given, peers, common, page, report));
+    if (!given.scenes.empty()) tables.push_back(studyScenes(given, peers, common, page, report));
+    page.runs(*tables.back());
     page.write(report.html);
     return report;
 }

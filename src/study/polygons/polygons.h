@@ -7,8 +7,10 @@
 
 #include "study/polygons/peer_tracers.h"
 #include "study/report/page.h"
+#include "study/report/result_table.h"
 #include "study/study.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,10 +29,11 @@ struct PolygonsOptions {
 /// findings, and rows that they left in an earlier run are kept. Throws InputError, UsageError, OutputError.
 StudyReport studyPolygons(const PolygonsOptions& options, const PeerTracers& peers, const StudyOptions& common);
 
-/// Its halves: each adds its table's rows and findings to `report`, and its part to `page`.
-void studyScenes(const PolygonsOptions& options, const PeerTracers& peers, const StudyOptions& common, Page& page,
-                 StudyReport& report);
-void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const StudyOptions& common, Page& page,
-                 StudyReport& report);
+/// Its halves: each adds its table's rows and findings to `report`, and its part to `page`; the table is for
+/// Page::runs().
+std::unique_ptr<ResultTable> studyScenes(const PolygonsOptions& options, const PeerTracers& peers,
+                                         const StudyOptions& common, Page& page, StudyReport& report);
+std::unique_ptr<ResultTable> studyPrints(const PolygonsOptions& options, const PeerTracers& peers,
+                                         const StudyOptions& common, Page& page, StudyReport& report);
 
 }  // namespace stratum::study

@@ -30,7 +30,9 @@ std::string orNothing(double v, const char* format) {
 
 void addEverything(Page& page, const std::vector<PrintResult>& results) {
     std::vector<Row> cells;
-    for (const PrintResult& r : results)
+    std::vector<std::size_t> lines;
+    for (const PrintResult& r : results) {
+        lines.insert(lines.end(), r.lines.begin(), r.lines.end());
         for (const Row& row : r.rows)
             cells.push_back({r.name,
                              sizeClassOf(r.enclosed),
@@ -51,12 +53,31 @@ void addEverything(Page& page, const std::vector<PrintResult>& results) {
                              fmt::format("{:.2f}", valueOf(row, kRays) / valueOf(row, kRender) * 1e-6),
                              orNothing(valueOf(row, kNoise), "{:.2e}"),
                              orNothing(valueOf(row, kBias), "{:.2e}"),
-                             orNothing(valueOf(row, kSeries), "{:.2f}")});
-    page.table({"print",   "class",        "cm\u00b3 enclosed", "cm\u00b3 extruded", "as",          "primitives",
-                "MB",      "peak MB",      "parse s",           "convert s",         "build s",     "render s",
-                "total s", "total wall s", "first look s",      "first look wall s", "Mrays/CPU s", "noise",
-                "bias",    "series s"},
-               cells);
+                             orNothing(valueOf(row, kSeries), "{:.2f}"),
+                             row.back()});
+    }
+    page.table({"print",
+                "class",
+                "cm\u00b3 enclosed",
+                "cm\u00b3 extruded",
+                "as",
+                "primitives",
+                "MB",
+                "peak MB",
+                "parse s",
+                "convert s",
+                "build s",
+                "render s",
+                "total s",
+                "total wall s",
+                "first look s",
+                "first look wall s",
+                "Mrays/CPU s",
+                "noise",
+                "bias",
+                "series s",
+                "run"},
+               cells, {}, lines, "polygons_prints");
 }
 
 // A level set and a peer, each the fastest of its side.

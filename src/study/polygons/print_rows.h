@@ -58,10 +58,11 @@ struct PrintIntegrator {
 /// All rows of one print and integrator.
 struct PrintResult {
     std::string name;
-    std::vector<Row> rows;          ///< one a representation
-    std::vector<Row> sweep;         ///< segments cut in all ways; empty for most prints
-    std::filesystem::path picture;  ///< may be missing
-    double enclosed = 0;            ///< cm3
+    std::vector<Row> rows;           ///< one a representation
+    std::vector<std::size_t> lines;  ///< of polygons_prints.csv, of those rows
+    std::vector<Row> sweep;          ///< segments cut in all ways; empty for most prints
+    std::filesystem::path picture;   ///< may be missing
+    double enclosed = 0;             ///< cm3
 
     /// Null where there is none.
     const Row* find(const std::string& kind) const;

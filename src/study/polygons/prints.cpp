@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 
 namespace stratum::study {
@@ -30,17 +31,17 @@ constexpr std::size_t kKeys = 8;
 
 constexpr int kFirstLooks = 3;  // processes; their median counts
 
-std::vector<Representation> representations() {
-    return {{kLevelSet, 2},
-            {"level set, 4 a layer", 4},
-            {"level set on demand", 2, 0, 0, true},
-            {"level set on demand, 4 a layer", 4, 0, 0, true},
-            {"beads, 8:1", 0, 0, 8},
-            {"4-gons, 8:1", 0, 4, 8}};
+// Prisms of more sides are the same once more: a quick look leaves them out.
+std::vector<Representation> representations(bool quick) {
+    std::vector<Representation> all{{kLevelSet, 2},
+                                    {"level set, 4 a layer", 4},
+                                    {"level set on demand", 2, 0, 0, true},
+                                    {"level set on demand, 4 a layer", 4, 0, 0, true},
+                                    {"beads, 8:1", 0, 0, 8},
+                                    {"4-gons, 8:1", 0, 4, 8}};
+    if (!quick) all.insert(all.end(), {{"6-gons, 8:1", 0, 6, 8}, {"10-gons, 8:1", 0, 10, 8}});
+    return all;
 }
-
-// Of one print a class only: more of the same.
-std::vector<Representation> finerPrisms() { return {{"6-gons, 8:1", 0, 6, 8}, {"10-gons, 8:1", 0, 10, 8}}; }
 
 std::vector<Representation> splits(bool quick) {
     std::vector<Representation> all;
@@ -92,9 +93,10 @@ public:
         : peers_(peers),
           threads_(common.threads > 0 ? common.threads : tbb::info::default_concurrency()),
           looks_(common.quick ? 1 : kFirstLooks),
-          table_(common.folder / "polygons_prints.csv", kColumns, kKeys, common.fresh) {}
+          table_(std::make_unique<ResultTable>(common, "polygons_prints.csv", kColumns, kKeys)) {}
 
-    const ResultTable& table() const { return table_; }
+    const ResultTable& table() const { return *table_; }
+    std::unique_ptr<ResultTable> takeTable() { return std::move(table_); }
     int threads() const { return threads_; }
 
     /// Nothing where a peer is wanted that is not there. `look_too`: also how long it takes from nothing to a picture.
@@ -108,7 +110,7 @@ public:
                       std::to_string(s.spp),
                       std::to_string(threads_),
                       r.name};
-        if (const Row* known = table_.find(key)) return *known;
+        if (const Row* known = table_->find(key)) return *known;
         if (r.per_layer == 0 && !peers_.beads) return std::nullopt;
         const auto inChild = [&](const std::function<Row()>& work) {
             const Outcome outcome = inOwnProcess([&] {
@@ -139,15 +141,15 @@ public:
         Row row = key;
         const Row cells = inChild([&] { return measurePrint(path, r, peers_, s, first, picture); });
         row.insert(row.end(), cells.begin(), cells.end());
-        table_.add(row);
-        return row;
+        table_->add(std::move(row));
+        return *table_->find(key);
     }
 
 private:
     const PeerTracers& peers_;
     int threads_;
     int looks_;
-    ResultTable table_;
+    std::unique_ptr<ResultTable> table_;
 };
 
 void introduce(Page& page, const Task& task, std::size_t prints, int threads) {
@@ -186,8 +188,8 @@ void introduce(Page& page, const Task& task, std::size_t prints, int threads) {
 
 }  // namespace
 
-void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const StudyOptions& common, Page& page,
-                 StudyReport& report) {
+std::unique_ptr<ResultTable> studyPrints(const PolygonsOptions& options, const PeerTracers& peers,
+                                         const StudyOptions& common, Page& page, StudyReport& report) {
     std::vector<Task> tasks;
     for (const std::string& name :
          options.integrators.empty() ? std::vector<std::string>{"path", "ao"} : options.integrators)
@@ -196,7 +198,7 @@ void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const
     tasks.front().shot.series = true;
     Measurements measurements(peers, common);
     if (!peers.beads) report.findings.emplace_back("beads and prisms (Embree) are left out: bench_vdbstudy has them");
-    const std::vector<Representation> kinds = representations();
+    const std::vector<Representation> kinds = representations(common.quick);
     const std::vector<Representation> ways = splits(common.quick);
     const fs::path pictures = common.folder / "references";
     fs::create_directories(pictures);
@@ -207,11 +209,13 @@ void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const
         for (Task& task : tasks) {
             PrintResult result;
             result.name = fs::path(path).stem().string();
-            result.picture = pictures / fmt::format("{}_{}.png", result.name, task.integrator.name);
+            result.picture = pictures / fmt::format("{}_{}.jpg", result.name, task.integrator.name);
             const auto add = [&](const Representation& r) {
                 auto row =
                     measurements.rowOf(path, hash, r, task.shot, true, r.per_layer > 0 ? result.picture : fs::path());
-                if (row) result.rows.push_back(std::move(*row));
+                if (!row) return;
+                result.lines.push_back(measurements.table().lineOf(*row));
+                result.rows.push_back(std::move(*row));
             };
             for (const Representation& kind : kinds) add(kind);
             result.enclosed = valueOf(result.rows.front(), kEnclosed);
@@ -220,7 +224,6 @@ void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const
                 for (const Representation& way : ways)
                     if (auto row = measurements.rowOf(path, hash, way, task.small, false, {}))
                         result.sweep.push_back(std::move(*row));
-                for (const Representation& kind : finerPrisms()) add(kind);
             }
             task.results.push_back(std::move(result));
             if (common.progress) common.progress(++done / steps);
@@ -239,6 +242,7 @@ void studyPrints(const PolygonsOptions& options, const PeerTracers& peers, const
     }
     report.rows += measurements.table().rows().size();
     report.resumed += measurements.table().resumed();
+    return measurements.takeTable();
 }
 
 }  // namespace stratum::study

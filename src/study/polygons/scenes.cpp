@@ -137,10 +137,14 @@ struct Summary {
     double mean = 0, deviation = 0;  // CPU seconds a frame
     double off = 0, primitives = 0, bytes = 0, build = 0, rays = 0;
     int frames = 0;
+    std::string run;
+    std::size_t line = 0;  // of polygons_scenes.csv, the first frame's
 };
 
-Summary summaryOf(const std::vector<const Row*>& rows) {
+Summary summaryOf(const std::vector<const Row*>& rows, const ResultTable& table) {
     Summary s;
+    s.run = rows.front()->back();
+    s.line = table.lineOf(*rows.front());
     s.frames = static_cast<int>(rows.size());
     for (const Row* row : rows) s.mean += numberIn(*row, kCpu) / s.frames;
     for (const Row* row : rows) s.deviation += std::pow(numberIn(*row, kCpu) - s.mean, 2);
@@ -178,7 +182,7 @@ SceneResult measureScene(const std::string& path, const PeerTracers& peers, int 
     const int height = file.render.height;
     SceneResult result;
     result.name = fs::path(path).stem().string();
-    result.picture = common.folder / "references" / (result.name + "_small.png");
+    result.picture = common.folder / "references" / (result.name + "_small.jpg");
     const Row head{fs::path(path).filename().string(), shortHash(path), fmt::format("{}x{}", width, height)};
     struct Ready {
         Traced traced;
@@ -239,7 +243,7 @@ SceneResult measureScene(const std::string& path, const PeerTracers& peers, int 
             key.insert(key.end(), {all[n].name, std::to_string(frame)});
             if (const Row* row = table.find(key)) found.push_back(row);
         }
-        if (!found.empty()) result.all.emplace_back(all[n], summaryOf(found));
+        if (!found.empty()) result.all.emplace_back(all[n], summaryOf(found, table));
     }
     if (!fs::exists(result.picture)) exactPicture();
     return result;
@@ -247,19 +251,22 @@ SceneResult measureScene(const std::string& path, const PeerTracers& peers, int 
 
 void addTable(Page& page, const std::vector<SceneResult>& results) {
     std::vector<Row> cells;
+    std::vector<std::size_t> lines;
     for (const SceneResult& r : results) {
         const Summary* exact = r.find(kExact);
-        for (const auto& [representation, s] : r.all)
+        for (const auto& [representation, s] : r.all) {
+            lines.push_back(s.line);
             cells.push_back({r.name, representation.name, fmt::format("{:.0f}", s.primitives),
                              fmt::format("{:.2f}", s.bytes * 1e-6), fmt::format("{:.1f}", s.build * 1e3),
                              fmt::format("{:.1f}", s.mean * 1e3), fmt::format("{:.1f}", s.deviation * 1e3),
                              std::to_string(s.frames), fmt::format("{:.2f}", s.rays / s.mean * 1e-6),
                              exact != nullptr ? fmt::format("{:.2f}", s.mean / exact->mean) : "-",
-                             fmt::format("{:.2f}", s.off * 100)});
+                             fmt::format("{:.2f}", s.off * 100), s.run});
+        }
     }
     page.table({"scene", "as", "primitives", "MB", "build ms", "ms a frame", "\u00b1 ms", "frames", "Mrays/s",
-                "of the formula's time", "pixels off %"},
-               cells);
+                "of the formula's time", "pixels off %", "run"},
+               cells, {}, lines, "polygons_scenes");
 }
 
 // How often one is faster than another, and the geometric mean of how much.
@@ -332,17 +339,17 @@ void addAnswer(Page& page, const std::vector<SceneResult>& results) {
 
 }  // namespace
 
-void studyScenes(const PolygonsOptions& options, const PeerTracers& peers, const StudyOptions& common, Page& page,
-                 StudyReport& report) {
+std::unique_ptr<ResultTable> studyScenes(const PolygonsOptions& options, const PeerTracers& peers,
+                                         const StudyOptions& common, Page& page, StudyReport& report) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const int frames = options.frames > 0 ? options.frames : common.quick ? 2 : 10;
-    ResultTable table(common.folder / "polygons_scenes.csv", kColumns, kKeys, common.fresh);
+    auto table = std::make_unique<ResultTable>(common, "polygons_scenes.csv", kColumns, kKeys);
     if (!peers.mesh)
         report.findings.emplace_back("meshes with a hierarchy (Embree) are left out: bench_vdbstudy has them");
     std::vector<SceneResult> results;
     const auto count = static_cast<double>(options.scenes.size());
     for (std::size_t n = 0; n < options.scenes.size(); ++n)
-        results.push_back(measureScene(options.scenes[n], peers, frames, table, common, [&](double share) {
+        results.push_back(measureScene(options.scenes[n], peers, frames, *table, common, [&](double share) {
             if (common.progress) common.progress((static_cast<double>(n) + share) / count);
         }));
     page.heading("Shapes: signed distances and polygons (Roukema 2023)");
@@ -364,15 +371,18 @@ void studyScenes(const PolygonsOptions& options, const PeerTracers& peers, const
           "low mesh, Embree", "high mesh, Embree", "fine mesh, Embree"}) {
         Series series{name, {}, false, false};
         for (std::size_t n = 0; n < results.size(); ++n)
-            if (const Summary* s = results[n].find(name))
+            if (const Summary* s = results[n].find(name)) {
                 series.points.emplace_back(static_cast<double>(n + 1), s->mean);
+                series.bars.emplace_back(s->mean - s->deviation, s->mean + s->deviation);
+            }
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
     page.plot(plot);
     addTable(page, results);
     addAnswer(page, results);
-    report.rows += table.rows().size();
-    report.resumed += table.resumed();
+    report.rows += table->rows().size();
+    report.resumed += table->resumed();
+    return table;
 }
 
 }  // namespace stratum::study

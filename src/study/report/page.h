@@ -3,8 +3,10 @@
 
 #include "report/text/svg_plot.h"
 #include "study/report/result_table.h"
+#include "study/report/run_log.h"
 
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,11 +23,17 @@ public:
 
     void heading(std::string_view text);
     void paragraph(std::string_view text);
-    /// Cells that are numbers are set flush right. A row whose cells hold `marked` is shown in red; empty marks none.
-    void table(const Row& columns, const std::vector<Row>& rows, std::string_view marked = {});
+    /// Cells that are numbers are set flush right. A row whose cells hold `marked` is shown in red; empty marks none. A
+    /// last column "run" refers to runs(). `lines`, if not empty: the lines of the CSV file that the rows were made of;
+    /// a row can then be linked to as "#L12", or "#TABLE-L12" with the stem of the file as `table`.
+    void table(const Row& columns, const std::vector<Row>& rows, std::string_view marked = {},
+               std::span<const std::size_t> lines = {}, std::string_view table = {});
+    /// Date, version, machine and command of all runs that rows shown so far refer to. `table`: the one that was opened
+    /// last.
+    void runs(const ResultTable& table);
     void plot(const Plot& plot);
-    /// A PNG file, kept in the page.
-    void picture(const std::filesystem::path& png, std::string_view caption);
+    /// A file of PNG or JPEG, kept in the page.
+    void picture(const std::filesystem::path& file, std::string_view caption);
 
     std::string html() const;
     /// Throws OutputError.
@@ -33,10 +41,8 @@ public:
 
 private:
     std::string title_, made_by_, body_;
+    std::set<std::string> runs_;  // that rows refer to
 };
-
-/// Processor, cores, memory, system, compiler; never the machine's name.
-std::string machineLine();
 
 /// Bytes as base 64 (RFC 4648).
 std::string base64(std::string_view bytes);

@@ -1,15 +1,18 @@
 #include "study/report/result_table.h"
 
 #include "base/error.h"
+#include "study/report/run_log.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace stratum::study {
 namespace {
@@ -44,6 +47,17 @@ std::vector<Row> parse(std::string_view text, std::size_t& whole) {
         }
     }
     return rows;
+}
+
+std::size_t linesOf(const Row& row) {
+    std::size_t lines = 1;
+    for (const std::string& cell : row) lines += static_cast<std::size_t>(std::count(cell.begin(), cell.end(), '\n'));
+    return lines;
+}
+
+Row withRun(Row columns) {
+    columns.emplace_back("run");
+    return columns;
 }
 
 }  // namespace
@@ -91,6 +105,7 @@ ResultTable::ResultTable(std::filesystem::path path, Row columns, std::size_t ke
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0 || ::ftruncate(descriptor_, static_cast<off_t>(whole)) != 0)
         throw OutputError(fmt::format("{}: can't be written; check the folder", path_.string()));
+    next_line_ += linesOf(columns_);
     if (rows.empty()) {
         write(csvLine(columns_));
         return;
@@ -99,10 +114,14 @@ ResultTable::ResultTable(std::filesystem::path path, Row columns, std::size_t ke
         if (rows[n].size() != columns_.size())
             throw UsageError(fmt::format("{}:{}: {} cells where {} were expected; mend it, or start over with --fresh",
                                          path_.string(), n + 1, rows[n].size(), columns_.size()));
-        index_[keyOf(rows[n])] = rows_.size();
-        rows_.push_back(std::move(rows[n]));
+        keep(std::move(rows[n]));
     }
     resumed_ = rows_.size();
+}
+
+ResultTable::ResultTable(const StudyOptions& common, const std::string& file, Row columns, std::size_t key_columns)
+    : ResultTable(common.folder / file, withRun(std::move(columns)), key_columns, common.fresh) {
+    runs_ = std::make_unique<RunLog>(common.folder, common.command);
 }
 
 ResultTable::~ResultTable() {
@@ -119,10 +138,22 @@ const Row* ResultTable::find(const Row& key) const {
 }
 
 void ResultTable::add(Row row) {
+    if (runs_) row.push_back(runs_->number());
     assert(row.size() == columns_.size());
     write(csvLine(row));
+    keep(std::move(row));
+}
+
+void ResultTable::keep(Row row) {
     index_[keyOf(row)] = rows_.size();
+    lines_.push_back(next_line_);
+    next_line_ += linesOf(row);
     rows_.push_back(std::move(row));
+}
+
+std::size_t ResultTable::lineOf(const Row& key) const {
+    const auto found = index_.find(keyOf(key));
+    return found == index_.end() ? 0 : lines_[found->second];
 }
 
 void ResultTable::write(std::string_view text) {

@@ -48,20 +48,26 @@ std::string verdictOn(const StabilityCase& test, double measured) {
 
 std::vector<StabilityCase> stabilityCases() {
     std::vector<StabilityCase> all;
-    for (const auto& family : {toolpathCases(), gridCases(), rayCases(), lightCases()})
+    for (const auto& family : {toolpathCases(), gridCases(), rayCases(), lightCases(), motionCases(), flowCases(),
+                               shardCases(), viewerCases()})
         all.insert(all.end(), family.begin(), family.end());
     return all;
 }
 
 StudyReport studyStability(const StudyOptions& common) {
     const std::vector<StabilityCase> cases = stabilityCases();
-    ResultTable table(common.folder / "stability.csv", kColumns, kKeys, common.fresh);
+    ResultTable table(common, "stability.csv", kColumns, kKeys);
     StudyReport report;
-    std::map<std::string, std::vector<Row>> families;
+    struct Family {
+        std::vector<Row> rows;
+        std::vector<std::size_t> lines;
+    };
+    std::map<std::string, Family> families;
     for (const StabilityCase& test : cases) {
         if (table.find({test.family, test.name}) == nullptr) table.add(run(test, common.threads));
         const Row& row = *table.find({test.family, test.name});
-        families[test.family].push_back(row);
+        families[test.family].rows.push_back(row);
+        families[test.family].lines.push_back(table.lineOf(row));
         if (row[kVerdict] != kPassed)
             report.findings.push_back(fmt::format("{}, {}: {} is {}, tolerance {}", row[kFamily], row[kName],
                                                   row[kQuantity], row[kMeasured], row[kTolerance]));
@@ -77,10 +83,11 @@ StudyReport studyStability(const StudyOptions& common) {
         "{} cases, {} failed. Each measures one quantity, which is 0 at best, against a tolerance that was derived "
         "before measuring; each is a process of its own that may take {:g} s. The same cases run in the tests.",
         cases.size(), report.findings.size(), kMostSeconds));
-    for (const auto& [family, rows] : families) {
+    for (const auto& [family, cases_of] : families) {
         page.heading(family);
-        page.table(kColumns, rows, kFailed);
+        page.table(table.columns(), cases_of.rows, kFailed, cases_of.lines, "stability");
     }
+    page.runs(table);
     page.write(report.html);
     return report;
 }

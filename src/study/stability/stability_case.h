@@ -14,7 +14,7 @@ inline constexpr double kBeadWidth = 0.45, kBeadHeight = 0.2;
 inline constexpr const char* kRoundings = "8 float roundings of the longest local length (leaf, band or half width)";
 
 struct StabilityCase {
-    std::string family;    ///< toolpath, grid, rays or light
+    std::string family;    ///< toolpath, grid, rays, light, motion, flow, shards or viewer
     std::string name;      ///< unique in its family
     std::string quantity;  ///< what is measured, with its unit
     double tolerance = 0;  ///< the largest value that passes
@@ -27,6 +27,10 @@ std::vector<StabilityCase> toolpathCases();
 std::vector<StabilityCase> gridCases();
 std::vector<StabilityCase> rayCases();
 std::vector<StabilityCase> lightCases();
+std::vector<StabilityCase> motionCases();
+std::vector<StabilityCase> flowCases();
+std::vector<StabilityCase> shardCases();
+std::vector<StabilityCase> viewerCases();
 
 /// All of them, family by family.
 std::vector<StabilityCase> stabilityCases();

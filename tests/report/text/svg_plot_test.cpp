@@ -55,6 +55,21 @@ TEST(SvgPlot, PutsDecadesAtEqualDistances) {
     EXPECT_NEAR(at[1] - at[0], at[2] - at[1], 0.11);
 }
 
+// A bar from the lowest to the highest value, which the axis has room for; what a logarithmic axis can't show of it
+// ends at the frame.
+TEST(SvgPlot, DrawsBarsOfErrors) {
+    Plot plot{"t", "x", "y", false, true, {{"one", {{1, 10}, {2, 20}}}}};
+    const std::string bare = drawSvg(plot);
+    plot.series[0].bars = {{5, 1000}, {-3, 40}};
+    const std::string svg = drawSvg(plot);
+    EXPECT_EQ(countOf(bare, "h6"), 0U);
+    EXPECT_EQ(countOf(svg, "h6M"), 2U);
+    EXPECT_NE(svg.find(">1000<"), std::string::npos);
+    EXPECT_EQ(bare.find(">1000<"), std::string::npos);
+    EXPECT_NE(svg.find(" 384.0V"), std::string::npos);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
 TEST(SvgPlot, SaysWhenThereIsNothing) { EXPECT_NE(drawSvg(Plot{}).find("no points"), std::string::npos); }
 
 }  // namespace

@@ -29,14 +29,19 @@ TEST(Need, SwitchesEachCapabilityOnAlone) {
     const auto peak = [&](const char* name) { return std::stod(rows.at(name).at(7)); };
     // Two grids of four bytes a voxel, and a table of 90 x 90 x 180 colours: both must show.
     // What was counted while all is off is told, and what is over the limit found.
-    std::ofstream(folder.path() / "need_off.csv") << "capability,functions,instructions,percent\n"
-                                                     "lens,Camera::ray,12,0.01\ndenoiser,denoise,9000,2.5\n";
+    std::ofstream(folder.path() / "need_off.csv") << "work,capability,functions,instructions,percent,run\n"
+                                                     "picture,lens,1,12,0.01,1\npicture,denoiser,1,9000,2.5,1\n";
     EXPECT_GT(peak("attribute grids"), peak("none") * 1.1);
     EXPECT_GT(peak("measured material"), peak("none") + 12.0 * 90 * 90 * 180 * 0.9);
     const StudyReport again = studyNeed(options, common);
     EXPECT_EQ(again.resumed, 16U);
     ASSERT_EQ(again.findings.size(), 1U);
     EXPECT_NE(again.findings[0].find("denoiser"), std::string::npos);
+    // One of an older version is not shown.
+    std::ofstream(folder.path() / "need_off.csv") << "capability,functions,instructions,percent\ndenoiser,2,9000,2.5\n";
+    const StudyReport older = studyNeed(options, common);
+    ASSERT_EQ(older.findings.size(), 1U);
+    EXPECT_NE(older.findings[0].find("older"), std::string::npos);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "scratch_folder.h"
 #include "study/geometry/field_error.h"
 #include "study/geometry/handmade.h"
+#include "study/geometry/union_field.h"
 #include "study/print.h"
 #include "study/report/result_table.h"
 #include "voxelize/beads/selection.h"
@@ -97,7 +98,7 @@ TEST(Geometry, WritesATableAndGoesOn) {
     common.quick = true;
     const GeometryOptions options{(test::dataDir() / "gcode" / "tile.gcode").string(), "1:4", {1, 2}, 500};
     const StudyReport report = studyGeometry(options, common);
-    EXPECT_EQ(report.rows, 7U);  // two of each lattice, two half-widths, one of halves
+    EXPECT_EQ(report.rows, 9U);  // two of each lattice, two half-widths, one of halves, two of settled beads
     std::ifstream file(report.csv);
     std::vector<Row> rows;
     for (std::string line; std::getline(file, line);) rows.push_back(parseCsvLine(line));
@@ -107,7 +108,12 @@ TEST(Geometry, WritesATableAndGoesOn) {
     };
     EXPECT_LT(at(2, "mean_mm"), at(1, "mean_mm"));
     EXPECT_LT(std::abs(at(2, "volume_error_mm3")), 0.1 * at(2, "exact_mm3"));
-    EXPECT_EQ(studyGeometry(options, common).resumed, 7U);
+    // Settled beads are held against their own solid, which is larger than the union.
+    EXPECT_EQ(rows.at(9).at(4), "settled");
+    EXPECT_GT(at(9, "exact_mm3"), 1.005 * at(2, "exact_mm3"));
+    EXPECT_LT(std::abs(at(9, "volume_error_mm3")), 0.02 * at(9, "exact_mm3"));
+    EXPECT_LT(at(9, "mean_mm"), at(8, "mean_mm"));
+    EXPECT_EQ(studyGeometry(options, common).resumed, 9U);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ std::string testName(const testing::TestParamInfo<StabilityCase>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, Stability, testing::ValuesIn(stabilityCases()), testName);
 
-TEST(StabilityCases, CoverFourFamiliesWithNamesOfTheirOwn) {
+TEST(StabilityCases, CoverEightFamiliesWithNamesOfTheirOwn) {
     std::set<std::string> names;
     std::set<std::string> families;
     for (const StabilityCase& test : stabilityCases()) {
@@ -53,8 +53,9 @@ TEST(StabilityCases, CoverFourFamiliesWithNamesOfTheirOwn) {
         EXPECT_FALSE(test.why.empty());
         EXPECT_GE(test.tolerance, 0);
     }
-    EXPECT_GE(names.size(), 60U);
-    EXPECT_EQ(families, (std::set<std::string>{"grid", "light", "rays", "toolpath"}));
+    EXPECT_GE(names.size(), 200U);
+    EXPECT_EQ(families,
+              (std::set<std::string>{"flow", "grid", "light", "motion", "rays", "shards", "toolpath", "viewer"}));
 }
 
 TEST(StabilityCases, ANumberThatIsNoneDoesNotPass) {

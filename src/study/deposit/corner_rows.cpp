@@ -1,0 +1,151 @@
+// Corners: how wide a line is where it turns by 90 degrees, against the lag of the flow.
+#include "study/deposit/deposit_parts.h"
+#include "study/deposit/made_programs.h"
+#include "voxelize/beads/bead_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace stratum::study {
+namespace {
+
+const Row kCornerColumns{"jerk_mm_s",   "lag_s",      "advance_s",        "corner_width_mm",
+                         "width_ratio", "outline_mm", "start_width_ratio"};
+constexpr std::size_t kCornerKeys = 3;
+enum CornerColumn : std::size_t { kJerk, kLag, kAdvance, kCornerWidthMm, kWidthRatio, kOutline, kStartRatio };
+
+struct CornerCase {
+    double jerk;     // mm/s
+    double lag;      // s
+    double advance;  // s
+};
+
+std::vector<CornerCase> cornersToMeasure(bool quick) {
+    std::vector<CornerCase> all;
+    const std::vector<double> lags =
+        quick ? std::vector<double>{0, 0.05} : std::vector<double>{0, 0.01, 0.02, 0.03, 0.04, 0.06, 0.08, 0.1};
+    for (const double jerk : {1.0, 8.0}) {
+        for (const double lag : lags) all.push_back({jerk, lag, 0});
+        for (const double lag : lags)
+            if (lag > 0) all.push_back({jerk, lag, lag});
+    }
+    return all;
+}
+
+// The widest and narrowest end (mm) of the pieces that end within a line's width of a place.
+std::pair<double, double> widthsNear(const gcode::Toolpath& toolpath, double x, double y) {
+    double widest = 0;
+    double narrowest = 1e300;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        const double half_change = 0.5 * gcode::widening(toolpath, bead);
+        const std::array<std::pair<double, double>, 2> ends{
+            {{std::hypot(bead.x0 - x, bead.y0 - y), static_cast<double>(bead.width) - half_change},
+             {std::hypot(bead.x1 - x, bead.y1 - y), static_cast<double>(bead.width) + half_change}}};
+        for (const auto& [away, width] : ends)
+            if (away <= kCornerWidth) {
+                widest = std::max(widest, width);
+                narrowest = std::min(narrowest, width);
+            }
+    }
+    return {widest, narrowest};
+}
+
+// How far the outline of all beads is from the corner, outwards on its bisector, mm.
+double outlineAt(const gcode::Toolpath& toolpath) {
+    const double z = 0.5 * kCornerHeight;
+    const auto inside = [&](double out) {
+        const double x = kCornerAt + out * std::numbers::sqrt2 / 2;
+        const double y = kCornerAt - out * std::numbers::sqrt2 / 2;
+        return std::any_of(toolpath.beads.begin(), toolpath.beads.end(), [&](const gcode::Bead& bead) {
+            return voxelize::BeadField(toolpath, bead).distance(x, y, z) < 0;
+        });
+    };
+    double low = 0;
+    double high = 4 * kCornerWidth;
+    for (int n = 0; n < 40; ++n) {
+        const double middle = 0.5 * (low + high);
+        (inside(middle) ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+Row cornerOf(const CornerCase& c) {
+    gcode::ReadOptions read;
+    read.deposit.flow_lag = c.lag;
+    read.deposit.pressure_advance = c.advance;
+    const gcode::Toolpath toolpath = deposit::readPrint(cornerProgram(c.jerk), "corner", read, false).toolpath;
+    const double width = widthsNear(toolpath, kCornerAt, kCornerAt).first;
+    const double start = widthsNear(toolpath, kCornerAt - 30, kCornerAt).second;
+    return {fmt::format("{:.6f}", width), fmt::format("{:.6f}", width / kCornerWidth),
+            fmt::format("{:.6f}", outlineAt(toolpath) - kCornerWidth / 2), fmt::format("{:.6f}", start / kCornerWidth)};
+}
+
+void writeCorner(Page& page, const ResultTable& table) {
+    page.heading("Corners");
+    page.paragraph(fmt::format(
+        "Two lines of 30 mm, {:g} x {:g} mm, that meet at 90 degrees; 60 mm/s, 1000 mm/s\u00b2, classic jerk. The "
+        "nozzle slows down at the corner and the flow lags behind it (--flow-lag), so the line is widest there: its "
+        "width within one line's width of the corner, over the commanded one. With a pressure advance K as long as the "
+        "lag T (--pressure-advance) nothing of it is left. \"Outline\" is how far the outside of the corner stands out "
+        "on its bisector, \"start\" the narrowest width at the beginning of the first line. Published are trends: "
+        "bulges that grow with the slow-down and thin starts (Comminal et al. 2019, doi 10.1016/j.addma.2019.06.005; "
+        "Kuipers et al. 2020, arXiv 2004.13497); no figure of theirs is of this corner.",
+        kCornerWidth, kCornerHeight));
+    Plot plot{
+        "Width at a 90-degree corner", "lag of the flow, s", "width at the corner / line's width", false, false, {}};
+    for (const char* jerk : {"1", "8"})
+        for (const bool advanced : {false, true}) {
+            Series series{fmt::format("jerk {} mm/s, {}", jerk, advanced ? "K = T" : "no advance"), {}, advanced};
+            for (const Row& row : table.rows())
+                if (row[kJerk] == jerk && (numberIn(row, kAdvance) > 0 || numberIn(row, kLag) == 0) == advanced)
+                    series.points.emplace_back(numberIn(row, kLag), numberIn(row, kWidthRatio));
+                else if (row[kJerk] == jerk && !advanced && numberIn(row, kLag) == 0)
+                    series.points.emplace_back(0, numberIn(row, kWidthRatio));
+            plot.series.push_back(std::move(series));
+        }
+    page.plot(plot);
+    std::vector<Row> cells;
+    std::vector<std::size_t> lines;
+    for (const Row& row : table.rows()) {
+        cells.push_back({row[kJerk], row[kLag], row[kAdvance], fmt::format("{:.3f}", numberIn(row, kCornerWidthMm)),
+                         fmt::format("{:.3f}", numberIn(row, kWidthRatio)),
+                         fmt::format("{:+.3f}", numberIn(row, kOutline)),
+                         fmt::format("{:.3f}", numberIn(row, kStartRatio)), row.back()});
+        lines.push_back(table.lineOf(row));
+    }
+    page.table({"jerk mm/s", "lag T s", "advance K s", "width mm", "over the line's", "outline mm",
+                "start over the line's", "run"},
+               cells, {}, lines, "deposit_corner");
+}
+
+}  // namespace
+
+PartTable studyCorner(const StudyOptions& common, Page& page, StudyReport& report) {
+    auto table = std::make_unique<ResultTable>(common, "deposit_corner.csv", kCornerColumns, kCornerKeys);
+    const std::vector<CornerCase> all = cornersToMeasure(common.quick);
+    double done = 0;
+    for (const CornerCase& c : all) {
+        Row row{fmt::format("{:g}", c.jerk), fmt::format("{:g}", c.lag), fmt::format("{:g}", c.advance)};
+        if (table->find(row) == nullptr) {
+            const Row cells = cornerOf(c);
+            row.insert(row.end(), cells.begin(), cells.end());
+            table->add(row);
+        }
+        const Row& known = *table->find(row);
+        // What the tests promise of an advance that cancels the lag.
+        constexpr double kNoBulge = 1e-3;
+        if (c.lag == c.advance && std::abs(numberIn(known, kWidthRatio) - 1) > kNoBulge)
+            report.findings.push_back(
+                fmt::format("a corner with K = T = {:g} s is {} of its line's width", c.lag, known[kWidthRatio]));
+        if (common.progress) common.progress(++done / static_cast<double>(all.size()));
+    }
+    writeCorner(page, *table);
+    return table;
+}
+
+}  // namespace stratum::study
