@@ -172,7 +172,7 @@ def main():
             jobs = [pool.submit(counted, *run, folder / f"callgrind.{n}") for n, run in enumerate(runs)]
             rows = [row for job in jobs for row in job.result()]
     csv_path.parent.mkdir(parents=True, exist_ok=True)
-    run = run_number(csv_path.parent, print_file, re.sub(r"^\S+ ", "", version.strip()))
+    run = run_number(csv_path.parent, print_file, version.split()[1])
     with csv_path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["work", "capability", "functions", "instructions", "percent", "run"])

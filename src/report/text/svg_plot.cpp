@@ -213,13 +213,17 @@ std::string drawSvg(const Plot& plot) {
     const double rows = f.top + 20 * static_cast<double>(plot.series.size()) + 10;
     // Two entries of the legend a row.
     const double below = 20 * std::floor(static_cast<double>(std::max<std::size_t>(plot.series.size(), 1) - 1) / 2);
+    // A letter of the legend takes about half of its height.
+    std::size_t longest = 0;
+    for (const Series& series : plot.series) longest = std::max(longest, series.name.size());
+    const double width = plot.compact ? f.width : std::max(f.width, f.right + 62 + 6.4 * static_cast<double>(longest));
     const double height = plot.compact ? f.height + below : std::max(f.height, rows);
     std::string svg = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
         "font-family='sans-serif' font-size='12' style='fill:var(--plot-ink,black)'>\n"
         "<rect width='{0}' height='{1}' style='fill:var(--plot-paper,white)'/>\n"
         "<text x='{2}' y='22' text-anchor='middle' font-size='14' font-weight='bold'>{3}</text>\n",
-        f.width, height, (f.left + f.right) / 2, escapeMarkup(plot.title));
+        width, height, (f.left + f.right) / 2, escapeMarkup(plot.title));
     if (x.empty()) return svg + fmt::format("<text x='{}' y='{}'>no points</text></svg>\n", f.left, f.top + 40);
     x.settle();
     y.settle();

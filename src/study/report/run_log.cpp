@@ -58,8 +58,9 @@ RunLog::RunLog(const std::filesystem::path& folder, std::span<const std::string>
 
 const std::string& RunLog::number() {
     if (!number_.empty()) return number_;
-    Row row{"", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))), STRATUM_VERSION, machineLine(),
-            command_};
+    // All tables of one process are of one run.
+    static const std::time_t kBegun = std::time(nullptr);
+    Row row{"", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(kBegun)), STRATUM_VERSION, machineLine(), command_};
     for (const Row& known : table_.rows()) {
         row[0] = known[0];
         if (known == row) number_ = known[0];

@@ -23,7 +23,7 @@ public:
     RunLog(const std::filesystem::path& folder, std::span<const std::string> command);
 
     /// The number of this run. Its line is written with the first row that was measured, so that a run that finds all
-    /// rows there leaves none. Tables of one command and minute share it.
+    /// rows there leaves none. Tables of one process share it.
     const std::string& number();
     /// Columns of runs.csv.
     static const Row& columns();
