@@ -70,6 +70,9 @@ def without_digits(path):
 
 check(without_digits(scratch / "README.md") == without_digits(pathlib.Path(SOURCE, "README.md")), "README.md: digits alone")
 
+done = os.system(f"{sys.executable} {SOURCE}/scripts/studies_page.py {SOURCE}/docs/studies --check")
+check(done == 0, "docs/studies/README.md has the lines of its tables")
+
 # --- in a browser --------------------------------------------------------------------------------------------------------
 driver = browser(str(scratch / "profile"), 1280, 900, 60)
 try:

@@ -84,8 +84,9 @@ void SettledSolid::listBeads() {
             for (double x = box.min[0] - more;; x += kPlanCell) {
                 x = std::min(x, box.max[0] + more);
                 const std::size_t cell = cellOf(x, y);
+                const std::size_t row = cell / cells_x_;
                 const double middle_x = bounds_.min[0] + (static_cast<double>(cell % cells_x_) + 0.5) * kPlanCell;
-                const double middle_y = bounds_.min[1] + (static_cast<double>(cell / cells_x_) + 0.5) * kPlanCell;
+                const double middle_y = bounds_.min[1] + (static_cast<double>(row) + 0.5) * kPlanCell;
                 std::vector<std::uint32_t>& list = cells_[stack_.layer[rank]][cell];
                 if ((list.empty() || list.back() != rank) && field.path().distance(middle_x, middle_y) <= near)
                     list.push_back(rank);

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/shard.h"
 #include "shade/film/exact_sums.h"
+#include "study/geometry/field_error.h"
 #include "study/geometry/handmade.h"
 #include "study/stability/stability_case.h"
 #include "voxelize/grid/leaf_share.h"
@@ -10,8 +11,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <random>
 #include <utility>
 #include <vector>
@@ -54,9 +56,8 @@ double sumsThatDiffer(const std::vector<double>& values) {
         std::array<shade::ExactSums, 3> parts{shade::ExactSums(1), shade::ExactSums(1), shade::ExactSums(1)};
         for (std::size_t k = 0; k < order.size(); ++k) parts.at(k % parts.size()).add(0, order[k]);
         for (std::size_t k = 1; k < parts.size(); ++k) parts[0].add(0, parts.at(k), 0);
-        const double a = parts[0].value(0);
-        const double b = first.value(0);
-        differ += std::memcmp(&a, &b, sizeof a) == 0 ? 0 : 1;
+        differ +=
+            std::bit_cast<std::uint64_t>(parts[0].value(0)) == std::bit_cast<std::uint64_t>(first.value(0)) ? 0 : 1;
     }
     return differ;
 }

@@ -75,6 +75,7 @@ std::vector<StabilityCase> viewerCases() {
         {"half a layer", show(R"({"layers":[1.5,2]})")},
         {"a cut along nothing", show(R"({"clip":[0,0,0,1]})")}};
     std::vector<StabilityCase> cases;
+    cases.reserve(hostile.size());
     for (const auto& [name, text] : hostile)
         cases.push_back({"viewer", name, "accepted (1) or refused with a message (0)", 0,
                          "what can't be shown is refused, with nothing done",
