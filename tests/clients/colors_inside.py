@@ -7,6 +7,13 @@ import sys
 
 import bpy
 
+# Debian's NumPy, which the importer of glTF needs, is not found where another python3 comes first on PATH.
+sys.path.append("/usr/lib/python3/dist-packages")
+import numpy  # noqa: E402
+
+# The importer of Blender 3.4 uses a name that Debian's NumPy, 1.24, no longer has.
+numpy.bool = bool
+
 for path in sys.argv[sys.argv.index("--") + 1 :]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     ending = os.path.splitext(path)[1]

@@ -38,7 +38,7 @@ std::string binding(const std::string& material) {
 
 constexpr const char* kBindingApi = "prepend apiSchemas = [\"MaterialBindingAPI\"]";
 
-void writePoints(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeUsdPoints(const SurfaceMesh& mesh, ChunkWriter& out) {
     openvdb::BBoxd box;
     for (const openvdb::Vec3s& point : mesh.points) box.expand(openvdb::Vec3d(point));
     const openvdb::Vec3s low(mesh.points.empty() ? openvdb::Vec3d(0) : box.min());
@@ -49,7 +49,7 @@ void writePoints(const SurfaceMesh& mesh, ChunkWriter& out) {
     points.end();
 }
 
-void writeFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
+void writeUsdFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
     out.text("        int[] faceVertexCounts = ");
     UsdList counts(out);
     for (const SurfaceMesh::Face& face : mesh.faces) counts.add(face[3] == SurfaceMesh::kNone ? "3" : "4");
@@ -115,8 +115,8 @@ void writeUsdMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, co
         "\"rightHanded\"\n",
         STRATUM_VERSION, 1e-3 * space.mm_per_unit, space.up_y ? "Y" : "Z",
         one ? fmt::format(" (\n        {}\n    )", kBindingApi) : ""));
-    writePoints(mesh, out);
-    writeFaces(mesh, out);
+    writeUsdPoints(mesh, out);
+    writeUsdFaces(mesh, out);
     if (one) out.text("        " + binding(mesh.materials.front().name));
     if (!mesh.material_of_point.empty() && !one) {
         out.text("        uniform token subsetFamily:materialBind:familyType = \"partition\"\n");

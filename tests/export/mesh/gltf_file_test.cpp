@@ -14,7 +14,7 @@ namespace stratum::exporter {
 namespace {
 
 template <typename T>
-T at(const std::string& bytes, std::size_t offset) {
+T valueAt(const std::string& bytes, std::size_t offset) {
     T value;
     std::memcpy(&value, bytes.data() + offset, sizeof(T));
     return value;
@@ -28,18 +28,18 @@ protected:
         const std::string bytes = test::bytesOf(folder_.path() / "part.glb");
         ASSERT_GE(bytes.size(), 20U);
         EXPECT_EQ(bytes.substr(0, 4), "glTF");
-        EXPECT_EQ(at<std::uint32_t>(bytes, 4), 2U);
-        EXPECT_EQ(at<std::uint32_t>(bytes, 8), bytes.size());
-        const auto head = at<std::uint32_t>(bytes, 12);
+        EXPECT_EQ(valueAt<std::uint32_t>(bytes, 4), 2U);
+        EXPECT_EQ(valueAt<std::uint32_t>(bytes, 8), bytes.size());
+        const auto head = valueAt<std::uint32_t>(bytes, 12);
         EXPECT_EQ(head % 4, 0U);
         EXPECT_EQ(bytes.substr(16, 4), "JSON");
         root_ = nlohmann::json::parse(bytes.substr(20, head));
         if (bytes.size() == 20 + head) return;
         EXPECT_EQ(bytes.substr(24 + head, 4), std::string("BIN\0", 4));
         binary_ = bytes.substr(28 + head);
-        EXPECT_EQ(at<std::uint32_t>(bytes, 20 + head), binary_.size());
+        EXPECT_EQ(valueAt<std::uint32_t>(bytes, 20 + head), binary_.size());
     }
-    float coordinate(std::size_t point, std::size_t axis) const { return at<float>(binary_, 12 * point + 4 * axis); }
+    float coordinate(std::size_t point, std::size_t axis) const { return valueAt<float>(binary_, 12 * point + 4 * axis); }
 
     test::ScratchFolder folder_;
     nlohmann::json root_;
@@ -70,9 +70,9 @@ TEST_F(GltfFile, APrimitiveAMaterial) {
     EXPECT_NEAR(orange["baseColorFactor"][1].get<double>(), 0.2158605, 1e-6);  // linear
     EXPECT_EQ(orange["metallicFactor"], 0.0);
     // The first triangle of the first group, behind the points.
-    EXPECT_EQ(at<std::uint32_t>(binary_, 60), 2U);
-    EXPECT_EQ(at<std::uint32_t>(binary_, 64), 3U);
-    EXPECT_EQ(at<std::uint32_t>(binary_, 68), 4U);
+    EXPECT_EQ(valueAt<std::uint32_t>(binary_, 60), 2U);
+    EXPECT_EQ(valueAt<std::uint32_t>(binary_, 64), 3U);
+    EXPECT_EQ(valueAt<std::uint32_t>(binary_, 68), 4U);
     EXPECT_EQ(binary_.size(), 60U + 6U * 12U);
 }
 
