@@ -112,6 +112,8 @@ check(os.path.getsize(os.path.join(FOLDER, "tile.png")) > 1000, "renders with a 
 run("/usr/bin/env", f"PYTHONPATH={package}", "/usr/bin/python3", "-c",
     "import stratum, sys; stratum.render(sys.argv[1], size=(64, 48), spp=1, brdf='mine')", vdb)
 check(True, "  so does the module")
+listed = run(os.path.join(bin_, "vdbtrace"), "--colors", "prusament galaxy").splitlines()
+check(len(listed) == 5, f"names filaments from its own tree: {len(listed)}")
 
 # --- strangers ---------------------------------------------------------------------------------------------------------
 for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
@@ -156,7 +158,8 @@ if shutil.which("dpkg-shlibdeps") and shutil.which("cpack"):
     contents = run("dpkg-deb", "-c", deb)
     for path in ("./usr/bin/gcode2vdb", "./usr/share/man/man1/vdbtrace.1.gz", "./usr/share/doc/stratum/copyright",
                  "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/blender/stratum_import-",
-                 "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"):
+                 "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz", "./usr/share/stratum/data/filaments/colors.tsv",
+                 "./usr/share/stratum/data/filaments/LICENSE"):
         check(path in contents, f"  has {path}")
     check("/include/" not in contents, "  and no headers")
 shutil.rmtree(FOLDER)

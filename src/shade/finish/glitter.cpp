@@ -71,17 +71,16 @@ std::optional<BrdfSample> FlakePair::sample(const glm::vec3& wo, float lobe, con
 }
 
 Color Glitter::Spot::eval(const glm::vec3& wo, const glm::vec3& wi) const {
-    return kFlakes * flakes_.eval(wo, wi) + (1.0f - kFlakes) * plastic_->eval(wo, wi);
+    return share_ * flakes_.eval(wo, wi) + (1.0f - share_) * plastic_->eval(wo, wi);
 }
 
 float Glitter::Spot::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
-    return kFlakes * flakes_.pdf(wo, wi) + (1.0f - kFlakes) * plastic_->pdf(wo, wi);
+    return share_ * flakes_.pdf(wo, wi) + (1.0f - share_) * plastic_->pdf(wo, wi);
 }
 
 std::optional<BrdfSample> Glitter::Spot::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
-    const std::optional<BrdfSample> drawn = lobe < kFlakes
-                                                ? flakes_.sample(wo, lobe / kFlakes, u)
-                                                : plastic_->sample(wo, (lobe - kFlakes) / (1.0f - kFlakes), u);
+    const std::optional<BrdfSample> drawn = lobe < share_ ? flakes_.sample(wo, lobe / share_, u)
+                                                          : plastic_->sample(wo, (lobe - share_) / (1.0f - share_), u);
     if (!drawn) return std::nullopt;
     return BrdfSample{drawn->wi, eval(wo, drawn->wi), pdf(wo, drawn->wi)};
 }
@@ -97,7 +96,8 @@ Glitter::Glitter(const Color& body, double size)
         const std::uint64_t bits = mixed(2 * n + 1);
         // Evenly by radius, so that the kinds together have the distribution.
         const float share = kSteepest * (static_cast<float>(n) + 0.5f) / static_cast<float>(kKinds);
-        kinds_.emplace_back(plastic_, FlakePair(color, drawSlope({share, fraction(bits)}, kSpread), kFlakeAlpha));
+        kinds_.emplace_back(plastic_, FlakePair(color, drawSlope({share, fraction(bits)}, kSpread), kFlakeAlpha),
+                            n % kEvery == 0 ? kFlakes : 0.0f);
     }
 }
 

@@ -41,20 +41,22 @@ private:
     float alpha_;
 };
 
-/// f = s f_flakes + (1 - s) f_plastic, a mean by area as in silk.h. Space is divided into cubes of the flakes' size;
-/// the plastic in each shows one of kKinds pairs of flakes, chosen by a hash of the cube's place, so that a flash stays
-/// where it is while the camera moves. How far pairs lean is spread by GGX's slope distribution.
+/// f = s f_flakes + (1 - s) f_plastic, a mean by area as in silk.h. Space is divided into cubes of the flakes' size. A
+/// hash of the cube's place chooses one of kKinds: one in kEvery has a pair of flakes, the others are plastic alone; so
+/// a flash stays where it is while the camera moves. How far pairs lean is spread by GGX's slope distribution. The
+/// numbers are by eye.
 ///
 /// Without a place it is the mean of all kinds. Flakes smaller than a pixel are averaged by its samples, not
 /// beforehand: they want more samples than plastic.
 class Glitter final : public Brdf {
 public:
-    static constexpr float kFlakes = 0.3f;  ///< s
+    static constexpr float kFlakes = 0.6f;  ///< s, where there are some
+    static constexpr std::size_t kEvery = 5;
     static constexpr float kFlakeAlpha = 0.06f;
     static constexpr float kSpread = 0.35f;     ///< alpha of the slopes
     static constexpr float kFlakeSize = 0.15f;  ///< mm, of `glitter:R,G,B`
     static constexpr float kMinSize = 0.01f, kMaxSize = 10.0f;
-    static constexpr std::size_t kKinds = 512;
+    static constexpr std::size_t kKinds = 640;
 
     /// @param body  reflectance of the plastic, in [0, 1]; flakes are silver with a tint of it
     /// @param size  mm
@@ -69,8 +71,8 @@ public:
 private:
     class Spot final : public Brdf {
     public:
-        Spot(std::shared_ptr<const Plastic> plastic, const FlakePair& flakes)
-            : plastic_(std::move(plastic)), flakes_(flakes) {}
+        Spot(std::shared_ptr<const Plastic> plastic, const FlakePair& flakes, float share)
+            : plastic_(std::move(plastic)), flakes_(flakes), share_(share) {}
         Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
         std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
         float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
@@ -78,6 +80,7 @@ private:
     private:
         std::shared_ptr<const Plastic> plastic_;
         FlakePair flakes_;
+        float share_;  // of the flakes
     };
 
     double size_;
