@@ -263,9 +263,8 @@ void run(tools::ConvertCommand& o) {
     for (const std::string& input : o.inputs) files.reads(input);
     if (!o.compare.model.empty()) files.reads(o.compare.model);
     for (const fs::path& output : outputs) {
-        if (o.writesGrid()) files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
+        if (o.writesGrid()) tools::noteOutput(o, output, o.output.empty() || outputs.size() > 1 ? "" : "-o", files);
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");
-        tools::noteCompanion(o, output, files);
     }
     files.writes(o.dump_toolpath, "--dump-toolpath");
     files.writes(o.common.stats, "--stats");

@@ -13,7 +13,7 @@ import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 
-from run_tools import BIN, check, gcode, run
+from run_tools import BIN, SOURCE, check, gcode, run
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_colors_")
 INSIDE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "colors_inside.py")
@@ -160,6 +160,12 @@ run("prusa-slicer", "--export-stl", path, "-o", copy)
 found = run("admesh", copy)
 check(re.search(r"Total disconnected facets\s*:\s*0\s", found), "admesh: nothing is disconnected")
 
+# A file of an earlier run is replaced, a slicer's project is not.
+convert("part.3mf", *COLORS)
+project = os.path.join(FOLDER, "project.3mf")
+run("prusa-slicer", "--export-3mf", copy, "-o", project)
+refused(2, "would be overwritten", os.path.join(BIN, "gcode2vdb"), PRINT, "-o", project, *COMMON)
+
 # GLB by its own numbers.
 data = open(made["glb"][0], "rb").read()
 magic, version, length, head, kind = struct.unpack("<4sIII4s", data[:20])
@@ -229,6 +235,19 @@ with zipfile.ZipFile(os.path.join(FOLDER, "cm.3mf")) as archive:
 heights = [float(v.get("z")) for v in model.iter(space + "vertex")]
 check(model.get("unit") == "centimeter" and abs(10 * (max(heights) - min(heights)) - (high[2] - low[2])) < 0.21,
       "a 3MF says its unit, and z stays up")
+
+# A real print of two colours, if the corpus is there.
+real = os.path.join(os.environ.get("STRATUM_CORPUS", os.path.join(SOURCE, "..", "shared", "corpus")), "gcode",
+                    "slicer-meta-flashstudio_2color.gcode.3mf")
+if os.path.exists(real):
+    path, _ = convert("real.3mf", source=real, common=["--voxel-size", "0.3"])
+    with zipfile.ZipFile(path) as archive:
+        model = ET.fromstring(archive.read("3D/3dmodel.model"))
+    bases = {(base.get("name"), base.get("displaycolor").lower()) for base in model.iter(space + "base")}
+    check(bases == {("tool_0", "#ffffff"), ("tool_1", "#00c1ae")}, f"FlashStudio's print of two colours: {bases}")
+    check("manifold = yes" in run("prusa-slicer", "--info", path), "  is manifold")
+else:
+    print(f"skipped: {real} is not there")
 
 # --- names ---------------------------------------------------------------------------------------------------------------
 tool = os.path.join(BIN, "vdbtrace")

@@ -112,8 +112,7 @@ public:
         const std::vector<Job> jobs = planJobs(o_, toolpath_, selection_, output_);
         for (const Job& job : jobs)
             if (!job.label.empty()) {
-                files_of_run_.writes(job.path.string(), "--snapshots");
-                noteCompanion(o_, job.path, files_of_run_);
+                noteOutput(o_, job.path, "--snapshots", files_of_run_);
                 if (o_.usda) files_of_run_.writes(usdaOf(job.path).string(), "--usda");
             }
         for (const Job& job : jobs) make(voxelizer, job);

@@ -1,6 +1,7 @@
 #include "convert/mesh_output.h"
 
 #include "base/error.h"
+#include "export/mesh/three_mf_file.h"
 #include "export/mesh_file.h"
 #include "gcode/slicer/bead_colors.h"
 
@@ -41,9 +42,12 @@ void checkMeshGrids(const ConvertCommand& o, const std::filesystem::path& output
             colors ? ", or give --grids color" : ", or a .ply, .obj, .3mf, .glb or .usda with --grids color"));
 }
 
-void noteCompanion(const ConvertCommand& o, const std::filesystem::path& output, RunFiles& files) {
+void noteOutput(const ConvertCommand& o, const std::filesystem::path& output, std::string_view option,
+                RunFiles& files) {
+    const bool ours = output.extension() == ".3mf" && exporter::isOwn3mf(output);
+    files.writes(output.string(), option, ours ? RunFiles::Kind::ours : RunFiles::Kind::other);
     if (o.color.empty() && voxelize::parseGrids(o.grids).empty()) return;
-    if (const auto companion = exporter::meshCompanion(output)) files.writes(companion->string(), "-o");
+    if (const auto companion = exporter::meshCompanion(output)) files.writes(companion->string(), option);
 }
 
 std::vector<voxelize::Attribute> meshAttributes(const ConvertCommand& o, const gcode::Toolpath& toolpath,

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace stratum::tools {
@@ -19,8 +20,10 @@ namespace stratum::tools {
 /// Throws UsageError for --grids that the mesh's format can't hold. Before the work.
 void checkMeshGrids(const ConvertCommand& command, const std::filesystem::path& output);
 
-/// Tells the run of the .mtl that a coloured .obj has beside it.
-void noteCompanion(const ConvertCommand& command, const std::filesystem::path& output, RunFiles& files);
+/// Tells the run of an output, and of the .mtl that a coloured .obj has beside it. Throws UsageError as
+/// RunFiles::writes() does.
+void noteOutput(const ConvertCommand& command, const std::filesystem::path& output, std::string_view option,
+                RunFiles& files);
 
 /// The attributes that its points need: color and tool, if there are several, and the format holds them by default or
 /// --grids or --color asks for them. Nothing if one material is enough.

@@ -8,6 +8,7 @@
 #include <zip.h>
 
 #include <array>
+#include <fstream>
 #include <string>
 
 namespace stratum::exporter {
@@ -79,6 +80,15 @@ TEST(ThreeMfFile, ManyPiecesGiveTheSameBytesTwice) {
         ++count;
     EXPECT_EQ(count, kPoints);
     EXPECT_TRUE(model.ends_with("</build></model>\n"));
+}
+
+TEST(ThreeMfFile, KnowsItsOwn) {
+    const test::ScratchFolder folder;
+    write3mf(test::twoMaterials(), folder.path() / "part.3mf", {});
+    EXPECT_TRUE(isOwn3mf(folder.path() / "part.3mf"));
+    EXPECT_FALSE(isOwn3mf(folder.path() / "none.3mf"));
+    std::ofstream(folder.path() / "text.3mf") << "no archive, though it says Stratum";
+    EXPECT_FALSE(isOwn3mf(folder.path() / "text.3mf"));
 }
 
 TEST(ThreeMfFile, AFailedWriteLeavesNothing) {
