@@ -39,7 +39,9 @@ protected:
         binary_ = bytes.substr(28 + head);
         EXPECT_EQ(valueAt<std::uint32_t>(bytes, 20 + head), binary_.size());
     }
-    float coordinate(std::size_t point, std::size_t axis) const { return valueAt<float>(binary_, 12 * point + 4 * axis); }
+    float coordinate(std::size_t point, std::size_t axis) const {
+        return valueAt<float>(binary_, 12 * point + 4 * axis);
+    }
 
     test::ScratchFolder folder_;
     nlohmann::json root_;
