@@ -25,6 +25,7 @@ add_custom_target(manuals ALL DEPENDS ${manuals})
 
 set(data ${CMAKE_INSTALL_DATADIR}/stratum)
 install(DIRECTORY data/brdf DESTINATION ${data}/data COMPONENT tools FILES_MATCHING PATTERN "*.bsdf.gz")
+install(DIRECTORY data/filaments DESTINATION ${data}/data COMPONENT tools)
 # One zip for all Blenders: the folder in it is an add-on for 3.4, and an extension for 4.2 and later.
 set(addon stratum_import-${PROJECT_VERSION}.zip)
 set(addon_files)

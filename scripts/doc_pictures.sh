@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of README.md, docs/gallery.md, docs/shading.md and docs/thumbnails.md, made anew with the tools of this tree. Those of files
+# The pictures of README.md, docs/gallery.md, docs/shading.md, docs/colors.md and docs/thumbnails.md, made anew with the tools of this tree. Those of files
 # of the corpus are left as they are where it is not there. Minutes.
 # scripts/doc_pictures.sh [NAME...]   only these, e.g. gallery_gear
 set -euo pipefail
@@ -48,6 +48,10 @@ tiles() {
 
 boat=$corpus/gcode/gcode-preview-benchy_slic3r.gcode
 picture hull data/gcode/hull.gcode --size 900x675
+picture two_color data/gcode/two_tone.gcode --color 'Prusament Galaxy Purple,3DJAKE Silk Gold' --size 900x600 --spp 64
+tiles finishes 2 data/gcode/hull.gcode '--size 450x375 --zoom 1.2 --spp 64 --brdf plastic:0.7,0.25,0.08,0.22' \
+    '--size 450x375 --zoom 1.2 --spp 64 --brdf matte:0.7,0.25,0.08' '--size 450x375 --zoom 1.2 --spp 64 --brdf silk:0.7,0.25,0.08' \
+    '--size 450x375 --zoom 1.2 --spp 64 --brdf glitter:0.7,0.25,0.08'
 if asked growing; then
     "$bin/vdbtrace" data/gcode/hull.gcode --film "$out/growing.png" --nozzle --turntable --grow time --size 240x180 \
         --seconds 3 --fps 8

@@ -24,7 +24,7 @@ BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev
     pybind11-dev python3-dev python3-numpy)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
 # are started by their test, not as services of the machine.
-TEST_PACKAGES=(admesh calculix-ccx ffmpeg libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
+TEST_PACKAGES=(admesh calculix-ccx ffmpeg lib3mf1 libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
     prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium appstream desktop-file-utils
     shared-mime-info libxml2-utils mmdebstrap xvfb locales libgl1-mesa-dri)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.

@@ -1,10 +1,12 @@
 // gcode2vdb: G-code -> level set of the part as printed.
 #include "batch.h"
 #include "choices.h"
+#include "color_options.h"
 #include "command_line.h"
 #include "convert/conversion.h"
 #include "convert/convert_shard.h"
 #include "convert/elements_output.h"
+#include "convert/mesh_output.h"
 #include "convert/model_comparison.h"
 #include "convert/thumbnail_output.h"
 #include "output_names.h"
@@ -12,6 +14,7 @@
 #include "run_files.h"
 #include "shard_option.h"
 
+#include "assemble/print/tool_colors.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "export/mesh_file.h"
@@ -39,8 +42,10 @@ Examples:
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
+  gcode2vdb part.gcode -o part.3mf --tool 0,1       with a material a tool; also .glb, .usda, .obj --grids color
   gcode2vdb part.gcode -o part.nvdb --precision half   NanoVDB for GPUs
   gcode2vdb part.gcode -o part.inp --voxel-size 0.4 --elastic 3500   solid elements for CalculiX and Abaqus
+  gcode2vdb part.gcode -o part.glb --color 'Prusament Galaxy Black,#ffcc00'   a colour a tool
   gcode2vdb plate.gcode --object cube.stl           one object of several, by name or number
   gcode2vdb part.gcode --snapshots 25%,50%,75%      part_025pct.vdb, ..., three partial prints beside the whole one
   gcode2vdb part.gcode --unit m --origin center     for Blender; and --up y for Houdini
@@ -94,32 +99,7 @@ void addShardOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->group(machines);
 }
 
-void addOptions(CLI::App& app, tools::ConvertCommand& o) {
-    app.add_option("IN", o.inputs,
-                   "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
-        ->required()
-        ->type_name("FILE");
-    app.add_option(
-           "-o,--output", o.output,
-           "A .vdb or .nvdb, or a mesh: .stl, .ply, .obj, or solid elements: .inp; a folder, made if missing, for the "
-           ".vdb files of several "
-           "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
-           "of several inputs beside each)")
-        ->type_name("FILE|DIR");
-    tools::addPrintOptions(app, o.print);
-    const char* lattice = "Lattice";
-    app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
-        ->check(tools::oneOf({"mm", "cm", "m"}))
-        ->type_name("UNIT")
-        ->group(lattice);
-    app.add_option("--origin", o.origin, "bed: as in the G-code; center: the part over the origin; min: its corner")
-        ->check(tools::oneOf({"bed", "center", "min"}))
-        ->type_name("WHERE")
-        ->group(lattice);
-    app.add_option("--up", o.up, "z as printed, or y for programs whose up is y")
-        ->check(tools::oneOf({"z", "y"}))
-        ->type_name("AXIS")
-        ->group(lattice);
+void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
     const char* what = "What to convert";
     app.add_option(
            "--interior", o.interior,
@@ -138,9 +118,45 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
          "deviation"})
         ->type_name("LIST")
         ->group(what);
+    app.add_option(
+           "--color", o.color,
+           "Colours of the tools, instead of those that the file states: '#ff6600', a name as in CSS, e.g. teal, "
+           "or a real filament's, e.g. 'Prusament Galaxy Black'")
+        ->type_name("COLOR,...")
+        ->group(what);
+    tools::addColorList(app, what);
     app.add_option("--snapshots", o.snapshots, "Partial prints too: 25%,layer:40,every:10,time:90")
         ->type_name("LIST")
         ->group(what);
+}
+
+void addOptions(CLI::App& app, tools::ConvertCommand& o) {
+    app.add_option("IN", o.inputs,
+                   "G-code of any slicer: text, .gz, .bgcode, .gcode.3mf, .ufp, .gx; - is standard input")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("-o,--output", o.output,
+                   "A .vdb or .nvdb, or a mesh: .stl, .ply, .obj, .3mf, .glb, .usda, or solid elements: .inp; a "
+                   "folder, made if missing, for the "
+                   ".vdb files of several "
+                   "inputs; - is a .vdb on standard output, -.stl a mesh (default: a .vdb named after the input, here; "
+                   "of several inputs beside each)")
+        ->type_name("FILE|DIR");
+    tools::addPrintOptions(app, o.print);
+    const char* lattice = "Lattice";
+    app.add_option("--unit", o.unit, "World unit of the .vdb: mm, cm or m (default mm)")
+        ->check(tools::oneOf({"mm", "cm", "m"}))
+        ->type_name("UNIT")
+        ->group(lattice);
+    app.add_option("--origin", o.origin, "bed: as in the G-code; center: the part over the origin; min: its corner")
+        ->check(tools::oneOf({"bed", "center", "min"}))
+        ->type_name("WHERE")
+        ->group(lattice);
+    app.add_option("--up", o.up, "z as printed, or y for programs whose up is y")
+        ->check(tools::oneOf({"z", "y"}))
+        ->type_name("AXIS")
+        ->group(lattice);
+    addWhatOptions(app, o);
     addWritingOptions(app, o);
     tools::addCompareOptions(app, o.compare);
     tools::addElementOptions(app, o.elements);
@@ -187,17 +203,6 @@ std::vector<fs::path> outputsOf(const tools::ConvertCommand& o) {
     return outputs;
 }
 
-// A mesh has no voxels; a .ply can have the colors of its points.
-void refuseGridsOfMeshes(const tools::ConvertCommand& o, const fs::path& output) {
-    const auto grids = voxelize::parseGrids(o.grids);
-    if (grids.empty()) return;
-    const bool ply = exporter::meshHasColors(output);
-    if (!ply || grids.size() > 1 || grids.front() != voxelize::Attribute::color)
-        throw UsageError(fmt::format("--grids {}: a mesh has no voxels; write a .vdb, not {}{}", o.grids,
-                                     output.string(),
-                                     ply ? ", or give --grids color" : ", or a .ply with --grids color"));
-}
-
 // What is asked of the output fits its kind. Before the work.
 void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs) {
     if (outputs.size() > 1) {
@@ -213,15 +218,15 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
     tools::checkElementOptions(o, output);
     const bool nano = exporter::isNanoPath(output);
     if (!mesh && !nano && !tools::isElementsPath(output) && output != "-" && output.extension() != ".vdb")
-        throw UsageError(
-            fmt::format("-o {}: the name must end in .vdb, .nvdb, .stl, .ply, .obj or .inp", output.string()));
+        throw UsageError(fmt::format(
+            "-o {}: the name must end in .vdb, .nvdb, .stl, .ply, .obj, .3mf, .glb, .usda or .inp", output.string()));
     if (nano && standard)
         throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
     if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
     if (nano && !o.shard.text.empty())
         throw UsageError(fmt::format("--shard: parts are of a .vdb, not of {}; vdbmerge joins them", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
-    if (mesh) refuseGridsOfMeshes(o, output);
+    if (mesh) tools::checkMeshGrids(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
         throw UsageError(fmt::format("{}: writes files beside the output; name one, -o {} is a stream",
                                      o.usda ? "--usda" : "--snapshots", output.string()));
@@ -258,7 +263,7 @@ void run(tools::ConvertCommand& o) {
     for (const std::string& input : o.inputs) files.reads(input);
     if (!o.compare.model.empty()) files.reads(o.compare.model);
     for (const fs::path& output : outputs) {
-        if (o.writesGrid()) files.writes(output.string(), o.output.empty() || outputs.size() > 1 ? "" : "-o");
+        if (o.writesGrid()) tools::noteOutput(o, output, o.output.empty() || outputs.size() > 1 ? "" : "-o", files);
         if (o.usda) files.writes(tools::usdaOf(output).string(), "--usda");
     }
     files.writes(o.dump_toolpath, "--dump-toolpath");
@@ -288,6 +293,8 @@ int main(int argc, char** argv) {
     tools::ConvertCommand options;
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {
+        if (!options.color.empty())
+            options.print.read.filament_colors = assemble::toolColorsOf(options.color, "--color").colors;
         if (app.count("--thumbnail") > 0) return tools::writeThumbnails(options);
         tools::useHugePages(argv);
         options.shard.said = tools::saidOf(app);

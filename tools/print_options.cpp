@@ -80,10 +80,11 @@ void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
     app.add_option_function<std::vector<unsigned>>(
            "--tool",
            [&options](const std::vector<unsigned>& tools) { options.tools.assign(tools.begin(), tools.end()); },
-           "Only what this tool (T number) prints; may be given again for more")
+           "Only what these tools (T numbers) print; may be given again for more")
+        ->delimiter(',')
         ->check(CLI::Range(0, 255))
         ->allow_extra_args(false)
-        ->type_name("NUMBER")
+        ->type_name("N,...")
         ->group(what);
 }
 

@@ -1,13 +1,15 @@
 #include "trace_options.h"
 
 #include "choices.h"
+#include "color_options.h"
 
+#include "assemble/print/tool_colors.h"
 #include "assemble/scene_file.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/preset_names.h"
+#include "shade/palette/color_name.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -244,11 +246,13 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("LENGTH")
         ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
-    materials.insert(materials.end(), {"lambert:", "plastic:", "metal:", "translucent:"});
+    materials.insert(materials.end(),
+                     {"lambert:", "plastic:", "metal:", "matte:", "silk:", "glitter:", "translucent:"});
     completes(
         app.add_option(
             "--brdf", o.scene.brdf,
-            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), metal:R,G,B,ALPHA, "
+            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, "
+            "glitter:R,G,B[,FLAKE_MM], "
             "translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
             "through; also natural-pla, clear-petg, lithophane-white), a measured table (Mini-Diff, Zemax, ASTM E1392, "
             "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
@@ -256,10 +260,14 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
         ->group(kLight);
-    app.add_option("--color", o.color, "Plastic of this colour: '#ff6600', or a name as in CSS, e.g. teal")
+    app.add_option(
+           "--color", o.color,
+           "Plastic of this colour: '#ff6600', a name as in CSS, e.g. teal, or a real filament's, e.g. 'Prusament "
+           "Galaxy Black'; of G-code also several, a colour a tool")
         ->excludes("--brdf")
-        ->type_name("COLOR")
+        ->type_name("COLOR,...")
         ->group(kLight);
+    addColorList(app, kLight);
     completes(app.add_option("--color-by", o.scene.color_by,
                              "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
                              "flow, overfill, time, color"),
@@ -445,10 +453,14 @@ void applyText(TraceCommand& o) {
         o.clip_planes.push_back({{v[0], v[1], v[2]}, v[3]});
     }
     if (!o.color.empty()) {
-        if (!shade::parseNamedColor(o.color))
-            throw UsageError(
-                fmt::format("--color {}: is no colour; write '#rrggbb', or a name as in CSS, e.g. orange", o.color));
-        o.scene.brdf = o.color;
+        if (colorsTools(o)) {
+            assemble::ToolColors tools = assemble::toolColorsOf(o.color, "--color");
+            o.prints.print.read.filament_colors = std::move(tools.colors);
+            o.finishes = std::move(tools.finishes);
+            o.scene.brdf.clear();  // a scene file's
+        } else {
+            o.scene.brdf = shade::colorNamed(o.color, "--color").brdf;
+        }
     }
     if (!o.normals.empty()) o.scene.smooth_normals = o.normals == "smooth";
     if (!o.bed_surface.empty()) o.scene.bed_surface = shade::parseBedSurface(o.bed_surface);

@@ -15,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,9 +42,10 @@ struct TraceCommand {
     std::vector<std::string> clip;  // --clip, as given
     std::vector<trace::ClipPlane> clip_planes;
     bool each = false;
-    std::string color, frame = "part";  // --color, --frame
-    std::string scene_text;             // hash of the scene file, or empty
-    std::string said;                   // the options that are given, for checkpoints
+    std::string color, frame = "part";            // --color, --frame
+    std::map<std::string, std::string> finishes;  // materials of --color's colors, see TracingOptions
+    std::string scene_text;                       // hash of the scene file, or empty
+    std::string said;                             // the options that are given, for checkpoints
     bool legend = false;
     bool linear = false;  // the output keeps linear values: an .exr. Set when its name is checked
     std::string turns;    // --turntable, as given
@@ -72,6 +74,9 @@ void readScene(TraceCommand& command, int argc, char** argv);
 /// A hash of what a picture is made from: those options, the input files (`files` says what they hold), and the files
 /// that the options name.
 std::string sourceOf(const TraceCommand& command, const std::string& files);
+
+/// Whether --color has a color a tool, which only prints have.
+inline bool colorsTools(const TraceCommand& command) { return command.color.find(',') != std::string::npos; }
 
 /// Parses the options that are kept as text, and checks all of them. Throws UsageError.
 void applyText(TraceCommand& command);

@@ -31,6 +31,7 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
     reading.values = o.values;
     reading.clip = o.clip_planes;
     reading.prints = o.prints;
+    reading.finishes = o.finishes;
     reading.hash = !o.render.checkpoint.empty();
     reading.events = terminalEvents(o.common.quiet);
     if (!o.bricks.cache.empty()) {

@@ -142,7 +142,7 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     for (const ObjectOptions& object : objects) plans.push_back(planMaterial(object, options, needs));
 
     ShapeReader reader(options, needs);
-    ObjectMaterials materials(options.brdf);
+    ObjectMaterials materials(options.brdf, options.finishes);
     std::vector<trace::SceneObject> scene;
     std::optional<trace::Box> parts;
     bool any_part = false;

@@ -10,6 +10,7 @@
 #include "trace/clip_intersector.h"
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,9 @@ struct TracingOptions {
     /// Of objects that have no material of their own, see shade::makeBrdf(). Empty: their files' colors if
     /// `file_colors`, else the default.
     std::string brdf;
-    bool file_colors = false;     ///< objects without a material of their own have the colors that their files state
+    bool file_colors = false;  ///< objects without a material of their own have the colors that their files state
+    /// "#rrggbb" -> material that stated colors have instead of plain plastic, see toolColorsOf().
+    std::map<std::string, std::string> finishes;
     std::string color_by;         ///< attribute that colors level sets and prints without a material of their own
     bool smooth_normals = false;  ///< answer Tracer::shadingNormal() without the facets of voxels
     /// Bytes of samples at once, of each print and of each large level set.

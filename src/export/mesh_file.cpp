@@ -3,13 +3,18 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "export/mesh/chunk_writer.h"
+#include "export/mesh/gltf_file.h"
+#include "export/mesh/obj_file.h"
+#include "export/mesh/three_mf_file.h"
+#include "export/mesh/usd_mesh_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -22,32 +27,7 @@ static_assert(std::endian::native == std::endian::little, "STL and PLY are writt
 
 std::string extensionOf(const std::filesystem::path& path) { return lowerCase(path.extension().string()); }
 
-// Buffers bytes and writes a megabyte at a time.
-class Writer {
-public:
-    explicit Writer(std::ofstream& out) : out_(out) { buffer_.reserve(kChunk + 4096); }
-    void text(std::string_view text) {
-        buffer_.append(text);
-        if (buffer_.size() >= kChunk) flush();
-    }
-    template <typename T>
-    void raw(const T& value) {
-        char bytes[sizeof(T)];
-        std::memcpy(bytes, &value, sizeof(T));
-        text({bytes, sizeof(T)});
-    }
-    void flush() {
-        out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-        buffer_.clear();
-    }
-
-private:
-    static constexpr std::size_t kChunk = 1 << 20;
-    std::ofstream& out_;
-    std::string buffer_;
-};
-
-void writeStl(const SurfaceMesh& mesh, Writer& out) {
+void writeStl(const SurfaceMesh& mesh, ChunkWriter& out) {
     std::array<char, 80> header{};
     fmt::format_to_n(header.data(), header.size() - 1, "binary STL by Stratum {}", STRATUM_VERSION);
     out.raw(header);
@@ -67,17 +47,17 @@ void writeStl(const SurfaceMesh& mesh, Writer& out) {
 
 std::size_t cornersOf(const SurfaceMesh::Face& face) { return face[3] == SurfaceMesh::kNone ? 3 : 4; }
 
-void writePly(const SurfaceMesh& mesh, Writer& out) {
-    out.text(
-        fmt::format("ply\nformat binary_little_endian 1.0\ncomment by Stratum {}\nelement vertex {}\nproperty float x\n"
-                    "property float y\nproperty float z\n{}element face {}\nproperty list uchar uint vertex_indices\n"
-                    "end_header\n",
-                    STRATUM_VERSION, mesh.points.size(),
-                    mesh.colors.empty() ? "" : "property uchar red\nproperty uchar green\nproperty uchar blue\n",
-                    mesh.faces.size()));
+void writePly(const SurfaceMesh& mesh, ChunkWriter& out) {
+    out.text(fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment by Stratum {}\nelement vertex {}\nproperty float x\n"
+        "property float y\nproperty float z\n{}element face {}\nproperty list uchar uint vertex_indices\n"
+        "end_header\n",
+        STRATUM_VERSION, mesh.points.size(),
+        mesh.material_of_point.empty() ? "" : "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+        mesh.faces.size()));
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
         for (int axis = 0; axis < 3; ++axis) out.raw(mesh.points[n][axis]);
-        if (!mesh.colors.empty()) out.raw(mesh.colors[n]);
+        if (!mesh.material_of_point.empty()) out.raw(mesh.materials[mesh.material_of_point[n]].color);
     }
     for (const SurfaceMesh::Face& face : mesh.faces) {
         out.raw(static_cast<std::uint8_t>(cornersOf(face)));
@@ -85,43 +65,52 @@ void writePly(const SurfaceMesh& mesh, Writer& out) {
     }
 }
 
-void writeObj(const SurfaceMesh& mesh, Writer& out) {
-    out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
-    for (const openvdb::Vec3s& p : mesh.points) out.text(fmt::format("v {} {} {}\n", p[0], p[1], p[2]));
-    // Counted from 1.
-    for (const SurfaceMesh::Face& face : mesh.faces) {
-        out.text(fmt::format("f {} {} {}", face[0] + 1, face[1] + 1, face[2] + 1));
-        out.text(cornersOf(face) == 4 ? fmt::format(" {}\n", face[3] + 1) : "\n");
-    }
-}
-
-}  // namespace
-
-bool isMeshPath(const std::filesystem::path& path) {
-    const std::string extension = extensionOf(path);
-    return extension == ".stl" || extension == ".ply" || extension == ".obj";
-}
-
-bool meshHasColors(const std::filesystem::path& path) { return extensionOf(path) == ".ply"; }
-
-void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {
+void writeBinary(const SurfaceMesh& mesh, const std::filesystem::path& path, bool ply) {
     AtomicFile file(path);
-    if (mesh.triangleCount() > std::numeric_limits<std::uint32_t>::max())
-        throw UsageError(fmt::format("{}: {} triangles are more than the format can count; choose a larger voxel",
-                                     path.string(), mesh.triangleCount()));
     std::ofstream stream(file.temporary(), std::ios::binary);
-    Writer out(stream);
-    const std::string extension = extensionOf(path);
-    if (extension == ".stl")
-        writeStl(mesh, out);
-    else if (extension == ".ply")
-        writePly(mesh, out);
-    else
-        writeObj(mesh, out);
+    ChunkWriter out(stream);
+    ply ? writePly(mesh, out) : writeStl(mesh, out);
     out.flush();
     stream.close();
     if (!stream) throw writeError(path.string());
     file.commit();
+}
+
+constexpr std::array<std::string_view, 6> kMeshes{".stl", ".ply", ".obj", ".3mf", ".glb", ".usda"};
+
+}  // namespace
+
+bool isMeshPath(const std::filesystem::path& path) {
+    return std::find(kMeshes.begin(), kMeshes.end(), extensionOf(path)) != kMeshes.end();
+}
+
+MeshColors meshColors(const std::filesystem::path& path) {
+    const std::string extension = extensionOf(path);
+    if (extension == ".stl" || !isMeshPath(path)) return MeshColors::none;
+    if (extension == ".ply") return MeshColors::points;
+    return extension == ".obj" ? MeshColors::optional_materials : MeshColors::materials;
+}
+
+std::optional<std::filesystem::path> meshCompanion(const std::filesystem::path& path) {
+    if (extensionOf(path) != ".obj" || isStandardOutput(path)) return std::nullopt;
+    return mtlOf(path);
+}
+
+void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, const MeshSpace& space) {
+    if (mesh.triangleCount() > std::numeric_limits<std::uint32_t>::max())
+        throw UsageError(fmt::format("{}: {} triangles are more than the format can count; choose a larger voxel",
+                                     path.string(), mesh.triangleCount()));
+    const std::string extension = extensionOf(path);
+    if (extension == ".obj")
+        writeObj(mesh, path);
+    else if (extension == ".3mf")
+        write3mf(mesh, path, space);
+    else if (extension == ".glb")
+        writeGlb(mesh, path, space);
+    else if (extension == ".usda")
+        writeUsdMesh(mesh, path, space);
+    else
+        writeBinary(mesh, path, extension == ".ply");
 }
 
 }  // namespace stratum::exporter

@@ -1,21 +1,33 @@
-// FloatGrid -> a closed polygon mesh of its zero level -> .stl, .ply or .obj, written whole or not at all.
+// A closed polygon mesh -> .stl, .ply, .obj, .3mf, .glb or .usda, written whole or not at all.
 #pragma once
 
+#include "export/mesh/mesh_space.h"
 #include "export/surface_mesh.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace stratum::exporter {
 
-/// Whether writeMesh knows the extension: .stl, .ply or .obj, in any case.
+/// Whether writeMesh knows the extension, in any case.
 bool isMeshPath(const std::filesystem::path& path);
 
-/// Whether it writes SurfaceMesh::colors to this path: to .ply.
-bool meshHasColors(const std::filesystem::path& path);
+/// How a format holds SurfaceMesh::materials.
+enum class MeshColors : std::uint8_t {
+    none,                ///< .stl
+    points,              ///< .ply: a color a point, if there are several
+    optional_materials,  ///< .obj: in a second file, which is there only if asked for
+    materials            ///< .3mf, .glb, .usda
+};
+MeshColors meshColors(const std::filesystem::path& path);
 
-/// Writes by the extension: binary STL (triangles), binary PLY or OBJ text (quads and triangles, shared vertices), a
-/// megabyte at a time. PLY has the points' colors, if there are any. Throws UsageError if the mesh has more faces than
-/// the format allows, OutputError if it can't be written; the old file then stays.
-void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path);
+/// The second file that writeMesh may write beside the first: the .mtl of a .obj.
+std::optional<std::filesystem::path> meshCompanion(const std::filesystem::path& path);
+
+/// Writes by the extension: binary STL (triangles), binary PLY (quads and triangles, shared points), or a format of
+/// mesh/, which tells what it holds. STL, PLY and OBJ have the numbers of the points as they are. Throws UsageError if
+/// the mesh has more faces than the format allows, OutputError if it can't be written; the old file then stays.
+void writeMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, const MeshSpace& space = {});
 
 }  // namespace stratum::exporter

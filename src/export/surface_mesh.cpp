@@ -3,11 +3,14 @@
 #include "base/parallel_for.h"
 #include "export/mesh_simplify.h"
 
+#include <fmt/format.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
+#include <optional>
 
 namespace stratum::exporter {
 namespace {
@@ -107,11 +110,14 @@ std::uint32_t srgb(float linear) {
         std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
 }
 
-// 0xRRGGBB by point, of the nearest active voxel among the eight around it and those beside them.
-std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3SGrid& grid) {
-    std::vector<std::uint32_t> colors(mesh.points.size());
-    parallelFor(colors.size(), 4096, [&](std::size_t first, std::size_t last) {
+// 0xTTRRGGBB by point, of the nearest active voxel among the eight around it and those beside them; T is the tool.
+std::vector<std::uint32_t> labelsOf(const SurfaceMesh& mesh, const openvdb::Vec3SGrid& grid,
+                                    const openvdb::Int32Grid* tools) {
+    std::vector<std::uint32_t> labels(mesh.points.size());
+    parallelFor(labels.size(), 4096, [&](std::size_t first, std::size_t last) {
         const auto voxels = grid.getConstAccessor();
+        std::optional<openvdb::Int32Grid::ConstAccessor> tool_of;
+        if (tools != nullptr) tool_of.emplace(tools->getConstAccessor());
         // Cached, because there are few colors and many points.
         openvdb::Vec3f known(-1);
         std::uint32_t packed = 0;
@@ -120,6 +126,7 @@ std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3
             const openvdb::Coord middle = openvdb::Coord::round(at);
             double nearest = 1e300;
             openvdb::Vec3f color(0.8F);
+            openvdb::Coord of;
             for (int k = 0; k < 27; ++k) {
                 const openvdb::Coord voxel = middle.offsetBy(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
                 const double distance = (voxel.asVec3d() - at).lengthSqr();
@@ -127,13 +134,38 @@ std::vector<std::uint32_t> colorsOf(const SurfaceMesh& mesh, const openvdb::Vec3
                 if (distance >= nearest || !voxels.probeValue(voxel, value)) continue;
                 nearest = distance;
                 color = value;
+                of = voxel;
             }
             if (color != known) packed = srgb(color[0]) << 16 | srgb(color[1]) << 8 | srgb(color[2]);
             known = color;
-            colors[n] = packed;
+            const bool has_tool = tool_of && nearest < 1e300;
+            labels[n] = packed | (has_tool ? static_cast<std::uint32_t>(tool_of->getValue(of) & 0xff) << 24 : 0U);
         }
     });
-    return colors;
+    return labels;
+}
+
+// The materials that labels stand for, by ascending labels; and that of each point.
+void takeMaterials(const std::vector<std::uint32_t>& labels, bool by_tool, SurfaceMesh& mesh) {
+    std::vector<std::uint32_t> all = labels;
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (const std::uint32_t label : all) {
+        const std::uint32_t tool = label >> 24;
+        const std::uint32_t color = label & 0xffffff;
+        const auto of_tool =
+            std::count_if(all.begin(), all.end(), [tool](std::uint32_t other) { return other >> 24 == tool; });
+        const std::string name = !by_tool      ? fmt::format("color_{:06x}", color)
+                                 : of_tool > 1 ? fmt::format("tool_{}_{:06x}", tool, color)
+                                               : fmt::format("tool_{}", tool);
+        mesh.materials.push_back({name,
+                                  {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8 & 0xff),
+                                   static_cast<std::uint8_t>(color & 0xff)}});
+    }
+    mesh.material_of_point.reserve(labels.size());
+    for (const std::uint32_t label : labels)
+        mesh.material_of_point.push_back(
+            static_cast<std::uint32_t>(std::lower_bound(all.begin(), all.end(), label) - all.begin()));
 }
 
 }  // namespace
@@ -172,12 +204,24 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
     if (options.outside_only) dropCavities(mesh);
     dropUnusedPoints(mesh);
     std::vector<std::uint32_t> labels;
-    if (options.color != nullptr) labels = colorsOf(mesh, *options.color);
+    if (options.color != nullptr) labels = labelsOf(mesh, *options.color, options.tool);
     if (options.error > 0) labels = simplify(mesh, options.error * grid.voxelSize()[0], labels);
-    for (const std::uint32_t label : labels)
-        mesh.colors.push_back({static_cast<std::uint8_t>(label >> 16), static_cast<std::uint8_t>(label >> 8 & 0xff),
-                               static_cast<std::uint8_t>(label & 0xff)});
+    if (options.color != nullptr) takeMaterials(labels, options.tool != nullptr, mesh);
     return mesh;
+}
+
+std::uint32_t SurfaceMesh::materialOf(const Face& face) const {
+    const std::size_t corners = face[3] == kNone ? 3 : 4;
+    std::uint32_t most = material_of_point[face[0]];
+    std::ptrdiff_t votes = 0;
+    for (std::size_t n = 0; n < corners; ++n) {
+        const std::uint32_t material = material_of_point[face[n]];
+        const auto same = std::count_if(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(corners),
+                                        [&](std::uint32_t p) { return material_of_point[p] == material; });
+        if (same > votes) most = material;
+        votes = std::max(votes, same);
+    }
+    return most;
 }
 
 std::size_t SurfaceMesh::triangleCount() const {

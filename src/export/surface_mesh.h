@@ -6,9 +6,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace stratum::exporter {
+
+/// What a part of the surface is made of.
+struct MeshMaterial {
+    std::string name;                     ///< of letters, digits and '_': "tool_0", "tool_0_ff8000", "filament"
+    std::array<std::uint8_t, 3> color{};  ///< sRGB
+};
 
 /// A closed surface: every edge is used by equally many faces in both directions. Points in world units; no face has a
 /// point twice, no point is unused. Faces are counter-clockwise from outside.
@@ -19,7 +26,8 @@ struct SurfaceMesh {
 
     std::vector<openvdb::Vec3s> points;
     std::vector<Face> faces;
-    std::vector<std::array<std::uint8_t, 3>> colors;  ///< sRGB, one a point; or none
+    std::vector<MeshMaterial> materials;           ///< none: nothing is known of them
+    std::vector<std::uint32_t> material_of_point;  ///< index into materials; empty: all are of the only one, or of none
 
     /// Calls visit(a, b, c) with the indices of each triangle; a quad has two.
     template <typename Visit>
@@ -30,6 +38,8 @@ struct SurfaceMesh {
         }
     }
 
+    /// The material of a face, if there are several: that of most of its points; of equally many, that of the first.
+    std::uint32_t materialOf(const Face& face) const;
     /// A quad counts as two.
     std::size_t triangleCount() const;
     /// Enclosed volume, world units cubed.
@@ -41,9 +51,11 @@ struct MeshOptions {
     bool outside_only = false;
     /// Voxels: allowed error of the simplified mesh, see mesh_simplify.h; 0 keeps a point in every surface cell.
     double error = 0.0;
-    /// Colors the points by the nearest active voxel of this grid (linear sRGB), and doesn't simplify faces between
-    /// colors; may be null.
+    /// Gives the points materials by the nearest active voxel of this grid (linear sRGB), and doesn't simplify faces
+    /// between materials; may be null.
     const openvdb::Vec3SGrid* color = nullptr;
+    /// T numbers of the same voxels: a material a tool and color, even where tools have the same color; may be null.
+    const openvdb::Int32Grid* tool = nullptr;
 };
 
 /// Meshes the zero level with OpenVDB's dual mesher (volumeToMesh; Ju et al., SIGGRAPH 2002, is the method). Samples

@@ -7,6 +7,7 @@
 #include "gcode/machine/bead_recorder.h"
 #include "gcode/machine/machine.h"
 #include "gcode/machine/motion_recorder.h"
+#include "gcode/slicer/mixed_colors.h"
 #include "gcode/slicer/settings.h"
 #include "gcode/text/lexer.h"
 #include "gcode/toolpath/sections.h"
@@ -66,6 +67,24 @@ void takeColors(const Program& program, Toolpath& toolpath) {
     if (!toolpath.tool_colors.empty() || colors.empty()) return;
     if (program.format == "ufp" && colors.size() != toolpath.filament_by_tool.size()) return;
     toolpath.tool_colors = colors;
+}
+
+// Colors that are asked for are those of the filaments, which a mixing hot end feeds together. Those of a file are the
+// slicer's, of each tool as it lays it.
+void takeAskedColors(const ReadOptions& options, const std::vector<MixChange>& mixes, Toolpath& toolpath,
+                     WarningLog& warnings) {
+    const auto& asked = options.filament_colors;
+    if (!mixes.empty() && asked.empty())
+        warnings.add(
+            "the program mixes filaments (M163 to M165, M567); --color NAME,NAME,... says which, and gives the "
+            "mixes their colours",
+            mixes.front().line);
+    if (toolpath.tool_colors.size() < asked.size()) toolpath.tool_colors.resize(asked.size());
+    for (std::size_t n = 0; n < asked.size(); ++n)
+        if (asked[n]) toolpath.tool_colors[n] = asked[n];
+    if (!asked.empty() && addMixes(mixes, toolpath.tool_colors, toolpath) > 0)
+        warnings.add("the program mixes more filaments than have a colour; those mixes keep the colour before",
+                     mixes.front().line);
 }
 
 // BambuStudio and OrcaSlicer label objects by number in the text; the names stand beside it. Equal names get their
@@ -128,7 +147,6 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     if (options.progress) options.progress(1);
 
     Toolpath toolpath = std::move(recorded);
-    toolpath.warnings = warnings.take();
     toolpath.deposit = options.deposit;
     toolpath.slicer = settings.slicer;
     toolpath.firmware = firmwareName(machine.firmware());
@@ -137,6 +155,8 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     toolpath.format = program.format;
     takeStated(settings.stated, program.facts.stated, toolpath.stated);
     takeColors(program, toolpath);
+    takeAskedColors(options, recorder.mixes(), toolpath, warnings);
+    toolpath.warnings = warnings.take();
     nameObjects(program, toolpath);
     if (!(toolpath.footer_mm > 0)) toolpath.footer_mm = program.filament_mm.value_or(0);
     return toolpath;

@@ -95,7 +95,10 @@ std::unique_ptr<PictureObject> render(const py::object& source, const py::object
     RenderCall call = renderCallOf(keywords);
     keywords.finish();
     std::string path;
+    if (!call.tool_colors.empty()) call.picture.tracing.prints.print.read.filament_colors = call.tool_colors;
     if (py::isinstance<ToolpathObject>(source)) {
+        if (!call.tool_colors.empty())
+            throw UsageError("render(): color: of a Toolpath that is read already, read() takes filament_colors");
         const auto& print = source.cast<const ToolpathObject&>();
         call.picture.tracing.prints.toolpath = print.toolpath;
         path = print.source.empty() ? "print" : print.source;

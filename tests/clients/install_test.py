@@ -112,6 +112,8 @@ check(os.path.getsize(os.path.join(FOLDER, "tile.png")) > 1000, "renders with a 
 run("/usr/bin/env", f"PYTHONPATH={package}", "/usr/bin/python3", "-c",
     "import stratum, sys; stratum.render(sys.argv[1], size=(64, 48), spp=1, brdf='mine')", vdb)
 check(True, "  so does the module")
+listed = run(os.path.join(bin_, "vdbtrace"), "--colors", "prusament galaxy").splitlines()
+check(len(listed) == 5, f"names filaments from its own tree: {len(listed)}")
 
 # --- strangers ---------------------------------------------------------------------------------------------------------
 for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),

@@ -25,7 +25,8 @@ HOLD = {
                         for name in ("_stratum.cpython-", "__init__.py", "__init__.pyi", "py.typed")],
     "stratum": ["./usr/bin/gcode2vdb", "./usr/share/man/man1/vdbtrace.1.gz", "./usr/share/doc/stratum/copyright",
                 "./usr/share/bash-completion/completions/gcode2vdb", "./usr/share/stratum/blender/stratum_import-",
-                "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz"],
+                "./usr/share/stratum/data/brdf/pla-blue.bsdf.gz", "./usr/share/stratum/data/filaments/colors.tsv",
+                "./usr/share/stratum/data/filaments/LICENSE"],
     "stratum-viewer": ["./usr/bin/vdbview", "./usr/share/man/man1/vdbview.1.gz", "./usr/share/doc/stratum-viewer/copyright",
                        "./usr/share/applications/org.stratum.vdbview.desktop", "./usr/share/mime/packages/stratum.xml"],
 }
@@ -60,6 +61,7 @@ cd /tmp
 for tool in gcode2vdb vdbtrace vdbview vdbmerge vdbstudy; do $tool --version; done
 gcode2vdb /packages/part.gcode -o part.vdb --voxel-size 0.2
 vdbtrace part.vdb -o part.png --size 64x48 --spp 2 --brdf pla-blue
+vdbtrace part.vdb -o named.png --size 64x48 --spp 2 --color "Prusament Galaxy Black"
 python3 - <<'END'
 import subprocess, urllib.request
 import stratum

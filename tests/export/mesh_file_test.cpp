@@ -40,6 +40,14 @@ T at(const std::string& bytes, std::size_t offset) {
 
 TEST(MeshFile, KnowsItsExtensions) {
     EXPECT_TRUE(isMeshPath("part.stl") && isMeshPath("part.PLY") && isMeshPath("a.b/part.obj"));
+    EXPECT_TRUE(isMeshPath("part.3mf") && isMeshPath("part.GLB") && isMeshPath("part.usda"));
+    EXPECT_EQ(meshColors("part.stl"), MeshColors::none);
+    EXPECT_EQ(meshColors("part.ply"), MeshColors::points);
+    EXPECT_EQ(meshColors("part.obj"), MeshColors::optional_materials);
+    EXPECT_EQ(meshColors("part.3MF"), MeshColors::materials);
+    EXPECT_EQ(meshCompanion("a/part.obj"), std::filesystem::path("a/part.mtl"));
+    EXPECT_EQ(meshCompanion("-.obj"), std::nullopt);
+    EXPECT_EQ(meshCompanion("part.glb"), std::nullopt);
     EXPECT_FALSE(isMeshPath("part.vdb") || isMeshPath("stl") || isMeshPath("part.stl.vdb"));
 }
 

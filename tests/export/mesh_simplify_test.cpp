@@ -112,16 +112,20 @@ TEST(MeshSimplify, ColorsKeepTheirBorder) {
         voxel.setValue(voxel.getCoord().z() < 3 ? openvdb::Vec3f(1, 0, 0) : openvdb::Vec3f(0, 0, 1));
     const SurfaceMesh mesh = meshSurface(*grid, {false, 0.5, color.get()});
     test::expectClosed(mesh);
-    ASSERT_EQ(mesh.colors.size(), mesh.points.size());
+    ASSERT_EQ(mesh.material_of_point.size(), mesh.points.size());
+    ASSERT_EQ(mesh.materials.size(), 2U);
+    EXPECT_EQ(mesh.materials[0].name, "color_0000ff");
+    EXPECT_EQ(mesh.materials[1].name, "color_ff0000");
     for (std::size_t n = 0; n < mesh.points.size(); ++n) {
-        const bool red = mesh.colors[n] == std::array<std::uint8_t, 3>{255, 0, 0};
+        const bool red = mesh.materials[mesh.material_of_point[n]].color == std::array<std::uint8_t, 3>{255, 0, 0};
         if (std::abs(mesh.points[n][2] - 0.25F) > 0.05F) {
             EXPECT_EQ(red, mesh.points[n][2] < 0.25F) << mesh.points[n];
         }
     }
     // The border is a strip one voxel wide, not wider: faces with both colors are small.
+    const auto& of = mesh.material_of_point;
     mesh.forEachTriangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        if (mesh.colors[a] == mesh.colors[b] && mesh.colors[b] == mesh.colors[c]) return;
+        if (of[a] == of[b] && of[b] == of[c]) return;
         for (const std::uint32_t point : {a, b, c}) EXPECT_NEAR(mesh.points[point][2], 0.25, 2.5 * kVoxel);
     });
     EXPECT_LT(mesh.triangleCount(), meshSurface(*grid).triangleCount() / 3);

@@ -92,6 +92,20 @@ TEST_F(UsdFile, ExtentUnitAndAxis) {
     EXPECT_NE(houdini.find("upAxis = \"Y\""), std::string::npos);
 }
 
+TEST_F(UsdFile, AMaterialAFilament) {
+    writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda", {.materials = {{"tool_0", {255, 0, 0}}}});
+    const std::string one = written(folder_ / "a.usda");
+    EXPECT_NE(one.find("rel material:binding = </print/materials/tool_0>"), std::string::npos) << one;
+    EXPECT_NE(one.find("prepend apiSchemas = [\"MaterialBindingAPI\"]"), std::string::npos) << one;
+    EXPECT_NE(one.find("color3f inputs:diffuseColor = (1.000000, 0.000000, 0.000000)"), std::string::npos) << one;
+    writeUsda(print(), folder_ / "a.vdb", folder_ / "a.usda",
+              {.materials = {{"tool_0", {255, 0, 0}}, {"tool_1", {0, 0, 255}}}});
+    const std::string two = written(folder_ / "a.usda");
+    EXPECT_EQ(two.find("material:binding"), std::string::npos) << two;
+    EXPECT_EQ(countOf(two, "def Material"), 2U);
+    EXPECT_EQ(countOf(two, "{"), countOf(two, "}"));
+}
+
 TEST_F(UsdFile, RefusesWhatUsdCannotName) {
     EXPECT_THROW(writeUsda(print(), folder_ / "a@b.vdb", folder_ / "a.usda"), OutputError);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a.usda"));

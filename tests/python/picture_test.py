@@ -90,6 +90,21 @@ class Pictures(unittest.TestCase):
         stratum.write_vdb(stratum.read(gcode("tile.gcode")), vdb, voxel_size=0.2, grids="layer")
         self.same(vdb, ["--spp", "2", "--color-by", "layer"], spp=2, color_by="layer")
 
+    def test_colors_of_tools(self):
+        path = gcode("two_tone.gcode")
+        some = ["--spp", "2", "--layers", "6:10", "--view", "top"]
+        options = {"spp": 2, "layers": "6:10", "view": "top"}
+        names = ["teal", "3DJAKE Silk Gold"]
+        two = self.same(path, [*some, "--color", ",".join(names)], color=names, **options)
+        one = self.same(path, [*some, "--color", "Prusament Galaxy Black"], color="Prusament Galaxy Black", **options)
+        self.assertFalse(np.array_equal(one.linear, two.linear))
+        # Of a toolpath that is read, the colours are those it was read with: plain, since finishes are of pictures.
+        plain = stratum.render(path, size=(96, 72), color=["teal", "#c49954"], **options)
+        read = stratum.read(path, filament_colors=["teal", "#c49954"])
+        np.testing.assert_array_equal(stratum.render(read, size=(96, 72), **options).linear, plain.linear)
+        with self.assertRaisesRegex(stratum.UsageError, "filament_colors"):
+            stratum.render(read, color=["red", "blue"])
+
     def test_toolpath_in_memory(self):
         path = gcode("hull.gcode")
         toolpath = stratum.read(path)

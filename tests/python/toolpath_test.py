@@ -232,6 +232,10 @@ class Errors(unittest.TestCase):
         path = gcode("tile.gcode")
         with self.assertRaisesRegex(TypeError, "did you mean 'filament_diameter'.*there are"):
             stratum.read(path, filament_diametre=2)
+        with self.assertRaisesRegex(stratum.UsageError, r"read\(\): filament_colors bluu.*did you mean"):
+            stratum.read(path, filament_colors="bluu")
+        with self.assertRaisesRegex(stratum.UsageError, "--tool 4: the print has no such tool; all of it is by tool 0"):
+            stratum.voxelize(stratum.read(path), tools=4, voxel_size=0.4)
         with self.assertRaisesRegex(stratum.UsageError, "did you mean 'klipper'"):
             stratum.read(path, firmware="kliper")
         with self.assertRaisesRegex(TypeError, "plate: expected a whole number, not 1.5"):

@@ -54,7 +54,7 @@ void RunFiles::writes(const std::string& path, std::string_view option, Kind kin
     const auto [found, fresh] = uses_.try_emplace(identity, Use{path, std::string(option), false});
     if (fresh) {
         // "--stats a.gcode b.gcode" means two prints, and takes the first for the report's name.
-        if (kind != Kind::print && !standard && namesPrint(path) && fs::exists(path))
+        if (kind == Kind::other && !standard && namesPrint(path) && fs::exists(path))
             throw UsageError(fmt::format(
                 "{} {}: is there already, and a print by its name; it would be overwritten, give another name", option,
                 path));

@@ -15,10 +15,11 @@ public:
     /// reader to complain of.
     void reads(const std::string& path);
 
-    enum class Kind { other, print };
+    enum class Kind { other, print, ours };
 
     /// @param option  that named it, for messages; "" if the name was made up
-    /// @param kind    of what is written: only a print may replace a file that is a print by its name
+    /// @param kind    of what is written: only a print may replace a file that is a print by its name, and what an
+    ///                earlier run wrote may be replaced
     /// Throws UsageError if the file is read or was written before. "" is no file.
     void writes(const std::string& path, std::string_view option, Kind kind = Kind::other);
 

@@ -3,6 +3,7 @@
 #include "convert/convert_shard.h"
 #include "convert/elements_output.h"
 #include "convert/grid_report.h"
+#include "convert/mesh_output.h"
 #include "convert/model_comparison.h"
 #include "convert/time_report.h"
 #include "convert/toolpath_report.h"
@@ -111,7 +112,7 @@ public:
         const std::vector<Job> jobs = planJobs(o_, toolpath_, selection_, output_);
         for (const Job& job : jobs)
             if (!job.label.empty()) {
-                files_of_run_.writes(job.path.string(), "--snapshots");
+                noteOutput(o_, job.path, "--snapshots", files_of_run_);
                 if (o_.usda) files_of_run_.writes(usdaOf(job.path).string(), "--usda");
             }
         for (const Job& job : jobs) make(voxelizer, job);
@@ -187,6 +188,7 @@ private:
         if (o_.interior == "cull" || (o_.interior.empty() && as_mesh_)) interior_ = voxelize::Interior::cull;
         attributes_ = voxelize::parseGrids(o_.grids);
         colors_ = gcode::distinctColors(toolpath_, selection_);
+        if (as_mesh_) attributes_ = meshAttributes(o_, toolpath_, selection_, output_);
         if (colors_.size() > 1 && o_.grids.empty() && !as_mesh_) {
             if (part_)
                 throw UsageError(fmt::format(
@@ -332,14 +334,13 @@ private:
     }
 
     exporter::SurfaceMesh writeMesh(const openvdb::FloatGrid& grid, const openvdb::GridPtrVec& grids, const Job& job) {
-        const auto* color = grids.empty() ? nullptr : openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.front()).get();
         exporter::SurfaceMesh mesh = [&] {
             const ProgressNote note("meshing", o_.common.quiet);
-            return exporter::meshSurface(grid, {provenance_.culled, o_.mesh_error, color});
+            return meshOf(o_, grid, grids, provenance_.culled, materialsOf(toolpath_, selection_), output_);
         }();
         seconds_.mesh += watch_.lap();
         const ProgressNote note("writing", o_.common.quiet);
-        exporter::writeMesh(mesh, job.path);
+        exporter::writeMesh(mesh, job.path, {voxelize::millimetresIn(o_.unit), o_.up == "y"});
         return mesh;
     }
 
@@ -359,8 +360,9 @@ private:
 
     void writeUsda(const openvdb::GridPtrVec& grids, const Job& job) const {
         if (o_.usda)
-            exporter::writeUsda(grids, job.path, usdaOf(job.path),
-                                {0.001 * voxelize::millimetresIn(o_.unit), o_.up == "y"});
+            exporter::writeUsda(
+                grids, job.path, usdaOf(job.path),
+                {0.001 * voxelize::millimetresIn(o_.unit), o_.up == "y", materialsOf(toolpath_, selection_)});
     }
 
     void tellOutput(const voxelize::Voxelizer& voxelizer, const Job& job, const GridNumbers& grid) {

@@ -60,6 +60,7 @@ struct ConvertCommand {
     bool interior_distance = false;
     bool usda = false;
     std::string grids;
+    std::string color;  // --color: as given
     std::string up = "z";
     std::string snapshots;
     std::string unit = "mm", origin = "bed";

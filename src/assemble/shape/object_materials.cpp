@@ -62,11 +62,13 @@ void ObjectMaterials::add(const PrintColors& colors, std::size_t attribute, cons
     if (summary != nullptr) {
         shade::MaterialOptions material;
         material.by = "color";
+        material.each = finishes_;
         add(material, attribute, summary);
         return;
     }
     no_lookup_ = colors.stated.empty() ? "the file states no colour" : "the print has one colour";
     only_color_ = colors.stated.empty() ? std::string() : colors.stated.front();
+    if (const auto finish = finishes_.find(only_color_); finish != finishes_.end()) only_color_ = finish->second;
     own_ = own_ || !colors.stated.empty();
     materials_.emplace_back(brdfOf(only_color_));
 }

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::assemble {
@@ -19,8 +20,10 @@ namespace stratum::assemble {
 /// Objects are added one after the other.
 class ObjectMaterials {
 public:
-    /// @param brdf  of objects that have none of their own, see shade::makeBrdf(); empty: not given
-    explicit ObjectMaterials(const std::string& brdf) : brdf_(brdf) {}
+    /// @param brdf      of objects that have none of their own, see shade::makeBrdf(); empty: not given
+    /// @param finishes  materials of stated colors, by "#rrggbb"
+    explicit ObjectMaterials(const std::string& brdf, std::map<std::string, std::string> finishes = {})
+        : brdf_(brdf), finishes_(std::move(finishes)) {}
 
     /// An object with a given material.
     /// @param attribute  number of `material.by`
@@ -48,6 +51,7 @@ private:
     void explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary);
 
     const std::string brdf_;
+    const std::map<std::string, std::string> finishes_;
     std::map<std::string, std::shared_ptr<const shade::Brdf>> made_;  // baking a table takes a second
     std::vector<shade::ObjectMaterial> materials_;
     std::vector<shade::Legend> legends_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -59,6 +60,13 @@ void BeadRecorder::changeFilament(std::uint32_t line) {
     if (!named && !toolpath_.empty())
         warnings_.add("M600 changes the filament, and the file doesn't say to which colour; the colour before is kept",
                       line);
+}
+
+void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {
+    const auto here = static_cast<std::uint32_t>(toolpath_.beads.size());
+    // Machines set up many tools before they print, and gradients mix anew for every layer.
+    std::erase_if(mixes_, [&](const MixChange& one) { return one.first_bead == here && one.tool == mix.tool; });
+    mixes_.push_back({here, mix.tool, std::move(mix.shares), line});
 }
 
 void BeadRecorder::markLayer(const Tag& mark) {

@@ -1,6 +1,7 @@
 // Converts extruding moves and slicer tags into beads, runs, arcs, layers and objects.
 #pragma once
 
+#include "gcode/machine/mixer.h"
 #include "gcode/slicer/slicer_tags.h"
 #include "gcode/toolpath/frame.h"
 #include "gcode/toolpath/toolpath.h"
@@ -31,6 +32,9 @@ public:
     void renameObject(std::string_view name, std::uint32_t line);
     /// M600: a manual change of filament. Warns if no tag has stated the new color.
     void changeFilament(std::uint32_t line);
+    /// A tool lays another mix of filaments from here on.
+    void changeMix(ToolMix mix, std::uint32_t line);
+    const std::vector<MixChange>& mixes() const { return mixes_; }
     /// mm, as tagged; 0 if unknown.
     double height() const { return static_cast<double>(next_.height); }
 
@@ -49,6 +53,7 @@ private:
 
     Toolpath toolpath_;
     std::vector<double> run_z_;
+    std::vector<MixChange> mixes_;
     Run next_;
     double nominal_height_;
     bool layer_marks_ = false;

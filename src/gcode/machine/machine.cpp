@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -179,6 +180,12 @@ void Machine::executeM(const Command& command) {
         case 103:
             motor_on_ = command.code == 101;
             return;
+        case 163:
+        case 164:
+        case 165:
+        case 166:
+        case 567:
+            return mixFilaments(command);
         case 200:
             return setVolumetric(command);
         case 206:
@@ -332,6 +339,20 @@ void Machine::setFlow(const Command& command) {
         if (command.hasValue(letter) && command.value(letter) >= 0 && command.value(letter) < 255)
             tool = static_cast<std::size_t>(command.value(letter));
     flow_[tool] = percent / 100;
+}
+
+void Machine::mixFilaments(const Command& command) {
+    if (command.code == 163) {
+        if (!mixer_.setFactor(command)) warn("M163 of a filament that no mixing hot end has; ignored");
+        return;
+    }
+    if (command.code == 166)
+        return warn("M166 mixes a gradient over z, which is not followed; its colours are missing");
+    if (command.code == 567 && firmware_ != Firmware::reprap) return;
+    std::optional<ToolMix> mix = command.code == 164   ? mixer_.save(command, tool_)
+                                 : command.code == 165 ? mixer_.setAll(command, tool_)
+                                                       : Mixer::ofTool(command, tool_);
+    if (mix) recorder_.changeMix(std::move(*mix), line_);
 }
 
 void Machine::labelObject(const Command& command) {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "gcode/machine/bead_recorder.h"
+#include "gcode/machine/mixer.h"
 #include "gcode/machine/motion_recorder.h"
 #include "gcode/machine/read_options.h"
 #include "gcode/slicer/settings.h"
@@ -93,6 +94,7 @@ private:
     void setSpeedFactor(const Command& command);
     void setFlow(const Command& command);
     void labelObject(const Command& command);
+    void mixFilaments(const Command& command);
     void home(const Command& command);
     double coordinateOf(const Command& command, char letter) const;
 
@@ -159,6 +161,7 @@ private:
     bool volumetric_ = false;
     bool motor_on_ = false;  // between M101 and M103, in files without E
     std::size_t tool_ = 0;
+    Mixer mixer_;
     double feed_ = 0;
     double speed_factor_ = 1;
     double speed_backup_ = 1;

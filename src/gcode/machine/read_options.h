@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/machine/motion.h"
+#include "gcode/toolpath/color.h"
 #include "gcode/toolpath/deposit_model.h"
 
 #include <cstdint>
@@ -22,9 +23,11 @@ struct ReadOptions {
     ExtruderMode extruder_mode = ExtruderMode::automatic;
     Firmware firmware = Firmware::automatic;
     std::vector<double> filament_diameters;  ///< mm by tool, the last one also beyond; overrides the file's settings
-    std::optional<double> layer_height;      ///< mm; used where it follows neither from tags nor from Z
-    std::optional<int> plate;                ///< number of a program in a .gcode.3mf; needed only if it has several
-    MotionSink* motion = nullptr;            ///< receives all motion; nullptr: motion is not recorded
+    /// By tool; override the file's settings where there is one. Changes of filament within the print stay.
+    std::vector<std::optional<Rgb>> filament_colors;
+    std::optional<double> layer_height;  ///< mm; used where it follows neither from tags nor from Z
+    std::optional<int> plate;            ///< number of a program in a .gcode.3mf; needed only if it has several
+    MotionSink* motion = nullptr;        ///< receives all motion; nullptr: motion is not recorded
     CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
     std::optional<MachineLimits> limits;             ///< for `motion`, of a file that states none
     DepositModel deposit;                            ///< becomes Toolpath::deposit

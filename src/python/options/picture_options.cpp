@@ -2,8 +2,9 @@
 
 #include "python/options/print_options.h"
 
+#include "assemble/print/tool_colors.h"
 #include "base/error.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/color_name.h"
 #include "shade/scene/bed_texture.h"
 #include "voxelize/grid/voxel_choice.h"
 
@@ -96,12 +97,16 @@ void readCamera(Keywords& options, RenderCall& call) {
 void readScene(Keywords& options, RenderCall& call) {
     shade::SceneOptions& scene = call.picture.scene;
     assign(scene.brdf, options.text("brdf"));
-    if (const auto color = options.text("color")) {
+    if (const std::vector<std::string> colors = options.texts("color"); !colors.empty()) {
         if (!scene.brdf.empty()) throw UsageError("render(): brdf and color both are the material; give one of them");
-        if (!shade::parseNamedColor(*color))
-            throw UsageError(fmt::format(
-                "render(): color={}: is no colour; write '#rrggbb', or a name as in CSS, e.g. orange", *color));
-        scene.brdf = *color;
+        if (colors.size() == 1) {
+            scene.brdf = shade::colorNamed(colors.front(), "render(): color").brdf;
+        } else {
+            assemble::ToolColors tools =
+                assemble::toolColorsOf(fmt::format("{}", fmt::join(colors, ",")), "render(): color");
+            call.tool_colors = std::move(tools.colors);
+            call.picture.tracing.finishes = std::move(tools.finishes);
+        }
     }
     assign(scene.color_by, options.text("color_by"));
     assign(scene.smooth_normals, options.choice("normals", kNormals));

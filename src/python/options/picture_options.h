@@ -6,6 +6,8 @@
 #include "assemble/ready_scene.h"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace stratum::python {
 
@@ -17,6 +19,8 @@ struct RenderCall {
     bool legend = false;
     std::optional<double> exposure;  ///< stops; empty: found from the light
     std::string grid, file_up;       ///< of a .vdb
+    /// Of a print that is read here, by tool; empty: as its file states.
+    std::vector<std::optional<gcode::Rgb>> tool_colors;
 };
 
 /// As vdbtrace's options of those names. Throws UsageError.

@@ -1,5 +1,6 @@
 #include "python/options/print_options.h"
 
+#include "assemble/print/tool_colors.h"
 #include "base/error.h"
 #include "deposit/printer.h"
 #include "deposit/sag.h"
@@ -7,6 +8,7 @@
 #include "gcode/option_names.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 
@@ -24,6 +26,10 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
         if (!(diameter >= 0.1 && diameter <= 20))
             throw UsageError(
                 fmt::format("{}(): filament_diameter={:g}: expected 0.1 to 20 mm", options.function(), diameter));
+    if (const std::vector<std::string> colors = options.texts("filament_colors"); !colors.empty())
+        read.filament_colors = assemble::toolColorsOf(fmt::format("{}", fmt::join(colors, ",")),
+                                                      options.function() + "(): filament_colors")
+                                   .colors;
     if (const auto height = options.number("layer_height", 0.001, 50)) read.layer_height = *height;
     assign(read.extruder_mode, options.choice("e_mode", gcode::kExtruderModes));
     assign(read.firmware, options.choice("firmware", gcode::kFirmwares));

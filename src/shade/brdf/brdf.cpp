@@ -10,15 +10,16 @@
 #include "shade/brdf/preset_names.h"
 #include "shade/brdf/translucent.h"
 #include "shade/camera/sampling.h"
+#include "shade/data_folder.h"
+#include "shade/finish/glitter.h"
+#include "shade/finish/matte.h"
+#include "shade/finish/silk.h"
 #include "shade/measured/brdf_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 namespace stratum::shade {
@@ -26,23 +27,7 @@ namespace stratum::shade {
 namespace {
 
 /// The tables that come with the project.
-std::filesystem::path tableFolder() {
-    namespace fs = std::filesystem;
-    if (const char* data = std::getenv("STRATUM_DATA")) return fs::path(data) / "brdf";
-    // Installed tables are found relative to the program in bin, or to the Python module in
-    // lib/python3/dist-packages/stratum, so the tree can be moved.
-    std::error_code missing;
-    const fs::path program = fs::read_symlink("/proc/self/exe", missing);
-    Dl_info code{};
-    const bool found = dladdr(reinterpret_cast<const void*>(&tableFolder), &code) != 0 && code.dli_fname != nullptr;
-    const fs::path module = found ? fs::path(code.dli_fname).parent_path() : fs::path();
-    const fs::path prefix = module.filename() == "stratum"
-                                ? module.parent_path().parent_path().parent_path().parent_path()
-                                : program.parent_path().parent_path();
-    fs::path installed = prefix / "share/stratum/data/brdf";
-    if (fs::is_directory(installed, missing)) return installed;
-    return fs::path(STRATUM_DATA_DIR) / "brdf";
-}
+std::filesystem::path tableFolder() { return dataFolder() / "brdf"; }
 
 constexpr std::string_view kEnding = ".bsdf.gz";
 
@@ -74,10 +59,10 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     const bool none = namesIn(tableFolder()).empty();
     const std::vector<std::string> known = brdfNames();
     std::vector<std::string_view> names(known.begin(), known.end());
-    names.insert(names.end(), {"lambert", "plastic", "metal", "translucent"});
+    names.insert(names.end(), {"lambert", "plastic", "metal", "matte", "silk", "glitter", "translucent"});
     throw UsageError(fmt::format(
         "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
-        "metal:R,G,B,ALPHA, "
+        "metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, glitter:R,G,B[,FLAKE_MM], "
         "translucent:R,G,B,MEAN_FREE_PATH_MM, a colour (#ff6600, teal), a file, or one of: {}{}{}",
         text, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
         didYouMean(text.substr(0, text.find(':')), names)));
@@ -85,7 +70,8 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
 
 bool isFormula(std::string_view text) {
     const std::string_view name = text.substr(0, text.find(':'));
-    return name == "lambert" || name == "plastic" || name == "metal" || isTranslucent(text);
+    return name == "lambert" || name == "plastic" || name == "metal" || name == "matte" || name == "silk" ||
+           name == "glitter" || isTranslucent(text);
 }
 
 }  // namespace
@@ -124,6 +110,17 @@ std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
     if (preset.name == "lambert") {
         requireValues(preset, 3, kOption, "lambert:R,G,B");
         return std::make_shared<Lambert>(bodyColor());
+    }
+    if (preset.name == "matte" || preset.name == "silk") {
+        requireValues(preset, 3, kOption, preset.name + ":R,G,B");
+        if (preset.name == "silk") return std::make_shared<Silk>(bodyColor());
+        return std::make_shared<Matte>(bodyColor());
+    }
+    if (preset.name == "glitter") {
+        if (preset.values.size() != 4) requireValues(preset, 3, kOption, "glitter:R,G,B or glitter:R,G,B,FLAKE_MM");
+        if (preset.values.size() == 3) return std::make_shared<Glitter>(bodyColor());
+        requireRange(preset, 3, Glitter::kMinSize, Glitter::kMaxSize, kOption, "the size of flakes in mm");
+        return std::make_shared<Glitter>(bodyColor(), static_cast<double>(preset.values[3]));
     }
     const bool metal = preset.name == "metal";
     requireValues(preset, 4, kOption, metal ? "metal:R,G,B,ALPHA" : "plastic:R,G,B,ALPHA");

@@ -43,6 +43,10 @@ public:
     virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
     /// Itself, if light goes through it; see translucent.h.
     virtual const Translucent* translucent() const { return nullptr; }
+    /// Whether it is another one at other places; then at() says which.
+    virtual bool variesByPlace() const { return false; }
+    /// Of this place: mm, in the space of the scene. As long-lived as this one.
+    virtual const Brdf& at(const glm::dvec3& /*place*/) const { return *this; }
     /// Notes for reports: the source of a table, and whether it was measured.
     virtual const std::vector<std::string>& notes() const;
 };
@@ -58,6 +62,9 @@ extern const char* const kDefaultBrdf;
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
 ///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
 ///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
+///   matte:R,G,B          rough and diffuse, without a coat: matte.h
+///   silk:R,G,B           plastic with pearlescent platelets: silk.h
+///   glitter:R,G,B[,MM]   plastic with flakes of that size: glitter.h
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for
 ///   in
 ///                        $STRATUM_DATA/brdf, or where it was installed or built

@@ -22,7 +22,7 @@ SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, tra
     point.t = hit.t;
     const ObjectMaterial& object = hit.object < scene_.objects.size() ? scene_.objects[hit.object] : only_;
     const Material& material = object.single() ? object.only() : object.of(tracer.attribute(hit, object.attribute()));
-    point.brdf = material.brdf.get();
+    point.brdf = material.by_place ? &material.brdf->at(scene_.mm_per_unit * hit.position) : material.brdf.get();
     point.albedo = material.albedo;
     for (std::size_t n = 0; n < kLabels; ++n)
         if (scene_.labels[n])

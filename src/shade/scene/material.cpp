@@ -108,13 +108,14 @@ Color rampOf(const trace::AttributeSummary& summary, std::size_t n) {
 
 ObjectMaterial::ObjectMaterial(std::shared_ptr<const Brdf> brdf) {
     const Color albedo = reflectanceFactor(*brdf);
-    materials_.push_back({std::move(brdf), albedo});
+    const bool by_place = brdf->variesByPlace();
+    materials_.push_back({std::move(brdf), albedo, by_place});
 }
 
 ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
                                std::function<std::size_t(const glm::vec3&)> choose)
     : attribute_(attribute), choose_(std::move(choose)) {
-    for (const auto& brdf : brdfs) materials_.push_back({brdf, reflectanceFactor(*brdf)});
+    for (const auto& brdf : brdfs) materials_.push_back({brdf, reflectanceFactor(*brdf), brdf->variesByPlace()});
 }
 
 Color categoryColor(std::size_t n) {
@@ -145,7 +146,7 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
     const std::string& text = options.brdf.empty() ? scene_brdf : options.brdf;
     const std::shared_ptr<const Brdf> base = makeBrdf(text);
     std::vector<std::shared_ptr<const Brdf>> brdfs{base};
-    if (!options.each.empty()) {
+    if (!options.each.empty() && summary.kind != Kind::color) {
         if (summary.kind != Kind::integer)
             throw UsageError(
                 fmt::format("materials by {}: it holds no whole numbers; take tool, feature, layer or "
@@ -163,8 +164,16 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
                 }};
     }
     if (summary.kind == Kind::color) {
-        for (const glm::vec3& color : summary.colors)
-            brdfs.push_back(color == trace::kNoColor ? base : recolored(*base, bodyOf(color), text));
+        for (const auto& [key, brdf] : options.each)
+            if (!parseNamedColor(key))
+                throw UsageError(
+                    fmt::format("the material of {} '{}': that is no colour; write '#rrggbb'", options.by, key));
+        for (const glm::vec3& color : summary.colors) {
+            const auto given = options.each.find(hexOf(color));
+            brdfs.push_back(color == trace::kNoColor      ? base
+                            : given != options.each.end() ? std::shared_ptr<const Brdf>(makeBrdf(given->second))
+                                                          : recolored(*base, bodyOf(color), text));
+        }
         brdfs.push_back(recolored(*base, kNeutral, text));
         return {attribute, brdfs, [colors = summary.colors](const glm::vec3& v) {
                     const auto before = [](const glm::vec3& a, const glm::vec3& b) {
@@ -199,7 +208,7 @@ Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary&
     using Kind = trace::AttributeSummary::Kind;
     Legend legend;
     legend.title = options.by;
-    if (!options.each.empty()) {
+    if (!options.each.empty() && summary.kind != Kind::color) {
         for (const auto& [key, text] : options.each) {
             const int value = valueOf(key, options, summary);
             legend.entries.push_back({nameOf(value, options, summary),

@@ -22,13 +22,14 @@ struct MaterialOptions {
     std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: for values that are not in `each`
     std::string by;    ///< name of the attribute that selects; empty: one material
     std::map<std::string, std::string>
-        each;  ///< value, or its name -> see makeBrdf; empty: `brdf` in a palette's colors
+        each;  ///< value, its name, or "#rrggbb" of a color -> see makeBrdf; empty: `brdf` in a palette's colors
 };
 
 /// A BRDF and its color.
 struct Material {
     std::shared_ptr<const Brdf> brdf;
-    Color albedo{0.0f};  ///< its reflectanceFactor
+    Color albedo{0.0f};     ///< its reflectanceFactor
+    bool by_place = false;  ///< its variesByPlace
 };
 
 /// Immutable; shared by all threads.
@@ -58,10 +59,11 @@ private:
 };
 
 /// The material of `options` for an object whose attribute `options.by` has this number and summary.
-/// With `each`: those materials. Without: `brdf` (or `scene_brdf`) in other colors: those of the attribute itself if
-/// its values are colors, of a palette for up to 32 whole numbers (features have fixed colors), else of a ramp from the
-/// least value to the most, from blue over white to red if they are opposite; gray where a value is not finite. Throws
-/// UsageError: a BRDF without a body color (a table), a name that the attribute doesn't have.
+/// With `each`: those materials; of colors, the others are as without. Without: `brdf` (or `scene_brdf`) in other
+/// colors: those of the attribute itself if its values are colors, of a palette for up to 32 whole numbers (features
+/// have fixed colors), else of a ramp from the least value to the most, from blue over white to red if they are
+/// opposite; gray where a value is not finite. Throws UsageError: a BRDF without a body color (a table), a name that
+/// the attribute doesn't have.
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary);
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 
 namespace stratum::voxelize {
 namespace {
@@ -136,6 +137,13 @@ std::optional<Cut> momentOf(std::string_view text, const gcode::Toolpath& toolpa
     return Cut{named ? kKinds[unit] : Cut::Kind::minutes, *value, count};
 }
 
+// T numbers that print something.
+std::set<int> toolsOf(const gcode::Toolpath& toolpath) {
+    std::set<int> tools;
+    for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
+    return tools;
+}
+
 }  // namespace
 
 void parseLayers(std::string_view text, Selection& selection) {
@@ -194,6 +202,15 @@ void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpa
         fmt::format("--object {}: there is no such object; by number or name it is one of{}", name_or_number, list));
 }
 
+void chooseTool(std::uint8_t tool, const gcode::Toolpath& toolpath, Selection& selection) {
+    const std::set<int> tools = toolsOf(toolpath);
+    if (!tools.contains(tool))
+        throw UsageError(fmt::format("--tool {}: the print has no such tool; {} {}", tool,
+                                     tools.size() == 1 ? "all of it is by tool" : "its tools are",
+                                     fmt::join(tools, ", ")));
+    selection.tools.push_back(tool);
+}
+
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection) {
     std::vector<char> object_kept(toolpath.objects.size(), selection.objects.empty() ? 1 : 0);
     for (const std::uint16_t object : selection.objects) object_kept[object] = 1;
@@ -216,9 +233,10 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
         std::string names;
         for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
             if (present[f]) names += fmt::format(" {}", gcode::featureName(static_cast<gcode::Feature>(f)));
-        throw InputError(fmt::format(
-            "no bead is left by --layers, --features, --object and --tool; the print has layers 1 to {} and{}",
-            toolpath.layer_count, names));
+        throw InputError(
+            fmt::format("no bead is left by --layers, --features, --object and --tool; the print has layers 1 to {}, "
+                        "tools {} and{}",
+                        toolpath.layer_count, fmt::join(toolsOf(toolpath), ", "), names));
     }
     return beads;
 }

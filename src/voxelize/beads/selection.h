@@ -1,4 +1,4 @@
-// Selects the beads to be voxelized: layers, features, objects and partial prints.
+// Selects the beads to be voxelized: layers, features, objects, tools and partial prints.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -35,6 +35,9 @@ void parseFeatures(std::string_view text, Selection& selection);
 /// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 are
 /// beads without an object). Throws UsageError with the list of objects if there is none.
 void chooseObject(std::string_view name_or_number, const gcode::Toolpath& toolpath, Selection& selection);
+
+/// Adds the tool of that T number. Throws UsageError with the list of the print's tools if it prints nothing.
+void chooseTool(std::uint8_t tool, const gcode::Toolpath& toolpath, Selection& selection);
 
 /// Indices of the selected beads, ascending. Throws InputError, with a list of what the print has, if there are none.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);

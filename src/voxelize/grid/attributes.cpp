@@ -35,6 +35,28 @@ float linear(std::uint8_t srgb) {
     return kTable[srgb];
 }
 
+openvdb::Vec3f linearOf(const std::optional<gcode::Rgb>& srgb) {
+    if (!srgb) return openvdb::Vec3f(kGrey);
+    return {linear((*srgb)[0]), linear((*srgb)[1]), linear((*srgb)[2])};
+}
+
+// By bead. A mixing hot end may change its color in every layer, and a search through all changes for each voxel would
+// take longer than the voxels.
+std::vector<openvdb::Vec3f> colorsOfBeads(const gcode::Toolpath& toolpath) {
+    std::array<openvdb::Vec3f, 256> of_tool;
+    for (std::size_t tool = 0; tool < of_tool.size(); ++tool)
+        of_tool[tool] = linearOf(tool < toolpath.tool_colors.size() ? toolpath.tool_colors[tool] : std::nullopt);
+    std::vector<openvdb::Vec3f> colors;
+    colors.reserve(toolpath.beads.size());
+    auto change = toolpath.color_changes.begin();
+    for (std::size_t bead = 0; bead < toolpath.beads.size(); ++bead) {
+        for (; change != toolpath.color_changes.end() && change->first_bead <= bead; ++change)
+            of_tool[change->tool] = linearOf(change->color);
+        colors.push_back(of_tool[toolpath.runOf(toolpath.beads[bead]).tool]);
+    }
+    return colors;
+}
+
 // mm^2, of the bead's section.
 float areaOf(const gcode::Toolpath& toolpath, std::uint32_t index) {
     const gcode::Bead& bead = toolpath.beads[index];
@@ -112,6 +134,7 @@ BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const 
         for (const gcode::Bead& bead : toolpath.beads)
             width_.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
     }
+    if (wanted(Attribute::color) && !toolpath.color_changes.empty()) color_ = colorsOfBeads(toolpath);
     if (!wanted(Attribute::time)) return;
     start_.reserve(toolpath.beads.size());
     for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
@@ -149,9 +172,7 @@ float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
 }
 
 openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {
-    const std::optional<gcode::Rgb> srgb = gcode::colorOf(toolpath_, bead);
-    if (!srgb) return openvdb::Vec3f(kGrey);
-    return {linear((*srgb)[0]), linear((*srgb)[1]), linear((*srgb)[2])};
+    return color_.empty() ? linearOf(gcode::colorOf(toolpath_, bead)) : color_[bead];
 }
 
 std::vector<openvdb::GridBase::Ptr> makeAttributeGrids(const gcode::Toolpath& toolpath,

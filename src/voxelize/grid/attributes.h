@@ -53,6 +53,7 @@ private:
     std::vector<float> start_;  // by bead, seconds; only with Attribute::time
     std::vector<float> width_;  // by bead, mm; only with Attribute::width
     std::vector<float> overfill_;
+    std::vector<openvdb::Vec3f> color_;  // by bead; only with Attribute::color, if filaments change
 };
 
 /// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.

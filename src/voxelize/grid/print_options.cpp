@@ -14,7 +14,7 @@ Selection selectionOf(const PrintOptions& options, const gcode::Toolpath& toolpa
     if (!options.layers.empty()) parseLayers(options.layers, selection);
     if (!options.features.empty()) parseFeatures(options.features, selection);
     for (const std::string& object : options.objects) chooseObject(object, toolpath, selection);
-    selection.tools = options.tools;
+    for (const std::uint8_t tool : options.tools) chooseTool(tool, toolpath, selection);
     return selection;
 }
 

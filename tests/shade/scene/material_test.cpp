@@ -289,5 +289,23 @@ TEST(Material, LabelsAreNumbersAndNeverMix) {
     EXPECT_EQ(shade::labelsOf(render.aovs), (std::vector<shade::Label>{shade::Label::tool, shade::Label::layer}));
 }
 
+TEST(ObjectMaterial, AColorMayHaveAMaterialOfItsOwn) {
+    trace::AttributeSummary summary;
+    summary.kind = trace::AttributeSummary::Kind::color;
+    const glm::vec3 orange = shade::fromSrgb(0xff8000);
+    const glm::vec3 blue = shade::fromSrgb(0x0000ff);
+    summary.colors = {blue, orange};
+    shade::MaterialOptions options;
+    options.by = "color";
+    options.each = {{"#ff8000", "matte:0.9,0.3,0.02"}};
+    const auto material = shade::makeObjectMaterial(options, "", 0, summary);
+    const glm::vec3 up(0.0f, 0.0f, 1.0f);
+    EXPECT_EQ(material.of(orange).brdf->eval(up, up), shade::makeBrdf("matte:0.9,0.3,0.02")->eval(up, up));
+    EXPECT_NE(material.of(blue).brdf->eval(up, up), material.of(orange).brdf->eval(up, up));
+    EXPECT_EQ(shade::makeLegend(options, summary, material).entries.size(), 2u);
+    options.each = {{"orangish", "matte:0.9,0.3,0.02"}};
+    EXPECT_THROW((void)shade::makeObjectMaterial(options, "", 0, summary), UsageError);
+}
+
 }  // namespace
 }  // namespace stratum

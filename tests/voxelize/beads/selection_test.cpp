@@ -100,6 +100,29 @@ TEST(Selection, Tools) {
     EXPECT_THROW((void)selectBeads(toolpath, selection), InputError);
 }
 
+TEST(Selection, AnUnknownToolIsToldWhichThereAre) {
+    gcode::Toolpath toolpath = tenLayers();
+    for (std::size_t n = 0; n < 6; ++n) toolpath.runs[n].tool = 3;
+    Selection selection;
+    chooseTool(3, toolpath, selection);
+    EXPECT_EQ(selectBeads(toolpath, selection).size(), 6U);
+    try {
+        chooseTool(1, toolpath, selection);
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string_view(error.what()).find("--tool 1: the print has no such tool; its tools are 0, 3"),
+                  std::string_view::npos)
+            << error.what();
+    }
+    try {
+        chooseTool(1, tenLayers(), selection);
+        ADD_FAILURE();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string_view(error.what()).find("all of it is by tool 0"), std::string_view::npos)
+            << error.what();
+    }
+}
+
 TEST(Selection, AnUnknownObjectGetsTheList) {
     Selection selection;
     for (const char* bad : {"ship", "3", "-1", "", "boat "}) {

@@ -1,0 +1,73 @@
+#include "export/mesh/obj_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "export/mesh/chunk_writer.h"
+#include "export/mesh/face_groups.h"
+#include "export/mesh/linear_color.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <optional>
+#include <string>
+
+namespace stratum::exporter {
+namespace {
+
+void close(ChunkWriter& out, std::ofstream& stream, const std::filesystem::path& path) {
+    out.flush();
+    stream.close();
+    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+}
+
+void writeMtl(const SurfaceMesh& mesh, const AtomicFile& file) {
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    ChunkWriter out(stream);
+    out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
+    for (const MeshMaterial& material : mesh.materials) {
+        const auto linear = linearOf(material.color);
+        out.text(fmt::format(
+            "\nnewmtl {}\n# sRGB #{:02x}{:02x}{:02x}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.04 0.04 0.04\n"
+            "Ns 40\nillum 2\n",
+            material.name, material.color[0], material.color[1], material.color[2], linear[0], linear[1], linear[2]));
+    }
+    close(out, stream, file.destination());
+}
+
+void writeFaces(const SurfaceMesh& mesh, ChunkWriter& out) {
+    const FaceGroups groups(mesh);
+    for (std::size_t group = 0; group < groups.count(); ++group) {
+        if (groups.faces(group) == 0) continue;
+        if (!mesh.materials.empty()) out.text(fmt::format("usemtl {}\n", mesh.materials[group].name));
+        // Counted from 1.
+        groups.forEachFace(mesh, group, [&out](const SurfaceMesh::Face& face) {
+            out.text(fmt::format("f {} {} {}", face[0] + 1, face[1] + 1, face[2] + 1));
+            out.text(face[3] != SurfaceMesh::kNone ? fmt::format(" {}\n", face[3] + 1) : "\n");
+        });
+    }
+}
+
+}  // namespace
+
+std::filesystem::path mtlOf(std::filesystem::path obj) { return obj.replace_extension(".mtl"); }
+
+void writeObj(const SurfaceMesh& mesh, const std::filesystem::path& path) {
+    const bool materials = !mesh.materials.empty();
+    if (materials && isStandardOutput(path))
+        throw UsageError(fmt::format("-o {}: colours of an OBJ are in a .mtl beside it; name a file", path.string()));
+    AtomicFile file(path);
+    std::optional<AtomicFile> mtl;
+    if (materials) writeMtl(mesh, mtl.emplace(mtlOf(path)));
+    std::ofstream stream(file.temporary(), std::ios::binary);
+    ChunkWriter out(stream);
+    out.text(fmt::format("# by Stratum {}\n", STRATUM_VERSION));
+    if (materials) out.text(fmt::format("mtllib {}\n", mtlOf(path).filename().string()));
+    for (const openvdb::Vec3s& p : mesh.points) out.text(fmt::format("v {} {} {}\n", p[0], p[1], p[2]));
+    writeFaces(mesh, out);
+    close(out, stream, path);
+    if (mtl) mtl->commit();
+    file.commit();
+}
+
+}  // namespace stratum::exporter
