@@ -4,6 +4,7 @@
 #include "report/level_set/cell_surface.h"
 #include "voxelize/grid/cell_volume.h"
 #include "voxelize/grid/interpolation_bias.h"
+#include "voxelize/leaf/leaf_kernels.h"
 
 #include <algorithm>
 #include <array>
@@ -185,14 +186,7 @@ public:
     void addLeaf(std::size_t n, bool with_area, SolidSums& sums) {
         const LeafMap::CellPlaces places = map_.cellPlaces(n);
         map_.gather(places, s_, background_);
-        bool mixed = false;
-        for (int x = 0; x < 9; ++x)
-            for (int y = 0; y < 9; ++y) {
-                std::uint32_t bits = 0;
-                for (int z = 0; z < 9; ++z) bits |= (s_[x][y][z] < 0 ? 1U : 0U) << z;
-                negative_[x][y] = bits;
-                mixed = mixed || bits != negative_[0][0] || (bits != 0 && bits != 0x1ffU);
-            }
+        const bool mixed = findSigns(map_.leaf(n).buffer().data());
         if (mixed) voxelize::interpolationBias(s_, bias_);
         const openvdb::Coord origin = map_.leaf(n).origin();
         RowSums* rows = sums.rows.data() + (origin.z() - sums.first_row);
@@ -211,6 +205,26 @@ public:
     }
 
 private:
+    // Sets negative_; returns whether there are both signs. `own`: the leaf's samples, which s_ has, too.
+    bool findSigns(const float* own) {
+        std::uint64_t air[8];  // eight samples along z a byte
+        voxelize::maskFrom(own, 0.0F, air);
+        std::uint32_t all = 0x1ffU;
+        std::uint32_t any = 0;
+        for (int x = 0; x < 9; ++x)
+            for (int y = 0; y < 9; ++y) {
+                std::uint32_t bits = (s_[x][y][8] < 0 ? 1U : 0U) << 8;
+                if (x < 8 && y < 8)
+                    bits |= ~static_cast<std::uint32_t>(air[x] >> (8 * y)) & 0xffU;
+                else
+                    for (int z = 0; z < 8; ++z) bits |= (s_[x][y][z] < 0 ? 1U : 0U) << z;
+                negative_[x][y] = bits;
+                all &= bits;
+                any |= bits;
+            }
+        return any != 0 && all != 0x1ffU;
+    }
+
     void addColumn(int x, int y, bool with_area, RowSums* rows, ColumnSums& column, SolidSums& sums) {
         const auto& n = negative_;
         const std::uint32_t all = n[x][y] & n[x][y + 1] & n[x + 1][y] & n[x + 1][y + 1];
