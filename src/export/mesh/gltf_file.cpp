@@ -152,7 +152,7 @@ void writeGlb(const SurfaceMesh& mesh, const std::filesystem::path& path, const 
     }
     out.flush();
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 

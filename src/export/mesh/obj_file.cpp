@@ -18,7 +18,7 @@ namespace {
 void close(ChunkWriter& out, std::ofstream& stream, const std::filesystem::path& path) {
     out.flush();
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
 }
 
 void writeMtl(const SurfaceMesh& mesh, const AtomicFile& file) {

@@ -274,7 +274,7 @@ void write3mf(const SurfaceMesh& mesh, const std::filesystem::path& path, const 
     }
     zip_source_close(packed.get());
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 

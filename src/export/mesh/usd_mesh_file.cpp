@@ -125,7 +125,7 @@ void writeUsdMesh(const SurfaceMesh& mesh, const std::filesystem::path& path, co
     out.text("    }\n" + usdMaterials(mesh.materials, "/print") + "}\n");
     out.flush();
     stream.close();
-    if (!stream) throw OutputError(fmt::format("{}: can't be written; is the disk full?", path.string()));
+    if (!stream) throw writeError(path.string());
     file.commit();
 }
 
