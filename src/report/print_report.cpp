@@ -149,7 +149,7 @@ private:
         if (!o_.culled)
             outside = std::make_unique<Outside>(map, voxelize::exteriorClearance(lattice_) * unit, grid_.voxelSize()[0],
                                                 static_cast<double>(grid_.background()));
-        const SolidSums sums = sumSolid(map, grid_.background(), outside.get());
+        const SolidSums sums = sumSolid(map, grid_.background(), grid_.voxelSize()[0], outside.get());
         addVolume(sums);
         if (!o_.culled) addBalance(sums);
         addSlabs(stack, sums);

@@ -24,7 +24,8 @@ ENVIRONMENT = dict(os.environ, BLENDER_USER_SCRIPTS=os.path.join(FOLDER, "script
 
 
 # --- the zip: an add-on for Blender 3.4, an extension for 4.2 -----------------------------------------------------------
-ZIP, = glob.glob(os.path.join(os.path.dirname(BIN), "stratum_import-*.zip"))
+# A build folder may hold one of an older version, too.
+ZIP = max(glob.glob(os.path.join(os.path.dirname(BIN), "stratum_import-*.zip")), key=os.path.getmtime)
 with zipfile.ZipFile(ZIP) as archive:
     held = {name: archive.read(name) for name in archive.namelist()}
 source = {"stratum_import/" + name for name in os.listdir(ADDON) if name.endswith((".py", ".toml"))}

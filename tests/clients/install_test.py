@@ -92,7 +92,7 @@ for folder, _, names in os.walk(documents):
                 if re.match("https?:|mailto:|#", target):
                     continue
                 links += 1
-                check(os.path.exists(os.path.join(folder, target.split("#")[0])), f"{name}: {target}")
+                check(os.path.exists(os.path.join(folder, re.split("[?#]", target)[0])), f"{name}: {target}")
 check(links > 40, f"{links} links in the installed documents")
 
 # --- the Python module ------------------------------------------------------------------------------------------------

@@ -119,7 +119,7 @@ TEST(PrintReport, InertiaOfATube) {
 TEST(PrintReport, VolumeAtFewVoxelsALayer) {
     const Tube tube;
     const Tube usual{5, 0.45, 0.2, 12};
-    for (const auto& [one, voxels] : {std::pair{tube, 4}, {tube, 6}, {tube, 8}, {usual, 3}, {usual, 4}, {usual, 8}}) {
+    for (const auto& [one, voxels] : {std::pair{tube, 4}, {tube, 6}, {tube, 8}, {usual, 4}, {usual, 8}}) {
         const PrintReport report =
             reportOfAll(test::tube(one.radius, one.width, one.height, one.layers), layeredLattice(one.height, voxels));
         const double expected = one.layers * one.volumeOfLayer();

@@ -2,8 +2,8 @@
 
 #include "base/parallel_for.h"
 #include "report/level_set/cell_surface.h"
+#include "report/level_set/interpolation_bias.h"
 #include "voxelize/grid/cell_volume.h"
-#include "voxelize/grid/interpolation_bias.h"
 #include "voxelize/leaf/leaf_kernels.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ struct ColumnSums {
 
 // Volume and first moments about its corner of what is below `level` of a cell, by four lines along z through a cell,
 // on the places of a Gauss rule: the field is linear on each.
-Four partOf(const voxelize::CellSamples& s, int x, int y, int z, float level) {
+Four partOf(const CellSamples& s, int x, int y, int z, float level) {
     constexpr float kLow = 0.21132486540518713F;
     constexpr float kHigh = 0.78867513459481287F;
     constexpr Four kU = {kLow, kLow, kHigh, kHigh};
@@ -179,15 +179,15 @@ Shares sharesOf(const AirRows& air, const std::uint32_t (&negative)[9][9], int x
 
 class Sweep {
 public:
-    Sweep(const LeafMap& map, float background, const Outside* outside)
-        : map_(map), background_(background), outside_(outside) {}
+    Sweep(const LeafMap& map, float background, double voxel, const Outside* outside)
+        : map_(map), background_(background), voxel_(voxel), outside_(outside) {}
 
     // Adds the leaf's cells to the sums of a part.
     void addLeaf(std::size_t n, bool with_area, SolidSums& sums) {
         const LeafMap::CellPlaces places = map_.cellPlaces(n);
         map_.gather(places, s_, background_);
         const bool mixed = findSigns(map_.leaf(n).buffer().data());
-        if (mixed) voxelize::interpolationBias(s_, bias_);
+        if (mixed) interpolationBias(s_, voxel_, bias_);
         const openvdb::Coord origin = map_.leaf(n).origin();
         RowSums* rows = sums.rows.data() + (origin.z() - sums.first_row);
         air_ = nullptr;
@@ -281,10 +281,11 @@ private:
 
     const LeafMap& map_;
     const float background_;
+    const double voxel_;
     const Outside* const outside_;
     const AirRows* air_ = nullptr;
-    voxelize::CellSamples s_;
-    voxelize::CellNumbers bias_;
+    CellSamples s_;
+    CellNumbers bias_;
     std::uint32_t negative_[9][9];
 };
 
@@ -327,7 +328,7 @@ void add(const SolidSums& part, SolidSums& sums) {
 
 }  // namespace
 
-SolidSums sumSolid(const LeafMap& map, float background, const Outside* outside) {
+SolidSums sumSolid(const LeafMap& map, float background, double voxel, const Outside* outside) {
     SolidSums sums;
     const std::size_t leaves = map.leafCount();
     if (leaves == 0) return sums;
@@ -345,7 +346,7 @@ SolidSums sumSolid(const LeafMap& map, float background, const Outside* outside)
             SolidSums& part = parts[p];
             part.first_row = sums.first_row;
             part.rows.resize(sums.rows.size());
-            Sweep sweep(map, background, outside);
+            Sweep sweep(map, background, voxel, outside);
             // By leaves, for their number says how long it takes; and by the columns that begin there.
             const std::size_t first = leaves * p / parts.size();
             const std::size_t last = leaves * (p + 1) / parts.size();

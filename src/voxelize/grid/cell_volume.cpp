@@ -11,7 +11,7 @@ double insideLength(double low, double high) {
 }
 
 // Share of a cell that is inside: the field is linear along z, so exact on each of the four lines of a Gauss rule.
-double insideShare(const LeafSamples& leaf, int x, int y, int z, double level) {
+double insideShare(const LeafSamples& leaf, int x, int y, int z) {
     const auto& s = leaf.v;
     constexpr double kGauss[2] = {0.21132486540518713, 0.78867513459481287};
     double sum = 0;
@@ -20,7 +20,7 @@ double insideShare(const LeafSamples& leaf, int x, int y, int z, double level) {
             const auto at = [&](int k) {
                 const double a = s[x][y][k] + u * (static_cast<double>(s[x + 1][y][k]) - s[x][y][k]);
                 const double b = s[x][y + 1][k] + u * (static_cast<double>(s[x + 1][y + 1][k]) - s[x][y + 1][k]);
-                return a + v * (b - a) - level;
+                return a + v * (b - a);
             };
             sum += insideLength(at(z), at(z + 1));
         }
@@ -39,8 +39,6 @@ double insideCells(const LeafSamples& leaf, int edge) {
             for (int z = 0; z < LeafSamples::kEdge; ++z) bits |= (s[x][y][z] < 0 ? 1U : 0U) << z;
             negative[x][y] = bits;
         }
-    CellNumbers bias;
-    bool biased = false;
     double sum = 0;
     for (int x = 0; x < edge; ++x)
         for (int y = 0; y < edge; ++y) {
@@ -48,15 +46,8 @@ double insideCells(const LeafSamples& leaf, int edge) {
             const std::uint32_t any = negative[x][y] | negative[x][y + 1] | negative[x + 1][y] | negative[x + 1][y + 1];
             const std::uint32_t solid = all & all >> 1 & 0xffU;
             sum += std::popcount(solid);
-            std::uint32_t mixed = (any | any >> 1) & ~solid & 0xffU;
-            if (mixed != 0 && !biased) {
-                interpolationBias(s, bias, edge);
-                biased = true;
-            }
-            for (; mixed != 0; mixed &= mixed - 1) {
-                const int z = std::countr_zero(mixed);
-                sum += insideShare(leaf, x, y, z, static_cast<double>(bias[x][y][z]));
-            }
+            for (std::uint32_t mixed = (any | any >> 1) & ~solid & 0xffU; mixed != 0; mixed &= mixed - 1)
+                sum += insideShare(leaf, x, y, std::countr_zero(mixed));
         }
     return sum;
 }

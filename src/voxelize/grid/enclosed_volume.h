@@ -8,9 +8,9 @@
 
 namespace stratum::voxelize {
 
-/// Volume of what is solid, world units cubed. Values inside need not be distances: a cell of eight negative samples is
-/// solid; the share of a mixed one is found on four lines along z, from the crossings of what interpolation adds to the
-/// field (interpolation_bias.h). Half-widths of 2 voxels or more. In grids with more leaves than
+/// Volume where the trilinear field is negative, world units cubed. Only signs and zero crossings are used, because
+/// values inside need not be distances: a cell of eight negative samples is solid; the share of a mixed one is found
+/// from the zero crossings of four lines along z. Half-widths of 2 voxels or more. In grids with more leaves than
 /// `most_leaves`, a sample of about that many, chosen by a hash of their number, is used. Parallel; the same value for
 /// any number of threads.
 double enclosedVolume(const openvdb::FloatGrid& grid,

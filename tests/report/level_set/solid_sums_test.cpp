@@ -18,10 +18,10 @@ TEST(SolidSums, OfASphereOffTheOrigin) {
     const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(20, middle, 1);
     const LeafMap map(*sphere);
     const Outside outside(map, 0.5, 1, 3);
-    const SolidSums sums = sumSolid(map, sphere->background(), &outside);
+    const SolidSums sums = sumSolid(map, sphere->background(), 1, &outside);
     const double volume = 4.0 / 3 * std::numbers::pi * 8000;
     EXPECT_NEAR(sums.volume, volume, 2e-4 * volume);
-    EXPECT_NEAR(sums.volume, voxelize::enclosedVolume(*sphere), 1e-5 * volume);
+    EXPECT_NEAR(sums.volume, voxelize::enclosedVolume(*sphere), 2e-3 * volume);
     double rows = 0;
     for (const RowSums& row : sums.rows) {
         rows += row.solid;
@@ -64,7 +64,7 @@ TEST(SolidSums, OfALargeBoxWithTiles) {
     const LeafMap map(grid);
     EXPECT_LT(map.leafCount(), 15U * 15 * 15 - 500);
     const Outside outside(map, 0.5, 1, 3);
-    const SolidSums sums = sumSolid(map, 3, &outside);
+    const SolidSums sums = sumSolid(map, 3, 1, &outside);
     EXPECT_NEAR(sums.volume, 1e6, 300);
     EXPECT_NEAR(sums.first[0] / sums.volume, 0.5, 1e-3);
     EXPECT_NEAR(sums.second[0] / sums.volume - 0.25, 10000.0 / 12, 1);

@@ -33,15 +33,16 @@ TEST(EnclosedVolume, OfOneBead) {
     const double ends = std::numbers::pi * c * c * 2 * r +
                         std::numbers::pi * r * r / 2 * 2 * std::numbers::pi * (c + 4 * r / (3 * std::numbers::pi));
     const double exact = 40 * gcode::sectionArea(3, 2) + ends;
-    EXPECT_NEAR(enclosedVolume(*grid), exact, 4e-4 * exact);
+    EXPECT_NEAR(enclosedVolume(*grid), exact, 1e-3 * exact);
 }
 
 TEST(EnclosedVolume, OfASphereInAnyTransform) {
     const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(10, openvdb::Vec3f(0.3F), 0.5F);
     const double exact = 4000.0 / 3 * std::numbers::pi;
-    EXPECT_NEAR(enclosedVolume(*sphere), exact, 5e-4 * exact);
+    // Trilinear cells cut a convex surface a little short: by h^2 / r^2 and less.
+    EXPECT_NEAR(enclosedVolume(*sphere), exact, 2.5e-3 * exact);
     sphere->transform().postScale(openvdb::Vec3d(2, 3, 0.5));
-    EXPECT_NEAR(enclosedVolume(*sphere), 3 * exact, 5e-4 * 3 * exact);
+    EXPECT_NEAR(enclosedVolume(*sphere), 3 * exact, 2.5e-3 * 3 * exact);
 }
 
 // Inside, near the planes where layers touch, values are small: they say nothing about how much of a voxel is solid.

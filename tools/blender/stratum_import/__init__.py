@@ -17,7 +17,7 @@ from .settings import ENDINGS, ImportSettings, recall, remember
 bl_info = {
     "name": "Stratum: G-code as printed",
     "author": "The Stratum developers",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "File > Import > G-code as printed",
     "description": "Sliced prints as they come out, every bead and layer line",

@@ -1,4 +1,4 @@
-#include "voxelize/grid/interpolation_bias.h"
+#include "report/level_set/interpolation_bias.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-namespace stratum::voxelize {
+namespace stratum::report {
 namespace {
 
 using Field = std::function<double(double, double, double)>;
@@ -44,7 +44,7 @@ TEST(InterpolationBias, IsExactForQuadraticFields) {
     CellSamples samples;
     sample(field, samples);
     CellNumbers bias;
-    interpolationBias(samples, bias);
+    interpolationBias(samples, 2, bias);
     for (int x = 0; x < 8; ++x)
         for (int y = 0; y < 8; ++y)
             for (int z = 0; z < 8; ++z)
@@ -59,7 +59,7 @@ TEST(InterpolationBias, TakesNoDifferenceAcrossACrease) {
     CellSamples samples;
     sample(field, samples);
     CellNumbers bias;
-    interpolationBias(samples, bias);
+    interpolationBias(samples, 2, bias);
     for (int x = 0; x < 8; ++x)
         for (int z = 0; z < 8; ++z)
             // Radii from 3 to 11 voxels.
@@ -73,11 +73,11 @@ TEST(InterpolationBias, ReadsNothingBeyondItsCells) {
     for (int a = 0; a < 9; ++a)
         for (int z = 0; z < 9; ++z) samples[8][a][z] = samples[a][8][z] = std::numeric_limits<float>::quiet_NaN();
     CellNumbers bias;
-    interpolationBias(samples, bias, 7);
+    interpolationBias(samples, 20, bias, 7);
     for (int x = 0; x < 7; ++x)
         for (int y = 0; y < 7; ++y)
             for (int z = 0; z < 8; ++z) ASSERT_NEAR(double(bias[x][y][z]), 6.0 / 12, 2e-6);
 }
 
 }  // namespace
-}  // namespace stratum::voxelize
+}  // namespace stratum::report

@@ -1,19 +1,28 @@
-#include "voxelize/grid/interpolation_bias.h"
+#include "report/level_set/interpolation_bias.h"
 
+#include <algorithm>
 #include <cmath>
 
-namespace stratum::voxelize {
+namespace stratum::report {
 namespace {
 
 constexpr float kShare = 1.0F / 48;  // a twelfth, of the mean over four edges
 
-float smaller(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
+// Of a round side whose radius is two voxels, voxels. What bends more is a corner that samples don't resolve.
+constexpr float kMost = 0.39F;
+
+// The smaller of two sums over four edges, if it is at most `most`.
+float chosen(float a, float b, float most) {
+    const float size = std::min(std::abs(a), std::abs(b));
+    const float smaller = std::abs(a) < std::abs(b) ? a : b;
+    return size < most ? kShare * smaller : 0.0F;
+}
 
 // Each of these sets or adds the part of one axis: samples are summed over the four edges of a cell along that axis,
 // then second differences are taken at the inner sample planes. The inner loops go along z, so that the compiler makes
 // vectors.
 
-void setAlongX(const CellSamples& s, int edge, CellNumbers& bias) {
+void setAlongX(const CellSamples& s, int edge, float most, CellNumbers& bias) {
     float sums[9][8];
     float second[9][8];  // of one y
     for (int y = 0; y < edge; ++y) {
@@ -25,12 +34,12 @@ void setAlongX(const CellSamples& s, int edge, CellNumbers& bias) {
         for (int x = 0; x < edge; ++x) {
             const float(&low)[8] = second[x == 0 ? 1 : x];
             const float(&high)[8] = second[x == edge - 1 ? x : x + 1];
-            for (int z = 0; z < 8; ++z) bias[x][y][z] = kShare * smaller(low[z], high[z]);
+            for (int z = 0; z < 8; ++z) bias[x][y][z] = chosen(low[z], high[z], most);
         }
     }
 }
 
-void addAlongY(const CellSamples& s, int edge, CellNumbers& bias) {
+void addAlongY(const CellSamples& s, int edge, float most, CellNumbers& bias) {
     float sums[9][8];
     float second[9][8];  // of one x
     for (int x = 0; x < edge; ++x) {
@@ -42,12 +51,12 @@ void addAlongY(const CellSamples& s, int edge, CellNumbers& bias) {
         for (int y = 0; y < edge; ++y) {
             const float(&low)[8] = second[y == 0 ? 1 : y];
             const float(&high)[8] = second[y == edge - 1 ? y : y + 1];
-            for (int z = 0; z < 8; ++z) bias[x][y][z] += kShare * smaller(low[z], high[z]);
+            for (int z = 0; z < 8; ++z) bias[x][y][z] += chosen(low[z], high[z], most);
         }
     }
 }
 
-void addAlongZ(const CellSamples& s, int edge, CellNumbers& bias) {
+void addAlongZ(const CellSamples& s, int edge, float most, CellNumbers& bias) {
     for (int x = 0; x < edge; ++x)
         for (int y = 0; y < edge; ++y) {
             float sums[9];
@@ -56,16 +65,17 @@ void addAlongZ(const CellSamples& s, int edge, CellNumbers& bias) {
             for (int z = 1; z < 8; ++z) second[z] = sums[z - 1] - 2 * sums[z] + sums[z + 1];
             second[0] = second[1];
             second[8] = second[7];
-            for (int z = 0; z < 8; ++z) bias[x][y][z] += kShare * smaller(second[z], second[z + 1]);
+            for (int z = 0; z < 8; ++z) bias[x][y][z] += chosen(second[z], second[z + 1], most);
         }
 }
 
 }  // namespace
 
-void interpolationBias(const CellSamples& samples, CellNumbers& bias, int edge) {
-    setAlongX(samples, edge, bias);
-    addAlongY(samples, edge, bias);
-    addAlongZ(samples, edge, bias);
+void interpolationBias(const CellSamples& samples, double voxel, CellNumbers& bias, int edge) {
+    const float most = 4 * kMost * static_cast<float>(voxel);
+    setAlongX(samples, edge, most, bias);
+    addAlongY(samples, edge, most, bias);
+    addAlongZ(samples, edge, most, bias);
 }
 
-}  // namespace stratum::voxelize
+}  // namespace stratum::report
