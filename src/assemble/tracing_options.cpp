@@ -30,7 +30,8 @@ bool showsMaterial(const shade::RenderOptions& render) {
 
 TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderOptions& render,
                           TracingOptions options) {
-    options.brdf = scene.brdf;
+    // The default material has tables, which take longer to make than some pictures; nobody looks at it there.
+    options.brdf = scene.brdf.empty() && !showsMaterial(render) ? "lambert:1,1,1" : scene.brdf;
     options.file_colors = scene.brdf.empty() && scene.color_by.empty() && showsMaterial(render);
     options.color_by = scene.color_by;
     options.smooth_normals = scene.smooth_normals;

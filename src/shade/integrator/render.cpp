@@ -71,8 +71,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     TileWorker makeWorker() const {
-        return {
-            print_.makeTracer(), Sampler(options_.seed, static_cast<std::uint32_t>(options_.spp)), {}, {}, {}, {}, {}};
+        return {print_.makeTracer(), Sampler(options_.seed, static_cast<std::uint32_t>(options_.spp))};
     }
     void sample(Tile& tile, int target, TileWorker& worker) const {
         tile.sample(target, scene_.camera, *integrator_, recorder_, filter_, worker);

@@ -10,6 +10,17 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::size_t kStream = 4096;  // samples at a time: enough to fill vectors, few enough for the cache
+constexpr int kBlock = 4;              // pixels a side: as many rays as a vector or a packet has lanes
+
+// The pixels of a box in blocks, so that rays which are traced together go the same way. Numbers are row by row.
+void orderPixels(const PixelBox& box, std::vector<std::uint32_t>& order) {
+    order.clear();
+    for (int by = 0; by < box.height(); by += kBlock)
+        for (int bx = 0; bx < box.width(); bx += kBlock)
+            for (int y = by; y < std::min(by + kBlock, box.height()); ++y)
+                for (int x = bx; x < std::min(bx + kBlock, box.width()); ++x)
+                    order.push_back(static_cast<std::uint32_t>(y * box.width() + x));
+}
 
 }  // namespace
 
@@ -37,6 +48,7 @@ Tile::Tile(const PixelBox& box, const AovRecorder& recorder, int first)
 void Tile::sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                   const PixelFilter& filter, TileWorker& worker) {
     // The integrator gets the samples in streams, pixel by pixel; they are summed in that order.
+    orderPixels(box_, worker.order);
     const auto each = static_cast<std::size_t>(target - end_);
     const std::size_t most = std::min(kStream, sums_.pixels() * each);
     worker.positions.resize(most);
@@ -45,7 +57,7 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
     worker.points.resize(most);
     worker.pixels.resize(most);
     std::size_t waiting = 0;
-    std::size_t pixel = 0;  // the pixel being summed
+    std::size_t pixel = 0;  // the place in that order of the pixel being summed
     std::size_t taken = 0;  // its samples so far
     const auto flush = [&] {
         primaryRays(camera, filter, std::span(worker.positions).first(waiting),
@@ -54,23 +66,24 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
                                   *worker.tracer, rays_, std::span(worker.points).first(waiting),
                                   std::span(worker.pixels).first(waiting));
         for (std::size_t n = 0; n < waiting; ++n) {
-            sums_.add(pixel, worker.pixels[n], recorder, worker.points[n], worker.rays[n].direction);
+            sums_.add(worker.order[pixel], worker.pixels[n], recorder, worker.points[n], worker.rays[n].direction);
             if (++taken < each) continue;
             taken = 0;
             ++pixel;
         }
         waiting = 0;
     };
-    for (int y = box_.y0; y < box_.y1; ++y)
-        for (int x = box_.x0; x < box_.x1; ++x) {
-            Sampler sampler = worker.sampler;
-            sampler.start(x, y, static_cast<std::uint32_t>(end_));
-            for (int s = end_; s < target; ++s, sampler.startNext()) {
-                worker.samplers[waiting] = sampler;
-                worker.positions[waiting] = {x, y};
-                if (++waiting == kStream) flush();
-            }
+    for (const std::uint32_t number : worker.order) {
+        const glm::ivec2 at(box_.x0 + static_cast<int>(number) % box_.width(),
+                            box_.y0 + static_cast<int>(number) / box_.width());
+        Sampler sampler = worker.sampler;
+        sampler.start(at.x, at.y, static_cast<std::uint32_t>(end_));
+        for (int s = end_; s < target; ++s, sampler.startNext()) {
+            worker.samplers[waiting] = sampler;
+            worker.positions[waiting] = at;
+            if (++waiting == kStream) flush();
         }
+    }
     flush();
     end_ = target;
 }

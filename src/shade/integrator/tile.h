@@ -19,13 +19,14 @@ constexpr int kTile = 32;
 /// State of one thread.
 struct TileWorker {
     std::unique_ptr<trace::Tracer> tracer;
-    Sampler sampler;  // copied for every sample
+    Sampler sampler;                     // copied for every sample
+    std::vector<std::uint32_t> order{};  // of a tile's pixels, by number
     // The current stream of samples.
-    std::vector<glm::ivec2> positions;  // pixels
-    std::vector<trace::Ray> rays;
-    std::vector<Sampler> samplers;
-    std::vector<SurfacePoint> points;  // first hits
-    std::vector<Pixel> pixels;
+    std::vector<glm::ivec2> positions{};  // pixels
+    std::vector<trace::Ray> rays{};
+    std::vector<Sampler> samplers{};
+    std::vector<SurfacePoint> points{};  // first hits
+    std::vector<Pixel> pixels{};
 };
 
 /// The sums of a tile's samples. Adding samples [0, 8) and then [8, 16) gives the same bits as [0, 16) at once, on any

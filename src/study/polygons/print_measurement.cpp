@@ -172,14 +172,16 @@ std::vector<std::string> measurePrint(const std::string& path, const Representat
     settle(held);
     const shade::SceneDescription scene = sceneOf(print, *held.traced.intersector, shot);
     shade::RenderResult result;
-    const auto look = [&] { result = shade::render(*held.traced.intersector, scene, optionsOf(shot, shot.spp)); };
-    Times render = timesOf(look);
+    Times render = timesOf([&] { result = shade::render(*held.traced.intersector, scene, optionsOf(shot, shot.spp)); });
     if (held.field) {
-        // Bricks are made while the picture is: what it takes more than the same picture again. The sum of both stays
-        // what the first one took.
+        // Bricks are made while the picture is: what it takes more than the same picture again, told from fewer
+        // samples. The sum of both stays what the first one took.
         held.traced.primitives = held.field->leavesMade() * 512;
-        const Times again = timesOf(look);
-        const Times making{std::max(0.0, render.wall - again.wall), std::max(0.0, render.cpu - again.cpu)};
+        const int fewer = std::max(1, shot.spp / 4);
+        const Times again = timesOf([&] { shade::render(*held.traced.intersector, scene, optionsOf(shot, fewer)); });
+        const double times = static_cast<double>(shot.spp) / fewer;
+        const Times making{std::max(0.0, render.wall - times * again.wall),
+                           std::max(0.0, render.cpu - times * again.cpu)};
         held.build = {held.build.wall + making.wall, held.build.cpu + making.cpu};
         render = {render.wall - making.wall, render.cpu - making.cpu};
     }
