@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace stratum::ondemand {
@@ -20,6 +21,21 @@ double lap(Clock::time_point& last) {
     const double seconds = std::chrono::duration<double>(now - last).count();
     last = now;
     return seconds;
+}
+
+// Distances to beads change by at most the way, and so does their least one. Around it there is no more than the gap
+// that a weld closes and rounding. Filled grooves, ends that widen and helices have other fields.
+double signSlackOf(const PrintLayout& layout) {
+    const gcode::Toolpath& toolpath = *layout.toolpath;
+    const auto other = [&toolpath](const gcode::Bead& bead) {
+        return gcode::widening(toolpath, bead) != 0 || (voxelize::curved(toolpath, bead) && bead.z0 != bead.z1);
+    };
+    if (toolpath.deposit.settles() || std::any_of(toolpath.beads.begin(), toolpath.beads.end(), other))
+        return std::numeric_limits<double>::infinity();
+    double thickest = 0;
+    for (const voxelize::Layer& layer : layout.stack.layers) thickest = std::max(thickest, 2 * layer.halfHeight());
+    constexpr double kRounding = 0.01;  // of a voxel
+    return (voxelize::kWeldGap * thickest + kRounding * layout.lattice.voxel_size) * layout.unit;
 }
 
 struct Worker {
@@ -40,6 +56,7 @@ PrintField::PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::spa
     : transform_(voxelize::makeTransform(lattice, placement)),
       layout_(std::move(toolpath), selection, lattice, placement.unit),
       background_(static_cast<float>(lattice.background() * placement.unit)),
+      sign_slack_(signSlackOf(layout_)),
       name_(std::move(name)),
       threads_(std::make_unique<Threads>(layout_)) {
     auto last = start_;

@@ -45,6 +45,7 @@ public:
     bool shows(std::size_t macro) const override { return map_.first_bead[macro] < end_; }
     bool samples(const openvdb::Coord& origin, march::FieldSamples& out) const override;
     float background() const override { return background_; }
+    double signSlack() const override { return sign_slack_; }
     const openvdb::math::Transform& transform() const override { return *transform_; }
     openvdb::CoordBBox activeBox() const override { return active_; }
     std::string name() const override { return name_; }
@@ -63,6 +64,7 @@ private:
     PrintFieldTimes times_;
     const PrintLayout layout_;
     const float background_;
+    const double sign_slack_;
     const std::string name_;
     openvdb::CoordBBox active_;
     PrintMap map_;

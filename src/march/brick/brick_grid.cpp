@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "march/brick/neighbor_signs.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -63,7 +64,8 @@ public:
         : grid_(grid),
           source_(nullptr),
           field_(std::move(field)),
-          scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))) {}
+          scale_(static_cast<float>(1 / quantumOf(field_->background(), grid.values_))),
+          neighbors_(*field_, quantumOf(field_->background(), grid.values_)) {}
 
     // The mutex to lock while laying out a brick. Two bricks rarely share one.
     std::mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
@@ -101,8 +103,10 @@ private:
             if (slot == 0) return false;  // another thread took the last slot
             march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
         }
-        for (std::size_t part = 0; part < surface.size(); ++part)
-            std::atomic_ref(grid_.clear_[brick][part]).store(~surface[part], std::memory_order_relaxed);
+        const std::size_t bits = grid_.bitsBySlot() ? bitsOfSlot(slot) : brick;
+        if (bits != kNoSurface || !grid_.bitsBySlot())
+            for (std::size_t part = 0; part < surface.size(); ++part)
+                std::atomic_ref(grid_.clear_[bits][part]).store(~surface[part], std::memory_order_relaxed);
         grid_.slots_.publish(brick, slot);
         return true;
     }
@@ -137,21 +141,31 @@ private:
     }
 
     template <typename T>
+    BrickParts<T> partsOfField(int x, int y, int z, LeafCache<T>& cache) const {
+        BrickParts<T> parts;
+        const T outside = march::convert(field_->background(), scale_, T{});
+        parts.tile.fill(outside);
+        parts.cap_tile.fill(outside);
+        const auto take = [&](std::size_t part) {
+            const auto* made = madeAt(x + static_cast<int>(part >> 1), y + static_cast<int>(part & 1), z, cache);
+            if (made == nullptr) return;
+            parts.leaf[part] = &made->samples;
+            parts.cap[part] = Cap<T>(made->above);
+        };
+        take(0);
+        neighbors_.assume(parts);
+        for (std::size_t part = 1; part < parts.leaf.size(); ++part)
+            if (!parts.assumed[part]) take(part);
+        return parts;
+    }
+
+    template <typename T>
     BrickParts<T> partsOf(int x, int y, int z, LeafCache<T>& cache) const {
+        if (field_) return partsOfField(x, y, z, cache);
         BrickParts<T> parts;
         for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
             const int px = x + static_cast<int>(part >> 1);
             const int py = y + static_cast<int>(part & 1);
-            if (field_) {
-                const auto* made = madeAt(px, py, z, cache);
-                if (made != nullptr) {
-                    parts.leaf[part] = &made->samples;
-                    parts.cap[part] = Cap<T>(made->above);
-                } else {
-                    parts.tile[part] = parts.cap_tile[part] = march::convert(field_->background(), scale_, T{});
-                }
-                continue;
-            }
             parts.leaf[part] = leafAt(px, py, z, cache);
             if (parts.leaf[part] == nullptr) parts.tile[part] = tileAt(px, py, z, T{});
             if (const auto* next = leafAt(px, py, z + 1, cache))
@@ -223,6 +237,7 @@ private:
     const std::vector<std::uint32_t> leaves_;  // of the source, one a brick
     const std::shared_ptr<const LeafField> field_;
     const float scale_;
+    const NeighborSigns neighbors_;  // of a field
     mutable std::array<std::mutex, 64> doors_;
     mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
     mutable tbb::enumerable_thread_specific<LeafCache<std::int16_t>> quanta_caches_;
@@ -301,7 +316,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
             if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
             const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
             slots_.forget(brick);
-            clear_[brick] = {};
+            if (!bitsBySlot()) clear_[brick] = {};
         }
     for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = field.shows(n) ? map.masks[n] : 0;
     measureEmptySpace();
@@ -373,9 +388,6 @@ void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
         first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
     listed_ = first;
-    // A picture writes few of them in a lazy grid.
-    using Pages = HugeArray<CellBits>::Pages;
-    clear_ = HugeArray<CellBits>(listed_, lazy ? Pages::small : Pages::huge);
     // Address space for all bricks, of which only the used part is ever touched, or for as many as the bound allows.
     std::size_t bricks = listed_;
     if (lazy) {
@@ -387,6 +399,11 @@ void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
                 "give {} bytes or more",
                 cache_bytes, bricks, brickBytes(), BrickSlots::kLeastBound, BrickSlots::kLeastBound * brickBytes()));
     }
+    // By brick, a picture writes few and scattered ones.
+    using Pages = HugeArray<CellBits>::Pages;
+    const bool by_slot = lazy && !slots_.bounded();
+    clear_ = HugeArray<CellBits>(listed_ + (by_slot ? kFirstSlot : 0), lazy && !by_slot ? Pages::small : Pages::huge);
+    if (by_slot) clear_[kNoSurface].fill(~std::uint64_t{0});
     const std::size_t samples = bricks * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
         floats_ = HugeArray<float>(samples);
@@ -427,8 +444,8 @@ void BrickGrid::measureEmptySpace() {
 }
 
 std::size_t BrickGrid::bytes() const {
-    return macro_cells_.size() * sizeof(MacroCell) + listed_ * sizeof(CellBits) + slots_.bytes() +
-           brickCount() * brickBytes();
+    return macro_cells_.size() * sizeof(MacroCell) + (bitsBySlot() ? brickCount() : listed_) * sizeof(CellBits) +
+           slots_.bytes() + brickCount() * brickBytes();
 }
 
 }  // namespace stratum::march

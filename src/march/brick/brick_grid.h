@@ -112,7 +112,7 @@ public:
 
     /// The surface cells among 4^3 of a brick's, `part` = x << 2 | y << 1 | z; all, before it is laid out.
     std::uint64_t surface(std::size_t brick, std::size_t part) const {
-        return ~std::atomic_ref(clear_.data()[brick][part]).load(std::memory_order_relaxed);
+        return ~std::atomic_ref(clear_.data()[bitsOf(brick)][part]).load(std::memory_order_relaxed);
     }
     /// The same after ensureBrick() of the brick that contains `cell`; waits for a free slot.
     std::uint64_t ensureSurface(std::size_t brick, std::size_t part, const glm::ivec3& cell) const;
@@ -131,8 +131,14 @@ public:
 
     /// The same data as arrays, for vector code.
     const MacroCell* macroCells() const { return macro_cells_.data(); }
-    /// Complements of the surface cells.
+    /// Complements of the surface cells, by brick; or by slot, see bitsBySlot().
     const CellBits* clearCells() const { return clear_.data(); }
+    /// In a lazy grid without a bound, bits are beside the samples: memory is touched for bricks that are laid out, not
+    /// for all that are listed. Evicted bricks keep their bits, so a grid with a bound has them by brick.
+    bool bitsBySlot() const { return lazy() && !slots_.bounded(); }
+    /// Where clearCells() by slot are of bricks that aren't laid out (none is clear), of those without surface, and of
+    /// the first slot.
+    static constexpr std::size_t kNotLaidOut = 0, kNoSurface = 1, kFirstSlot = 2;
     /// Of a lazy grid: each brick's slot, BrickSlots::table(). In an eager grid samples are in the order of the bricks.
     const std::uint32_t* slots() const { return slots_.table(); }
 
@@ -153,6 +159,10 @@ public:
 private:
     class Layouter;
 
+    std::size_t bitsOf(std::size_t brick) const { return bitsBySlot() ? bitsOfSlot(slots_.of(brick)) : brick; }
+    static std::size_t bitsOfSlot(std::uint32_t slot) {
+        return slot == 0 ? kNotLaidOut : slot == BrickSlots::kNoSamples ? kNoSurface : slot - 1 + kFirstSlot;
+    }
     std::size_t macroIndex(int x, int y, int z) const {
         return (static_cast<std::size_t>(x) * static_cast<std::size_t>(macros_[1]) + static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(macros_[2]) +

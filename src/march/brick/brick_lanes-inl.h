@@ -48,6 +48,7 @@ public:
           blocked_(blocked),
           lazy_(grid.lazy()),
           bounded_(grid.cache().bounded()),
+          by_slot_(grid.bitsBySlot()),
           cache_(grid.cache()),
           reading_(cache_),
           corners_(grid),
@@ -170,11 +171,19 @@ private:
         // Lanes without a brick read the first one's mask and ignore it.
         const VI brick = hn::ShiftLeft<3>(hn::And(first, whole(0xffffffff)) + rank);
         const VI part = hn::IfThenElseZero(has_brick, brick + half);
+        VI word = part;
+        if (by_slot_) {
+            const VI slot = slotsOf(hn::ShiftRight<3>(part));
+            std::atomic_signal_fence(std::memory_order_acquire);  // its bits are read later
+            word = wordOf(slot, part);
+            storeWhole(p, kSlot, slot);
+        }
         storeWhole(p, kPart, part);
+        storeWhole(p, kWord, word);
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
         HWY_ALIGN std::int64_t words[kLanes];
-        hn::Store(part, di, words);
+        hn::Store(word, di, words);
         const auto* clear = reinterpret_cast<const std::uint64_t*>(grid_.clearCells());
         for (const std::int64_t word : words) hwy::Prefetch(clear + word);
     }
@@ -188,7 +197,7 @@ private:
         const VI none = hn::Zero(di);
         const VI three = whole(3);
         const VI part = loadWhole(p, kPart);
-        const VI cells = hn::Not(gather(grid_.clearCells(), part));
+        const VI cells = hn::Not(gather(grid_.clearCells(), loadWhole(p, kWord)));
         VI cell[3];
         VI c[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -232,7 +241,8 @@ private:
     HWY_INLINE void startWaiting(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
         VI slot_index = hn::ShiftRight<3>(part);  // of the brick's samples; in an eager grid the brick's own index
         if (lazy_) {
-            VI slot = slotsOf(slot_index);
+            // Slots change between the steps of a packet only by eviction, or because a brick gets one.
+            VI slot = by_slot_ ? loadWhole(p, kSlot) : slotsOf(slot_index);
             if (found != 0) found = ensureSurface(found, slot, slot_index, part, at, c);
             if (bounded_ && found != 0) markUsed(found, slot);
             slot_index = slot - whole(1);
@@ -254,6 +264,16 @@ private:
             whole(0xffffffff));
     }
 
+    // Of clearCells() by slot.
+    static HWY_INLINE VI wordOf(VI slot, VI part) {
+        const VI none = whole(static_cast<std::int64_t>(BrickSlots::kNoSamples));
+        const VI there = hn::IfThenElse(hn::Eq(slot, none), whole(BrickGrid::kNoSurface),
+                                        slot + whole(static_cast<std::int64_t>(BrickGrid::kFirstSlot) - 1));
+        const VI bits = hn::IfThenElseZero(hn::Ne(slot, hn::Zero(DI())), there);
+        static_assert(BrickGrid::kNotLaidOut == 0);
+        return hn::ShiftLeft<3>(bits) + hn::And(part, whole(7));
+    }
+
     // The lanes whose bricks are laid out, after ensureBricks() for the others, and whose cells are surface cells.
     HWY_NOINLINE unsigned ensureSurface(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
         const auto missing = [&]() HWY_ATTR { return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found; };
@@ -267,7 +287,7 @@ private:
         }
         // The bits may be older than the slot, if another thread laid the brick out in between: read them again.
         std::atomic_signal_fence(std::memory_order_acquire);
-        const VI clear = gather(grid_.clearCells(), part);
+        const VI clear = gather(grid_.clearCells(), by_slot_ ? wordOf(slot, part) : part);
         return found & ~not_there & ~bitsOf(toDouble(hn::TestBit(clear, shiftedLeft(whole(1), at))));
     }
 
@@ -380,7 +400,7 @@ private:
     std::uint8_t ignored_ = 0;
     std::int64_t last_[3];  // cells
     std::int64_t macro_y_, macro_z_;
-    const bool lazy_, bounded_;
+    const bool lazy_, bounded_, by_slot_;
     BrickSlots& cache_;
     const BrickSlots::Reading reading_;
     bool full_ = false;        // ensureBrick() found no free slot

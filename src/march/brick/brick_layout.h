@@ -73,6 +73,8 @@ struct BrickParts {
     std::array<T, 4> tile{};
     std::array<Cap<T>, 4> cap{};
     std::array<T, 4> cap_tile{};
+    /// Neighbours without whose samples the surface cells are known: the tiles have their sign. See NeighborSigns.
+    std::array<bool, 4> assumed{};
 };
 
 /// A bit for each of 8^3 cells: Mask64 of each 4^3 of them, x slowest.

@@ -37,9 +37,11 @@ enum Field {
     kT,               // from the entry into the box on
     kQueued,          // fields that a ray in the queue has
     kFace = kQueued,  // axis of the face that the cell was entered by, or -1
-    // By Marcher::look(): in a brick, the word of clearCells(), and -1; elsewhere, 0, and how far the empty block
-    // reaches: over all cells that differ in the low bits only, and so many more ahead.
+    // By Marcher::look(): in a brick, eight times its index and the number of its 4^3 cells, and -1; elsewhere, 0, and
+    // how far the empty block reaches: over all cells that differ in the low bits only, and so many more ahead.
     kPart,
+    kWord,  // of clearCells()
+    kSlot,  // the brick's, where BrickGrid::bitsBySlot()
     kLowBits,
     kBeyond,
     kFields

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ public:
     virtual bool samples(const openvdb::Coord& origin, FieldSamples& out) const = 0;
     /// The value outside the narrow band, world units.
     virtual float background() const = 0;
+    /// How nearly the samples are distances, world units: one that is farther from zero than some length and this, has
+    /// the sign of all samples within that length. Infinite if no bound is known.
+    virtual double signSlack() const { return std::numeric_limits<double>::infinity(); }
     virtual const openvdb::math::Transform& transform() const = 0;
     /// Index-space box of the samples within the narrow band.
     virtual openvdb::CoordBBox activeBox() const = 0;

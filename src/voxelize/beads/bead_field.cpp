@@ -1,5 +1,8 @@
 #include "voxelize/beads/bead_field.h"
 
+#include "base/parallel_for.h"
+
+#include <mutex>
 #include <numbers>
 
 namespace stratum::voxelize {
@@ -188,6 +191,20 @@ Bounds BeadField::bounds() const {
     box.min[2] = std::min(zc0_, zc1_) - below;
     box.max[2] = std::max(zc0_, zc1_) + above;
     return box;
+}
+
+Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads) {
+    constexpr std::size_t kGrain = 8192;
+    Bounds all;
+    std::mutex mutex;
+    parallelFor(beads.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        Bounds part;
+        for (const std::uint32_t bead : beads.subspan(first, last - first))
+            part.include(BeadField(toolpath, toolpath.beads[bead]).bounds());
+        const std::scoped_lock lock(mutex);
+        all.include(part);
+    });
+    return all;
 }
 
 }  // namespace stratum::voxelize

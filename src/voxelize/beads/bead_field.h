@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 
 namespace stratum::voxelize {
 
@@ -141,12 +143,7 @@ private:
     bool level_ = true, rod_ = false;
 };
 
-/// Box of the solid of all listed beads, mm. The range must not be empty.
-template <typename Indices>
-Bounds boundsOf(const gcode::Toolpath& toolpath, const Indices& beads) {
-    Bounds all;
-    for (const auto index : beads) all.include(BeadField(toolpath, toolpath.beads[index]).bounds());
-    return all;
-}
+/// Box of the solid of all listed beads, mm. There must be one. Parallel.
+Bounds boundsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> beads);
 
 }  // namespace stratum::voxelize

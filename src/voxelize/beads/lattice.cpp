@@ -2,13 +2,17 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/parallel_for.h"
 #include "voxelize/beads/estimate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 namespace stratum::voxelize {
 namespace {
@@ -26,6 +30,42 @@ constexpr double kComfortableShare = 0.5;
 constexpr double kOnPlane = 0.01;
 
 std::int64_t micrometres(double mm) { return std::llround(mm * 1e3); }
+
+// Of the beads of a selection, in its order, mm.
+std::vector<double> lengthsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+    constexpr std::size_t kGrain = 8192;
+    std::vector<double> lengths(selection.size());
+    parallelFor(selection.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n != last; ++n)
+            lengths[n] = gcode::beadLength(toolpath, toolpath.beads[selection[n]]);
+    });
+    return lengths;
+}
+
+// Printed length by a measure in whole micrometres.
+class Histogram {
+public:
+    void add(double mm, double length) {
+        // Neighbours in print order nearly always agree.
+        if (mm != last_) {
+            sum_ = &sums_[micrometres(mm)];
+            last_ = mm;
+        }
+        *sum_ += length;
+    }
+    bool empty() const { return sums_.empty(); }
+    /// The measure of which most is printed.
+    std::int64_t longest() const {
+        return std::max_element(sums_.begin(), sums_.end(),
+                                [](const auto& a, const auto& b) { return a.second < b.second; })
+            ->first;
+    }
+
+private:
+    std::map<std::int64_t, double> sums_;
+    double last_ = std::numeric_limits<double>::quiet_NaN();
+    double* sum_ = nullptr;
+};
 
 // The number of voxels a layer for a print whose user named none.
 void chooseByItself(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
@@ -70,19 +110,26 @@ void refuseUnfit(const Lattice& lattice, const Bounds& bounds) {
 }
 
 // The part of the level beads' length whose planes are planes of samples.
-double alignedShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, const Lattice& lattice) {
+double alignedShare(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                    std::span<const double> lengths, const Lattice& lattice) {
     const auto on_plane = [&](double z) {
         const double k = (z - lattice.origin_z) / lattice.voxel_size;
         return std::abs(k - std::round(k)) <= kOnPlane;
     };
     double level = 0;
     double aligned = 0;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
+    std::pair<double, double> last{std::numeric_limits<double>::quiet_NaN(), 0};  // z, height
+    bool last_aligned = false;
+    for (std::size_t n = 0; n < selection.size(); ++n) {
+        const gcode::Bead& bead = toolpath.beads[selection[n]];
         if (bead.z0 != bead.z1) continue;
-        const double length = gcode::beadLength(toolpath, bead);
-        level += length;
-        if (on_plane(bead.z0) && on_plane(bead.z0 - toolpath.runOf(bead).height)) aligned += length;
+        const std::pair<double, double> planes{bead.z0, toolpath.runOf(bead).height};
+        if (planes != last) {
+            last_aligned = on_plane(planes.first) && on_plane(planes.first - planes.second);
+            last = planes;
+        }
+        level += lengths[n];
+        if (last_aligned) aligned += lengths[n];
     }
     return level > 0 ? aligned / level : 0;
 }
@@ -96,23 +143,16 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
             fmt::format("half-width of {} voxels: expected 1 to 10 (3 suits OpenVDB's tools)", request.half_width));
 
     // Printed length by layer height, and by bottom plane within the majority height.
-    std::map<std::int64_t, double> by_height;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
-        by_height[micrometres(toolpath.runOf(bead).height)] += gcode::beadLength(toolpath, bead);
-    }
-    const auto longest = [](const auto& histogram) {
-        return std::max_element(histogram.begin(), histogram.end(),
-                                [](const auto& a, const auto& b) { return a.second < b.second; })
-            ->first;
-    };
-    const std::int64_t height_um = longest(by_height);
-    std::map<std::int64_t, double> by_plane;
-    for (const std::uint32_t index : selection) {
-        const gcode::Bead& bead = toolpath.beads[index];
+    const std::vector<double> lengths = lengthsOf(toolpath, selection);
+    Histogram by_height;
+    for (std::size_t n = 0; n < selection.size(); ++n)
+        by_height.add(toolpath.runOf(toolpath.beads[selection[n]]).height, lengths[n]);
+    const std::int64_t height_um = by_height.longest();
+    Histogram by_plane;
+    for (std::size_t n = 0; n < selection.size(); ++n) {
+        const gcode::Bead& bead = toolpath.beads[selection[n]];
         const double height = toolpath.runOf(bead).height;
-        if (bead.z0 == bead.z1 && micrometres(height) == height_um)
-            by_plane[micrometres(bead.z0 - height)] += gcode::beadLength(toolpath, bead);
+        if (bead.z0 == bead.z1 && micrometres(height) == height_um) by_plane.add(bead.z0 - height, lengths[n]);
     }
 
     Lattice lattice;
@@ -133,7 +173,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
     }
     refuseUnfit(lattice, bounds);
     if (!by_plane.empty()) {
-        const double plane = static_cast<double>(longest(by_plane)) * 1e-3;
+        const double plane = static_cast<double>(by_plane.longest()) * 1e-3;
         lattice.origin_z = plane - std::floor(plane / lattice.voxel_size + kOnPlane) * lattice.voxel_size;
         // See the head of lattice.h.
         if (lattice.voxel_size > (1 - kOnPlane) * lattice.layer_height) {
@@ -144,7 +184,7 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         if (std::abs(lattice.origin_z) < 1e-9) lattice.origin_z = 0;
     }
 
-    lattice.aligned_share = alignedShare(toolpath, selection, lattice);
+    lattice.aligned_share = alignedShare(toolpath, selection, lengths, lattice);
     return lattice;
 }
 
