@@ -210,6 +210,29 @@ TEST(PrintField, HasTheSamplesOfTheGridWhereverItIsPlaced) {
     expectSame(toolpath, test::allBeads(*toolpath), {0.1, std::nullopt}, placement);
 }
 
+// Of a wall, most neighbours of a brick are needed by nobody; grooves that fill have another field.
+TEST(PrintField, MakesNoLeavesForSignsThatAreKnown) {
+    openvdb::initialize();
+    const auto leavesOf = [](const gcode::DepositModel& deposit) {
+        const auto toolpath = std::make_shared<gcode::Toolpath>();
+        for (int layer = 1; layer <= 40; ++layer)
+            test::addBead(*toolpath, 0, 0, 0.2 * layer, 20, 3, 0.2 * layer, 0.5, 0.2);
+        toolpath->deposit = deposit;
+        const auto beads = test::allBeads(*toolpath);
+        const voxelize::Lattice lattice =
+            voxelize::chooseLattice(*toolpath, beads, voxelize::boundsOf(*toolpath, beads), {0.1, std::nullopt});
+        const auto field = std::make_shared<const PrintField>(toolpath, beads, lattice, voxelize::Placement(), "wall");
+        EXPECT_EQ(std::isfinite(field->signSlack()), !deposit.settles());
+        const march::BrickGrid bricks(field, march::BrickValues::Int16);
+        const auto size = bricks.size();
+        for (int x = 0; x < size[0]; ++x)
+            for (int y = 0; y < size[1]; ++y)
+                for (int z = 0; z < size[2]; ++z) findBlock(bricks, {x, y, z});
+        return field->leavesMade();
+    };
+    EXPECT_LT(leavesOf({}), leavesOf(kSettled));
+}
+
 // A print that grows and shrinks: what is kept and what is made again are the cells of the partial print's grid.
 void expectOnlyChanges(const gcode::DepositModel& deposit) {
     openvdb::initialize();

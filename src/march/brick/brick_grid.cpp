@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "march/brick/leaf_cache.h"
 #include "march/brick/neighbor_signs.h"
 
 #include <fmt/format.h>
@@ -22,31 +23,6 @@ constexpr std::size_t kGrain = 16;  // macro cells a task: enough to find their 
 double quantumOf(float background, BrickValues values) {
     return values == BrickValues::Int16 ? static_cast<double>(background) / kMostQuanta : 1;
 }
-
-// A thread's cache of recently converted leaves, because neighbouring bricks share leaves. The eight leaves of one
-// brick have distinct entries.
-template <typename T>
-class LeafCache {
-public:
-    struct Entry {
-        std::uint64_t key = 0;  // see keyOf()
-        bool uniform = false;   // background, all of it
-        LeafSamples<T> samples;
-        CapSamples<T> above;  // of a field
-    };
-    static std::uint64_t keyOf(int x, int y, int z) {
-        const auto part = [](int c) { return static_cast<std::uint64_t>(c) + 1; };
-        return part(x) << 42 | part(y) << 21 | part(z);
-    }
-    Entry& at(int x, int y, int z) {
-        return entries_[static_cast<std::size_t>((x & kLast) << (2 * kBits) | (y & kLast) << kBits | (z & kLast))];
-    }
-
-private:
-    static constexpr int kBits = 3;
-    static constexpr int kLast = (1 << kBits) - 1;
-    std::vector<Entry> entries_ = std::vector<Entry>(std::size_t{1} << (3 * kBits));
-};
 
 }  // namespace
 
@@ -101,12 +77,13 @@ private:
         if (hasAny(surface)) {
             slot = grid_.slots_.take(brick);
             if (slot == 0) return false;  // another thread took the last slot
-            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - 1) * kBrickSamples);
+            march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - BrickSlots::kFirst) * kBrickSamples);
         }
-        const std::size_t bits = grid_.bitsBySlot() ? bitsOfSlot(slot) : brick;
-        if (bits != kNoSurface || !grid_.bitsBySlot())
+        if (slot != BrickSlots::kNoSamples || !grid_.bitsBySlot()) {
+            CellBits& clear = grid_.clear_[grid_.bitsBySlot() ? slot : brick];
             for (std::size_t part = 0; part < surface.size(); ++part)
-                std::atomic_ref(grid_.clear_[bits][part]).store(~surface[part], std::memory_order_relaxed);
+                std::atomic_ref(clear[part]).store(~surface[part], std::memory_order_relaxed);
+        }
         grid_.slots_.publish(brick, slot);
         return true;
     }
@@ -369,8 +346,9 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
     // much less.
     const double most = std::min(2147483648.0, 16777216.0 + 4096.0 * static_cast<double>(leaves));
-    constexpr int kLongest = (1 << 19) - 1;  // macro cells: leaf coordinates are kept in 21 bits an axis
-    if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves >= BrickSlots::kNoSamples)
+    constexpr std::size_t kMostBricks = 0xff000000;  // slots have 32 bits, and some are left over
+    constexpr int kLongest = (1 << 19) - 1;          // macro cells: leaf coordinates are kept in 21 bits an axis
+    if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves > kMostBricks)
         throw InputError(fmt::format(
             "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
             "or use --march vdb",
@@ -402,8 +380,9 @@ void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
     // By brick, a picture writes few and scattered ones.
     using Pages = HugeArray<CellBits>::Pages;
     const bool by_slot = lazy && !slots_.bounded();
-    clear_ = HugeArray<CellBits>(listed_ + (by_slot ? kFirstSlot : 0), lazy && !by_slot ? Pages::small : Pages::huge);
-    if (by_slot) clear_[kNoSurface].fill(~std::uint64_t{0});
+    clear_ = HugeArray<CellBits>(by_slot ? bricks + BrickSlots::kFirst : listed_,
+                                 lazy && !by_slot ? Pages::small : Pages::huge);
+    if (by_slot) clear_[BrickSlots::kNoSamples].fill(~std::uint64_t{0});
     const std::size_t samples = bricks * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
         floats_ = HugeArray<float>(samples);

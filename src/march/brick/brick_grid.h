@@ -119,7 +119,7 @@ public:
     /// Where the samples of a brick with surface begin, in units of samples.
     std::size_t firstSample(std::size_t brick) const {
         if (lazy()) [[unlikely]]
-            brick = slots_.of(brick) - 1;
+            brick = slots_.of(brick) - BrickSlots::kFirst;
         return brick * static_cast<std::size_t>(kBrickSamples);
     }
     BrickValues values() const { return values_; }
@@ -131,14 +131,12 @@ public:
 
     /// The same data as arrays, for vector code.
     const MacroCell* macroCells() const { return macro_cells_.data(); }
-    /// Complements of the surface cells, by brick; or by slot, see bitsBySlot().
+    /// Complements of the surface cells, by brick; or by slots(), see bitsBySlot(): none is clear of a brick that isn't
+    /// laid out, and all are of one without surface.
     const CellBits* clearCells() const { return clear_.data(); }
     /// In a lazy grid without a bound, bits are beside the samples: memory is touched for bricks that are laid out, not
     /// for all that are listed. Evicted bricks keep their bits, so a grid with a bound has them by brick.
     bool bitsBySlot() const { return lazy() && !slots_.bounded(); }
-    /// Where clearCells() by slot are of bricks that aren't laid out (none is clear), of those without surface, and of
-    /// the first slot.
-    static constexpr std::size_t kNotLaidOut = 0, kNoSurface = 1, kFirstSlot = 2;
     /// Of a lazy grid: each brick's slot, BrickSlots::table(). In an eager grid samples are in the order of the bricks.
     const std::uint32_t* slots() const { return slots_.table(); }
 
@@ -159,10 +157,7 @@ public:
 private:
     class Layouter;
 
-    std::size_t bitsOf(std::size_t brick) const { return bitsBySlot() ? bitsOfSlot(slots_.of(brick)) : brick; }
-    static std::size_t bitsOfSlot(std::uint32_t slot) {
-        return slot == 0 ? kNotLaidOut : slot == BrickSlots::kNoSamples ? kNoSurface : slot - 1 + kFirstSlot;
-    }
+    std::size_t bitsOf(std::size_t brick) const { return bitsBySlot() ? slots_.of(brick) : brick; }
     std::size_t macroIndex(int x, int y, int z) const {
         return (static_cast<std::size_t>(x) * static_cast<std::size_t>(macros_[1]) + static_cast<std::size_t>(y)) *
                    static_cast<std::size_t>(macros_[2]) +

@@ -173,10 +173,8 @@ private:
         const VI part = hn::IfThenElseZero(has_brick, brick + half);
         VI word = part;
         if (by_slot_) {
-            const VI slot = slotsOf(hn::ShiftRight<3>(part));
-            std::atomic_signal_fence(std::memory_order_acquire);  // its bits are read later
-            word = wordOf(slot, part);
-            storeWhole(p, kSlot, slot);
+            word = wordOf(slotsOf(hn::ShiftRight<3>(part)), part);
+            std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
         }
         storeWhole(p, kPart, part);
         storeWhole(p, kWord, word);
@@ -241,11 +239,12 @@ private:
     HWY_INLINE void startWaiting(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
         VI slot_index = hn::ShiftRight<3>(part);  // of the brick's samples; in an eager grid the brick's own index
         if (lazy_) {
-            // Slots change between the steps of a packet only by eviction, or because a brick gets one.
-            VI slot = by_slot_ ? loadWhole(p, kSlot) : slotsOf(slot_index);
-            if (found != 0) found = ensureSurface(found, slot, slot_index, part, at, c);
+            // By slot, the bits are those of the slot that was looked up: only without one they may be others by now.
+            VI slot = by_slot_ ? hn::ShiftRight<3>(loadWhole(p, kWord)) : slotsOf(slot_index);
+            if (found != 0 && (!by_slot_ || withoutSlot(slot, found) != 0))
+                found = ensureSurface(found, slot, slot_index, part, at, c);
             if (bounded_ && found != 0) markUsed(found, slot);
-            slot_index = slot - whole(1);
+            slot_index = slot - whole(BrickSlots::kFirst);
         }
         const VI seven = whole(7);
         const VI sample = product(slot_index, whole(BrickGrid::kBrickSamples)) +
@@ -264,26 +263,21 @@ private:
             whole(0xffffffff));
     }
 
-    // Of clearCells() by slot.
-    static HWY_INLINE VI wordOf(VI slot, VI part) {
-        const VI none = whole(static_cast<std::int64_t>(BrickSlots::kNoSamples));
-        const VI there = hn::IfThenElse(hn::Eq(slot, none), whole(BrickGrid::kNoSurface),
-                                        slot + whole(static_cast<std::int64_t>(BrickGrid::kFirstSlot) - 1));
-        const VI bits = hn::IfThenElseZero(hn::Ne(slot, hn::Zero(DI())), there);
-        static_assert(BrickGrid::kNotLaidOut == 0);
-        return hn::ShiftLeft<3>(bits) + hn::And(part, whole(7));
+    // Of clearCells() by slot; of a brick's number and part.
+    static HWY_INLINE VI wordOf(VI slot, VI part) { return hn::ShiftLeft<3>(slot) + hn::And(part, whole(7)); }
+    static HWY_INLINE unsigned withoutSlot(VI slot, unsigned among) {
+        return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & among;
     }
 
     // The lanes whose bricks are laid out, after ensureBricks() for the others, and whose cells are surface cells.
     HWY_NOINLINE unsigned ensureSurface(unsigned found, VI& slot, VI brick, VI part, VI at, const VI c[3]) {
-        const auto missing = [&]() HWY_ATTR { return bitsOf(toDouble(hn::Eq(slot, hn::Zero(DI())))) & found; };
-        unsigned not_there = missing();
+        unsigned not_there = withoutSlot(slot, found);
         if (not_there != 0) {
             ensureBricks(not_there, brick, c);
             std::atomic_signal_fence(std::memory_order_acquire);
             // Lanes that have a slot now read it before it can be evicted, so every brick laid out advances a ray.
             slot = slotsOf(brick);
-            not_there = missing();
+            not_there = withoutSlot(slot, found);
         }
         // The bits may be older than the slot, if another thread laid the brick out in between: read them again.
         std::atomic_signal_fence(std::memory_order_acquire);

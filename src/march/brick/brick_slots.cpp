@@ -6,7 +6,10 @@ void BrickSlots::open(std::size_t bricks, std::size_t most) {
     table_ = HugeArray<std::uint32_t>(bricks);
     size_ = std::min(bricks, most);
     bounded_ = size_ < bricks;
-    if (!bounded_) return;
+    if (!bounded_) {
+        size_ += std::size_t{kShare} * kMostShares;
+        return;
+    }
     owners_.assign(size_, kNobody);
     marks_.assign(size_, 0);
     free_.reserve(size_);  // so that evict() doesn't throw while all threads wait
@@ -18,16 +21,34 @@ std::uint32_t BrickSlots::take(std::size_t brick) {
         const std::size_t next = free_taken_.fetch_add(1, std::memory_order_relaxed);
         if (next < free_.size()) slot = free_[next];
     }
+    if (slot == 0 && !bounded_) return takeFromShare();
     // Concurrent threads may increment past the end, by at most the number of threads, because each checks first.
     if (slot == 0 && used_.load(std::memory_order_relaxed) < size_) {
         const std::uint32_t next = used_.fetch_add(1, std::memory_order_relaxed);
-        if (next < size_) slot = next + 1;
+        if (next < size_) slot = next + kFirst;
     }
     if (bounded_ && slot != 0) {
-        owners_[slot - 1] = static_cast<std::uint32_t>(brick);
+        owners_[slot - kFirst] = static_cast<std::uint32_t>(brick);
         made_.fetch_add(1, std::memory_order_relaxed);
     }
     return slot;
+}
+
+std::uint32_t BrickSlots::takeFromShare() {
+    Share& share = shares_.local();
+    if (share.next == share.end) {
+        if (share.end == 0) share.alone = share_count_.fetch_add(1, std::memory_order_relaxed) >= kMostShares;
+        const std::uint32_t count = share.alone ? 1 : kShare;
+        share.next = used_.fetch_add(count, std::memory_order_relaxed);
+        share.end = share.next + count;
+    }
+    return share.next++ + kFirst;
+}
+
+std::size_t BrickSlots::leftInShares() const {
+    std::size_t left = 0;
+    for (const Share& share : shares_) left += share.end - share.next;
+    return left;
 }
 
 // Removes the used entries at the front of the free list.
@@ -39,10 +60,10 @@ void BrickSlots::dropTakenFree() {
 void BrickSlots::forget(std::size_t brick) {
     const std::uint32_t slot = table_[brick];
     table_[brick] = 0;
-    if (slot == 0 || slot == kNoSamples) return;
+    if (slot < kFirst) return;
     if (free_taken_ > 0) dropTakenFree();
     free_.push_back(slot);
-    if (bounded_) owners_[slot - 1] = kNobody;
+    if (bounded_) owners_[slot - kFirst] = kNobody;
 }
 
 void BrickSlots::makeRoom(bool needs) {
@@ -73,7 +94,7 @@ void BrickSlots::evict() {
         }
         table_[owners_[at]] = 0;
         owners_[at] = kNobody;
-        free_.push_back(static_cast<std::uint32_t>(at) + 1);
+        free_.push_back(static_cast<std::uint32_t>(at) + kFirst);
         ++evicted_;
     }
 }

@@ -40,8 +40,7 @@ enum Field {
     // By Marcher::look(): in a brick, eight times its index and the number of its 4^3 cells, and -1; elsewhere, 0, and
     // how far the empty block reaches: over all cells that differ in the low bits only, and so many more ahead.
     kPart,
-    kWord,  // of clearCells()
-    kSlot,  // the brick's, where BrickGrid::bitsBySlot()
+    kWord,  // of clearCells(): kPart, or the same of the slot
     kLowBits,
     kBeyond,
     kFields

@@ -1,6 +1,7 @@
 #include "shade/film/tonemap.h"
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "shade/camera/sampler.h"
 
 #include <fmt/format.h>
@@ -54,6 +55,57 @@ PositionRange positionRange(const Film& film) {
     return range;
 }
 
+/// From the means of a film to what a screen shows, in [0, 1].
+class Display {
+public:
+    Display(const Film& film, const ToneOptions& options)
+        : content_(film.content()), scale_(static_cast<float>(std::exp2(options.exposure))) {
+        if (content_ == FilmContent::depth) depths_ = depthRange(film);
+        if (content_ == FilmContent::position) box_ = positionRange(film);
+    }
+
+    /// Whether eight bits are too few for smooth gradients.
+    bool dithers() const { return content_ == FilmContent::radiance || content_ == FilmContent::unit; }
+
+    Color color(const Pixel& pixel) const {
+        switch (content_) {
+            case FilmContent::radiance:
+                return encoded(toneMapNeutral(glm::max(pixel.rgb * scale_, Color(0.0f))));
+            case FilmContent::unit:
+                return encoded(pixel.rgb);
+            case FilmContent::normal:
+                return 0.5f * (pixel.rgb + Color(1.0f));
+            case FilmContent::position:
+                return place(pixel);
+            case FilmContent::depth:
+                return Color(nearness(pixel));
+        }
+        return pixel.rgb;
+    }
+
+private:
+    static Color encoded(const Color& c) { return {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)}; }
+    Color place(const Pixel& pixel) const {
+        Color c = pixel.rgb;
+        for (int k = 0; k < 3 && pixel.alpha > 0.0f; ++k) {
+            const float span = std::max(box_.high[k] - box_.low[k], std::numeric_limits<float>::min());
+            c[k] = pixel.alpha * std::clamp((c[k] / pixel.alpha - box_.low[k]) / span, 0.0f, 1.0f);
+        }
+        return c;
+    }
+    float nearness(const Pixel& pixel) const {
+        // 0.1 is the farthest surface; black is left for "nothing".
+        const float span = std::max(depths_.far - depths_.near, std::numeric_limits<float>::min());
+        const float share = pixel.alpha > 0.0f ? (pixel.rgb.r / pixel.alpha - depths_.near) / span : 0.0f;
+        return pixel.alpha * (1.0f - 0.9f * std::clamp(share, 0.0f, 1.0f));
+    }
+
+    FilmContent content_;
+    float scale_;
+    DepthRange depths_;
+    PositionRange box_;
+};
+
 }  // namespace
 
 void ToneOptions::validate() const {
@@ -83,48 +135,22 @@ float encodeSrgb(float linear) {
 
 std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options) {
     options.validate();
-    const float scale = static_cast<float>(std::exp2(options.exposure));
-    const DepthRange range = film.content() == FilmContent::depth ? depthRange(film) : DepthRange{};
-    const PositionRange box = film.content() == FilmContent::position ? positionRange(film) : PositionRange{};
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(film.pixels().size() * 3);
-    for (int y = film.region().y0; y < film.region().y1; ++y) {
-        for (int x = film.region().x0; x < film.region().x1; ++x) {
-            const Pixel& pixel = film.at(x, y);
-            Color c = pixel.rgb;
-            float noise = 0.0f;
-            switch (film.content()) {
-                case FilmContent::radiance:
-                    c = toneMapNeutral(glm::max(c * scale, Color(0.0f)));
-                    c = {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)};
-                    noise = 1.0f;
-                    break;
-                case FilmContent::unit:
-                    c = {encodeSrgb(c.r), encodeSrgb(c.g), encodeSrgb(c.b)};
-                    noise = 1.0f;
-                    break;
-                case FilmContent::normal:
-                    c = 0.5f * (c + Color(1.0f));
-                    break;
-                case FilmContent::position:
-                    for (int k = 0; k < 3 && pixel.alpha > 0.0f; ++k) {
-                        const float span = std::max(box.high[k] - box.low[k], std::numeric_limits<float>::min());
-                        c[k] = pixel.alpha * std::clamp((c[k] / pixel.alpha - box.low[k]) / span, 0.0f, 1.0f);
-                    }
-                    break;
-                case FilmContent::depth: {
-                    // 0.1 is the farthest surface; black is left for "nothing".
-                    const float span = std::max(range.far - range.near, std::numeric_limits<float>::min());
-                    const float share = pixel.alpha > 0.0f ? (c.r / pixel.alpha - range.near) / span : 0.0f;
-                    c = Color(pixel.alpha * (1.0f - 0.9f * std::clamp(share, 0.0f, 1.0f)));
-                    break;
-                }
+    const Display display(film, options);
+    const PixelBox& region = film.region();
+    const auto width = static_cast<std::size_t>(region.width());
+    std::vector<std::uint8_t> bytes(film.pixels().size() * 3);
+    constexpr std::size_t kRows = 16;
+    parallelFor(static_cast<std::size_t>(region.height()), kRows, [&](std::size_t first, std::size_t last) {
+        for (std::size_t row = first; row != last; ++row) {
+            const int y = region.y0 + static_cast<int>(row);
+            std::uint8_t* out = bytes.data() + row * width * 3;
+            for (int x = region.x0; x < region.x1; ++x) {
+                const Color c = display.color(film.at(x, y));
+                for (std::uint32_t channel = 0; channel < 3; ++channel)
+                    *out++ = toByte(c[static_cast<int>(channel)], display.dithers() ? dither(x, y, channel) : 0.0f);
             }
-            bytes.push_back(toByte(c.r, noise * dither(x, y, 0)));
-            bytes.push_back(toByte(c.g, noise * dither(x, y, 1)));
-            bytes.push_back(toByte(c.b, noise * dither(x, y, 2)));
         }
-    }
+    });
     return bytes;
 }
 

@@ -149,10 +149,16 @@ Lattice chooseLattice(const gcode::Toolpath& toolpath, std::span<const std::uint
         by_height.add(toolpath.runOf(toolpath.beads[selection[n]]).height, lengths[n]);
     const std::int64_t height_um = by_height.longest();
     Histogram by_plane;
+    double last_height = std::numeric_limits<double>::quiet_NaN();
+    bool of_most = false;  // of the height of which most is printed
     for (std::size_t n = 0; n < selection.size(); ++n) {
         const gcode::Bead& bead = toolpath.beads[selection[n]];
         const double height = toolpath.runOf(bead).height;
-        if (bead.z0 == bead.z1 && micrometres(height) == height_um) by_plane.add(bead.z0 - height, lengths[n]);
+        if (height != last_height) {
+            of_most = micrometres(height) == height_um;
+            last_height = height;
+        }
+        if (of_most && bead.z0 == bead.z1) by_plane.add(bead.z0 - height, lengths[n]);
     }
 
     Lattice lattice;
