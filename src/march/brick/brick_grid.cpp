@@ -79,11 +79,10 @@ private:
             if (slot == 0) return false;  // another thread took the last slot
             march::layOut(parts, samples + static_cast<std::ptrdiff_t>(slot - BrickSlots::kFirst) * kBrickSamples);
         }
-        if (slot != BrickSlots::kNoSamples || !grid_.bitsBySlot()) {
-            CellBits& clear = grid_.clear_[grid_.bitsBySlot() ? slot : brick];
-            for (std::size_t part = 0; part < surface.size(); ++part)
-                std::atomic_ref(clear[part]).store(~surface[part], std::memory_order_relaxed);
-        }
+        // By slot, bricks without surface share one place, and all write the same.
+        CellBits& clear = grid_.clear_[grid_.bitsBySlot() ? slot : brick];
+        for (std::size_t part = 0; part < surface.size(); ++part)
+            std::atomic_ref(clear[part]).store(~surface[part], std::memory_order_relaxed);
         grid_.slots_.publish(brick, slot);
         return true;
     }
@@ -379,10 +378,9 @@ void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
     }
     // By brick, a picture writes few and scattered ones.
     using Pages = HugeArray<CellBits>::Pages;
-    const bool by_slot = lazy && !slots_.bounded();
-    clear_ = HugeArray<CellBits>(by_slot ? bricks + BrickSlots::kFirst : listed_,
-                                 lazy && !by_slot ? Pages::small : Pages::huge);
-    if (by_slot) clear_[BrickSlots::kNoSamples].fill(~std::uint64_t{0});
+    bits_by_slot_ = lazy && !slots_.bounded();
+    clear_ = HugeArray<CellBits>(bits_by_slot_ ? bricks + BrickSlots::kFirst : listed_,
+                                 slots_.bounded() ? Pages::small : Pages::huge);
     const std::size_t samples = bricks * static_cast<std::size_t>(kBrickSamples);
     if (values_ == BrickValues::Float32)
         floats_ = HugeArray<float>(samples);

@@ -136,7 +136,7 @@ public:
     const CellBits* clearCells() const { return clear_.data(); }
     /// In a lazy grid without a bound, bits are beside the samples: memory is touched for bricks that are laid out, not
     /// for all that are listed. Evicted bricks keep their bits, so a grid with a bound has them by brick.
-    bool bitsBySlot() const { return lazy() && !slots_.bounded(); }
+    bool bitsBySlot() const { return bits_by_slot_; }
     /// Of a lazy grid: each brick's slot, BrickSlots::table(). In an eager grid samples are in the order of the bricks.
     const std::uint32_t* slots() const { return slots_.table(); }
 
@@ -179,6 +179,7 @@ private:
     double unit_ = 1;
     HugeArray<MacroCell> macro_cells_;
     std::size_t listed_ = 0;  // bricks that have an index
+    bool bits_by_slot_ = false;
     // Mutable: a lazy grid lays out bricks while const tracers read it.
     mutable HugeArray<CellBits> clear_;
     mutable BrickSlots slots_;
