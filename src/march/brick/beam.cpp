@@ -35,16 +35,16 @@ constexpr std::uint64_t kSlabMask[3][4] = {{slabMask(0, 0), slabMask(0, 1), slab
 // Against the rounding of rays' positions: a few 2^-52 of their way and of the grid's size, at most 2^24 cells.
 double marginAt(double depth) { return 0x1p-20 + depth * 0x1p-44; }
 
-// How far along its main axis a fan comes to [from, to), and leaves it.
-struct Depths {
-    double near, far;
-};
-Depths depthsOf(const RayFan& fan, int from, int to) {
-    const double eye = fan.eye[fan.main];
-    return {std::max(fan.forth ? from - eye : eye - to, 0.0), fan.forth ? to - eye : eye - from};
-}
-
 }  // namespace
+
+Beams::Layer::Layer(const RayFan& fan, int from_cell, int to_cell) : from(from_cell), to(to_cell) {
+    const double eye = fan.eye[fan.main];
+    near = std::max(fan.forth ? from - eye : eye - to, 0.0);
+    far = fan.forth ? to - eye : eye - from;
+    per_near = near > 0 ? 1 / near : kInfinity;
+    per_far = 1 / far;
+    margin = marginAt(far);
+}
 
 void Beams::begin(const RayFan& fan, std::size_t rays) {
     fan_ = fan;
@@ -92,17 +92,15 @@ bool Beams::shrink() {
 }
 
 // The cells that open beams have in [from, to) of the main axis; false if they have none in the grid.
-bool Beams::cover(int from, int to, Box& box) const {
-    const Depths depths = depthsOf(fan_, from, to);
-    const double margin = marginAt(depths.far);
+bool Beams::cover(const Layer& layer, Box& box) const {
     const auto main = static_cast<std::size_t>(fan_.main);
-    box.low[main] = from;
-    box.high[main] = to - 1;
+    box.low[main] = layer.from;
+    box.high[main] = layer.to - 1;
     for (int k = 0; k < 2; ++k) {
         const int axis = (fan_.main + 1 + k) % 3;
         const auto a = static_cast<std::size_t>(axis);
-        const double least = fan_.eye[axis] + std::min(low_[k] * depths.near, low_[k] * depths.far) - margin;
-        const double most = fan_.eye[axis] + std::max(high_[k] * depths.near, high_[k] * depths.far) + margin;
+        const double least = fan_.eye[axis] + std::min(low_[k] * layer.near, low_[k] * layer.far) - layer.margin;
+        const double most = fan_.eye[axis] + std::max(high_[k] * layer.near, high_[k] * layer.far) + layer.margin;
         const double size = grid_.size()[a];
         if (!(most >= 0 && least < size)) return false;
         box.low[a] = static_cast<int>(std::max(least, 0.0));
@@ -121,31 +119,34 @@ static void forEachMacro(const std::array<int, 3>& low, const std::array<int, 3>
 // A slab of macro cells.
 void Beams::meetMacros(int slab) {
     Box box;
-    if (!cover(slab * kMacro, (slab + 1) * kMacro, box)) return;
+    if (!cover({fan_, slab * kMacro, (slab + 1) * kMacro}, box)) return;
     std::uint64_t any = 0;
     forEachMacro(box.low, box.high, [&](int x, int y, int z) { any |= grid_.macroCell(x, y, z).bricks; });
     for (int n = 0; n < kMacro / kBrick; ++n) {
         const int thin = fan_.forth ? n : kMacro / kBrick - 1 - n;
         const std::uint64_t among = any & kSlabMask[fan_.main][thin];
         const int from = slab * kMacro + thin * kBrick;
-        const bool behind = depthsOf(fan_, from, from + kBrick).far <= 0;
-        if (among == 0 || behind || !cover(from, from + kBrick, box)) continue;
+        if (among == 0) continue;
+        const Layer bricks(fan_, from, from + kBrick);
+        const bool behind = bricks.far <= 0;
+        if (behind || !cover(bricks, box)) continue;
         for (int half = 0; half < 2; ++half) {  // blocks of a half have one depth
-            const int layer = fan_.forth ? half : 1 - half;
-            const int block = from + layer * kPart;
-            const double depth = depthsOf(fan_, block, block + kPart).near - kBefore;
+            const int part = fan_.forth ? half : 1 - half;
+            const int block = from + part * kPart;
+            const Layer parts(fan_, block, block + kPart);
             forEachMacro(box.low, box.high, [&](int x, int y, int z) {
                 const MacroCell& macro = grid_.macroCell(x, y, z);
                 if ((macro.bricks & among) != 0)
-                    meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, layer, depth);
+                    meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, part, bricks, parts);
             });
         }
     }
 }
 
 // One layer of blocks, of some bricks of a macro cell.
-void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int layer,
-                       double depth) {
+void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int half,
+                       const Layer& bricks, const Layer& parts) {
+    const double depth = parts.near - kBefore;
     for (; among != 0; among &= among - 1) {
         const int bit = std::countr_zero(among);
         const int x = bit >> 4;
@@ -153,32 +154,28 @@ void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner,
         const int z = bit & 3;
         const std::array<int, 3> brick = {corner[0] + x * kBrick, corner[1] + y * kBrick, corner[2] + z * kBrick};
         Rectangle beams;
-        if (!project(brick, kBrick, beams) || !anyOpen(beams)) continue;
+        if (!project(brick, kBrick, bricks, beams) || !anyOpen(beams)) continue;
         const std::size_t index = BrickGrid::brickIndex(macro, x, y, z);
         for (int part = 0; part < 8; ++part) {
             const std::array<int, 3> at = {part >> 2, part >> 1 & 1, part & 1};
-            if (at[static_cast<std::size_t>(fan_.main)] != layer ||
+            if (at[static_cast<std::size_t>(fan_.main)] != half ||
                 grid_.surface(index, static_cast<std::size_t>(part)) == 0)
                 continue;
-            if (project({brick[0] + at[0] * kPart, brick[1] + at[1] * kPart, brick[2] + at[2] * kPart}, kPart, beams))
+            if (project({brick[0] + at[0] * kPart, brick[1] + at[1] * kPart, brick[2] + at[2] * kPart}, kPart, parts,
+                        beams))
                 meet(beams, depth);
         }
     }
 }
 
 // The beams that a cube of cells is in; false if there is none.
-bool Beams::project(const std::array<int, 3>& corner, int edge, Rectangle& beams) const {
-    const int from = corner[static_cast<std::size_t>(fan_.main)];
-    const Depths depths = depthsOf(fan_, from, from + edge);
-    const double margin = marginAt(depths.far);
-    const double per_near = depths.near > 0 ? 1 / depths.near : kInfinity;
-    const double per_far = 1 / depths.far;
+bool Beams::project(const std::array<int, 3>& corner, int edge, const Layer& layer, Rectangle& beams) const {
     for (int k = 0; k < 2; ++k) {
         const int axis = (fan_.main + 1 + k) % 3;
-        const double least = corner[static_cast<std::size_t>(axis)] - fan_.eye[axis] - margin;
-        const double most = least + edge + 2 * margin;
-        const double low = least * (least < 0 ? per_near : per_far);
-        const double high = most * (most > 0 ? per_near : per_far);
+        const double least = corner[static_cast<std::size_t>(axis)] - fan_.eye[axis] - layer.margin;
+        const double most = least + edge + 2 * layer.margin;
+        const double low = least * (least < 0 ? layer.per_near : layer.per_far);
+        const double high = most * (most > 0 ? layer.per_near : layer.per_far);
         if (!(high >= fan_.low[k] && low <= fan_.high[k])) return false;
         // All beams are in one row if there is one slope: the scale is 0, and infinite slopes must not meet it.
         const double first = low > fan_.low[k] ? (low - fan_.low[k]) * scale_[k] : 0;

@@ -54,12 +54,20 @@ private:
         std::uint32_t columns() const { return ~0U >> (31 - last[0]) & ~0U << first[0]; }
     };
 
+    // Cells [from, to) of the main axis: how far along it the fan comes to them and leaves them, the inverses of both,
+    // and a margin for rounding. The same for all blocks of a layer.
+    struct Layer {
+        Layer(const RayFan& fan, int from_cell, int to_cell);
+        int from, to;
+        double near, far, per_near, per_far, margin;
+    };
+
     bool shrink();
-    bool cover(int from, int to, Box& box) const;
+    bool cover(const Layer& layer, Box& box) const;
     void meetMacros(int slab);
-    void meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int layer,
-                    double depth);
-    bool project(const std::array<int, 3>& corner, int edge, Rectangle& beams) const;
+    void meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int half,
+                    const Layer& bricks, const Layer& parts);
+    bool project(const std::array<int, 3>& corner, int edge, const Layer& layer, Rectangle& beams) const;
     bool anyOpen(const Rectangle& beams) const;
     void meet(const Rectangle& beams, double depth);
 

@@ -68,37 +68,51 @@ HWY_INLINE LaneCubic cubicOf(const LaneCell& cell) {
     return {c0, c1, c2, c3, end};
 }
 
-/// refineRoot() in the bracket [0, 1].
-HWY_INLINE V refined(const LaneCubic& f, M active) {
+/// refineRoot() in the bracket [0, 1], of kCount vectors at once: a step waits for the one before, so that two take
+/// little longer than one.
+template <int kCount>
+HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&root)[kCount]) {
     const D d;
     const V zero = hn::Zero(d);
     const V half = constant(0.5);
     const V step = constant(kRootStep);
-    const V slope3 = constant(3) * f.c3;
-    const V slope2 = constant(2) * f.c2;
-    const M in_low = hn::Lt(f.c0, zero);
-    V low = zero;
-    V high = constant(1);
-    const V chord = f.c0 / (f.c0 - f.end);
-    V s = hn::IfThenElse(hn::And(hn::Gt(chord, low), hn::Lt(chord, high)), chord, half);
-    V result = s;
-    for (int n = 0; n < kRootSteps; ++n) {
-        const V value = ((f.c3 * s + f.c2) * s + f.c1) * s + f.c0;
-        const M exact = hn::Eq(value, zero);
-        const M same = hn::Not(hn::Xor(hn::Lt(value, zero), in_low));
-        low = hn::IfThenElse(same, s, low);
-        high = hn::IfThenElse(same, high, s);
-        const V newton = s - value / ((slope3 * s + slope2) * s + f.c1);
-        const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
-        V next = hn::IfThenElse(inside, newton, half * (low + high));
-        next = hn::IfThenElse(exact, s, next);
-        const M done = hn::Or(hn::Le(hn::Abs(next - s), step), hn::Or(hn::Eq(next, low), hn::Eq(next, high)));
-        result = hn::IfThenElse(active, next, result);
-        active = hn::AndNot(done, active);
-        if (hn::AllFalse(d, active)) break;
-        s = next;
+    V slope3[kCount];
+    V slope2[kCount];
+    M in_low[kCount];
+    V low[kCount];
+    V high[kCount];
+    V s[kCount];
+    for (int k = 0; k < kCount; ++k) {
+        slope3[k] = constant(3) * f[k].c3;
+        slope2[k] = constant(2) * f[k].c2;
+        in_low[k] = hn::Lt(f[k].c0, zero);
+        low[k] = zero;
+        high[k] = constant(1);
+        const V chord = f[k].c0 / (f[k].c0 - f[k].end);
+        s[k] = hn::IfThenElse(hn::And(hn::Gt(chord, low[k]), hn::Lt(chord, high[k])), chord, half);
+        root[k] = s[k];
     }
-    return result;
+    for (int n = 0; n < kRootSteps; ++n) {
+        M any = active[0];
+        for (int k = 0; k < kCount; ++k) {
+            const V value = ((f[k].c3 * s[k] + f[k].c2) * s[k] + f[k].c1) * s[k] + f[k].c0;
+            const M exact = hn::Eq(value, zero);
+            const M same = hn::Not(hn::Xor(hn::Lt(value, zero), in_low[k]));
+            low[k] = hn::IfThenElse(same, s[k], low[k]);
+            high[k] = hn::IfThenElse(same, high[k], s[k]);
+            const V newton = s[k] - value / ((slope3[k] * s[k] + slope2[k]) * s[k] + f[k].c1);
+            const M inside = hn::And(hn::Gt(newton, low[k]), hn::Lt(newton, high[k]));
+            V next = hn::IfThenElse(inside, newton, half * (low[k] + high[k]));
+            next = hn::IfThenElse(exact, s[k], next);
+            const M done =
+                hn::Or(hn::Le(hn::Abs(next - s[k]), step), hn::Or(hn::Eq(next, low[k]), hn::Eq(next, high[k])));
+            root[k] = hn::IfThenElse(active[k], next, root[k]);
+            active[k] = hn::AndNot(done, active[k]);
+            any = k == 0 ? active[k] : hn::Or(any, active[k]);
+            s[k] = next;
+        }
+        if (hn::AllFalse(d, any)) break;
+    }
 }
 
 /// gradient() at s along the segment.

@@ -12,6 +12,7 @@
 #include "march/brick/packet_lanes-inl.h"
 #include "trace/intersector.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -37,7 +38,7 @@ public:
     /// which they all move, or are too few.
     bool begin(std::span<const trace::Ray> rays) {
         kept_ = next_ = 0;
-        if (rays.size() < kFewRays || rays.size() > kMost || !haveOneOrigin(rays)) return false;
+        if (rays.size() < kFewRays || rays.size() > kMost || !mayHaveOneOrigin(rays)) return false;
         fan_.eye = map_.to_cells * rays[0].origin + map_.origin;
         const glm::dvec3 ahead = map_.to_cells * rays[rays.size() / 2].direction;
         fan_.main = 0;
@@ -77,15 +78,16 @@ public:
 
 private:
     static constexpr std::size_t kFewRays = 64;  // for fewer, beams cost more than they save
+    static constexpr std::size_t kAhead = 64;    // rays that are fetched before they are placed
     static constexpr double kSteepest = 8;       // slope; rays that differ more have no axis in common
 
-    static bool haveOneOrigin(std::span<const trace::Ray> rays) {
-        const glm::dvec3& first = rays[0].origin;
-        const auto there = [&first](const trace::Ray& ray) { return ray.origin == first; };
-        return there(rays[1]) && there(rays[rays.size() / 2]) && std::all_of(rays.begin(), rays.end(), there);
+    // A look at three of them; place() looks at all.
+    static bool mayHaveOneOrigin(std::span<const trace::Ray> rays) {
+        return rays[1].origin == rays[0].origin && rays[rays.size() / 2].origin == rays[0].origin;
     }
 
-    // Directions in cells, the rays' parts in the grid's box, and slopes.
+    // Directions in cells, the rays' parts in the grid's box, and slopes. False if not all rays have the first one's
+    // origin and a common axis.
     bool place(std::span<const trace::Ray> rays) {
         const D d;
         const V infinity = constant(std::numeric_limits<double>::infinity());
@@ -94,22 +96,23 @@ private:
         V low[2] = {infinity, infinity};
         V high[2] = {hn::Neg(infinity), hn::Neg(infinity)};
         M common = hn::Eq(zero, zero);
+        static_assert(sizeof(trace::Ray) == 8 * sizeof(double));
         for (std::size_t first = 0; first < rays.size(); first += kLanes) {
-            HWY_ALIGN double fields[5][kLanes];
-            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                const trace::Ray& ray = rays[std::min(first + lane, rays.size() - 1)];
-                fields[0][lane] = ray.direction.x;
-                fields[1][lane] = ray.direction.y;
-                fields[2][lane] = ray.direction.z;
-                fields[3][lane] = ray.t_min;
-                fields[4][lane] = ray.t_max;
-            }
+            const VI lane = hn::Iota(DI(), 0);
+            const VI last = whole(static_cast<std::int64_t>(std::min<std::size_t>(rays.size() - first, kLanes)) - 1);
+            const VI row = hn::ShiftLeft<3>(hn::Min(lane, last));
+            for (std::size_t n = first + kAhead; n < std::min(first + kAhead + kLanes, rays.size()); ++n)
+                hwy::Prefetch(&rays[n]);
+            V in[8];
+            for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, &rays[first].origin.x, row + whole(n));
             LaneRays lanes;
-            for (int axis = 0; axis < 3; ++axis) lanes.o[axis] = constant(fan_.eye[axis]);
-            const V direction[3] = {hn::Load(d, fields[0]), hn::Load(d, fields[1]), hn::Load(d, fields[2])};
-            box_.turn(direction, lanes);
-            V start = hn::Load(d, fields[3]);
-            V end = hn::Load(d, fields[4]);
+            for (int axis = 0; axis < 3; ++axis) {
+                lanes.o[axis] = constant(fan_.eye[axis]);
+                common = hn::And(common, hn::Eq(in[axis], constant(rays[0].origin[axis])));
+            }
+            box_.turn(in + 3, lanes);
+            V start = in[6];
+            V end = in[7];
             const M good = box_.clip(lanes, start, end);
             const V way = hn::Abs(lanes.inverse[fan_.main]);
             common = hn::And(common, hn::And(hn::Gt(lanes.dir[fan_.main] * sign, zero), hn::Lt(way, infinity)));

@@ -14,6 +14,7 @@
 #include "march/brick/lanes-inl.h"
 #include "trace/intersector.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -109,36 +110,62 @@ public:
         hn::StoreU(hn::BitCast(DI(), hn::TableLookupLanes(hn::BitCast(d, sample), table)), DI(), sample_ + count_);
         count_ += std::popcount(lanes);
     }
-    /// Finishes a vector of rays if there is a full one. To be called before the next push().
+    /// Finishes as many vectors of rays as are worthwhile if they are full. To be called before the next push().
     HWY_INLINE void finishFull() {
         const D d;
-        if (count_ < kLanes) return;
-        finish(kLanes);
-        count_ -= kLanes;
-        for (int n = 0; n < kFields; ++n) hn::StoreU(hn::LoadU(d, field_[n] + kLanes), d, field_[n]);
-        hn::StoreU(hn::LoadU(DI(), sample_ + kLanes), DI(), sample_);
+        if (count_ < kBatch) return;
+        finish<kVectors>(kBatch);
+        count_ -= kBatch;
+        for (int n = 0; n < kFields; ++n) hn::StoreU(hn::LoadU(d, field_[n] + kBatch), d, field_[n]);
+        hn::StoreU(hn::LoadU(DI(), sample_ + kBatch), DI(), sample_);
     }
     void flush() {
-        if (count_ > 0) finish(count_);
+        if (count_ > kLanes)
+            finish<kVectors>(count_);
+        else if (count_ > 0)
+            finish<1>(count_);
         count_ = 0;
     }
 
 private:
     enum { kRay, kStart, kIn, kOut, kS, kFrom, kTo = kFrom + 3, kFields = kTo + 3 };
 
+    static constexpr int kVectors = 2;
+    static constexpr int kBatch = kVectors * kLanes;
+
     // BrickTracer::report(). Rows past `count` hold earlier rays, or zeros.
+    template <int kCount>
     HWY_NOINLINE void finish(int count) const {
         const D d;
-        const auto load = [&](int field) HWY_ATTR { return hn::LoadU(d, field_[field]); };
-        LaneCell cell;
-        corners_.read(hn::LoadU(DI(), sample_), cell.v);
-        for (int axis = 0; axis < 3; ++axis) {
-            cell.from.v[axis] = load(kFrom + axis);
-            cell.to.v[axis] = load(kTo + axis);
+        LaneCell cell[kCount];
+        LaneCubic cubic[kCount];
+        V known[kCount];
+        V s[kCount];
+        M unknown[kCount];
+        for (int k = 0; k < kCount; ++k) {
+            const int first = k * kLanes;
+            corners_.read(hn::LoadU(DI(), sample_ + first), cell[k].v);
+            for (int axis = 0; axis < 3; ++axis) {
+                cell[k].from.v[axis] = hn::LoadU(d, field_[kFrom + axis] + first);
+                cell[k].to.v[axis] = hn::LoadU(d, field_[kTo + axis] + first);
+            }
+            cubic[k] = cubicOf(cell[k]);
+            known[k] = hn::LoadU(d, field_[kS] + first);
+            const unsigned there = count - first < kLanes ? (1U << (count - first)) - 1 : kAllLanes;
+            unknown[k] = hn::AndNot(hn::Eq(known[k], known[k]), maskOf(there));
         }
-        V s = load(kS);
-        const M known = hn::Eq(s, s);
-        s = hn::IfThenElse(known, s, refined(cubicOf(cell), hn::AndNot(known, maskOf((1U << count) - 1))));
+        refine(cubic, unknown, s);
+        for (int k = 0; k < kCount; ++k) {
+            const int first = k * kLanes;
+            report(cell[k], hn::IfThenElse(hn::Eq(known[k], known[k]), known[k], s[k]), first,
+                   std::min(count - first, kLanes));
+        }
+    }
+
+    // Rays of one vector.
+    HWY_INLINE void report(const LaneCell& cell, V s, int first, int count) const {
+        const D d;
+        const auto load = [&](int field) HWY_ATTR { return hn::LoadU(d, field_[field] + first); };
         const V in = load(kIn);
         HWY_ALIGN double times[kLanes];
         HWY_ALIGN double normals[3][kLanes];
@@ -152,7 +179,7 @@ private:
         const unsigned flat = bitsOf(hn::Not(hn::Gt(length, hn::Zero(d))));
         for (int axis = 0; axis < 3; ++axis) hn::Store(n[axis] / length, d, normals[axis]);
         for (int lane = 0; lane < count; ++lane) {
-            const auto index = static_cast<std::size_t>(field_[kRay][lane]);
+            const auto index = static_cast<std::size_t>(field_[kRay][first + lane]);
             const trace::Ray& ray = rays_[index];
             trace::Hit& out = hits_[index];
             out.t = times[lane];
@@ -167,8 +194,8 @@ private:
     const std::span<const trace::Ray> rays_;
     trace::Hit* const hits_;
     int count_ = 0;
-    HWY_ALIGN double field_[kFields][2 * kLanes];
-    HWY_ALIGN std::int64_t sample_[2 * kLanes];
+    HWY_ALIGN double field_[kFields][kBatch + kLanes];
+    HWY_ALIGN std::int64_t sample_[kBatch + kLanes];
 };
 
 }  // namespace HWY_NAMESPACE
