@@ -61,13 +61,11 @@ void LazyPrint::show(std::size_t moment) {
 
 Json LazyPrint::report() const {
     ondemand::PrintFieldTimes times;
-    double bricks_seconds = 0;
     Json reports = Json::array();
     for (const LazyLevel& level : levels_) {
         times.bins += level.field->times().bins;
         times.box += level.field->times().box;
         times.map += level.field->times().map;
-        bricks_seconds += level.bricks->layoutSeconds();
         reports.push_back(reportOf(level, cache_bytes_));
     }
     const auto sum = [&reports](const char* what) {
@@ -82,8 +80,7 @@ Json LazyPrint::report() const {
                {"bins", times.bins},
                {"box", times.box},
                {"map", times.map},
-               {"list", times_.all - times_.parse - times.bins - times.box - times.map},
-               {"bricks_all_threads", bricks_seconds}}},
+               {"list", times_.all - times_.parse - times.bins - times.box - times.map}}},
              {"bricks_listed", sum("bricks_listed")},
              {"bricks_made", sum("bricks_made")},
              {"leaves_made", sum("leaves_made")},

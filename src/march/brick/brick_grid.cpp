@@ -9,7 +9,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <type_traits>
 #include <utility>
@@ -257,11 +256,7 @@ bool BrickGrid::ensureBrick(std::size_t brick, int x, int y, int z) const {
     if (slots_.of(brick) != 0) return true;
     const std::scoped_lock lock(layouter_->doorOf(brick));
     if (slots_.of(brick) != 0) return true;
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const bool there = layouter_->layOut(brick, x, y, z);
-    layout_ns_.fetch_add(std::chrono::nanoseconds(Clock::now() - start).count(), std::memory_order_relaxed);
-    return there;
+    return layouter_->layOut(brick, x, y, z);
 }
 
 std::uint64_t BrickGrid::ensureSurface(std::size_t brick, std::size_t part, const glm::ivec3& cell) const {

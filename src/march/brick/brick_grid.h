@@ -149,8 +149,6 @@ public:
         return static_cast<std::size_t>(kBrickSamples) *
                (values_ == BrickValues::Float32 ? sizeof(float) : sizeof(std::int16_t));
     }
-    /// Time spent to lay out bricks lazily: seconds, the sum of all threads.
-    double layoutSeconds() const { return 1e-9 * static_cast<double>(layout_ns_.load(std::memory_order_relaxed)); }
     /// Memory of all, bytes.
     std::size_t bytes() const;
 
@@ -185,7 +183,6 @@ private:
     mutable BrickSlots slots_;
     mutable HugeArray<float> floats_;
     mutable HugeArray<std::int16_t> quanta_;
-    mutable std::atomic<std::int64_t> layout_ns_{0};
     std::unique_ptr<const Layouter> layouter_;
 };
 
