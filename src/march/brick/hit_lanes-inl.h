@@ -1,4 +1,4 @@
-// Reads the corners of cells, and collects hits until a vector is full: refining a root takes a dozen dependent
+// Reads the corners of cells, and collects hits until two vectors are full: refining a root takes a dozen dependent
 // operations and divisions, which is efficient only for a full vector of rays. For one Highway target at a time, hence
 // the guard that toggles.
 #if defined(STRATUM_HIT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -85,7 +85,7 @@ private:
     const std::int16_t* quanta_;
 };
 
-/// Rays that have hit the surface: their roots, positions and normals are computed a vector at a time.
+/// Rays that have hit the surface: their roots, positions and normals are computed two vectors at a time.
 class HitBatch {
 public:
     HitBatch(const CornerReader& corners, const CellMap& map, std::span<const trace::Ray> rays, trace::Hit* hits)
