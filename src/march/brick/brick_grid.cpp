@@ -102,9 +102,9 @@ private:
             made.bricks |= std::uint64_t{1} << bit;
             ++count;
         }
-        made.first_brick = grid_.slots_.takeRow(static_cast<std::uint32_t>(count));
+        made.setFirstBrick(grid_.slots_.takeRow(static_cast<std::uint32_t>(count)));
         for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t brick = made.first_brick + n;
+            const std::size_t brick = made.firstBrick() + n;
             march::layOut(parts[n], samples + static_cast<std::ptrdiff_t>(brick) * kBrickSamples);
             for (std::size_t part = 0; part < surface[n].size(); ++part) grid_.clear_[brick][part] = ~surface[n][part];
         }
@@ -232,7 +232,7 @@ BrickGrid::BrickGrid(const LeafSource& source, BrickValues values) : values_(val
     });
     macro_cells_ = std::move(made);
     listed_ = brickCount();
-    measureEmptySpace();
+    measureEmptySpace(macro_cells_, macros_);
 }
 
 BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues values, std::size_t cache_bytes)
@@ -240,14 +240,14 @@ BrickGrid::BrickGrid(std::shared_ptr<const LeafSource> source, BrickValues value
     const LeafSource& leaves = *source;
     layouter_ =
         std::make_unique<const Layouter>(*this, leaves, std::move(source), listBricks(leaves, true, cache_bytes));
-    measureEmptySpace();
+    measureEmptySpace(macro_cells_, macros_);
 }
 
 BrickGrid::BrickGrid(std::shared_ptr<const LeafField> field, BrickValues values, std::size_t cache_bytes)
     : values_(values) {
     listBricks(*field, cache_bytes);
     layouter_ = std::make_unique<const Layouter>(*this, std::move(field));
-    measureEmptySpace();
+    measureEmptySpace(macro_cells_, macros_);
 }
 
 BrickGrid::~BrickGrid() = default;
@@ -272,6 +272,9 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
     const LeafField& field = *layouter_->field();
     const BrickMap& map = field.bricks();
     layouter_->forgetLeaves();
+    // With those that aren't shown.
+    for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = map.masks[n];
+    numberBricks();
     for (const openvdb::Coord& leaf : leaves)
         for (int part = 0; part < 8; ++part) {
             // The leaf's own brick, and those before it that take its first samples.
@@ -280,9 +283,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
                     .offsetBy(-(part >> 2) * kBrickEdge, -(part >> 1 & 1) * kBrickEdge, -(part & 1) * kBrickEdge);
             if (at[0] < 0 || at[1] < 0 || at[2] < 0 || at[0] >= size_[0] || at[1] >= size_[1] || at[2] >= size_[2])
                 continue;
-            const std::size_t n = macroIndex(at[0] / kMacroEdge, at[1] / kMacroEdge, at[2] / kMacroEdge);
-            MacroCell macro = macro_cells_[n];
-            macro.bricks = map.masks[n];  // even if it isn't shown
+            const MacroCell& macro = macroCell(at[0] / kMacroEdge, at[1] / kMacroEdge, at[2] / kMacroEdge);
             const int b[3] = {at[0] / kBrickEdge & 3, at[1] / kBrickEdge & 3, at[2] / kBrickEdge & 3};
             if ((macro.bricks >> Mask64::bit(b[0], b[1], b[2]) & 1) == 0) continue;
             const std::size_t brick = brickIndex(macro, b[0], b[1], b[2]);
@@ -290,7 +291,7 @@ void BrickGrid::update(std::span<const openvdb::Coord> leaves) {
             if (!bitsBySlot()) clear_[brick] = {};
         }
     for (std::size_t n = 0; n < map.masks.size(); ++n) macro_cells_[n].bricks = field.shows(n) ? map.masks[n] : 0;
-    measureEmptySpace();
+    measureEmptySpace(macro_cells_, macros_);
 }
 
 // Finds the box, sets the bits of all leaves, and allocates the memory. Returns the leaf of each brick.
@@ -352,14 +353,19 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
 }
 
-// Numbers the bricks whose bits are set, and allocates their memory.
-void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
+// Numbers the bricks whose bits are set.
+void BrickGrid::numberBricks() {
     std::uint32_t first = 0;
     for (MacroCell& macro : macro_cells_) {
-        macro.first_brick = first;
+        macro.setFirstBrick(first);
         first += static_cast<std::uint32_t>(std::popcount(macro.bricks));
     }
     listed_ = first;
+}
+
+// Numbers the bricks whose bits are set, and allocates their memory.
+void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
+    numberBricks();
     // Address space for all bricks, of which only the used part is ever touched, or for as many as the bound allows.
     std::size_t bricks = listed_;
     if (lazy) {
@@ -381,38 +387,6 @@ void BrickGrid::countBricks(bool lazy, std::size_t cache_bytes) {
         floats_ = HugeArray<float>(samples);
     else
         quanta_ = HugeArray<std::int16_t>(samples);
-}
-
-void BrickGrid::measureEmptySpace() {
-    // Chebyshev distance to the nearest occupied macro cell, by a forward and a backward sweep over half of the 26
-    // neighbours each (all steps cost one, so two sweeps are exact). Beyond the box everything is empty.
-    constexpr std::uint32_t kFar = 1U << 20;
-    const int nx = macros_[0];
-    const int ny = macros_[1];
-    const int nz = macros_[2];
-    for (MacroCell& macro : macro_cells_) macro.empty_radius = macro.bricks != 0 ? 0 : kFar;
-    const auto relax = [&](int x, int y, int z, int sign) {
-        MacroCell& macro = macro_cells_[macroIndex(x, y, z)];
-        if (macro.empty_radius == 0) return;
-        for (int n = 1; n <= 13; ++n) {
-            // The 13 neighbours that precede in raster order, or their mirror images.
-            const int code = 13 - n;
-            const int qx = x + sign * (code / 9 - 1);
-            const int qy = y + sign * (code / 3 % 3 - 1);
-            const int qz = z + sign * (code % 3 - 1);
-            if (qx < 0 || qy < 0 || qz < 0 || qx >= nx || qy >= ny || qz >= nz) continue;
-            macro.empty_radius = std::min(macro.empty_radius, macroCell(qx, qy, qz).empty_radius + 1);
-        }
-    };
-    for (int x = 0; x < nx; ++x)
-        for (int y = 0; y < ny; ++y)
-            for (int z = 0; z < nz; ++z) relax(x, y, z, 1);
-    for (int x = nx - 1; x >= 0; --x)
-        for (int y = ny - 1; y >= 0; --y)
-            for (int z = nz - 1; z >= 0; --z) relax(x, y, z, -1);
-    // Clamped to the size of the box: larger radii have no effect, and small numbers keep products small.
-    const auto widest = static_cast<std::uint32_t>(std::max({nx, ny, nz}));
-    for (MacroCell& macro : macro_cells_) macro.empty_radius = std::min(macro.empty_radius, widest);
 }
 
 std::size_t BrickGrid::bytes() const {

@@ -1,8 +1,8 @@
 // FloatGrid -> bricks: the level set laid out for rays.
 //
 // Three levels over the cells of the grid (a cell is the cube between eight neighbouring samples):
-//   macro cell   32^3 cells, in a dense array: which of its 4^3 bricks have surface, or how far the next such macro
-//                cell is (Chebyshev distance), so that rays leave empty space in large boxes
+//   macro cell   32^3 cells, in a dense array: which of its 4^3 bricks have surface, or how far all is empty in the
+//                direction of a ray, so that rays leave empty space in large boxes
 //   brick        8^3 cells: a bit for every surface cell (corners not of one sign), and the 9^3 samples at its corners
 // All coordinates are cells, counted from the grid's lowest corner.
 //
@@ -15,6 +15,7 @@
 #include "base/huge_array.h"
 #include "march/brick/brick_layout.h"
 #include "march/brick/brick_slots.h"
+#include "march/brick/macro_cell.h"
 #include "march/file/leaf_field.h"
 #include "march/file/leaf_source.h"
 
@@ -33,31 +34,6 @@
 #include <vector>
 
 namespace stratum::march {
-
-/// 4^3 bits, x slowest: occupancy of (x, y, z), and the size of the empty block around a position.
-struct Mask64 {
-    static constexpr int bit(int x, int y, int z) { return x << 4 | y << 2 | z; }
-    /// Bits of the aligned 2^3 group at even (x, y, z).
-    static constexpr std::uint64_t group(int x, int y, int z) {
-        constexpr std::uint64_t kPair = 0b11;  // two along z
-        constexpr std::uint64_t kQuad = kPair | kPair << 4;
-        constexpr std::uint64_t kGroup = kQuad | kQuad << 16;
-        return kGroup << bit(x & 2, y & 2, z & 2);
-    }
-    /// Edge of the largest aligned empty block around (x, y, z): 4, 2 or 1; 0 if that bit is set.
-    static constexpr int emptyEdge(std::uint64_t mask, int x, int y, int z) {
-        if (mask == 0) return 4;
-        if ((mask & group(x, y, z)) == 0) return 2;
-        return (mask >> bit(x, y, z) & 1) == 0 ? 1 : 0;
-    }
-};
-
-/// 32^3 cells.
-struct MacroCell {
-    std::uint64_t bricks = 0;        ///< Mask64 of the bricks that are kept
-    std::uint32_t first_brick = 0;   ///< index of the first of them
-    std::uint32_t empty_radius = 0;  ///< if there are none: all macro cells nearer than this (Chebyshev) are empty too
-};
 
 class BrickGrid {
 public:
@@ -93,7 +69,7 @@ public:
     /// Index of a brick that is set in its macro cell's mask; (x, y, z) in bricks within the macro cell.
     static std::size_t brickIndex(const MacroCell& macro, int x, int y, int z) {
         const std::uint64_t before = (std::uint64_t{1} << Mask64::bit(x, y, z)) - 1;
-        return macro.first_brick + static_cast<std::size_t>(std::popcount(macro.bricks & before));
+        return macro.firstBrick() + static_cast<std::size_t>(std::popcount(macro.bricks & before));
     }
 
     /// For a field that has changed: discards the bricks that have samples of these leaves (index-space coordinates of
@@ -168,7 +144,7 @@ private:
     void listBricks(const LeafField& field, std::size_t cache_bytes);
     void setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves);
     void countBricks(bool lazy, std::size_t cache_bytes);
-    void measureEmptySpace();
+    void numberBricks();
 
     openvdb::Coord origin_;
     std::array<int, 3> macros_{};

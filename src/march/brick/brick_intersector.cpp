@@ -35,7 +35,7 @@ private:
         Walk walk(map_.to_cells * ray.origin + map_.origin, map_.to_cells * ray.direction);
         if (!walk.enter(ray.t_min, ray.t_max, grid_.size())) return false;
         while (true) {
-            const Block block = findBlock(grid_, walk.cell());
+            const Block block = findBlock(grid_, walk.cell(), walk.octant());
             walk.aim(block.low, block.high);
             if (block.surface) {
                 const Corners corners = cornersOf(grid_, block.brick, walk.cell());

@@ -148,7 +148,12 @@ private:
         const VI one = whole(1);
         const VI none = hn::Zero(di);
         VI c[3];
-        for (int axis = 0; axis < 3; ++axis) c[axis] = hn::Xor(loadWhole(p, kCell + axis), loadWhole(p, kFlip + axis));
+        VI octant = none;  // times 8, the bits of MacroCell::rest
+        for (int axis = 0; axis < 3; ++axis) {
+            const VI flip = loadWhole(p, kFlip + axis);
+            c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip);
+            octant = hn::Or(octant, hn::And(flip, whole(32 >> axis)));
+        }
         const VI mx = hn::ShiftRight<5>(c[0]);
         const VI my = hn::ShiftRight<5>(c[1]);
         const VI mz = hn::ShiftRight<5>(c[2]);
@@ -166,8 +171,8 @@ private:
         const auto far = hn::Eq(bricks, none);
         const VI empty = hn::IfThenElse(far, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
         const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);
-        const VI radius = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(DU(), first)));
-        const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(radius - one));
+        const VI ahead = hn::And(shiftedRight(first, octant), whole(0xff));
+        const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(ahead - one));
         const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), hn::And(bricks, bit - one))));
         const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
                                hn::ShiftRight<2>(hn::And(c[2], whole(4))));
@@ -235,6 +240,10 @@ private:
 
     static HWY_INLINE VI shiftedLeft(VI v, VI count) {
         return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
+    }
+
+    static HWY_INLINE VI shiftedRight(VI v, VI count) {
+        return hn::BitCast(DI(), hn::BitCast(DU(), v) >> hn::BitCast(DU(), count));
     }
 
     // Records and prefetches the corners of surface cells. Lanes for whose brick there is no free slot try again in

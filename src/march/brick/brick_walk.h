@@ -81,6 +81,10 @@ public:
     }
 
     const glm::ivec3& cell() const { return cell_; }
+    /// Of the direction, as MacroCell::emptyAhead() takes it.
+    unsigned octant() const {
+        return (direction_.x < 0 ? 4U : 0U) | (direction_.y < 0 ? 2U : 0U) | (direction_.z < 0 ? 1U : 0U);
+    }
     /// Of the ray's own t, where the current cell is entered and left. aim() must have been called for the cell.
     double at(double s) const { return t_start_ + (t_ + s * (std::min(t_exit_, t_end_) - t_)); }
 
@@ -158,15 +162,16 @@ struct Block {
     bool surface;
 };
 
-[[gnu::always_inline]] inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell) {
+[[gnu::always_inline]] inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell, unsigned octant = 0) {
     const glm::ivec3 size(grid.size()[0], grid.size()[1], grid.size()[2]);
     constexpr int kMacroShift = 5;
     const glm::ivec3 m = cell >> kMacroShift;
     const MacroCell& macro = grid.macroCell(m.x, m.y, m.z);
     if (macro.bricks == 0) {
-        const int radius = static_cast<int>(macro.empty_radius);
-        return {glm::max((m - (radius - 1)) << kMacroShift, glm::ivec3(0)), glm::min((m + radius) << kMacroShift, size),
-                0, false};
+        const int more = macro.emptyAhead(octant) - 1;
+        const glm::ivec3 back((octant & 4) != 0 ? more : 0, (octant & 2) != 0 ? more : 0, (octant & 1) != 0 ? more : 0);
+        return {glm::max((m - back) << kMacroShift, glm::ivec3(0)),
+                glm::min((m + (more + 1) - back) << kMacroShift, size), 0, false};
     }
     const auto aligned = [&cell](int edge) {
         const glm::ivec3 low = cell & ~(edge - 1);

@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
+#include <vector>
 
 namespace stratum::march {
 namespace {
@@ -116,25 +118,37 @@ TEST(BrickGrid, RefusesRoomForFewerBricksThanRaysNeed) {
     EXPECT_THROW(BrickGrid(source, BrickValues::Float32, least), UsageError);
 }
 
-TEST(BrickGrid, EmptyRadiusIsTheChebyshevDistance) {
+TEST(BrickGrid, EmptyCubesAheadAreTheLargest) {
     auto grid = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     // A second part far away, to open a wide space between.
     auto far = test::sphereGrid(1, openvdb::Vec3f(21, 13, 8), 0.1F);
     for (auto it = far->cbeginValueOn(); it; ++it) grid->tree().setValueOn(it.getCoord(), *it);
     const BrickGrid bricks(*grid, BrickValues::Int16);
-    const int n[3] = {bricks.size()[0] / 32, bricks.size()[1] / 32, bricks.size()[2] / 32};
-    for (int x = 0; x < n[0]; ++x)
-        for (int y = 0; y < n[1]; ++y)
-            for (int z = 0; z < n[2]; ++z) {
-                int nearest = 1 << 20;
-                for (int a = 0; a < n[0]; ++a)
-                    for (int b = 0; b < n[1]; ++b)
-                        for (int c = 0; c < n[2]; ++c)
-                            if (bricks.macroCell(a, b, c).bricks != 0)
-                                nearest =
-                                    std::min(nearest, std::max({std::abs(a - x), std::abs(b - y), std::abs(c - z)}));
-                ASSERT_EQ(bricks.macroCell(x, y, z).empty_radius, static_cast<std::uint32_t>(nearest));
+    const glm::ivec3 n(bricks.size()[0] / 32, bricks.size()[1] / 32, bricks.size()[2] / 32);
+    std::vector<glm::ivec3> occupied;
+    const auto forAll = [&n](const auto& visit) {
+        for (int x = 0; x < n.x; ++x)
+            for (int y = 0; y < n.y; ++y)
+                for (int z = 0; z < n.z; ++z) visit(glm::ivec3(x, y, z));
+    };
+    forAll([&](const glm::ivec3& at) {
+        if (bricks.macroCell(at.x, at.y, at.z).bricks != 0) occupied.push_back(at);
+    });
+    ASSERT_GE(occupied.size(), 2U);
+    forAll([&](const glm::ivec3& at) {
+        const MacroCell& macro = bricks.macroCell(at.x, at.y, at.z);
+        if (macro.bricks != 0) return;
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            const glm::ivec3 way((octant & 4) != 0 ? -1 : 1, (octant & 2) != 0 ? -1 : 1, (octant & 1) != 0 ? -1 : 1);
+            int nearest = 255;
+            for (const glm::ivec3& other : occupied) {
+                const glm::ivec3 ahead = (other - at) * way;
+                if (ahead.x >= 0 && ahead.y >= 0 && ahead.z >= 0)
+                    nearest = std::min(nearest, std::max({ahead.x, ahead.y, ahead.z}));
             }
+            ASSERT_EQ(macro.emptyAhead(octant), nearest) << at.x << ' ' << at.y << ' ' << at.z << ' ' << octant;
+        }
+    });
 }
 
 }  // namespace
