@@ -148,11 +148,11 @@ private:
         const VI one = whole(1);
         const VI none = hn::Zero(di);
         VI c[3];
-        VI octant = none;  // times 8, the bits of MacroCell::rest
+        VI octant = none;
         for (int axis = 0; axis < 3; ++axis) {
             const VI flip = loadWhole(p, kFlip + axis);
             c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip);
-            octant = hn::Or(octant, hn::And(flip, whole(32 >> axis)));
+            octant = hn::Or(octant, hn::And(flip, whole(256 >> axis)));
         }
         const VI mx = hn::ShiftRight<5>(c[0]);
         const VI my = hn::ShiftRight<5>(c[1]);
@@ -167,11 +167,12 @@ private:
                    hn::ShiftRight<3>(hn::And(c[2], whole(24))));
         const VI bit = shiftedLeft(one, b);
         const auto has_brick = hn::TestBit(bricks, bit);
-        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(whole(kGroup), hn::And(b, whole(42)))), none);
         const auto far = hn::Eq(bricks, none);
-        const VI empty = hn::IfThenElse(far, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
+        const auto none_ahead = hn::Eq(hn::And(bricks, aheadOf(octant, b)), none);
+        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(whole(kGroup), hn::And(b, whole(42)))), none);
+        const VI empty = hn::IfThenElse(none_ahead, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
         const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);
-        const VI ahead = hn::And(shiftedRight(first, octant), whole(0xff));
+        const VI ahead = hn::And(shiftedRight(first, hn::ShiftRight<3>(octant)), whole(0xff));  // a byte an octant
         const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(ahead - one));
         const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), hn::And(bricks, bit - one))));
         const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
@@ -188,6 +189,7 @@ private:
         storeWhole(p, kWord, word);
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
+        storeWhole(p, kOctant, octant);
         HWY_ALIGN std::int64_t words[kLanes];
         hn::Store(word, di, words);
         const auto* clear = reinterpret_cast<const std::uint64_t*>(grid_.clearCells());
@@ -217,7 +219,8 @@ private:
         const M walking = maskOf(p.alive & ~p.waiting);
         const M surface = hn::And(in_brick, toDouble(hn::TestBit(cells, shiftedLeft(one, at))));
         const auto cells_empty = hn::Eq(hn::And(cells, shiftedLeft(whole(kGroup), hn::And(at, whole(42)))), none);
-        const VI small = hn::IfThenElseZero(cells_empty, hn::IfThenElse(hn::Eq(cells, none), three, one));
+        const auto none_ahead = hn::Eq(hn::And(cells, aheadOf(loadWhole(p, kOctant), at)), none);
+        const VI small = hn::IfThenElse(none_ahead, three, hn::IfThenElseZero(cells_empty, one));
         const VI low_bits = hn::IfThenElse(hn::RebindMask(di, in_brick), small, empty);
         const VI beyond = loadWhole(p, kBeyond);
 
@@ -238,6 +241,7 @@ private:
         advance(p, next, exit, hn::AndNot(surface, walking));
     }
 
+    static HWY_INLINE VI aheadOf(VI octant, VI bit) { return gather(kAhead.data(), octant + bit); }
     static HWY_INLINE VI shiftedLeft(VI v, VI count) {
         return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
     }

@@ -81,8 +81,8 @@ public:
     }
 
     const glm::ivec3& cell() const { return cell_; }
-    /// Of the direction, as MacroCell::emptyAhead() takes it.
-    unsigned octant() const {
+    /// Of the direction.
+    Octant octant() const {
         return (direction_.x < 0 ? 4U : 0U) | (direction_.y < 0 ? 2U : 0U) | (direction_.z < 0 ? 1U : 0U);
     }
     /// Of the ray's own t, where the current cell is entered and left. aim() must have been called for the cell.
@@ -162,7 +162,7 @@ struct Block {
     bool surface;
 };
 
-[[gnu::always_inline]] inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell, unsigned octant = 0) {
+[[gnu::always_inline]] inline Block findBlock(const BrickGrid& grid, const glm::ivec3& cell, Octant octant = 0) {
     const glm::ivec3 size(grid.size()[0], grid.size()[1], grid.size()[2]);
     constexpr int kMacroShift = 5;
     const glm::ivec3 m = cell >> kMacroShift;
@@ -178,7 +178,8 @@ struct Block {
         return Block{low, low + edge, 0, false};
     };
     const glm::ivec3 b = cell >> 3 & 3;
-    if (const int edge = Mask64::emptyEdge(macro.bricks, b.x, b.y, b.z)) return aligned(edge * BrickGrid::kBrickEdge);
+    if (const int edge = Mask64::emptyEdge(macro.bricks, b.x, b.y, b.z, octant))
+        return aligned(edge * BrickGrid::kBrickEdge);
     const std::size_t brick = BrickGrid::brickIndex(macro, b.x, b.y, b.z);
     const glm::ivec3 half = cell >> 2 & 1;
     const auto part = static_cast<std::size_t>(half.x << 2 | half.y << 1 | half.z);
@@ -186,7 +187,7 @@ struct Block {
     std::uint64_t word = grid.surface(brick, part);
     if (grid.lazy()) [[unlikely]]
         if ((word >> Mask64::bit(c.x, c.y, c.z) & 1) != 0) word = grid.ensureSurface(brick, part, cell);
-    if (const int edge = Mask64::emptyEdge(word, c.x, c.y, c.z)) return aligned(edge);
+    if (const int edge = Mask64::emptyEdge(word, c.x, c.y, c.z, octant)) return aligned(edge);
     return {cell, cell + 1, brick, true};
 }
 

@@ -12,7 +12,7 @@ namespace {
 // One octant. The largest cube from a macro cell is one larger than the least of those from the seven next to it.
 class EmptyCubes {
 public:
-    EmptyCubes(std::span<MacroCell> macros, const std::array<int, 3>& count, unsigned octant)
+    EmptyCubes(std::span<MacroCell> macros, const std::array<int, 3>& count, Octant octant)
         : macros_(macros), count_(count), octant_(octant), stride_{std::ptrdiff_t{count[1]} * count[2], count[2], 1} {
         for (std::size_t axis = 0; axis < 3; ++axis) step_[axis] = (octant & 4U >> axis) != 0 ? -1 : 1;
     }
@@ -51,7 +51,7 @@ private:
 
     const std::span<MacroCell> macros_;
     const std::array<int, 3> count_;
-    const unsigned octant_;
+    const Octant octant_;
     const std::array<std::ptrdiff_t, 3> stride_;
     std::array<int, 3> step_;
 };
@@ -61,7 +61,7 @@ private:
 void measureEmptySpace(std::span<MacroCell> macros, const std::array<int, 3>& count) {
     parallelFor(8, 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t octant = first; octant != last; ++octant)
-            EmptyCubes(macros, count, static_cast<unsigned>(octant)).measure();
+            EmptyCubes(macros, count, static_cast<Octant>(octant)).measure();
     });
 }
 

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
 
 namespace stratum::march {
 
-/// 4^3 bits, x slowest: occupancy of (x, y, z), and the size of the empty block around a position.
+/// Along which axes directions descend: 4 for x, 2 for y, 1 for z.
+using Octant = unsigned;
+
+/// 4^3 bits, x slowest: occupancy of (x, y, z), and how much is empty around a position and ahead of it.
 struct Mask64 {
     static constexpr int bit(int x, int y, int z) { return x << 4 | y << 2 | z; }
     /// Bits of the aligned 2^3 group at even (x, y, z).
@@ -18,13 +22,33 @@ struct Mask64 {
         constexpr std::uint64_t kGroup = kQuad | kQuad << 16;
         return kGroup << bit(x & 2, y & 2, z & 2);
     }
-    /// Edge of the largest aligned empty block around (x, y, z): 4, 2 or 1; 0 if that bit is set.
-    static constexpr int emptyEdge(std::uint64_t mask, int x, int y, int z) {
-        if (mask == 0) return 4;
-        if ((mask & group(x, y, z)) == 0) return 2;
-        return (mask >> bit(x, y, z) & 1) == 0 ? 1 : 0;
+    /// Bits that rays of an octant can come to from each position, it included: index octant << 6 | bit().
+    static constexpr std::array<std::uint64_t, 512> ahead() {
+        std::array<std::uint64_t, 512> masks{};
+        for (std::size_t n = 0; n < masks.size(); ++n)
+            for (std::size_t other = 0; other < 64; ++other) {
+                bool met = true;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const std::size_t from = n >> (4 - 2 * axis) & 3;
+                    const std::size_t to = other >> (4 - 2 * axis) & 3;
+                    met = met && ((n >> 6 & 4U >> axis) != 0 ? to <= from : to >= from);
+                }
+                if (met) masks[n] |= std::uint64_t{1} << other;
+            }
+        return masks;
     }
+    /// Edge of the largest aligned block around (x, y, z) in which rays of the octant meet nothing: 4, 2 or 1; 0 if
+    /// that bit is set. A block of 4 may have bits behind the position.
+    static int emptyEdge(std::uint64_t mask, int x, int y, int z, Octant octant);
 };
+
+inline constexpr std::array<std::uint64_t, 512> kAhead = Mask64::ahead();
+
+inline int Mask64::emptyEdge(std::uint64_t mask, int x, int y, int z, Octant octant) {
+    if ((mask & kAhead[octant << 6 | static_cast<unsigned>(bit(x, y, z))]) == 0) return 4;
+    if ((mask & group(x, y, z)) == 0) return 2;
+    return (mask >> bit(x, y, z) & 1) == 0 ? 1 : 0;
+}
 
 /// 32^3 cells.
 struct MacroCell {
@@ -39,9 +63,8 @@ struct MacroCell {
     }
     void setFirstBrick(std::uint32_t first) { std::memcpy(rest.data(), &first, sizeof first); }
     /// Of one without bricks: the edge, in macro cells, of the largest cube from this one on in which all are empty, at
-    /// most 255. Beyond the grid everything is empty. The octant tells along which axes directions descend: 4 for x, 2
-    /// for y, 1 for z.
-    int emptyAhead(unsigned octant) const { return rest[octant]; }
+    /// most 255. Beyond the grid everything is empty.
+    int emptyAhead(Octant octant) const { return rest[octant]; }
 };
 
 /// Finds emptyAhead() of all macro cells, x slowest and z fastest, for all octants, on all threads. After Deakin and

@@ -43,6 +43,7 @@ enum Field {
     kWord,  // of clearCells(): kPart, or the same of the slot
     kLowBits,
     kBeyond,
+    kOctant,  // of the direction, times 64
     kFields
 };
 

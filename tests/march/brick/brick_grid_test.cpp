@@ -10,22 +10,43 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace stratum::march {
 namespace {
 
-TEST(Mask64, EmptyEdgeIsTheLargestAlignedEmptyBlock) {
-    EXPECT_EQ(Mask64::emptyEdge(0, 1, 2, 3), 4);
-    for (int x = 0; x < 4; ++x)
-        for (int y = 0; y < 4; ++y)
-            for (int z = 0; z < 4; ++z) {
-                const std::uint64_t one = std::uint64_t{1} << Mask64::bit(x, y, z);
-                EXPECT_EQ(Mask64::emptyEdge(one, x, y, z), 0);
-                EXPECT_EQ(Mask64::emptyEdge(~one, x, y, z), 1);
-                EXPECT_EQ(Mask64::emptyEdge(one, x ^ 1, y, z), 1);  // the same group
-                EXPECT_EQ(Mask64::emptyEdge(one, x ^ 2, y, z), 2);  // another group
+TEST(Mask64, EmptyEdgeIsTheLargestAlignedBlockWithNothingAhead) {
+    std::mt19937_64 random(1);
+    int found[5] = {};
+    for (int n = 0; n < 4000; ++n) {
+        // From almost empty to almost full.
+        std::uint64_t mask = random() & random();
+        for (int k = n % 6; k > 0; --k) mask &= random();
+        if (n % 7 == 0) mask = ~mask;
+        const int x = static_cast<int>(random() % 4);
+        const int y = static_cast<int>(random() % 4);
+        const int z = static_cast<int>(random() % 4);
+        const auto octant = static_cast<Octant>(random() % 8);
+        const auto isEmpty = [&](int edge, bool ahead) {
+            for (int at = 0; at < 64; ++at) {
+                const int from[3] = {x, y, z};
+                const int to[3] = {at >> 4, at >> 2 & 3, at & 3};
+                bool in = (mask >> at & 1) != 0;
+                for (int axis = 0; axis < 3; ++axis) {
+                    in = in && from[axis] / edge == to[axis] / edge;
+                    const bool descends = (octant & 4U >> axis) != 0;
+                    if (ahead) in = in && (descends ? to[axis] <= from[axis] : to[axis] >= from[axis]);
+                }
+                if (in) return false;
             }
+            return true;
+        };
+        const int edge = isEmpty(4, true) ? 4 : isEmpty(2, false) ? 2 : isEmpty(1, false) ? 1 : 0;
+        ASSERT_EQ(Mask64::emptyEdge(mask, x, y, z, octant), edge) << n;
+        ++found[edge];
+    }
+    for (const int edge : {0, 1, 2, 4}) EXPECT_GT(found[edge], 100) << edge;
 }
 
 // Every cell of the grid: is it marked if and only if its corners are not of one sign, and are they its samples?
