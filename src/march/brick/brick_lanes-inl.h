@@ -37,6 +37,7 @@ namespace HWY_NAMESPACE {
 
 // Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
 constexpr std::size_t kPackets = 8;
+constexpr int kMinWaiting = kLanes / 2;    // lanes in surface cells that make a test worthwhile
 constexpr std::int64_t kGroup = 0x330033;  // Mask64::group() at 0
 
 template <bool kAny>
@@ -94,9 +95,6 @@ public:
     }
 
 private:
-    // Lanes in surface cells that make a test worthwhile; tried on three prints.
-    static constexpr int kMinWaiting = kAny ? kLanes * 3 / 8 : kLanes / 2;
-
     static HWY_INLINE VI gather(const void* base, VI index) {
         return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
     }
