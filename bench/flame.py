@@ -5,7 +5,7 @@
 
 Samples of all threads by `perf record --call-graph dwarf`, needs Debian's linux-perf. A line is a function, its share of the command's
 processor time with all that it calls, and a bar; what has less than --least percent is left out. Frames of threads, of the standard
-library and of TBB between two functions are skipped, and functions that are only wrappers of one call are, too.
+library and of TBB between two functions are skipped, and functions that do nothing but call one other are, too.
 """
 import argparse
 import collections
@@ -85,16 +85,30 @@ def named(frames):
     return [name for name in names if name]
 
 
-def show(node, total, least, depth, indent=0):
-    for name, child in sorted(node.below.items(), key=lambda item: -item[1].weight):
-        if 100 * child.weight < least * total:
-            continue
-        while len(child.below) > 0:  # what does nothing but call one function
+def merge(node, other):
+    node.weight += other.weight
+    for name, child in other.below.items():
+        merge(node.below[name], child)
+
+
+def callees(node):
+    """What a function calls, without functions that do nothing but call one other."""
+    found = collections.defaultdict(Node)
+    for name, child in node.below.items():
+        while child.below:
             inner, only = max(child.below.items(), key=lambda item: item[1].weight)
             if only.weight < 0.95 * child.weight:
                 break
             name, child = inner, only
+        merge(found[name], child)
+    return sorted(found.items(), key=lambda item: -item[1].weight)
+
+
+def show(node, total, least, depth, indent=0):
+    for name, child in callees(node):
         share = 100 * child.weight / total
+        if share < least:
+            break
         print(f"{'  ' * indent + name:<48.48} {share:5.1f} %  {'#' * max(1, round(share / 2))}")
         if depth > 1:
             show(child, total, least, depth - 1, indent + 1)
