@@ -233,6 +233,37 @@ TEST(PrintField, MakesNoLeavesForSignsThatAreKnown) {
     EXPECT_LT(leavesOf({}), leavesOf(kSettled));
 }
 
+// Backwards, each brick finds its neighbours laid out.
+TEST(PrintField, MakesNoLeavesOfWhichNeighboursHaveSamples) {
+    openvdb::initialize();
+    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear", {}));
+    const auto beads = voxelize::selectBeads(*toolpath, {});
+    const voxelize::Lattice lattice =
+        voxelize::chooseLattice(*toolpath, beads, voxelize::boundsOf(*toolpath, beads), {std::nullopt, 4});
+    const auto leavesOf = [&](bool backwards) {
+        const auto field = std::make_shared<const PrintField>(toolpath, beads, lattice, voxelize::Placement(), "gear");
+        const march::BrickGrid bricks(std::shared_ptr<const march::LeafField>(field), march::BrickValues::Int16);
+        const auto size = bricks.size();
+        const auto at = [&](int axis, int n) {
+            const int cells = size[static_cast<std::size_t>(axis)];
+            return backwards ? cells - march::BrickGrid::kBrickEdge - n : n;
+        };
+        for (int x = 0; x < size[0]; x += march::BrickGrid::kBrickEdge)
+            for (int y = 0; y < size[1]; y += march::BrickGrid::kBrickEdge)
+                for (int z = 0; z < size[2]; z += march::BrickGrid::kBrickEdge) {
+                    const glm::ivec3 cell(at(0, x), at(1, y), at(2, z));
+                    const march::MacroCell& macro = bricks.macroCell(cell.x / 32, cell.y / 32, cell.z / 32);
+                    const int b[3] = {cell.x / 8 & 3, cell.y / 8 & 3, cell.z / 8 & 3};
+                    if ((macro.bricks >> march::Mask64::bit(b[0], b[1], b[2]) & 1) != 0)
+                        bricks.ensureBrick(march::BrickGrid::brickIndex(macro, b[0], b[1], b[2]), cell.x / 8,
+                                           cell.y / 8, cell.z / 8);
+                }
+        return field->leavesMade();
+    };
+    EXPECT_LT(leavesOf(true), leavesOf(false));
+}
+
 // A print that grows and shrinks: what is kept and what is made again are the cells of the partial print's grid.
 void expectOnlyChanges(const gcode::DepositModel& deposit) {
     openvdb::initialize();

@@ -70,7 +70,7 @@ public:
 private:
     template <typename T>
     bool layOut(std::size_t brick, int x, int y, int z, T* samples, LeafCache<T>& cache) const {
-        const BrickParts<T> parts = partsOf(x, y, z, cache);
+        const BrickParts<T> parts = field_ ? partsOfField(x, y, z, samples, cache) : partsOf(x, y, z, cache);
         const CellBits surface = surfaceOf(parts);
         std::uint32_t slot = BrickSlots::kNoSamples;
         if (hasAny(surface)) {
@@ -116,13 +116,16 @@ private:
     }
 
     template <typename T>
-    BrickParts<T> partsOfField(int x, int y, int z, LeafCache<T>& cache) const {
+    BrickParts<T> partsOfField(int x, int y, int z, const T* samples, LeafCache<T>& cache) const {
         BrickParts<T> parts;
         const T outside = march::convert(field_->background(), scale_, T{});
         parts.tile.fill(outside);
         parts.cap_tile.fill(outside);
         const auto take = [&](std::size_t part) {
-            const auto* made = madeAt(x + static_cast<int>(part >> 1), y + static_cast<int>(part & 1), z, cache);
+            const int px = x + static_cast<int>(part >> 1);
+            const int py = y + static_cast<int>(part & 1);
+            const auto* made = part != 0 ? sharedAt(px, py, z, part, samples, cache) : nullptr;
+            if (made == nullptr) made = madeAt(px, py, z, cache);
             if (made == nullptr) return;
             parts.leaf[part] = &made->samples;
             parts.cap[part] = Cap<T>(made->above);
@@ -136,7 +139,6 @@ private:
 
     template <typename T>
     BrickParts<T> partsOf(int x, int y, int z, LeafCache<T>& cache) const {
-        if (field_) return partsOfField(x, y, z, cache);
         BrickParts<T> parts;
         for (std::size_t part = 0; part < parts.leaf.size(); ++part) {
             const int px = x + static_cast<int>(part >> 1);
@@ -175,6 +177,23 @@ private:
         keep(source_->samples(leaf, scratch), source_->name(), source_->origin(leaf), entry.samples);
         entry.key = key;
         return &entry.samples;
+    }
+
+    // What a neighbour that is laid out shares of its leaf, null if none is. Copying costs a tenth of sampling the
+    // field.
+    template <typename T>
+    const typename LeafCache<T>::Entry* sharedAt(int x, int y, int z, std::size_t part, const T* samples,
+                                                 LeafCache<T>& cache) const {
+        if (x >= 4 * grid_.macros_[0] || y >= 4 * grid_.macros_[1]) return nullptr;
+        if (cache.at(x, y, z).key == cache.keyOf(x, y, z)) return nullptr;
+        const MacroCell& macro = grid_.macroCell(x >> 2, y >> 2, z >> 2);
+        if ((macro.bricks >> Mask64::bit(x & 3, y & 3, z & 3) & 1) == 0) return nullptr;
+        const std::uint32_t slot = grid_.slots_.of(brickIndex(macro, x & 3, y & 3, z & 3));
+        if (slot < BrickSlots::kFirst) return nullptr;
+        auto& entry = cache.shared(part);
+        copyShared(samples + static_cast<std::ptrdiff_t>(slot - BrickSlots::kFirst) * kBrickSamples, part,
+                   entry.samples, entry.above);
+        return &entry;
     }
 
     // A leaf of the field, null where all is background.

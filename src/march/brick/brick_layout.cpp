@@ -186,10 +186,31 @@ void layOut(const BrickParts<T>& parts, T* out) {
         }
 }
 
+template <typename T>
+void copyShared(const T* brick, std::size_t part, LeafSamples<T>& leaf, CapSamples<T>& above) {
+    const std::size_t count_x = (part & 2) != 0 ? 1 : kEdge;
+    const std::size_t count_y = (part & 1) != 0 ? 1 : kEdge;
+    for (std::size_t x = 0; x < count_x; ++x) {
+        leaf.inside[x] = above.inside[x] = 0;
+        for (std::size_t y = 0; y < count_y; ++y) {
+            const T* row = brick + (x * kSamples + y) * kSamples;
+            const std::size_t column = x * kEdge + y;
+            std::copy_n(row, kEdge, leaf.value.data() + column * kEdge);
+            above.value[column] = row[kEdge];
+            std::uint64_t inside = 0;
+            for (std::size_t z = 0; z < kEdge; ++z) inside |= static_cast<std::uint64_t>(row[z] < 0) << z;
+            leaf.inside[x] |= inside << (8 * y);
+            above.inside[x] |= static_cast<std::uint64_t>(row[kEdge] < 0) << (8 * y);
+        }
+    }
+}
+
 template CellBits surfaceOf(const BrickParts<float>&);
 template CellBits surfaceOf(const BrickParts<std::int16_t>&);
 template void layOut(const BrickParts<float>&, float*);
 template void layOut(const BrickParts<std::int16_t>&, std::int16_t*);
+template void copyShared(const float*, std::size_t, LeafSamples<float>&, CapSamples<float>&);
+template void copyShared(const std::int16_t*, std::size_t, LeafSamples<std::int16_t>&, CapSamples<std::int16_t>&);
 
 }  // namespace stratum::march
 #endif

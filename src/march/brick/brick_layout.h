@@ -86,5 +86,9 @@ CellBits surfaceOf(const BrickParts<T>& parts);
 /// Writes 9^3 samples, x slowest.
 template <typename T>
 void layOut(const BrickParts<T>& parts, T* out);
+/// Of a brick that is laid out, the samples that the brick before it shares, as those of its leaf: `part` as in
+/// BrickParts, 2 is the plane of x = 0, 1 that of y = 0, 3 where both are 0. Others are not written.
+template <typename T>
+void copyShared(const T* brick, std::size_t part, LeafSamples<T>& leaf, CapSamples<T>& above);
 
 }  // namespace stratum::march

@@ -1,11 +1,12 @@
 // A thread's cache of recently converted leaves, because neighbouring bricks share leaves.
 #pragma once
 
+#include "base/huge_array.h"
 #include "march/brick/brick_layout.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace stratum::march {
 
@@ -26,11 +27,14 @@ public:
     Entry& at(int x, int y, int z) {
         return entries_[static_cast<std::size_t>((x & kLast) << (2 * kBits) | (y & kLast) << kBits | (z & kLast))];
     }
+    /// An entry apart for each part of a brick (see BrickParts), of which only what the brick shares need be there.
+    Entry& shared(std::size_t part) { return shared_[part]; }
 
 private:
-    static constexpr int kBits = 3;
+    static constexpr int kBits = 4;
     static constexpr int kLast = (1 << kBits) - 1;
-    std::vector<Entry> entries_ = std::vector<Entry>(std::size_t{1} << (3 * kBits));
+    HugeArray<Entry> entries_{std::size_t{1} << (3 * kBits)};
+    std::array<Entry, 4> shared_;
 };
 
 }  // namespace stratum::march

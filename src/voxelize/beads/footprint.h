@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace stratum::voxelize {
 
@@ -27,6 +28,44 @@ struct ColumnRange {
     }
 };
 
+/// The area within `reach` of a straight path in the plan, row by row. Lengths in mm.
+class PlanCapsule {
+public:
+    PlanCapsule(const gcode::Bead& bead, double reach)
+        : x0_(bead.x0), y0_(bead.y0), x1_(bead.x1), y1_(bead.y1), reach_(reach) {
+        // From the lower end to the upper one; a level path from left to right.
+        if (y0_ > y1_ || (y0_ == y1_ && x0_ > x1_)) {
+            std::swap(x0_, x1_);
+            std::swap(y0_, y1_);
+        }
+        const double dx = x1_ - x0_;
+        const double dy = y1_ - y0_;
+        const double length = std::sqrt(dx * dx + dy * dy);
+        side_x_ = length > 0 ? dy / length * reach : 0;
+        side_y_ = length > 0 ? dx / length * reach : reach;
+    }
+
+    bool meets(double y) const { return y >= y0_ - reach_ && y <= y1_ + reach_; }
+    /// The ends of a row that the area meets: on a straight side between its ends, on a disc elsewhere.
+    double left(double y) const { return side(y, -side_x_, side_y_, -1); }
+    double right(double y) const { return side(y, side_x_, -side_y_, 1); }
+
+private:
+    double side(double y, double side_x, double side_y, double sign) const {
+        const auto disc = [&](double center_x, double center_y) {
+            const double h2 = reach_ * reach_ - (y - center_y) * (y - center_y);
+            return center_x + sign * std::sqrt(std::max(h2, 0.0));
+        };
+        if (y <= y0_ + side_y) return disc(x0_, y0_);
+        if (y >= y1_ + side_y) return disc(x1_, y1_);
+        return x0_ + side_x + (y - (y0_ + side_y)) / (y1_ - y0_) * (x1_ - x0_);
+    }
+
+    double x0_, y0_, x1_, y1_;
+    double reach_;
+    double side_x_, side_y_;  // from the path to its right side, the latter downwards
+};
+
 /// Visits the square columns that beads reach. A column is reached if the center of its samples is within limit() of
 /// the path: no sample is farther from that center than half the diagonal they span.
 class Footprints {
@@ -43,6 +82,7 @@ public:
         : toolpath_(toolpath),
           edge_(edge),
           half_(half_span),
+          per_edge_(1 / edge),
           fills_grooves_(reach == Reach::field && toolpath.deposit.settles()),
           band_(band),
           // The part in 1e9 makes rounding conservative.
@@ -78,39 +118,13 @@ public:
                 });
             return;
         }
-        // The area within reach of a straight bead is a capsule: convex, so one interval of columns a row. It is the
-        // row's intersection with the discs around the ends and with the rectangle between them.
-        const double dx = bead.x1 - bead.x0;
-        const double dy = bead.y1 - bead.y0;
-        const double length = std::sqrt(dx * dx + dy * dy);
-        const double side_x = length > 0 ? -dy / length * reach : 0;
-        const double side_y = length > 0 ? dx / length * reach : 0;
+        // The area within reach of a straight bead is a capsule: convex, so one interval of columns a row.
+        const PlanCapsule capsule(bead, reach);
         for (int j = columns.j0; j <= columns.j1; ++j) {
             const double y = j * edge_ + half_;
-            double low = std::numeric_limits<double>::max();
-            double high = -std::numeric_limits<double>::max();
-            const auto include = [&](double x) {
-                low = std::min(low, x);
-                high = std::max(high, x);
-            };
-            const auto disc = [&](double x0, double y0) {
-                const double h2 = reach * reach - (y - y0) * (y - y0);
-                if (h2 < 0) return;
-                const double h = std::sqrt(h2);
-                include(x0 - h);
-                include(x0 + h);
-            };
-            disc(bead.x0, bead.y0);
-            disc(bead.x1, bead.y1);
-            for (const double turn : {-1.0, 1.0}) {
-                const double up = y - (bead.y0 + turn * side_y);
-                // 0 <= up / dy <= 1, written without the division, which a level path would make 0 / 0.
-                if (dy != 0 && up * dy >= 0 && std::abs(up) <= std::abs(dy))
-                    include(bead.x0 + turn * side_x + up / dy * dx);
-            }
-            if (low > high) continue;
-            const int i0 = std::max(first(low), columns.i0);
-            const int i1 = std::min(last(high), columns.i1);
+            if (!capsule.meets(y)) continue;
+            const int i0 = std::max(first(capsule.left(y)), columns.i0);
+            const int i1 = std::min(last(capsule.right(y)), columns.i1);
             if (i0 <= i1) visit(i0, i1, j);
         }
     }
@@ -145,11 +159,21 @@ private:
     double radiusOf(const gcode::Bead& bead, const Section& section) const {
         return bead.z0 == bead.z1 ? section.radius : BeadField(toolpath_, bead).radius();
     }
-    int first(double mm) const { return static_cast<int>(std::ceil((mm - half_) / edge_ - 1e-9)); }
-    int last(double mm) const { return static_cast<int>(std::floor((mm - half_) / edge_ + 1e-9)); }
+    // By truncation: std::ceil() and std::floor() are calls where the processor need not have SSE 4.1.
+    int first(double mm) const {
+        const double column = (mm - half_) * per_edge_ - 1e-9;
+        const int truncated = static_cast<int>(column);
+        return truncated + static_cast<int>(truncated < column);
+    }
+    int last(double mm) const {
+        const double column = (mm - half_) * per_edge_ + 1e-9;
+        const int truncated = static_cast<int>(column);
+        return truncated - static_cast<int>(truncated > column);
+    }
 
     const gcode::Toolpath& toolpath_;
     const double edge_, half_;  // mm
+    const double per_edge_;
     const bool fills_grooves_;
     const double band_, slack_;  // mm
 };

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <random>
+#include <vector>
 
 namespace stratum::march {
 namespace {
@@ -63,6 +66,55 @@ TEST_P(BrickLayout, TellsSamplesThatAreNoNumbers) {
             samples[place] = 0.1F;
         }
     EXPECT_TRUE(convert(samples.data(), 1, *quanta));
+}
+
+// A brick before another one is the same whether it reads the other's leaf or what the other brick shares of it.
+TEST(BrickLayoutOfNeighbours, IsThatOfTheirLeaves) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> value(-0.3F, 0.3F);
+    const float scale = 32767 / 0.3F;
+    const auto randomLeaf = [&](LeafSamples<std::int16_t>& leaf, CapSamples<std::int16_t>& above) {
+        std::vector<float> samples(LeafSource::kLeafSamples + LeafSource::kCapSamples);
+        for (float& sample : samples) sample = value(random);
+        ASSERT_TRUE(convert(samples.data(), scale, leaf));
+        ASSERT_TRUE(convert(samples.data() + LeafSource::kLeafSamples, scale, above));
+    };
+    struct Leaf {
+        LeafSamples<std::int16_t> samples{};
+        CapSamples<std::int16_t> above{};
+    };
+    const auto leaves = std::make_unique<std::array<Leaf, 5>>();  // four of one brick, and one that is only in part
+    Leaf& part_of = leaves->back();
+    for (int n = 0; n < 20; ++n) {
+        BrickParts<std::int16_t> parts;
+        for (std::size_t part = 0; part < 4; ++part) {
+            Leaf& leaf = (*leaves)[part];
+            ASSERT_NO_FATAL_FAILURE(randomLeaf(leaf.samples, leaf.above));
+            parts.leaf[part] = &leaf.samples;
+            parts.cap[part] = Cap<std::int16_t>(leaf.above);
+        }
+        std::vector<std::int16_t> expected(729);
+        layOut(parts, expected.data());
+        for (std::size_t part = 1; part < 4; ++part) {
+            SCOPED_TRACE(part);
+            BrickParts<std::int16_t> next;
+            next.leaf[0] = parts.leaf[part];
+            next.cap[0] = parts.cap[part];
+            std::vector<std::int16_t> brick(729);
+            layOut(next, brick.data());
+            // Whatever is not written must not matter.
+            part_of.samples.value.fill(static_cast<std::int16_t>(n % 2 == 0 ? 30000 : -30000));
+            part_of.samples.inside.fill(n % 2 == 0 ? 0 : ~std::uint64_t{0});
+            copyShared(brick.data(), part, part_of.samples, part_of.above);
+            BrickParts<std::int16_t> shared = parts;
+            shared.leaf[part] = &part_of.samples;
+            shared.cap[part] = Cap<std::int16_t>(part_of.above);
+            std::vector<std::int16_t> found(729);
+            layOut(shared, found.data());
+            EXPECT_EQ(found, expected);
+            EXPECT_EQ(surfaceOf(shared), surfaceOf(parts));
+        }
+    }
 }
 
 }  // namespace

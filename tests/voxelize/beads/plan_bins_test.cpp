@@ -56,31 +56,54 @@ TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
     EXPECT_GT(samples, 1000U);
 }
 
+// The columns of the only bead are those of its rectangle within reach, each tested by itself.
+void expectEveryColumn(const gcode::Toolpath& toolpath) {
+    const gcode::Bead& bead = toolpath.beads[0];
+    const Footprints footprints(toolpath, 0.4, 0.175, 0.15, Footprints::Reach::solid);
+    const double reach = footprints.limit(bead);
+    const ColumnRange all = footprints.range(bead, reach);
+    const PlanPath path(toolpath, bead);
+    std::vector<std::pair<int, int>> expected;
+    for (int j = all.j0; j <= all.j1; ++j)
+        for (int i = all.i0; i <= all.i1; ++i)
+            if (path.distance(i * 0.4 + 0.175, j * 0.4 + 0.175) <= reach) expected.emplace_back(i, j);
+    std::vector<std::pair<int, int>> found;
+    footprints.forEachColumn(bead, [&](int i0, int i1, int j) {
+        for (int i = i0; i <= i1; ++i) found.emplace_back(i, j);
+    });
+    EXPECT_EQ(found, expected);
+}
+
 // Rows of a ring are what the whole rectangle, tested column by column, gives.
 TEST(Footprints, OfArcsAreThoseOfEveryColumn) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> where(-6, 6);
     std::uniform_real_distribution<double> size(-3, 1.5);
     for (int n = 0; n < 300; ++n) {
+        SCOPED_TRACE(n);
         gcode::Toolpath toolpath;
         addArc(toolpath, where(random), where(random), std::pow(10, size(random)), where(random), where(random), 0.2,
                0.2, 0.5, 0.2);
         // The two ends may lie on circles of slightly different size.
         if (n % 3 == 0) toolpath.beads[0].x1 = toolpath.beads[0].x1 + 0.02;
-        const gcode::Bead& bead = toolpath.beads[0];
-        const Footprints footprints(toolpath, 0.4, 0.175, 0.15, Footprints::Reach::solid);
-        const double reach = footprints.limit(bead);
-        const ColumnRange all = footprints.range(bead, reach);
-        const PlanPath path(toolpath, bead);
-        std::vector<std::pair<int, int>> expected;
-        for (int j = all.j0; j <= all.j1; ++j)
-            for (int i = all.i0; i <= all.i1; ++i)
-                if (path.distance(i * 0.4 + 0.175, j * 0.4 + 0.175) <= reach) expected.emplace_back(i, j);
-        std::vector<std::pair<int, int>> found;
-        footprints.forEachColumn(bead, [&](int i0, int i1, int j) {
-            for (int i = i0; i <= i1; ++i) found.emplace_back(i, j);
-        });
-        EXPECT_EQ(found, expected) << n;
+        expectEveryColumn(toolpath);
+    }
+}
+
+// Rows of a capsule likewise: in all directions, level, upright, and without a length.
+TEST(Footprints, OfLinesAreThoseOfEveryColumn) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> where(-6, 6);
+    std::uniform_real_distribution<double> length(-4, 1);
+    for (int n = 0; n < 1000; ++n) {
+        const double x = where(random);
+        const double y = where(random);
+        const double dx = n % 4 == 1 || n % 4 == 3 ? 0 : where(random) * std::pow(10, length(random));
+        const double dy = n % 4 == 2 || n % 4 == 3 ? 0 : where(random) * std::pow(10, length(random));
+        SCOPED_TRACE(n);
+        gcode::Toolpath toolpath;
+        addBead(toolpath, x, y, 0.2, x + dx, y + dy, 0.2, 0.5, 0.2);
+        expectEveryColumn(toolpath);
     }
 }
 
