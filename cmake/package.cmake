@@ -33,7 +33,7 @@ set(CPACK_COMPONENT_VIEWER_DESCRIPTION
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libstratum-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libtbb-dev, libblosc-dev, \
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libopenvdb-dev, libboost-dev, libboost-iostreams-dev, libtbb-dev, libblosc-dev, liblz4-dev, \
 libopenexr-dev, libglm-dev, libpng-dev, libssl-dev, libfmt-dev, nlohmann-json3-dev, libfast-float-dev, libassimp-dev, \
 libhwy-dev, libdeflate-dev, libjpeg62-turbo-dev, libwebp-dev, zlib1g-dev, libzip-dev, pkg-config")
 set(CPACK_COMPONENT_DEV_DESCRIPTION

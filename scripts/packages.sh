@@ -18,7 +18,7 @@ install_packages() {
 }
 
 # What the tools are built with.
-BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev
+BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev liblz4-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
     libassimp-dev libhwy-dev libdeflate-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libzip-dev libstb-dev pkg-config
     pybind11-dev python3-dev python3-numpy)

@@ -1,12 +1,15 @@
 #include "export/leaf_packer.h"
 
+#include "export/blosc_chunk.h"
 #include "voxelize/leaf/leaf_kernels.h"
 
-#include <blosc.h>
 #include <openvdb/io/io.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <span>
 
 namespace stratum::exporter {
 namespace {
@@ -20,20 +23,12 @@ void append(const void* bytes, std::size_t count, std::vector<char>& out) {
 }
 
 // As io::bloscToStream() of OpenVDB does it, but straight into `out`.
-void appendBlosc(const void* values, std::size_t bytes, std::vector<char>& out) {
+void appendChunk(std::span<const float> values, std::vector<char>& out) {
     const std::size_t at = out.size();
-    out.resize(at + sizeof(std::int64_t) + bytes + BLOSC_MAX_OVERHEAD);
-    char* const packed = out.data() + at + sizeof(std::int64_t);
-    const int count = blosc_compress_ctx(9, 1, sizeof(float), bytes, values, packed, bytes + BLOSC_MAX_OVERHEAD,
-                                         BLOSC_LZ4_COMPNAME, bytes, 1);
-    // A negative length says that the values are as they are.
-    std::int64_t length = count;
-    if (count <= 0) {
-        length = -static_cast<std::int64_t>(bytes);
-        std::memcpy(packed, values, bytes);
-    }
+    out.resize(at + sizeof(std::int64_t) + values.size_bytes() + kChunkOverhead);
+    const auto length = static_cast<std::int64_t>(packChunk(values, out.data() + at + sizeof(std::int64_t)));
     std::memcpy(out.data() + at, &length, sizeof length);
-    out.resize(at + sizeof length + static_cast<std::size_t>(length < 0 ? -length : length));
+    out.resize(at + sizeof length + static_cast<std::size_t>(length));
 }
 
 void appendActive(const float* values, const LeafMask& active, std::vector<char>& out) {
@@ -42,7 +37,7 @@ void appendActive(const float* values, const LeafMask& active, std::vector<char>
     for (openvdb::Index32 word = 0; word < LeafMask::WORD_COUNT; ++word)
         for (std::uint64_t rest = active.getWord<std::uint64_t>(word); rest != 0; rest &= rest - 1)
             chosen[count++] = values[64 * word + static_cast<openvdb::Index32>(std::countr_zero(rest))];
-    appendBlosc(chosen, count * sizeof(float), out);
+    appendChunk({chosen, count}, out);
 }
 
 // Any format, through OpenVDB.
@@ -88,6 +83,19 @@ PackedLeaf leafWritten(const LeafFormat& format, const std::vector<char>& out, s
         before += sizeof(LeafMask);
     if (format.sized()) leaf.size = static_cast<std::uint32_t>(out.size() - first - before);
     return leaf;
+}
+
+bool isClamped(const float* values, const LeafMask& active, float background) {
+    LeafMask within;
+    LeafMask up_to;
+    voxelize::maskWithin(values, background, &within.getWord<std::uint64_t>(0));
+    const float next = std::nextafter(background, std::numeric_limits<float>::infinity());
+    voxelize::maskWithin(values, next, &up_to.getWord<std::uint64_t>(0));
+    for (openvdb::Index32 word = 0; word < LeafMask::WORD_COUNT; ++word) {
+        const std::uint64_t at_it = up_to.getWord<std::uint64_t>(word) & ~within.getWord<std::uint64_t>(word);
+        if ((~active.getWord<std::uint64_t>(word) & ~at_it) != 0) return false;
+    }
+    return true;
 }
 
 PackedLeaf packClampedLeaf(const LeafFormat& format, const float* values, const LeafMask& active, float background,

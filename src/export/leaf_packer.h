@@ -44,8 +44,11 @@ private:
 PackedLeaf leafWritten(const LeafFormat& format, const std::vector<char>& out, std::size_t first,
                        std::size_t value_bytes);
 
+/// Whether all inactive values are plus or minus the background, which is above zero.
+bool isClamped(const float* values, const LeafMask& active, float background);
+
 /// Appends mask and values of a leaf of a level set whose inactive values are plus or minus the background, as
-/// voxelize::LeafReceiver gets them: the same bytes as LeafNode::writeBuffers(), in half the time. Re-entrant.
+/// voxelize::LeafReceiver gets them: the same bytes as LeafNode::writeBuffers(), in half the time or less. Re-entrant.
 PackedLeaf packClampedLeaf(const LeafFormat& format, const float* values, const LeafMask& active, float background,
                            std::vector<char>& out);
 

@@ -143,8 +143,7 @@ void LevelSetNodes::write(std::ostream& out, float background, bool half, bool m
         const std::size_t last = n + 1 < upper_.size() ? upper_[n + 1].first_lower : lower_.size();
         for (std::size_t k = upper_[n].first_lower; k < last; ++k) {
             writeNode(out, lower_[k].children, lower_[k].inside, background, half);
-            if (!masks) continue;
-            for (const LeafMask& mask : lower_[k].leaves) mask.save(out);
+            if (masks) lower_[k].leaves.write(out);
         }
     }
     openvdb::io::setGridBackgroundValuePtr(out, nullptr);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "export/leaf_packer.h"
+#include "export/packed_masks.h"
 
 #include <openvdb/openvdb.h>
 
@@ -26,7 +27,7 @@ struct LowerNode {
     LowerMask children;
     LowerMask inside;  ///< of the tiles between the leaves
     EndSigns ends;
-    std::vector<LeafMask> leaves;  ///< active voxels, in the order of the children
+    PackedMasks leaves;  ///< active voxels, in the order of the children
 
     /// Sets `inside` and `ends`; `signs` are those of the leaves. As tools::signedFloodFill().
     void flood(const std::vector<EndSigns>& signs);

@@ -11,6 +11,7 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -64,6 +65,14 @@ void writeLeaves(const TreeType& tree, const LeafFormat& format, PositionedFile&
                 const std::size_t end = std::min(batch + n * kPackedByOne, leaves.leafCount());
                 for (std::size_t k = batch + (n - 1) * kPackedByOne; k < end; ++k) {
                     const std::size_t begin = part.bytes.size();
+                    if constexpr (std::is_same_v<TreeType, openvdb::FloatTree>) {
+                        const float* values = leaves.leaf(k).buffer().data();
+                        const LeafMask& active = leaves.leaf(k).valueMask();
+                        if (isClamped(values, active, background)) {
+                            part.leaves.push_back(packClampedLeaf(format, values, active, background, part.bytes));
+                            continue;
+                        }
+                    }
                     leaves.leaf(k).writeBuffers(stream, format.half);
                     part.leaves.push_back(leafWritten(format, part.bytes, begin, sizeof(typename TreeType::ValueType)));
                 }

@@ -81,24 +81,26 @@ void VdbStream::writeBlock(Block& block) {
     std::vector<std::size_t> next(block.columns.size());  // leaf, by column
     std::vector<iovec> parts;
     std::vector<EndSigns> signs;
+    std::vector<LeafMask> masks;
     for (int z = block.origin[2]; z < block.origin[2] + voxelize::kSlabVoxels; z += kLowerVoxels) {
         LowerNode node;
         node.origin = {block.origin[0], block.origin[1], z};
         signs.clear();
+        masks.clear();
         for (std::size_t c = 0; c < block.columns.size(); ++c) {
             Column& column = block.columns[c];
             for (; next[c] < column.leaves.size() && column.leaves[next[c]].z < z + kLowerVoxels; ++next[c]) {
                 const Leaf& leaf = column.leaves[next[c]];
                 node.children.setOn(static_cast<openvdb::Index>(c) * LowerMask::DIM +
                                     static_cast<openvdb::Index>((leaf.z - z) / kLeafVoxels));
-                node.leaves.push_back(leaf.active);
+                masks.push_back(leaf.active);
                 signs.push_back(leaf.signs);
                 output_.add(leaf.packed);
                 append(leaf.bytes, parts);
             }
         }
         if (signs.empty()) continue;
-        node.leaves.shrink_to_fit();
+        node.leaves = PackedMasks(masks);
         node.flood(signs);
         output_.add(std::move(node));
     }

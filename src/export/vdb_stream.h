@@ -19,9 +19,9 @@
 namespace stratum::exporter {
 
 /// Writes one level set. Leaves are packed by the threads that make them; a block of them is in memory while it is
-/// made, another one while it is written, and 67 bytes of every leaf until the end. OpenVDB reads the file to the grid
-/// that Voxelizer::printAll() makes; the bytes of tree and leaves are those of its own writer, behind metadata with the
-/// unused bytes that vdb_archive.h tells of. Errors throw OutputError, and the old file stays.
+/// made, another one while it is written, and about 20 bytes of every leaf until the end. OpenVDB reads the file to the
+/// grid that Voxelizer::printAll() makes; the bytes of tree and leaves are those of its own writer, behind metadata
+/// with the unused bytes that vdb_archive.h tells of. Errors throw OutputError, and the old file stays.
 class VdbStream : public voxelize::LeafReceiver {
 public:
     /// `grid`: Voxelizer::emptyGrid() with the metadata of describe(). `bounds`: of the leaves that will come.

@@ -15,6 +15,8 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
+#include <vector>
 
 namespace stratum::exporter {
 namespace {
@@ -167,6 +169,27 @@ TEST_F(VdbStreamTest, AFullDiskLeavesTheOldFile) {
     EXPECT_THROW(full.write(0, std::span(&part, 1)), OutputError);
 }
 
+// Masks of a wall, which repeat, take a fraction; random ones no more than they are.
+TEST(PackedMasks, AreThoseThatWerePacked) {
+    std::mt19937_64 random(8);
+    for (const std::size_t count : {0U, 1U, 7U, 4096U})
+        for (const bool wall : {true, false}) {
+            SCOPED_TRACE(count);
+            std::vector<LeafMask> masks(count);
+            for (LeafMask& mask : masks)
+                for (openvdb::Index32 word = 0; word < LeafMask::WORD_COUNT; ++word)
+                    mask.getWord<std::uint64_t>(word) = wall ? std::uint64_t{0x3c} << (8 * word) : random();
+            const PackedMasks packed(masks);
+            EXPECT_EQ(packed.size(), count);
+            EXPECT_LE(packed.bytes(), wall && count == 4096 ? count * 8 : count * sizeof(LeafMask) + 32);
+            std::ostringstream expected;
+            for (const LeafMask& mask : masks) mask.save(expected);
+            std::ostringstream found;
+            packed.write(found);
+            EXPECT_EQ(found.str(), expected.str());
+        }
+}
+
 // Leaves whose first and last voxels have random signs, in few nodes and far from each other.
 TEST(LevelSetNodes, TilesHaveTheSignsOfOpenVdbsFloodFill) {
     openvdb::initialize();
@@ -190,13 +213,15 @@ TEST(LevelSetNodes, TilesHaveTheSignsOfOpenVdbsFloodFill) {
             LowerNode node;
             node.origin = leaves[n]->origin() & ~127;
             std::vector<EndSigns> signs;
+            std::vector<LeafMask> masks;
             for (; n < leaves.size() && (leaves[n]->origin() & ~127) == node.origin; ++n) {
                 const openvdb::Coord local = leaves[n]->origin() - node.origin;
                 node.children.setOn(
                     static_cast<openvdb::Index>((local[0] / 8 * 16 + local[1] / 8) * 16 + local[2] / 8));
-                node.leaves.push_back(leaves[n]->valueMask());
+                masks.push_back(leaves[n]->valueMask());
                 signs.push_back({leaves[n]->getFirstValue() < 0, leaves[n]->getLastValue() < 0});
             }
+            node.leaves = PackedMasks(masks);
             node.flood(signs);
             nodes.add(std::move(node));
         }

@@ -118,6 +118,7 @@ std::vector<LowerNode> nodesOf(const PartFile& file) {
     openvdb::FloatTree tree;
     tree.readTopology(stream, file.format.half);
     std::vector<LowerNode> nodes;
+    std::vector<LeafMask> masks;
     for (auto upper = tree.root().cbeginChildOn(); upper; ++upper)
         for (auto lower = upper->cbeginChildOn(); lower; ++lower) {
             LowerNode& node = nodes.emplace_back();
@@ -125,7 +126,9 @@ std::vector<LowerNode> nodesOf(const PartFile& file) {
             node.children = lower->getChildMask();
             for (auto tile = lower->cbeginChildOff(); tile; ++tile)
                 if (*tile < 0) node.inside.setOn(tile.pos());
-            for (auto leaf = lower->cbeginChildOn(); leaf; ++leaf) node.leaves.push_back(leaf->getValueMask());
+            masks.clear();
+            for (auto leaf = lower->cbeginChildOn(); leaf; ++leaf) masks.push_back(leaf->getValueMask());
+            node.leaves = PackedMasks(masks);
             if (nodes.size() > file.part.signs.size())
                 throw InputError(damageOf(file.path, "it has more nodes than signs"));
             node.ends = file.part.signs[nodes.size() - 1];
