@@ -67,7 +67,7 @@ public:
     void run() {
         // Each packet looks up its cells half a round after it has moved: the two halves of a step depend on each
         // other, so interleaving packets keeps the processor busy. The branch conditions are half a round old, too, so
-        // that a mispredicted branch costs little.
+        // that a mispredicted branch costs little. Slots are read another quarter of a round later.
         for (bool busy = true; busy;) {
             busy = false;
             if (bounded_ && (full_ || cache_.roomWanted())) releaseBricks();
@@ -82,9 +82,11 @@ public:
                 }
                 Packet& looking = packets_[(n + kPackets / 2) % kPackets];
                 queue_.refill(looking);
-                if (looking.alive == 0) continue;
-                busy = true;
-                look(looking);
+                if (looking.alive != 0) {
+                    busy = true;
+                    look(looking);
+                }
+                if (by_slot_) findWord(packets_[(n + kPackets / 4) % kPackets]);
             }
         }
         if constexpr (!kAny) {
@@ -140,7 +142,7 @@ private:
         store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
     }
 
-    // findBlock() down to the bricks; prefetches the bits of their surface cells.
+    // findBlock() down to the bricks; prefetches the bits of their surface cells, or where those are by slot, the slot.
     void look(Packet& p) const {
         const DI di;
         const VI one = whole(1);
@@ -178,20 +180,32 @@ private:
         // Lanes without a brick read the first one's mask and ignore it.
         const VI brick = hn::ShiftLeft<3>(hn::And(first, whole(0xffffffff)) + rank);
         const VI part = hn::IfThenElseZero(has_brick, brick + half);
-        VI word = part;
-        if (by_slot_) {
-            word = wordOf(slotsOf(hn::ShiftRight<3>(part)), part);
-            std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
-        }
         storeWhole(p, kPart, part);
-        storeWhole(p, kWord, word);
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
         storeWhole(p, kOctant, octant);
-        HWY_ALIGN std::int64_t words[kLanes];
-        hn::Store(word, di, words);
-        const auto* clear = reinterpret_cast<const std::uint64_t*>(grid_.clearCells());
-        for (const std::int64_t word : words) hwy::Prefetch(clear + word);
+        if (by_slot_) {
+            prefetch(grid_.slots(), hn::ShiftRight<3>(part));
+        } else {
+            storeWhole(p, kWord, part);
+            prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), part);
+        }
+    }
+
+    // By slot: the word of the surface cells after look().
+    void findWord(Packet& p) const {
+        const VI part = loadWhole(p, kPart);
+        const VI word = wordOf(slotsOf(hn::ShiftRight<3>(part)), part);
+        std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
+        storeWhole(p, kWord, word);
+        prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), word);
+    }
+
+    template <typename T>
+    static HWY_INLINE void prefetch(const T* table, VI index) {
+        HWY_ALIGN std::int64_t places[kLanes];
+        hn::Store(index, DI(), places);
+        for (const std::int64_t place : places) hwy::Prefetch(table + place);
     }
 
     // One step of every lane that isn't waiting: out of the largest empty block, or into the waiting state in a surface

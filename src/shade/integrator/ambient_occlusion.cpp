@@ -12,12 +12,12 @@ namespace stratum::shade {
 AmbientOcclusion::AmbientOcclusion(const SceneDescription& scene, const trace::Intersector& print, double distance)
     : Integrator(scene, print), opaque_(scene.backdrop.has_value()), distance_(distance) {}
 
-std::optional<trace::Ray> AmbientOcclusion::shadowRay(const SurfacePoint& first, const glm::vec2& u) const {
+bool AmbientOcclusion::shadowRay(const SurfacePoint& first, const glm::vec2& u, trace::Ray& ray) const {
     const glm::vec3 wi = toCosineHemisphere(u);
-    if (!(wi.z > 0.0f) || surfaces_.fade(first) >= 1.0f) return std::nullopt;
-    trace::Ray ray = surfaces_.leave(first, Frame{glm::vec3(first.normal)}.toWorld(wi));
+    if (!(wi.z > 0.0f) || surfaces_.fade(first) >= 1.0f) return false;
+    ray = surfaces_.leave(first, Frame{glm::vec3(first.normal)}.toWorld(wi));
     ray.t_max = distance_;
-    return ray;
+    return true;
 }
 
 Pixel AmbientOcclusion::unoccluded(const SurfacePoint* first) const {
@@ -26,10 +26,10 @@ Pixel AmbientOcclusion::unoccluded(const SurfacePoint* first) const {
 
 Pixel AmbientOcclusion::seen(const trace::Ray&, const SurfacePoint* first, TraceContext& context) const {
     if (first == nullptr) return unoccluded(first);
-    const auto ray = shadowRay(*first, context.sampler.next2D());
-    if (!ray) return unoccluded(first);
+    trace::Ray ray;
+    if (!shadowRay(*first, context.sampler.next2D(), ray)) return unoccluded(first);
     ++context.rays.shadow;
-    return {Color(surfaces_.occluded(*ray, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
+    return {Color(surfaces_.occluded(ray, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
 }
 
 void AmbientOcclusion::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
@@ -44,20 +44,19 @@ void AmbientOcclusion::seenStream(std::span<const trace::Ray> rays, std::span<co
     }
     std::vector<glm::vec2> draws(hits.size());
     next2DStream(samplers, hits, draws);
-    std::vector<trace::Ray> shadow_rays;
-    std::vector<std::size_t> pixel_of;
-    shadow_rays.reserve(hits.size());
-    pixel_of.reserve(hits.size());
+    // Kept by the thread, as in Surfaces::nearest().
+    static thread_local std::vector<trace::Ray> shadow_rays;
+    if (shadow_rays.size() < hits.size()) shadow_rays.resize(hits.size());
+    std::vector<std::size_t> pixel_of(hits.size());
+    std::size_t count = 0;
     for (std::size_t k = 0; k < hits.size(); ++k) {
-        if (const auto ray = shadowRay(points[hits[k]], draws[k])) {
-            shadow_rays.push_back(*ray);
-            pixel_of.push_back(hits[k]);
-        }
+        pixel_of[count] = hits[k];
+        count += shadowRay(points[hits[k]], draws[k], shadow_rays[count]) ? 1 : 0;
     }
-    counts.shadow += shadow_rays.size();
-    std::vector<std::uint8_t> blocked(shadow_rays.size());
-    surfaces_.occluded(shadow_rays, tracer, blocked);
-    for (std::size_t k = 0; k < shadow_rays.size(); ++k)
+    counts.shadow += count;
+    std::vector<std::uint8_t> blocked(count);
+    surfaces_.occluded(std::span(shadow_rays).first(count), tracer, blocked);
+    for (std::size_t k = 0; k < count; ++k)
         if (blocked[k] != 0) pixels[pixel_of[k]].rgb = Color(surfaces_.fade(points[pixel_of[k]]));
 }
 

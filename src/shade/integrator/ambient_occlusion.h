@@ -4,8 +4,6 @@
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/surface.h"
 
-#include <optional>
-
 namespace stratum::shade {
 
 /// 1 if nothing is occluded, 0 if everything is. Surfaces farther than `distance` don't occlude. The bed occludes.
@@ -22,8 +20,8 @@ protected:
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
-    /// The occlusion ray from `first`; none where the result is known without a ray.
-    std::optional<trace::Ray> shadowRay(const SurfacePoint& first, const glm::vec2& u) const;
+    /// Sets the occlusion ray from `first`; false where the result is known without a ray.
+    bool shadowRay(const SurfacePoint& first, const glm::vec2& u, trace::Ray& ray) const;
     Pixel unoccluded(const SurfacePoint* first) const;
 
     bool opaque_;  // whether the scene has a backdrop; its pixels are 1

@@ -47,10 +47,10 @@ Pixel PathIntegrator::seen(const trace::Ray& ray, const SurfacePoint* first, Tra
     return pixel;
 }
 
-void PathIntegrator::ShadowRays::add(const trace::Ray& ray, const Color& value, std::size_t to) {
-    rays.push_back(ray);
+trace::Ray& PathIntegrator::ShadowRays::add(const Color& value, std::size_t to) {
     light.push_back(value);
     pixel.push_back(to);
+    return rays.emplace_back();
 }
 
 void PathIntegrator::ShadowRays::clear() {
@@ -68,12 +68,19 @@ void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direct
                              std::size_t pixel, int scatterings, const Translucent* inside,
                              std::vector<Path>& paths) const {
     const Translucent* solid = walk_ ? point.brdf->translucent() : nullptr;
+    if (solid == nullptr && scatterings >= bounces_) return;
+    Path& path = paths.emplace_back();
+    path.point = point;
+    path.direction = direction;
+    path.throughput = throughput;
+    path.pixel = pixel;
+    path.scatterings = scatterings;
+    path.solid = solid;
+    path.inside = inside;
     if (solid == nullptr) {
-        if (scatterings < bounces_)
-            paths.push_back({point, direction, throughput, pixel, scatterings + 1, nullptr, inside});
+        ++path.scatterings;
         return;
     }
-    Path& path = paths.emplace_back(Path{point, direction, throughput, pixel, scatterings, solid, inside});
     path.point.brdf = &solid->fromAir(path.side());
     if (point.from_inside) {
         path.point.normal = -point.normal;
@@ -81,11 +88,9 @@ void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direct
     }
 }
 
-PathIntegrator::PathVertex PathIntegrator::vertexOf(Path& path) {
-    const Frame frame{glm::vec3(path.point.normal)};
-    glm::vec3 wo = frame.toLocal(glm::vec3(-path.direction));
-    if (path.solid != nullptr && path.side() == Side::solid) wo.z = -wo.z;
-    return {&path, frame, wo};
+PathIntegrator::PathVertex::PathVertex(Path& of)
+    : path(&of), frame(glm::vec3(of.point.normal)), wo(frame.toLocal(glm::vec3(-of.direction))) {
+    if (of.solid != nullptr && of.side() == Side::solid) wo.z = -wo.z;
 }
 
 void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const {
@@ -100,9 +105,9 @@ void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, Sh
         Color value = path.throughput * point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * sample->light;
         if (sample->pdf > 0.0f) value *= powerHeuristic(sample->pdf, point.brdf->pdf(wo, wi)) / sample->pdf;
         if (!(maxComponent(value) > 0.0f)) continue;
-        trace::Ray ray = surfaces_.leave(point, sample->direction);
+        trace::Ray& ray = shadow_rays.add(value, path.pixel);
+        ray = surfaces_.leave(point, sample->direction);
         ray.t_max = sample->distance;
-        shadow_rays.add(ray, value, path.pixel);
     }
 }
 
@@ -146,41 +151,48 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             const Color value = vertex.path->throughput * point.brdf->eval(vertex.wo, wi) *
                                 (wi.z * weight / light.pdf) * light.radiance;
             if (!(maxComponent(value) > 0.0f)) continue;
-            shadow_rays.add(surfaces_.leave(point, light.direction), value, vertex.path->pixel);
+            shadow_rays.add(value, vertex.path->pixel) = surfaces_.leave(point, light.direction);
         }
     }
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatter(PathVertex& vertex, const glm::vec2& lobe_draw,
-                                                              const glm::vec2& brdf_draw) const {
+bool PathIntegrator::scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw,
+                             Bounce& bounce) const {
     Path& path = *vertex.path;
-    if (path.solid != nullptr) return scatterThrough(vertex, lobe_draw, brdf_draw);
+    if (path.solid != nullptr) return scatterThrough(vertex, lobe_draw, brdf_draw, bounce);
     const std::optional<BrdfSample> next = path.point.brdf->sample(vertex.wo, lobe_draw.x, brdf_draw);
-    if (!next) return std::nullopt;
+    if (!next) return false;
     path.throughput *= next->f * (next->wi.z / next->pdf);
-    if (!(maxComponent(path.throughput) > 0.0f)) return std::nullopt;
-    const glm::vec3 direction = vertex.frame.toWorld(next->wi);
-    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f), path.inside};
+    if (!(maxComponent(path.throughput) > 0.0f)) return false;
+    bounce.from = &vertex;
+    bounce.direction = vertex.frame.toWorld(next->wi);
+    bounce.ray = surfaces_.leave(path.point, bounce.direction);
+    bounce.pdf = next->pdf;
     bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
-    return bounce;
+    bounce.inside = path.inside;
+    return true;
 }
 
-std::optional<PathIntegrator::Bounce> PathIntegrator::scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw,
-                                                                     const glm::vec2& draw) const {
+bool PathIntegrator::scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw,
+                                    Bounce& bounce) const {
     Path& path = *vertex.path;
     const std::optional<InterfaceSample> next = path.solid->surface().sample(path.side(), vertex.wo, lobe_draw, draw);
-    if (!next) return std::nullopt;
+    if (!next) return false;
     const bool out = next->side == Side::air;
     const glm::vec3 direction = vertex.frame.toWorld({next->wi.x, next->wi.y, out ? next->wi.z : -next->wi.z});
     // With smooth normals it may be on the wrong side of the real surface.
-    if ((glm::dot(glm::dvec3(direction), path.point.geometric) > 0.0) != out) return std::nullopt;
-    if (!out) {
-        const Translucent* inside = path.side() == Side::solid && path.inside != nullptr ? path.inside : path.solid;
-        return Bounce{&vertex, surfaces_.enter(path.point, direction), direction, next->pdf, Color(0.0f), inside};
+    if ((glm::dot(glm::dvec3(direction), path.point.geometric) > 0.0) != out) return false;
+    bounce.from = &vertex;
+    bounce.direction = direction;
+    bounce.pdf = next->pdf;
+    if (out) {
+        bounce.ray = surfaces_.leave(path.point, direction);
+        bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
+    } else {
+        bounce.ray = surfaces_.enter(path.point, direction);
+        bounce.inside = path.side() == Side::solid && path.inside != nullptr ? path.inside : path.solid;
     }
-    Bounce bounce{&vertex, surfaces_.leave(path.point, direction), direction, next->pdf, Color(0.0f), nullptr};
-    bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
-    return bounce;
+    return true;
 }
 
 void PathIntegrator::evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const {
@@ -220,15 +232,18 @@ void PathIntegrator::scatterAll(std::span<PathVertex> vertices, std::span<const 
                                 std::vector<Bounce>& bounces, std::vector<Walker>& walkers) const {
     for (std::size_t n = 0; n < vertices.size(); ++n) {
         PathVertex& vertex = vertices[n];
-        const std::optional<Bounce> bounce = scatter(vertex, lobe_draws[n], brdf_draws[n]);
-        if (!bounce) continue;
+        Bounce& bounce = bounces.emplace_back();
+        if (!scatter(vertex, lobe_draws[n], brdf_draws[n], bounce)) {
+            bounces.pop_back();
+            continue;
+        }
         const Path& path = *vertex.path;
-        if (bounce->inside != nullptr) {
-            walkers.push_back({bounce->ray, bounce->inside, path.throughput, path.pixel, path.scatterings});
+        if (bounce.inside != nullptr) {
+            walkers.push_back({bounce.ray, bounce.inside, path.throughput, path.pixel, path.scatterings});
+            bounces.pop_back();
             continue;
         }
         sums[path.pixel] += path.throughput * scene_.ambient;
-        bounces.push_back(*bounce);
     }
 }
 
@@ -264,7 +279,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         vertices.clear();
         bounces.clear();
         vertices.reserve(paths.size());
-        for (Path& path : paths) vertices.push_back(vertexOf(path));
+        for (Path& path : paths) vertices.emplace_back(path);
         // Every step draws the same dimensions in the same order, so that each dimension keeps its stratification.
         gatherGroups(groups, vertices, [](const PathVertex& vertex) { return vertex.path->point.bed; });
         for (const Group& group : groups) sampleEnvironment(group, vertices, samplers, shadow_rays, batch);
@@ -286,7 +301,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         if (only_escape)
             for (const Bounce& bounce : bounces) {
                 const Path& path = *bounce.from->path;
-                escaped_rays.add(bounce.ray, path.throughput * bounce.escaped, path.pixel);
+                escaped_rays.add(path.throughput * bounce.escaped, path.pixel) = bounce.ray;
             }
         counts.shadow += shadow_rays.rays.size();
         counts.bounce += bounces.size();

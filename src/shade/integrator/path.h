@@ -54,22 +54,24 @@ private:
         std::vector<trace::Ray> rays;
         std::vector<Color> light;  // times the throughput of the path
         std::vector<std::size_t> pixel;
-        void add(const trace::Ray& ray, const Color& value, std::size_t to);
+        /// Adds a ray and returns it, to be set where it stays.
+        trace::Ray& add(const Color& value, std::size_t to);
         void clear();
     };
     /// The current vertex of a path, with its shading frame.
     struct PathVertex {
+        explicit PathVertex(Path& of);
         Path* path;
         Frame frame;
         glm::vec3 wo;  // unit, in `frame`, towards the previous vertex; z of the side that it is on (RoughInterface)
     };
     /// A ray drawn from the BRDF.
     struct Bounce {
-        const PathVertex* from;
+        const PathVertex* from = nullptr;
         trace::Ray ray;
-        glm::vec3 direction;  // of ray
-        float pdf;
-        Color escaped;                        // radiance along it if it hits nothing, weighted by MIS
+        glm::vec3 direction{0.0f};  // of ray
+        float pdf = 0.0f;
+        Color escaped{0.0f};                  // radiance along it if it hits nothing, weighted by MIS
         const Translucent* inside = nullptr;  // it goes through; null for air
     };
     /// Indices of vertices or bounces whose light comes from one density: on the bed BedLight's, else the
@@ -91,15 +93,14 @@ private:
     /// made to point to the air.
     void addPath(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput, std::size_t pixel,
                  int scatterings, const Translucent* inside, std::vector<Path>& paths) const;
-    static PathVertex vertexOf(Path& path);
     void sampleEnvironment(const Group& group, std::span<const PathVertex> vertices, std::span<Sampler> samplers,
                            ShadowRays& shadow_rays, LightBatch& batch) const;
     /// Adds one shadow ray for each light.
     void sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const;
-    /// Draws the next direction of a path and updates its throughput; nothing if the path ends.
-    std::optional<Bounce> scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw) const;
+    /// Draws the next direction of a path and updates its throughput; false if the path ends.
+    bool scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw, Bounce& bounce) const;
     /// The same at the surface of a translucent solid.
-    std::optional<Bounce> scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw) const;
+    bool scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw, Bounce& bounce) const;
     /// Bounces in air, and walkers inside of solids, of all paths that go on.
     void scatterAll(std::span<PathVertex> vertices, std::span<const glm::vec2> lobe_draws,
                     std::span<const glm::vec2> brdf_draws, std::span<Color> sums, std::vector<Bounce>& bounces,

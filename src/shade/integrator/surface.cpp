@@ -1,7 +1,6 @@
 #include "shade/integrator/surface.h"
 
-#include <glm/geometric.hpp>
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -16,10 +15,11 @@ Surfaces::Surfaces(const SceneDescription& scene, const trace::Intersector& prin
     contact_->z += 0.05 * print.voxelSize();
 }
 
-SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const {
-    SurfacePoint point;
+void Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer, SurfacePoint& point) const {
     point.position = hit.position;
     point.t = hit.t;
+    point.bed = false;
+    point.labels.fill(-1.0f);
     const ObjectMaterial& object = hit.object < scene_.objects.size() ? scene_.objects[hit.object] : only_;
     const Material& material = object.single() ? object.only() : object.of(tracer.attribute(hit, object.attribute()));
     point.brdf = material.by_place ? &material.brdf->at(scene_.mm_per_unit * hit.position) : material.brdf.get();
@@ -42,11 +42,9 @@ SurfacePoint Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, tra
         // used.
         if (glm::dot(facing_us, ray.direction) < 0.0) point.normal = facing_us;
     }
-    return point;
 }
 
-SurfacePoint Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t) {
-    SurfacePoint point;
+void Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoint& point) {
     point.position = ray.origin + t * ray.direction;
     point.position.z = bed.z;
     point.t = t;
@@ -55,10 +53,13 @@ SurfacePoint Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t) {
     point.brdf = finish.brdf.get();
     point.albedo = finish.albedo;
     const glm::dvec3 bump = bed.texture.normal(xy);
+    constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
     // As on the print: a normal that faces away from the viewer would render black.
-    if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
+    point.normal = glm::dot(bump, ray.direction) < 0.0 ? bump : kUp;
+    point.geometric = kUp;
     point.bed = true;
-    return point;
+    point.from_inside = false;
+    point.labels.fill(-1.0f);
 }
 
 bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoint& point) const {
@@ -68,9 +69,9 @@ bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoin
     trace::Hit hit;
     const bool print = tracer.intersect(limited, hit);
     if (print)
-        point = onPrint(ray, hit, tracer);
+        onPrint(ray, hit, tracer, point);
     else if (bed)
-        point = onBed(*scene_.bed, ray, *bed);
+        onBed(*scene_.bed, ray, *bed, point);
     return print || bed;
 }
 
@@ -91,14 +92,16 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::
     // The hits may be those of an earlier scene, and intersectors of one object or without parts don't set these
     // fields.
     for (trace::Hit& hit : hits) hit.object = hit.part = 0;
-    static thread_local std::vector<std::optional<double>> beds;
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    static thread_local std::vector<double> beds;
     if (bed != nullptr) {
         beds.resize(rays.size());
         static thread_local std::vector<trace::Ray> limited;
-        limited.assign(rays.begin(), rays.end());
+        limited.resize(rays.size());
         for (std::size_t n = 0; n < rays.size(); ++n) {
-            beds[n] = bed->intersect(rays[n]);
-            if (beds[n]) limited[n].t_max = *beds[n];
+            beds[n] = bed->intersect(rays[n]).value_or(kNone);
+            limited[n] = rays[n];
+            limited[n].t_max = std::min(rays[n].t_max, beds[n]);
         }
         tracer.intersectStream(limited, hits);
     } else {
@@ -106,11 +109,11 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::
     }
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
-            points[n] = onPrint(rays[n], hits[n], tracer);
-        else if (bed != nullptr && beds[n])
-            points[n] = onBed(*bed, rays[n], *beds[n]);
+            onPrint(rays[n], hits[n], tracer, points[n]);
+        else if (bed != nullptr && beds[n] < kNone)
+            onBed(*bed, rays[n], beds[n], points[n]);
         else
-            points[n].t = std::numeric_limits<double>::infinity();
+            points[n].t = kNone;
     }
 }
 
@@ -124,6 +127,8 @@ void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
     // Rays that hit the bed are not traced through the print.
     std::vector<trace::Ray> others;
     std::vector<std::size_t> ray_of;
+    others.reserve(rays.size());
+    ray_of.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n) {
         blocked[n] = scene_.bed->intersect(rays[n]) ? 1 : 0;
         if (blocked[n] != 0) continue;
@@ -133,20 +138,6 @@ void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
     std::vector<std::uint8_t> answers(others.size());
     tracer.occludedStream(others, answers);
     for (std::size_t k = 0; k < ray_of.size(); ++k) blocked[ray_of[k]] = answers[k];
-}
-
-trace::Ray Surfaces::leave(const SurfacePoint& point, const glm::vec3& direction) const {
-    trace::Ray ray;
-    ray.origin = point.position + offset_ * point.geometric;
-    ray.direction = glm::normalize(glm::dvec3(direction));
-    return ray;
-}
-
-trace::Ray Surfaces::enter(const SurfacePoint& point, const glm::vec3& direction) const {
-    trace::Ray ray;
-    ray.origin = point.position - offset_ * point.geometric;
-    ray.direction = glm::normalize(glm::dvec3(direction));
-    return ray;
 }
 
 float Surfaces::fade(const SurfacePoint& point) const {

@@ -5,6 +5,7 @@
 #include "shade/scene/scene.h"
 #include "trace/intersector.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -45,9 +46,13 @@ public:
     void occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
     /// A ray from a point, offset so that it doesn't hit the same surface again.
     /// @param direction  world space, near unit length
-    trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const;
+    trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const {
+        return {point.position + offset_ * point.geometric, glm::normalize(glm::dvec3(direction))};
+    }
     /// The same into the solid behind it.
-    trace::Ray enter(const SurfacePoint& point, const glm::vec3& direction) const;
+    trace::Ray enter(const SurfacePoint& point, const glm::vec3& direction) const {
+        return {point.position - offset_ * point.geometric, glm::normalize(glm::dvec3(direction))};
+    }
     /// Share of the backdrop in what the camera sees of this point, 0 to 1.
     float fade(const SurfacePoint& point) const;
     /// Radiance that the camera sees along a ray that hits nothing; false if there is no backdrop.
@@ -56,8 +61,9 @@ public:
     bool backdrop(std::span<const trace::Ray> rays, std::span<Color> radiances) const;
 
 private:
-    SurfacePoint onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer) const;
-    static SurfacePoint onBed(const Bed& bed, const trace::Ray& ray, double t);
+    // They set every field, where it stays: to copy what was just written in pieces takes longer than to write it.
+    void onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer, SurfacePoint& point) const;
+    static void onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoint& point);
     void nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
                  std::span<SurfacePoint> points) const;
 
