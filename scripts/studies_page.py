@@ -121,7 +121,7 @@ def prints_line(folder):
     if first:
         one = first[len(first) // 2]
         line += ["; for a first look of one sample it is ", Number(f"{one[0]:.2f}", one[1], "polygons"),
-                 " × as fast (median): beads need no voxels"]
+                 " × as fast (median)"]
     return line + ["."]
 
 
