@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 
@@ -27,12 +28,14 @@ TEST(Need, SwitchesEachCapabilityOnAlone) {
         rows[row.at(2)] = row;
     }
     const auto peak = [&](const char* name) { return std::stod(rows.at(name).at(7)); };
-    // Two grids of four bytes a voxel, and a table of 90 x 90 x 180 colours: both must show.
     // What was counted while all is off is told, and what is over the limit found.
     std::ofstream(folder.path() / "need_off.csv") << "work,capability,functions,instructions,percent,run\n"
                                                      "picture,lens,1,12,0.01,1\npicture,denoiser,1,9000,2.5,1\n";
-    EXPECT_GT(peak("attribute grids"), peak("none") * 1.1);
-    EXPECT_GT(peak("measured material"), peak("none") + 12.0 * 90 * 90 * 180 * 0.9);
+    // Two grids of four bytes a voxel, and a table of 90 x 90 x 180 colours: both must show. The first process of all
+    // may have more of the program's own file mapped, when that is just being read: the smaller of two counts.
+    const double least = std::min(peak("none"), peak("none, once more"));
+    EXPECT_GT(peak("attribute grids"), least * 1.1);
+    EXPECT_GT(peak("measured material"), least + 12.0 * 90 * 90 * 180 * 0.9);
     const StudyReport again = studyNeed(options, common);
     EXPECT_EQ(again.resumed, 16U);
     ASSERT_EQ(again.findings.size(), 1U);
