@@ -79,13 +79,18 @@ def print_total(row, spp=32):
     return number(row, "convert_cpu") + number(row, "build_cpu") + number(row, "render_cpu") * spp / number(row, "spp")
 
 
-def best_of(rows, level_sets, total):
-    """The fastest of a side that is exact enough for a picture of 32 samples, if one is."""
+def best_of(rows, level_sets, total, spp):
+    """The fastest of a side that is exact enough for a picture of so many samples, if one is: its bias is below the
+    noise, which is measured of row["spp"] samples and falls with their number."""
     side = [r for r in rows if r["representation"].startswith("level set") == level_sets and not math.isnan(total(r))]
-    return min(side, key=lambda r: (not number(r, "bias") < number(r, "noise"), total(r)), default=None)
+
+    def biased(row):
+        return not number(row, "bias") < number(row, "noise") * number(row, "spp") / spp
+
+    return min(side, key=lambda r: (biased(r), total(r)), default=None)
 
 
-def print_matches(table, integrator, total):
+def print_matches(table, integrator, total, spp=32):
     """(ratio, level set, peer) of each print and number of threads: above 1 the level set is faster."""
     groups = {}
     for row in table.where(integrator=integrator):
@@ -97,7 +102,7 @@ def print_matches(table, integrator, total):
             largest[name, threads] = (pixels, rows)
     found = []
     for _, rows in largest.values():
-        own, peer = best_of(rows, True, total), best_of(rows, False, total)
+        own, peer = best_of(rows, True, total, spp), best_of(rows, False, total, spp)
         if own and peer:
             found.append((total(peer) / total(own), own, peer))
     return sorted(found, key=lambda match: match[0])
@@ -117,7 +122,7 @@ def prints_line(folder):
     fewer = {own["spp"] for _, own, _ in matches} - {"32"}
     if fewer:
         line.append(f" (told in proportion from {', '.join(sorted(fewer))} samples)")
-    first = print_matches(table, "path", lambda row: number(row, "first_look_cpu"))
+    first = print_matches(table, "path", lambda row: number(row, "first_look_cpu"), spp=1)
     if first:
         one = first[len(first) // 2]
         line += ["; for a first look of one sample it is ", Number(f"{one[0]:.2f}", one[1], "polygons"),
