@@ -96,15 +96,11 @@ private:
         V low[2] = {infinity, infinity};
         V high[2] = {hn::Neg(infinity), hn::Neg(infinity)};
         M common = hn::Eq(zero, zero);
-        static_assert(sizeof(trace::Ray) == 8 * sizeof(double));
         for (std::size_t first = 0; first < rays.size(); first += kLanes) {
-            const VI lane = hn::Iota(DI(), 0);
-            const VI last = whole(static_cast<std::int64_t>(std::min<std::size_t>(rays.size() - first, kLanes)) - 1);
-            const VI row = hn::ShiftLeft<3>(hn::Min(lane, last));
             for (std::size_t n = first + kAhead; n < std::min(first + kAhead + kLanes, rays.size()); ++n)
                 hwy::Prefetch(&rays[n]);
             V in[8];
-            for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, &rays[first].origin.x, row + whole(n));
+            loadRays(&rays[first], static_cast<int>(std::min<std::size_t>(rays.size() - first, kLanes)), in);
             LaneRays lanes;
             for (int axis = 0; axis < 3; ++axis) {
                 lanes.o[axis] = constant(fan_.eye[axis]);

@@ -68,6 +68,27 @@ HWY_INLINE V inverseOf(V direction) {
     return hn::IfThenElse(hn::Eq(direction, hn::Zero(D())), infinity, constant(1) / direction);
 }
 
+/// The fields of the first `count` rays, 1 to kLanes; the other lanes repeat the last one.
+HWY_INLINE void loadRays(const trace::Ray* rays, int count, V in[8]) {
+    static_assert(sizeof(trace::Ray) == 8 * sizeof(double));
+    const D d;
+    const double* fields = &rays->origin.x;
+    if (count == kLanes) {
+        // Two blocks of four fields a ray, transposed: gathers read one field of one ray at a time.
+        V low[4];
+        V high[4];
+        hn::LoadInterleaved4(d, fields, low[0], low[1], low[2], low[3]);
+        hn::LoadInterleaved4(d, fields + 4 * kLanes, high[0], high[1], high[2], high[3]);
+        for (int n = 0; n < 4; ++n) {
+            in[n] = hn::ConcatEven(d, high[n], low[n]);
+            in[n + 4] = hn::ConcatOdd(d, high[n], low[n]);
+        }
+        return;
+    }
+    const VI row = hn::ShiftLeft<3>(hn::Min(hn::Iota(DI(), 0), whole(count - 1)));
+    for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, fields, row + whole(n));
+}
+
 /// From rays in the world to rays in the grid's box.
 class RayBox {
 public:

@@ -86,14 +86,10 @@ private:
         const auto count = std::min<std::size_t>((kFans ? tried_ : rays_.size()) - next_, kLanes);
         const VI lane = hn::Iota(DI(), 0);
         const VI last = whole(static_cast<std::int64_t>(count) - 1);
-        static_assert(sizeof(trace::Ray) == 8 * sizeof(double));
-        const VI ray = hn::IfThenElse(hn::Gt(lane, last), last, lane);
-        const VI row = hn::ShiftLeft<3>(ray);
-        const double* base = &rays_[next_].origin.x;
         for (std::size_t n = next_ + kLanes; n < std::min(next_ + 2 * kLanes, rays_.size()); ++n)
             hwy::Prefetch(&rays_[n]);
         V in[8];
-        for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, base, row + whole(n));
+        loadRays(&rays_[next_], static_cast<int>(count), in);
         LaneRays lanes;
         box_.toCells(in, lanes);
         V start = in[6];

@@ -216,7 +216,7 @@ void PathIntegrator::evalEscaped(const Group& group, std::span<Bounce> bounces, 
     }
 }
 
-void PathIntegrator::addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const {
+void PathIntegrator::addUnoccluded(ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const {
     std::vector<std::uint8_t> blocked(shadow_rays.rays.size());
     surfaces_.occluded(shadow_rays.rays, tracer, blocked);
     for (std::size_t k = 0; k < blocked.size(); ++k)

@@ -112,8 +112,9 @@ private:
     void evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const;
     /// MIS-weighted radiance of the lights with extent that a ray drawn from the BRDF hits up to the distance t.
     Color hitLights(const trace::Ray& ray, double t, float pdf) const;
-    /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels.
-    void addUnoccluded(const ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
+    /// Traces the rays and adds the light of those that are unoccluded to the sums of their pixels. Overwrites the
+    /// rays.
+    void addUnoccluded(ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
     /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits.
     void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, std::span<Color> sums,
                        std::vector<Path>& next_paths) const;

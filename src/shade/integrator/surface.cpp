@@ -52,11 +52,13 @@ void Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoi
     const BedTexture::Finish& finish = bed.texture.at(xy);
     point.brdf = finish.brdf.get();
     point.albedo = finish.albedo;
-    const glm::dvec3 bump = bed.texture.normal(xy);
     constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
-    // As on the print: a normal that faces away from the viewer would render black.
-    point.normal = glm::dot(bump, ray.direction) < 0.0 ? bump : kUp;
-    point.geometric = kUp;
+    point.normal = point.geometric = kUp;
+    if (bed.texture.bumpy()) {
+        const glm::dvec3 bump = bed.texture.normal(xy);
+        // As on the print: a normal that faces away from the viewer would render black.
+        if (glm::dot(bump, ray.direction) < 0.0) point.normal = bump;
+    }
     point.bed = true;
     point.from_inside = false;
     point.labels.fill(-1.0f);
@@ -118,26 +120,27 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::
 }
 
 bool Surfaces::occluded(const trace::Ray& ray, trace::Tracer& tracer) const {
-    return (scene_.bed && scene_.bed->intersect(ray)) || tracer.occluded(ray);
+    return (scene_.bed && scene_.bed->blocks(ray)) || tracer.occluded(ray);
 }
 
-void Surfaces::occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer,
-                        std::span<std::uint8_t> blocked) const {
+void Surfaces::occluded(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const {
     if (!scene_.bed) return tracer.occludedStream(rays, blocked);
-    // Rays that hit the bed are not traced through the print.
-    std::vector<trace::Ray> others;
-    std::vector<std::size_t> ray_of;
-    others.reserve(rays.size());
-    ray_of.reserve(rays.size());
+    // Rays that hit the bed are not traced through the print: the others move up to the front. Half of the rays go
+    // down, at random, so there is no branch. Kept by the thread, as in nearest().
+    static thread_local std::vector<std::size_t> ray_of;
+    static thread_local std::vector<std::uint8_t> answers;
+    ray_of.resize(rays.size());
+    std::size_t others = 0;
     for (std::size_t n = 0; n < rays.size(); ++n) {
-        blocked[n] = scene_.bed->intersect(rays[n]) ? 1 : 0;
-        if (blocked[n] != 0) continue;
-        others.push_back(rays[n]);
-        ray_of.push_back(n);
+        const bool hit = scene_.bed->blocks(rays[n]);
+        blocked[n] = hit ? 1 : 0;
+        rays[others] = rays[n];
+        ray_of[others] = n;
+        others += hit ? 0 : 1;
     }
-    std::vector<std::uint8_t> answers(others.size());
-    tracer.occludedStream(others, answers);
-    for (std::size_t k = 0; k < ray_of.size(); ++k) blocked[ray_of[k]] = answers[k];
+    answers.resize(others);
+    tracer.occludedStream(rays.first(others), answers);
+    for (std::size_t k = 0; k < others; ++k) blocked[ray_of[k]] = answers[k];
 }
 
 float Surfaces::fade(const SurfacePoint& point) const {

@@ -42,12 +42,22 @@ public:
     /// than a twentieth of a voxel above the bed is the bed.
     void nearestInside(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
     bool occluded(const trace::Ray& ray, trace::Tracer& tracer) const;
-    /// blocked[i] is 1 or 0. `blocked` is as long as `rays`.
-    void occluded(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
+    /// blocked[i] is 1 or 0. `blocked` is as long as `rays`, which are overwritten.
+    void occluded(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
     /// A ray from a point, offset so that it doesn't hit the same surface again.
     /// @param direction  world space, near unit length
     trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const {
         return {point.position + offset_ * point.geometric, glm::normalize(glm::dvec3(direction))};
+    }
+    /// The same where the ray stays: what is copied in one piece waits for the pieces that it was made of.
+    /// @param unit  of length 1 to the last bits
+    void leave(const SurfacePoint& point, const glm::dvec3& unit, trace::Ray& ray) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            ray.origin[axis] = point.position[axis] + offset_ * point.geometric[axis];
+            ray.direction[axis] = unit[axis];
+        }
+        ray.t_min = 0.0;
+        ray.t_max = trace::kInfinity;
     }
     /// The same into the solid behind it.
     trace::Ray enter(const SurfacePoint& point, const glm::vec3& direction) const {

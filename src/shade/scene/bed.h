@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <cmath>
 #include <optional>
 
 namespace stratum::shade {
@@ -33,9 +34,29 @@ struct Bed {
     double fade_end = 2.0;    ///< world units from the center: all faded; > fade_begin
 
     /// Distance along a ray to the sheet, if it is in the ray's interval and hit from above.
-    std::optional<double> intersect(const trace::Ray& ray) const;
+    std::optional<double> intersect(const trace::Ray& ray) const {
+        const double t = distanceAlong(ray);
+        return meets(ray, t) ? std::optional(t) : std::nullopt;
+    }
+    /// Whether there is such a distance.
+    bool blocks(const trace::Ray& ray) const { return meets(ray, distanceAlong(ray)); }
     /// Share of the backdrop, 0 to 1, in what the camera sees at this point.
-    double fade(const glm::dvec3& point) const;
+    double fade(const glm::dvec3& point) const {
+        const double dx = point.x - center.x;
+        const double dy = point.y - center.y;
+        const double square = dx * dx + dy * dy;
+        // Most points are on this side of the fade or beyond it.
+        if (square <= fade_begin * fade_begin) return 0.0;
+        return square >= fade_end * fade_end ? 1.0 : fadeAt(std::sqrt(square));
+    }
+
+private:
+    double fadeAt(double radius) const;
+    // Of a horizontal ray infinite or NaN. Without branches, and here to be inlined: every ray of a picture asks.
+    double distanceAlong(const trace::Ray& ray) const { return (z - ray.origin.z) / ray.direction.z; }
+    static bool meets(const trace::Ray& ray, double t) {
+        return (ray.direction.z < 0.0) & (t >= ray.t_min) & (t <= ray.t_max);
+    }
 };
 
 }  // namespace stratum::shade

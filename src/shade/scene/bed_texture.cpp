@@ -104,7 +104,7 @@ const BedTexture::Finish& BedTexture::at(const glm::dvec2& place) const {
 }
 
 glm::dvec3 BedTexture::normal(const glm::dvec2& place) const {
-    if (surface_ != BedSurface::pei) return {0.0, 0.0, 1.0};
+    if (!bumpy()) return {0.0, 0.0, 1.0};
     const glm::dvec2 slope = coatSlope(mm_per_unit_ * place);
     return glm::normalize(glm::dvec3(-slope.x, -slope.y, 1.0));
 }

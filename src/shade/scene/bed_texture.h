@@ -37,6 +37,8 @@ public:
 
     /// @param place  world units
     const Finish& at(const glm::dvec2& place) const;
+    /// Whether normal() differs from straight up anywhere.
+    bool bumpy() const { return surface_ == BedSurface::pei; }
     /// The shading normal, unit, upwards.
     /// @param place  world units
     glm::dvec3 normal(const glm::dvec2& place) const;
