@@ -92,7 +92,10 @@ for folder in ("tools", "tools/command_line", "tools/convert"):
         problems.append(f"{folder}: {len(names)} files; divide them")
     for name in names:
         with open(os.path.join(ROOT, folder, name), encoding="utf-8") as file:
-            check_functions(f"{folder}/{name}", file.read().splitlines())
+            lines = file.read().splitlines()
+        if len(lines) > MOST_LINES:
+            problems.append(f"{folder}/{name}: {len(lines)} lines; split it by idea")
+        check_functions(f"{folder}/{name}", lines)
 for room in os.listdir(os.path.join(ROOT, "src")):
     if room not in MAY_INCLUDE:
         problems.append(f"src/{room}: is no room of this list")

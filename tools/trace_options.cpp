@@ -2,6 +2,7 @@
 
 #include "choices.h"
 #include "color_options.h"
+#include "number_list.h"
 
 #include "assemble/print/tool_colors.h"
 #include "assemble/scene_file.h"
@@ -14,14 +15,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace stratum::tools {
@@ -41,40 +36,6 @@ Examples:
   vdbtrace part.vdb -o part.exr --integrator ao     linear values, for compositing and measuring
   vdbtrace part.vdb --brdf plastic:0.8,0.1,0.05,0.2 --env constant:1,1,1
   vdbtrace part.vdb --eye 120,-200,90 --look-at 0,0,20 --fov 25)";
-
-// "a<separator>b..." as exactly N whole numbers.
-template <std::size_t N>
-std::array<int, N> parseIntegers(const std::string& text, char separator, const char* option, const char* expected) {
-    std::array<int, N> values{};
-    std::string_view rest = text;
-    for (std::size_t n = 0; n < N; ++n) {
-        const std::size_t end = n + 1 < N ? rest.find(separator) : rest.size();
-        const std::string_view part = rest.substr(0, std::min(end, rest.size()));
-        const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), values[n]);
-        if (end == std::string_view::npos || error != std::errc{} || stop != part.data() + part.size())
-            throw UsageError(fmt::format("{} {}: expected {}", option, text, expected));
-        if (n + 1 < N) rest.remove_prefix(end + 1);
-    }
-    return values;
-}
-
-// "a,b,...": finite numbers, as many as one of `counts`.
-std::vector<double> parseNumbers(const std::string& text, std::initializer_list<std::size_t> counts, const char* option,
-                                 const char* expected) {
-    std::vector<double> values;
-    bool good = true;
-    for (const std::string& word : CLI::detail::split(text, ',')) {
-        double value = 0;
-        const char* end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(word.data() + (word.starts_with('+') ? 1 : 0), end, value);
-        good = good && error == std::errc{} && stop == end && std::isfinite(value);
-        values.push_back(value);
-    }
-    if (!good || std::find(counts.begin(), counts.end(), values.size()) == counts.end())
-        throw UsageError(
-            fmt::format("{} {}: expected {}, numbers with commas between them and no spaces", option, text, expected));
-    return values;
-}
 
 std::optional<glm::dvec3> parseVector(const std::string& text, const char* option) {
     const std::vector<double> v = parseNumbers(text, {3}, option, "X,Y,Z");
@@ -206,8 +167,8 @@ void applyTurns(TraceCommand& o) {
         throw UsageError(
             "--turntable: how many pictures? write --turntable 36, or make a film with --film part.mp4 --turntable");
     const int turns = once ? 1
-                           : parseIntegers<1>(o.turns, ',', "--turntable",
-                                              "a whole number; put FILE before it, or write --turntable 1")[0];
+                           : parseIntegers(o.turns, 1, ',', "--turntable",
+                                           "a whole number; put FILE before it, or write --turntable 1")[0];
     if (turns < 1 || turns > 10000) throw UsageError(fmt::format("--turntable {}: must be from 1 to 10000", o.turns));
     if (film)
         o.film.turns = turns;
@@ -422,12 +383,12 @@ std::string sourceOf(const TraceCommand& o, const std::string& files) {
 
 void applyText(TraceCommand& o) {
     if (!o.size.empty()) {
-        const auto size = parseIntegers<2>(o.size, 'x', "--size", "WxH in pixels, e.g. 1280x960");
+        const auto size = parseIntegers(o.size, 2, 'x', "--size", "WxH in pixels, e.g. 1280x960");
         o.render.width = size[0];
         o.render.height = size[1];
     }
     if (!o.crop.empty()) {
-        const auto c = parseIntegers<4>(o.crop, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
+        const auto c = parseIntegers(o.crop, 4, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
         o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
     }
     if (!o.phong.empty()) {

@@ -41,14 +41,14 @@ Kind valueKind(voxelize::Attribute attribute) {
 
 PrintFieldObject makeField(const ToolpathObject& print, const py::kwargs& given) {
     Keywords keywords("PrintField", given);
-    ConversionOptions options;
-    options.print = printOptionsOf(keywords);
-    options.attributes.emplace();
+    exporter::LevelSetChoices choices;
+    choices.print = printOptionsOf(keywords);
+    choices.attributes.emplace();
     keywords.finish();
     return callLong(py::none(), [&](const Report&) {
-        const Conversion conversion(print, std::move(options));
+        const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));
         return PrintFieldObject{std::make_shared<const ondemand::PrintField>(
-            print.toolpath, conversion.selection(), conversion.lattice(), voxelize::Placement(),
+            print.toolpath, plan.selection(), plan.lattice(), voxelize::Placement(),
             print.source.empty() ? "print" : print.source)};
     });
 }

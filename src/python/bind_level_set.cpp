@@ -90,33 +90,32 @@ py::tuple vectorOf(const openvdb::Vec3d& v) { return py::make_tuple(v[0], v[1], 
 
 LevelSetObject voxelizePrint(const ToolpathObject& print, const py::object& progress, const py::kwargs& given) {
     Keywords keywords("voxelize", given);
-    ConversionOptions options = conversionOptionsOf(keywords);
+    exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     keywords.finish();
     return callLong(progress, [&](const Report& report) {
-        return LevelSetObject{Conversion(print, std::move(options)).makeGrids(report)};
+        return LevelSetObject{makeGrids(print, exporter::LevelSetPlan(*print.toolpath, std::move(choices)), report)};
     });
 }
 
 py::object voxelizeBlock(const ToolpathObject& print, const py::object& box, const py::object& progress,
                          const py::kwargs& given) {
     Keywords keywords("voxelize_block", given);
-    ConversionOptions options;
-    options.print = printOptionsOf(keywords);
-    options.attributes.emplace();
+    exporter::LevelSetChoices choices;
+    choices.print = printOptionsOf(keywords);
+    choices.attributes.emplace();
     keywords.finish();
     const bool all = box.is_none();
     const voxelize::Bounds wanted = all ? voxelize::Bounds() : boxOf(box);
-    const Conversion conversion = [&] {
+    const exporter::LevelSetPlan plan = [&] {
         const py::gil_scoped_release release;
-        return Conversion(print, std::move(options));
+        return exporter::LevelSetPlan(*print.toolpath, std::move(choices));
     }();
-    const voxelize::Lattice& lattice = conversion.lattice();
-    const openvdb::CoordBBox samples = all ? samplesAround(conversion.bounds(), lattice) : samplesIn(wanted, lattice);
+    const voxelize::Lattice& lattice = plan.lattice();
+    const openvdb::CoordBBox samples = all ? samplesAround(plan.bounds(), lattice) : samplesIn(wanted, lattice);
     py::array_t<float> values = emptyBlock(samples);
     float* const to = values.mutable_data();
-    runLong(progress, [&](const Report& report) {
-        fillDense(print.toolpath, conversion.selection(), lattice, samples, to, report);
-    });
+    runLong(progress,
+            [&](const Report& report) { fillDense(print.toolpath, plan.selection(), lattice, samples, to, report); });
     const openvdb::Vec3d origin = samples.min().asVec3d() * lattice.voxel_size + openvdb::Vec3d(0, 0, lattice.origin_z);
     return namedTuple("Block", values, vectorOf(origin), lattice.voxel_size);
 }
@@ -124,11 +123,13 @@ py::object voxelizeBlock(const ToolpathObject& print, const py::object& box, con
 void writeVdb(const ToolpathObject& print, const py::object& path, const py::object& progress,
               const py::kwargs& given) {
     Keywords keywords("write_vdb", given);
-    ConversionOptions options = conversionOptionsOf(keywords);
+    exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     const exporter::FileOptions file = fileOptionsOf(keywords);
     keywords.finish();
     const std::string to = pathOf(path);
-    runLong(progress, [&](const Report& report) { Conversion(print, std::move(options)).write(to, file, report); });
+    runLong(progress, [&](const Report& report) {
+        writePrint(print, exporter::LevelSetPlan(*print.toolpath, std::move(choices)), to, file, report);
+    });
 }
 
 LevelSetObject readLevelSet(const py::object& path, const std::string& grid,

@@ -52,17 +52,17 @@ py::object reportPrint(const ToolpathObject& print, const py::object& progress, 
     report::ReportOptions options;
     options.density = keywords.number("density", 0.01, 25);
     options.price = keywords.number("price", 0, 1e9);
-    ConversionOptions conversion = conversionOptionsOf(keywords);
+    exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     keywords.finish();
-    conversion.attributes.emplace();
+    choices.attributes.emplace();
     options.source = print.source;
-    options.selection = voxelize::describeSelection(conversion.print);
-    options.culled = conversion.interior == voxelize::Interior::cull;
+    options.selection = voxelize::describeSelection(choices.print);
+    options.culled = choices.interior == voxelize::Interior::cull;
     return dictOf(callLong(progress, [&](const Report& report) {
-        Conversion made(print, std::move(conversion));
-        const openvdb::GridPtrVec grids = made.makeGrids(report);
+        const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));
+        const openvdb::GridPtrVec grids = makeGrids(print, plan, report);
         return report::reportOf(static_cast<const openvdb::FloatGrid&>(*grids.front()), *print.toolpath,
-                                made.selection(), made.lattice(), print.times, options);
+                                plan.selection(), plan.lattice(), print.times, options);
     }));
 }
 
@@ -71,20 +71,20 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
     Keywords keywords("compare", given);
     compare::CompareOptions options;
     assign(options.placement, keywords.choice("at", kPlacements));
-    ConversionOptions conversion;
-    conversion.print = printOptionsOf(keywords);
-    conversion.interior = voxelize::Interior::cull;
-    conversion.attributes.emplace();
+    exporter::LevelSetChoices choices;
+    choices.print = printOptionsOf(keywords);
+    choices.interior = voxelize::Interior::cull;
+    choices.attributes.emplace();
     keywords.finish();
     const auto path = py::module_::import("os").attr("fspath")(model).cast<std::string>();
     return dictOf(callLong(progress, [&](const Report& report) {
         const compare::ClosedModel closed(compare::readModel(path), path);
-        const Conversion chosen(print, std::move(conversion));
+        const exporter::LevelSetPlan plan(*print.toolpath, std::move(choices));
         voxelize::VoxelizeOptions outside;
         outside.interior = voxelize::Interior::cull;
         outside.progress = report;
-        const auto grid = voxelize::voxelize(
-            *print.toolpath, voxelize::beadsOfModel(*print.toolpath, chosen.selection()), chosen.lattice(), outside);
+        const auto grid = voxelize::voxelize(*print.toolpath, voxelize::beadsOfModel(*print.toolpath, plan.selection()),
+                                             plan.lattice(), outside);
         return compare::describe(compare::compareToModel(*grid, closed, options));
     }));
 }

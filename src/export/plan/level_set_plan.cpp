@@ -1,0 +1,52 @@
+#include "export/plan/level_set_plan.h"
+
+#include "voxelize/beads/part_bounds.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace stratum::exporter {
+
+LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choices)
+    : toolpath_(toolpath),
+      choices_(std::move(choices)),
+      selection_(voxelize::selectBeads(toolpath, voxelize::selectionOf(choices_.print, toolpath))),
+      bounds_(voxelize::boundsOf(toolpath, selection_)),
+      lattice_(voxelize::latticeFor(choices_.print, toolpath, selection_, bounds_, choices_.interior)),
+      placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, bounds_)),
+      colors_(gcode::distinctColors(toolpath, selection_)) {
+    if (choices_.attributes)
+        attributes_ = *choices_.attributes;
+    else if (addsColor())
+        attributes_.push_back(voxelize::Attribute::color);
+}
+
+voxelize::VoxelizeOptions LevelSetPlan::voxelizeOptions() const {
+    voxelize::VoxelizeOptions options;
+    options.placement = placement_;
+    options.interior = choices_.interior;
+    return options;
+}
+
+Provenance LevelSetPlan::provenance(const std::string& source_file, const std::string& source_sha256,
+                                    std::span<const std::uint32_t> printed) const {
+    Provenance provenance;
+    provenance.source_file = source_file;
+    provenance.source_sha256 = source_sha256;
+    provenance.slicer = toolpath_.slicer;
+    provenance.unit = choices_.unit;
+    provenance.up = choices_.up;
+    provenance.selection = voxelize::describeSelection(choices_.print);
+    if (colors_.size() == 1 && colors_.front()) {
+        const auto& [red, green, blue] = *colors_.front();
+        provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
+    }
+    provenance.part = voxelize::placed(voxelize::partBounds(toolpath_, printed), placement_);
+    provenance.deposit = toolpath_.deposit;
+    provenance.culled = culls();
+    provenance.swept = choices_.interior_distance;
+    return provenance;
+}
+
+}  // namespace stratum::exporter
