@@ -16,6 +16,7 @@
 #include "march/brick/cell_lanes-inl.h"
 #include "march/brick/hit_lanes-inl.h"
 #include "march/brick/lanes-inl.h"
+#include "march/brick/mask_lanes-inl.h"
 #include "march/brick/packet_lanes-inl.h"
 #include "march/brick/ray_queue_lanes-inl.h"
 #include "trace/intersector.h"
@@ -37,8 +38,7 @@ namespace HWY_NAMESPACE {
 
 // Tried on three prints: more packets hide more of the memory's latency until their state fills the cache.
 constexpr std::size_t kPackets = 8;
-constexpr int kMinWaiting = kLanes / 2;    // lanes in surface cells that make a test worthwhile
-constexpr std::int64_t kGroup = 0x330033;  // Mask64::group() at 0
+constexpr int kMinWaiting = kLanes / 2;  // lanes in surface cells that make a test worthwhile
 
 template <bool kAny>
 class Marcher {
@@ -97,10 +97,6 @@ public:
     }
 
 private:
-    static HWY_INLINE VI gather(const void* base, VI index) {
-        return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
-    }
-
     // The exit of a ray from a block, by the three planes ahead of it. Walk::aim().
     struct Exit {
         V t;
@@ -147,43 +143,44 @@ private:
         const DI di;
         const VI one = whole(1);
         const VI none = hn::Zero(di);
+        VI flip[3];
         VI c[3];
-        VI octant = none;
+        MaskPosition at;  // of the brick in its macro cell
         for (int axis = 0; axis < 3; ++axis) {
-            const VI flip = loadWhole(p, kFlip + axis);
-            c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip);
-            octant = hn::Or(octant, hn::And(flip, whole(256 >> axis)));
+            flip[axis] = loadWhole(p, kFlip + axis);
+            c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip[axis]);
+            at.v[axis] = hn::ShiftRight<3>(c[axis]);
         }
-        const VI mx = hn::ShiftRight<5>(c[0]);
-        const VI my = hn::ShiftRight<5>(c[1]);
-        const VI mz = hn::ShiftRight<5>(c[2]);
-        const VI macro = hn::ShiftLeft<1>(product(product(mx, whole(macro_y_)) + my, whole(macro_z_)) + mz);
+        VI macro[3];
+        for (int axis = 0; axis < 3; ++axis) macro[axis] = hn::ShiftRight<5>(c[axis]);
+        VI bricks;
+        VI rest;
         static_assert(sizeof(MacroCell) == 16);
-        const VI bricks = gather(grid_.macroCells(), macro);
-        const VI first = gather(grid_.macroCells(), macro + one);
+        loadPairs(grid_.macroCells(),
+                  product(product(macro[0], whole(macro_y_)) + macro[1], whole(macro_z_)) + macro[2], bricks, rest);
 
-        const VI b =
-            hn::Or(hn::Or(hn::ShiftLeft<1>(hn::And(c[0], whole(24))), hn::ShiftRight<1>(hn::And(c[1], whole(24)))),
-                   hn::ShiftRight<3>(hn::And(c[2], whole(24))));
+        const VI b = at.bit();
         const VI bit = shiftedLeft(one, b);
         const auto has_brick = hn::TestBit(bricks, bit);
         const auto far = hn::Eq(bricks, none);
-        const auto none_ahead = hn::Eq(hn::And(bricks, aheadOf(octant, b)), none);
-        const auto group_empty = hn::Eq(hn::And(bricks, shiftedLeft(whole(kGroup), hn::And(b, whole(42)))), none);
+        const auto none_ahead = hn::Eq(aheadIn(bricks, at, flip), none);
+        const auto group_empty = hn::Eq(hn::And(bricks, groupAround(b)), none);
         const VI empty = hn::IfThenElse(none_ahead, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
         const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);
-        const VI ahead = hn::And(shiftedRight(first, hn::ShiftRight<3>(octant)), whole(0xff));  // a byte an octant
+        // Of a macro cell without bricks, how far all are empty: a byte an octant.
+        VI octant_bits = none;
+        for (int axis = 0; axis < 3; ++axis) octant_bits = hn::Or(octant_bits, hn::And(flip[axis], whole(32 >> axis)));
+        const VI ahead = hn::And(shiftedRight(rest, octant_bits), whole(0xff));
         const VI beyond = hn::IfThenElseZero(far, hn::ShiftLeft<5>(ahead - one));
         const VI rank = hn::BitCast(di, hn::PopulationCount(hn::BitCast(DU(), hn::And(bricks, bit - one))));
         const VI half = hn::Or(hn::Or(hn::And(c[0], whole(4)), hn::ShiftRight<1>(hn::And(c[1], whole(4)))),
                                hn::ShiftRight<2>(hn::And(c[2], whole(4))));
         // Lanes without a brick read the first one's mask and ignore it.
-        const VI brick = hn::ShiftLeft<3>(hn::And(first, whole(0xffffffff)) + rank);
+        const VI brick = hn::ShiftLeft<3>(hn::And(rest, whole(0xffffffff)) + rank);
         const VI part = hn::IfThenElseZero(has_brick, brick + half);
         storeWhole(p, kPart, part);
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
-        storeWhole(p, kOctant, octant);
         if (by_slot_) {
             prefetch(grid_.slots(), hn::ShiftRight<3>(part));
         } else {
@@ -215,28 +212,28 @@ private:
         const DI di;
         const VI one = whole(1);
         const VI none = hn::Zero(di);
-        const VI three = whole(3);
         const VI part = loadWhole(p, kPart);
         const VI cells = hn::Not(gather(grid_.clearCells(), loadWhole(p, kWord)));
         VI cell[3];
-        VI c[3];
+        VI flip[3];
+        MaskPosition c;
         for (int axis = 0; axis < 3; ++axis) {
             cell[axis] = loadWhole(p, kCell + axis);
-            c[axis] = hn::Xor(cell[axis], loadWhole(p, kFlip + axis));
+            flip[axis] = loadWhole(p, kFlip + axis);
+            c.v[axis] = hn::Xor(cell[axis], flip[axis]);
         }
-        const VI at = hn::Or(hn::Or(hn::ShiftLeft<4>(hn::And(c[0], three)), hn::ShiftLeft<2>(hn::And(c[1], three))),
-                             hn::And(c[2], three));
+        const VI at = c.bit();
         const VI empty = loadWhole(p, kLowBits);
         const M in_brick = toDouble(hn::Lt(empty, none));
         const M walking = maskOf(p.alive & ~p.waiting);
         const M surface = hn::And(in_brick, toDouble(hn::TestBit(cells, shiftedLeft(one, at))));
-        const auto cells_empty = hn::Eq(hn::And(cells, shiftedLeft(whole(kGroup), hn::And(at, whole(42)))), none);
-        const auto none_ahead = hn::Eq(hn::And(cells, aheadOf(loadWhole(p, kOctant), at)), none);
-        const VI small = hn::IfThenElse(none_ahead, three, hn::IfThenElseZero(cells_empty, one));
+        const auto cells_empty = hn::Eq(hn::And(cells, groupAround(at)), none);
+        const auto none_ahead = hn::Eq(aheadIn(cells, c, flip), none);
+        const VI small = hn::IfThenElse(none_ahead, whole(3), hn::IfThenElseZero(cells_empty, one));
         const VI low_bits = hn::IfThenElse(hn::RebindMask(di, in_brick), small, empty);
         const VI beyond = loadWhole(p, kBeyond);
 
-        startWaiting(p, bitsOf(hn::And(surface, walking)), part, at, c);
+        startWaiting(p, bitsOf(hn::And(surface, walking)), part, at, c.v);
         VI last[3];
         VI plane[3];
         for (int axis = 0; axis < 3; ++axis) {
@@ -251,15 +248,6 @@ private:
             next[axis] = hn::IfThenElse(hn::RebindMask(di, exit.axis[axis]), plane[axis], along);
         }
         advance(p, next, exit, hn::AndNot(surface, walking));
-    }
-
-    static HWY_INLINE VI aheadOf(VI octant, VI bit) { return gather(kAhead.data(), octant + bit); }
-    static HWY_INLINE VI shiftedLeft(VI v, VI count) {
-        return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
-    }
-
-    static HWY_INLINE VI shiftedRight(VI v, VI count) {
-        return hn::BitCast(DI(), hn::BitCast(DU(), v) >> hn::BitCast(DU(), count));
     }
 
     // Records and prefetches the corners of surface cells. Lanes for whose brick there is no free slot try again in
@@ -282,7 +270,7 @@ private:
         const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
         hn::Store(samples, DI(), p.sample);
         p.waiting |= found;
-        corners_.prefetch(samples);
+        if (found != 0) corners_.prefetch(samples);
     }
 
     HWY_INLINE VI slotsOf(VI brick) const {

@@ -78,6 +78,24 @@ HWY_INLINE VI floorToWhole(V v) {
 HWY_INLINE VI product(VI a, VI b) {
     return hn::BitCast(DI(), hn::MulEven(hn::BitCast(DU32(), a), hn::BitCast(DU32(), b)));
 }
+/// Two whole numbers each at 16 `index` bytes from `base`. By loads of both: a gather reads one of a lane at a time.
+HWY_INLINE void loadPairs(const void* base, VI index, VI& first, VI& second) {
+    HWY_ALIGN std::int64_t places[kLanes];
+    hn::Store(hn::ShiftLeft<1>(index), DI(), places);
+    const hn::CappedTag<std::int64_t, 2> two;
+    const auto pair = [&](int lane)
+                          HWY_ATTR { return hn::LoadU(two, static_cast<const std::int64_t*>(base) + places[lane]); };
+#if HWY_TARGET == HWY_AVX2
+    const VI even = hn::Combine(DI(), pair(2), pair(0));
+    const VI odd = hn::Combine(DI(), pair(3), pair(1));
+#else
+    const hn::CappedTag<std::int64_t, 4> four;
+    const VI even = hn::Combine(DI(), hn::Combine(four, pair(6), pair(4)), hn::Combine(four, pair(2), pair(0)));
+    const VI odd = hn::Combine(DI(), hn::Combine(four, pair(7), pair(5)), hn::Combine(four, pair(3), pair(1)));
+#endif
+    first = hn::InterleaveLower(even, odd);
+    second = hn::InterleaveUpper(DI(), even, odd);
+}
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
 

@@ -22,27 +22,37 @@ struct Mask64 {
         constexpr std::uint64_t kGroup = kQuad | kQuad << 16;
         return kGroup << bit(x & 2, y & 2, z & 2);
     }
-    /// Bits that rays of an octant can come to from each position, it included: index octant << 6 | bit().
-    static constexpr std::array<std::uint64_t, 512> ahead() {
-        std::array<std::uint64_t, 512> masks{};
-        for (std::size_t n = 0; n < masks.size(); ++n)
-            for (std::size_t other = 0; other < 64; ++other) {
-                bool met = true;
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    const std::size_t from = n >> (4 - 2 * axis) & 3;
-                    const std::size_t to = other >> (4 - 2 * axis) & 3;
-                    met = met && ((n >> 6 & 4U >> axis) != 0 ? to <= from : to >= from);
-                }
-                if (met) masks[n] |= std::uint64_t{1} << other;
-            }
-        return masks;
+    /// Bits that a ray can come to along one axis from a coordinate, it included: index descending << 2 | coordinate.
+    static constexpr std::uint64_t aheadAlong(std::size_t axis, std::size_t index) {
+        std::uint64_t mask = 0;
+        for (std::size_t other = 0; other < 64; ++other) {
+            const std::size_t from = index & 3;
+            const std::size_t to = other >> (4 - 2 * axis) & 3;
+            if ((index & 4) != 0 ? to <= from : to >= from) mask |= std::uint64_t{1} << other;
+        }
+        return mask;
     }
     /// Edge of the largest aligned block around (x, y, z) in which rays of the octant meet nothing: 4, 2 or 1; 0 if
     /// that bit is set. A block of 4 may have bits behind the position.
     static int emptyEdge(std::uint64_t mask, int x, int y, int z, Octant octant);
 };
 
-inline constexpr std::array<std::uint64_t, 512> kAhead = Mask64::ahead();
+/// Mask64::aheadAlong() by axis and index.
+alignas(64) inline constexpr auto kAheadAlong = [] {
+    std::array<std::array<std::int64_t, 8>, 3> masks{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t n = 0; n < 8; ++n) masks[axis][n] = static_cast<std::int64_t>(Mask64::aheadAlong(axis, n));
+    return masks;
+}();
+/// Bits that rays of an octant can come to from each position, it included: index octant << 6 | bit().
+inline constexpr auto kAhead = [] {
+    std::array<std::uint64_t, 512> masks{};
+    for (std::size_t n = 0; n < masks.size(); ++n)
+        masks[n] = static_cast<std::uint64_t>(kAheadAlong[0][(n >> 6 & 4) | (n >> 4 & 3)] &
+                                              kAheadAlong[1][(n >> 5 & 4) | (n >> 2 & 3)] &
+                                              kAheadAlong[2][(n >> 4 & 4) | (n & 3)]);
+    return masks;
+}();
 
 inline int Mask64::emptyEdge(std::uint64_t mask, int x, int y, int z, Octant octant) {
     if ((mask & kAhead[octant << 6 | static_cast<unsigned>(bit(x, y, z))]) == 0) return 4;

@@ -43,7 +43,6 @@ enum Field {
     kWord,  // of clearCells(): kPart, or the same of the slot
     kLowBits,
     kBeyond,
-    kOctant,  // of the direction, times 64
     kFields
 };
 
