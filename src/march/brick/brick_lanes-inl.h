@@ -145,25 +145,23 @@ private:
         const VI none = hn::Zero(di);
         VI flip[3];
         VI c[3];
-        MaskPosition at;  // of the brick in its macro cell
+        VI macro[3];
+        MaskPosition in_macro;  // of the brick
         for (int axis = 0; axis < 3; ++axis) {
             flip[axis] = loadWhole(p, kFlip + axis);
             c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip[axis]);
-            at.v[axis] = hn::ShiftRight<3>(c[axis]);
+            macro[axis] = hn::ShiftRight<5>(c[axis]);
+            in_macro.v[axis] = hn::ShiftRight<3>(c[axis]);
         }
-        VI macro[3];
-        for (int axis = 0; axis < 3; ++axis) macro[axis] = hn::ShiftRight<5>(c[axis]);
-        VI bricks;
-        VI rest;
         static_assert(sizeof(MacroCell) == 16);
-        loadPairs(grid_.macroCells(),
-                  product(product(macro[0], whole(macro_y_)) + macro[1], whole(macro_z_)) + macro[2], bricks, rest);
+        const auto [bricks, rest] = loadHalves(
+            grid_.macroCells(), product(product(macro[0], whole(macro_y_)) + macro[1], whole(macro_z_)) + macro[2]);
 
-        const VI b = at.bit();
+        const VI b = in_macro.bit();
         const VI bit = shiftedLeft(one, b);
         const auto has_brick = hn::TestBit(bricks, bit);
         const auto far = hn::Eq(bricks, none);
-        const auto none_ahead = hn::Eq(aheadIn(bricks, at, flip), none);
+        const auto none_ahead = hn::Eq(aheadIn(bricks, in_macro, flip), none);
         const auto group_empty = hn::Eq(hn::And(bricks, groupAround(b)), none);
         const VI empty = hn::IfThenElse(none_ahead, whole(31), hn::IfThenElse(group_empty, whole(15), whole(7)));
         const VI low_bits = hn::IfThenElse(has_brick, whole(-1), empty);

@@ -78,23 +78,35 @@ HWY_INLINE VI floorToWhole(V v) {
 HWY_INLINE VI product(VI a, VI b) {
     return hn::BitCast(DI(), hn::MulEven(hn::BitCast(DU32(), a), hn::BitCast(DU32(), b)));
 }
-/// Two whole numbers each at 16 `index` bytes from `base`. By loads of both: a gather reads one of a lane at a time.
-HWY_INLINE void loadPairs(const void* base, VI index, VI& first, VI& second) {
+HWY_INLINE VI shiftedLeft(VI v, VI count) {
+    return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
+}
+HWY_INLINE VI shiftedRight(VI v, VI count) {
+    return hn::BitCast(DI(), hn::BitCast(DU(), v) >> hn::BitCast(DU(), count));
+}
+/// Of a table of eight bytes a row.
+HWY_INLINE VI gather(const void* table, VI row) {
+    return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(table), row);
+}
+/// Of a table of 16 bytes a row, both halves. By one load a row: a gather reads each half of each row on its own.
+struct Halves {
+    VI first, second;
+};
+HWY_INLINE Halves loadHalves(const void* table, VI row) {
+    const auto* const halves = static_cast<const std::int64_t*>(table);
     HWY_ALIGN std::int64_t places[kLanes];
-    hn::Store(hn::ShiftLeft<1>(index), DI(), places);
+    hn::Store(hn::ShiftLeft<1>(row), DI(), places);
     const hn::CappedTag<std::int64_t, 2> two;
-    const auto pair = [&](int lane)
-                          HWY_ATTR { return hn::LoadU(two, static_cast<const std::int64_t*>(base) + places[lane]); };
+    const auto both = [&](int lane) HWY_ATTR { return hn::LoadU(two, halves + places[lane]); };
 #if HWY_TARGET == HWY_AVX2
-    const VI even = hn::Combine(DI(), pair(2), pair(0));
-    const VI odd = hn::Combine(DI(), pair(3), pair(1));
+    const VI even = hn::Combine(DI(), both(2), both(0));
+    const VI odd = hn::Combine(DI(), both(3), both(1));
 #else
     const hn::CappedTag<std::int64_t, 4> four;
-    const VI even = hn::Combine(DI(), hn::Combine(four, pair(6), pair(4)), hn::Combine(four, pair(2), pair(0)));
-    const VI odd = hn::Combine(DI(), hn::Combine(four, pair(7), pair(5)), hn::Combine(four, pair(3), pair(1)));
+    const VI even = hn::Combine(DI(), hn::Combine(four, both(6), both(4)), hn::Combine(four, both(2), both(0)));
+    const VI odd = hn::Combine(DI(), hn::Combine(four, both(7), both(5)), hn::Combine(four, both(3), both(1)));
 #endif
-    first = hn::InterleaveLower(even, odd);
-    second = hn::InterleaveUpper(DI(), even, odd);
+    return {hn::InterleaveLower(even, odd), hn::InterleaveUpper(DI(), even, odd)};
 }
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }

@@ -11,22 +11,13 @@
 
 #include <hwy/highway.h>
 
+#include <cstddef>
 #include <cstdint>
 
 #if STRATUM_WIDE_LANES
 HWY_BEFORE_NAMESPACE();
 namespace stratum::march {
 namespace HWY_NAMESPACE {
-
-HWY_INLINE VI gather(const void* base, VI index) {
-    return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(base), index);
-}
-HWY_INLINE VI shiftedLeft(VI v, VI count) {
-    return hn::BitCast(DI(), hn::BitCast(DU(), v) << hn::BitCast(DU(), count));
-}
-HWY_INLINE VI shiftedRight(VI v, VI count) {
-    return hn::BitCast(DI(), hn::BitCast(DU(), v) >> hn::BitCast(DU(), count));
-}
 
 /// A position in a Mask64, of whose coordinates only the low two bits count.
 struct MaskPosition {
