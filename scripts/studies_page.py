@@ -119,9 +119,9 @@ def prints_line(folder):
             Number(f"{low[0]:.2f}", low[1], "polygons"), " to ", Number(f"{high[0]:.2f}", high[1], "polygons"),
             " × as fast as the best of beads and prisms (median ", Number(f"{middle[0]:.2f}", middle[1], "polygons"),
             f"), ahead in {ahead} of {len(matches)} cases of print and threads"]
-    fewer = {own["spp"] for _, own, _ in matches} - {"32"}
+    fewer = [own["spp"] for _, own, _ in matches if own["spp"] != "32"]
     if fewer:
-        line.append(f" (told in proportion from {', '.join(sorted(fewer))} samples)")
+        line.append(f" ({len(fewer)} of them told in proportion from {', '.join(sorted(set(fewer)))} samples)")
     first = print_matches(table, "path", lambda row: number(row, "first_look_cpu"), spp=1)
     if first:
         one = first[len(first) // 2]
