@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,12 @@ public:
     virtual std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const = 0;
     /// Density of sample() per steradian.
     virtual float pdf(const glm::vec3& wo, const glm::vec3& wi) const = 0;
+    /// eval() and pdf() of many pairs of directions; faster where there are tables. All spans are of one length.
+    virtual void evalStream(std::span<const glm::vec3> wo, std::span<const glm::vec3> wi, std::span<Color> values,
+                            std::span<float> densities) const;
+    /// sample() for many directions; where there is no sample, its pdf is 0. All spans are of one length.
+    virtual void sampleStream(std::span<const glm::vec3> wo, std::span<const float> lobes, std::span<const glm::vec2> u,
+                              std::span<BrdfSample> samples) const;
     /// The same with another body color (reflectance in [0, 1]); null for materials without a body color.
     virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
     /// Itself, if light goes through it; see translucent.h.

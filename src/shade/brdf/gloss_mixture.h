@@ -17,8 +17,10 @@ struct GlossMixture {
 
     /// Per steradian; 0 unless both directions are above the surface.
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const;
-    /// A sample for `brdf`; nothing if it is below the surface.
+    /// A direction with its density, and without a value: f is 0. If it is below the surface its density is 0.
     /// @param lobe, u  as for Brdf::sample
+    BrdfSample draw(const glm::vec3& wo, float lobe, const glm::vec2& u) const;
+    /// A sample for `brdf`; nothing if it is below the surface.
     std::optional<BrdfSample> sample(const Brdf& brdf, const glm::vec3& wo, float lobe, const glm::vec2& u) const;
 };
 

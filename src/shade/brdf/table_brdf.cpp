@@ -2,11 +2,36 @@
 
 #include "shade/brdf/gloss_mixture.h"
 
-#include <glm/common.hpp>
-
 #include <cmath>
+#include <cstddef>
 
 namespace stratum::shade {
+
+/// Pairs of directions above the surface that wait for their values, and where these go.
+class TableBrdf::LookUps {
+public:
+    explicit LookUps(const TableBrdf& brdf) : brdf_(brdf) {}
+    /// @param set  gets `to` and the value, now or later
+    void add(std::size_t to, const glm::vec3& wo, const glm::vec3& wi, const auto& set) {
+        wo_[count_] = wo;
+        wi_[count_] = wi;
+        to_[count_] = to;
+        if (++count_ == kAtOnce) finish(set);
+    }
+    void finish(const auto& set) {
+        brdf_.table_.at(std::span(wo_).first(count_), std::span(wi_).first(count_), values_);
+        for (std::size_t k = 0; k < count_; ++k) set(to_[k], brdf_.scaled(values_[k], wo_[k], wi_[k]));
+        count_ = 0;
+    }
+
+private:
+    static constexpr std::size_t kAtOnce = 64;  // a few kilobytes, on the stack
+    const TableBrdf& brdf_;
+    std::array<glm::vec3, kAtOnce> wo_, wi_;
+    std::array<Color, kAtOnce> values_;
+    std::array<std::size_t, kAtOnce> to_;
+    std::size_t count_ = 0;
+};
 
 TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std::vector<std::string> notes)
     : table_(std::move(table)), notes_(std::move(notes)) {
@@ -74,8 +99,7 @@ Color TableBrdf::albedo(const glm::vec3& wo) const {
 
 Color TableBrdf::eval(const glm::vec3& wo, const glm::vec3& wi) const {
     if (!(GlossMixture::above(wo) && GlossMixture::above(wi))) return Color(0.0f);
-    const Color value = table_.at(wo, wi);
-    return scaled_ ? value * glm::min(scale(wo.z), scale(wi.z)) : value;
+    return scaled(table_.at(wo, wi), wo, wi);
 }
 
 float TableBrdf::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
@@ -84,6 +108,29 @@ float TableBrdf::pdf(const glm::vec3& wo, const glm::vec3& wi) const {
 
 std::optional<BrdfSample> TableBrdf::sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const {
     return GlossMixture{ggx_, glossShare(wo.z)}.sample(*this, wo, lobe, u);
+}
+
+void TableBrdf::evalStream(std::span<const glm::vec3> wo, std::span<const glm::vec3> wi, std::span<Color> values,
+                           std::span<float> densities) const {
+    LookUps lookups(*this);
+    const auto set = [&](std::size_t n, const Color& value) { values[n] = value; };
+    for (std::size_t n = 0; n < wo.size(); ++n) {
+        values[n] = Color(0.0f);
+        densities[n] = pdf(wo[n], wi[n]);
+        if (GlossMixture::above(wo[n]) && GlossMixture::above(wi[n])) lookups.add(n, wo[n], wi[n], set);
+    }
+    lookups.finish(set);
+}
+
+void TableBrdf::sampleStream(std::span<const glm::vec3> wo, std::span<const float> lobes, std::span<const glm::vec2> u,
+                             std::span<BrdfSample> samples) const {
+    LookUps lookups(*this);
+    const auto set = [&](std::size_t n, const Color& value) { samples[n].f = value; };
+    for (std::size_t n = 0; n < wo.size(); ++n) {
+        samples[n] = GlossMixture{ggx_, glossShare(wo[n].z)}.draw(wo[n], lobes[n], u[n]);
+        if (samples[n].pdf > 0.0f) lookups.add(n, wo[n], samples[n].wi, set);
+    }
+    lookups.finish(set);
 }
 
 }  // namespace stratum::shade

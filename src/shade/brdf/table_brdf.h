@@ -6,7 +6,10 @@
 #include "shade/brdf/lobe_fit.h"
 #include "shade/brdf/microfacet.h"
 
+#include <glm/common.hpp>
+
 #include <array>
+#include <span>
 #include <vector>
 
 namespace stratum::shade {
@@ -24,6 +27,10 @@ public:
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+    void evalStream(std::span<const glm::vec3> wo, std::span<const glm::vec3> wi, std::span<Color> values,
+                    std::span<float> densities) const override;
+    void sampleStream(std::span<const glm::vec3> wo, std::span<const float> lobes, std::span<const glm::vec2> u,
+                      std::span<BrdfSample> samples) const override;
     const std::vector<std::string>& notes() const override { return notes_; }
 
     /// The largest directional albedo of the table, before scaling.
@@ -31,6 +38,7 @@ public:
     const HalfDiffTable& table() const { return table_; }
 
 private:
+    class LookUps;
     static constexpr int kNodes = 65;  // in sqrt(cosine): albedo changes fastest at grazing angles
 
     struct Place {
@@ -41,6 +49,10 @@ private:
     Color scale(float cosine) const;
     float glossShare(float cosine) const;
     Color albedo(const glm::vec3& wo) const;
+    /// What is made of a value of the table.
+    Color scaled(const Color& value, const glm::vec3& wo, const glm::vec3& wi) const {
+        return scaled_ ? value * glm::min(scale(wo.z), scale(wi.z)) : value;
+    }
 
     HalfDiffTable table_;
     Ggx ggx_{0.3f};

@@ -70,8 +70,8 @@ void BilinearDistribution::sumCells() {
         sines_.push_back((std::cos(above) - std::cos(below)) / (below - above));
     }
     const std::size_t blocks = block_columns_ * block_rows_;
-    rows_in_block_.resize(blocks * side());
-    cells_in_block_.resize(blocks * side() * side());
+    rows_in_block_.resize(blocks * side() + View::kPadding);
+    cells_in_block_.resize(blocks * side() * side() + View::kPadding);
     block_weights_.resize(blocks);
     std::vector<double> cells(side());
     std::vector<double> rows(side());
@@ -118,9 +118,9 @@ void BilinearDistribution::weighBlocks(const Direction& direction) {
             }
         }
     }
-    row_sums_.resize(bins_ * block_rows_);
+    row_sums_.resize(bins_ * block_rows_ + View::kPadding);
     row_scales_.resize(bins_ * block_rows_);
-    block_sums_.resize(bins_ * block_rows_ * block_columns_);
+    block_sums_.resize(bins_ * block_rows_ * block_columns_ + View::kPadding);
     std::vector<double> sums(block_columns_);
     std::vector<double> row_sums(block_rows_);
     for (std::size_t bin = 0; bin < bins_; ++bin) {

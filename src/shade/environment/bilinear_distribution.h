@@ -40,6 +40,8 @@ public:
 
     /// The tables themselves, for vector code; described at the private members.
     struct View {
+        /// Numbers that may be read, and mean nothing, behind the last of running sums: vectors need no shorter end.
+        static constexpr std::size_t kPadding = 16;
         int columns, rows;
         unsigned shift;
         std::size_t block_columns, block_rows, bins;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -11,6 +12,8 @@
 #define HWY_TARGET_INCLUDE "shade/environment/map_stream.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "shade/angle_lanes-inl.h"
 
 #ifndef STRATUM_MAP_STREAM_TYPES
 #define STRATUM_MAP_STREAM_TYPES
@@ -31,7 +34,7 @@ struct alignas(64) MapBatch {
     Batch<double> density;  // there, per unit of area
     Batch<double> dx, dy, dz;
     Batch<double> sine;  // of the polar angle
-    Batch<float> r, g, b;
+    Batch<Color> radiance;
 };
 
 }  // namespace
@@ -40,8 +43,8 @@ struct alignas(64) MapBatch {
 
 HWY_BEFORE_NAMESPACE();
 namespace stratum::shade {
-namespace {
 namespace HWY_NAMESPACE {
+namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 // Doubles, as in the scalar functions: the position in a cell of a large map is in the digits of a draw below those
@@ -64,26 +67,43 @@ HWY_INLINE VD gather(const double* HWY_RESTRICT from, VD index) {
     return hn::GatherIndex(D(), from, hn::PromoteTo(hn::RebindToSigned<D>(), hn::DemoteTo(I(), index)));
 }
 
-// The interval of a running sum, from sums[begin] on, in which u times its end falls: find() of one draw.
-struct Found {
-    VD index, offset;
-};
+// The largest number of the sums' type that is not above the target: as many sums are at most that.
+HWY_INLINE float limitOf(double target, const float*) {
+    const auto nearest = static_cast<float>(target);
+    // Above a target of 0 or more it is positive: the next number below has the next lower bits.
+    // No branch: one draw in two would be mispredicted.
+    const auto above = static_cast<std::uint32_t>(static_cast<double>(nearest) > target);
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(nearest) - above);
+}
+HWY_INLINE double limitOf(double target, const double*) { return target; }
+
+// The interval of a running sum in which u times its end falls, and the offset in it: find() of
+// bilinear_distribution.cpp, to the bit. Neighbours are compared all at once: steps of a binary search would wait for
+// each other.
 template <typename T>
-HWY_INLINE Found find(const T* HWY_RESTRICT sums, VD begin, std::size_t count, VD u) {
-    const VD target = hn::Mul(u, gather(sums, hn::Add(begin, whole(count - 1))));
-    VD first = begin;
-    for (std::size_t left = count; left > 1;) {
+HWY_INLINE double find(const T* HWY_RESTRICT sums, std::size_t count, double u, std::int32_t& interval) {
+    constexpr std::size_t kAtOnce = 32;
+    const hn::CappedTag<T, 16> d;
+    const double target = u * static_cast<double>(sums[count - 1]);
+    const T limit = limitOf(target, sums);
+    std::size_t index = 0;
+    std::size_t left = count;
+    while (left > kAtOnce) {
         const std::size_t half = left / 2;
-        const M go = hn::Le(gather(sums, hn::Add(first, whole(half - 1))), target);
-        first = hn::IfThenElse(go, hn::Add(first, whole(half)), first);
+        index += sums[index + half - 1] <= limit ? half : 0;
         left -= half;
     }
-    const VD before = hn::Max(hn::Sub(first, set(1.0)), begin);
-    const VD below = hn::IfThenZeroElse(hn::Eq(first, begin), gather(sums, before));
-    const VD width = hn::Sub(gather(sums, first), below);
-    const VD offset = hn::Min(hn::Max(hn::Div(hn::Sub(target, below), width), set(0.0)), set(kBelowOne));
+    const std::size_t first = index;
+    for (std::size_t n = 0; n + 1 < left; n += hn::Lanes(d)) {
+        const auto below = hn::Le(hn::LoadU(d, sums + first + n), hn::Set(d, limit));
+        index += hn::CountTrue(d, hn::And(below, hn::FirstN(d, left - 1 - n)));
+    }
+    const double start = index > 0 ? static_cast<double>(sums[index - 1]) : 0.0;
+    const double width = static_cast<double>(sums[index]) - start;
+    const double offset = std::min(std::max((target - start) / width, 0.0), kBelowOne);
     // An empty interval has width 0, and the offset in it must not become an index.
-    return {hn::Sub(first, begin), hn::IfThenElseZero(hn::Gt(width, set(0.0)), offset)};
+    interval = static_cast<std::int32_t>(index);
+    return width > 0.0 ? offset : 0.0;
 }
 
 HWY_INLINE VD mix(VD w, VD a, VD b) { return hn::Add(hn::Mul(hn::Sub(set(1.0), w), a), hn::Mul(w, b)); }
@@ -139,46 +159,36 @@ HWY_INLINE VD binOf(const BilinearDistribution::View& t, const MapBatch& b, std:
 // draws are served together.
 void Draw(const BilinearDistribution::View& t, MapBatch& b) {
     const D d;
-    alignas(64) Batch<double> block_row, block_column, u, v;
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const VD first_row = hn::Mul(binOf(t, b, n), whole(t.block_rows));
-        const Found row = find(t.row_sums, first_row, t.block_rows, hn::Load(d, &b.v[n]));
-        hn::Store(row.index, d, &block_row[n]);
-        hn::Store(row.offset, d, &v[n]);
-        const VD any = gather(t.row_sums, hn::Add(first_row, whole(t.block_rows - 1)));
-        hn::Store(any, d, &b.density[n]);
-    }
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const VD row = hn::Add(hn::Mul(binOf(t, b, n), whole(t.block_rows)), hn::Load(d, &block_row[n]));
-        const Found column =
-            find(t.block_sums, hn::Mul(row, whole(t.block_columns)), t.block_columns, hn::Load(d, &b.u[n]));
-        hn::Store(column.index, d, &block_column[n]);
-        hn::Store(column.offset, d, &u[n]);
-    }
+    const I i;
+    alignas(64) Batch<std::int32_t> block_row, block_column, inner_row, inner_column;
+    alignas(64) Batch<double> u, v;
     const std::size_t side = std::size_t{1} << t.shift;
     const auto blockAt = [&](std::size_t n) {
-        return hn::Add(hn::Mul(hn::Load(d, &block_row[n]), whole(t.block_columns)), hn::Load(d, &block_column[n]));
+        return static_cast<std::size_t>(block_row[n]) * t.block_columns + static_cast<std::size_t>(block_column[n]);
     };
-    alignas(64) Batch<double> inner_row;
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const Found row = find(t.rows_in_block, hn::Mul(blockAt(n), whole(side)), side, hn::Load(d, &v[n]));
-        hn::Store(row.index, d, &inner_row[n]);
-        hn::Store(row.offset, d, &v[n]);
+    const auto cellsAt = [&](std::size_t n) {
+        return t.cells_in_block + (blockAt(n) * side + static_cast<std::size_t>(inner_row[n])) * side;
+    };
+    for (std::size_t n = 0; n < kBatch; ++n) {
+        const double* sums = t.row_sums + (t.bins == 1 ? 0 : static_cast<std::size_t>(b.bin[n])) * t.block_rows;
+        v[n] = find(sums, t.block_rows, b.v[n], block_row[n]);
+        b.density[n] = sums[t.block_rows - 1];
     }
-    alignas(64) Batch<double> inner_column;
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const VD row = hn::Add(hn::Mul(blockAt(n), whole(side)), hn::Load(d, &inner_row[n]));
-        const Found column = find(t.cells_in_block, hn::Mul(row, whole(side)), side, hn::Load(d, &u[n]));
-        hn::Store(column.index, d, &inner_column[n]);
-        hn::Store(column.offset, d, &u[n]);
+    for (std::size_t n = 0; n < kBatch; ++n) {
+        const std::size_t first_row = (t.bins == 1 ? 0 : static_cast<std::size_t>(b.bin[n])) * t.block_rows;
+        const std::size_t row = first_row + static_cast<std::size_t>(block_row[n]);
+        u[n] = find(t.block_sums + row * t.block_columns, t.block_columns, b.u[n], block_column[n]);
     }
+    for (std::size_t n = 0; n < kBatch; ++n) v[n] = find(t.rows_in_block + blockAt(n) * side, side, v[n], inner_row[n]);
+    for (std::size_t n = 0; n < kBatch; ++n) u[n] = find(cellsAt(n), side, u[n], inner_column[n]);
+    const auto load = [&](const Batch<std::int32_t>& from, std::size_t n)
+                          HWY_ATTR { return hn::PromoteTo(d, hn::Load(i, &from[n])); };
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
-        const VD row0 = hn::Load(d, &block_row[n]);
-        const VD column0 = hn::Load(d, &block_column[n]);
+        const VD row0 = load(block_row, n);
+        const VD column0 = load(block_column, n);
         // No draw falls on the cells that fill the outermost blocks up, unless there is nothing to draw at all.
-        const VD row = hn::Min(hn::Add(hn::Mul(row0, whole(side)), hn::Load(d, &inner_row[n])), set(t.rows));
-        const VD column =
-            hn::Min(hn::Add(hn::Mul(column0, whole(side)), hn::Load(d, &inner_column[n])), set(t.columns - 1));
+        const VD row = hn::Min(hn::Add(hn::Mul(row0, whole(side)), load(inner_row, n)), set(t.rows));
+        const VD column = hn::Min(hn::Add(hn::Mul(column0, whole(side)), load(inner_column, n)), set(t.columns - 1));
         const Corners c = corners(t, column, row);
         const VD y = drawLinear(hn::Add(c.w00, c.w10), hn::Add(c.w01, c.w11), hn::Load(d, &v[n]));
         const VD x = drawLinear(mix(y, c.w00, c.w01), mix(y, c.w10, c.w11), hn::Load(d, &u[n]));
@@ -214,42 +224,6 @@ void AddDensity(const BilinearDistribution::View& t, MapBatch& b) {
     }
 }
 
-// Sine and cosine of an angle in turns, |t| < 2^20. Taylor's series up to an eighth of a turn: to 2e-9.
-HWY_INLINE void sineAndCosine(VD t, VD& sine, VD& cosine) {
-    const VD quarters = hn::Round(hn::Mul(t, set(4.0)));
-    const VD a = hn::Mul(hn::Sub(t, hn::Mul(quarters, set(0.25))), set(kTurn));
-    const VD a2 = hn::Mul(a, a);
-    VD s = set(1.0 / 362880.0);
-    for (const double c : {-1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0, 1.0}) s = hn::Add(hn::Mul(s, a2), set(c));
-    s = hn::Mul(s, a);
-    VD c = set(-1.0 / 3628800.0);
-    for (const double k : {1.0 / 40320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5, 1.0}) c = hn::Add(hn::Mul(c, a2), set(k));
-    const VD turn = hn::Sub(quarters, hn::Mul(set(4.0), hn::Floor(hn::Mul(quarters, set(0.25)))));  // 0, 1, 2 or 3
-    const M swap = hn::Or(hn::Eq(turn, set(1.0)), hn::Eq(turn, set(3.0)));
-    const VD sines = hn::IfThenElse(swap, c, s);
-    const VD cosines = hn::IfThenElse(swap, s, c);
-    sine = hn::IfThenElse(hn::Ge(turn, set(2.0)), hn::Neg(sines), sines);
-    const M left = hn::Or(hn::Eq(turn, set(1.0)), hn::Eq(turn, set(2.0)));
-    cosine = hn::IfThenElse(left, hn::Neg(cosines), cosines);
-}
-
-// atan2 in turns, to 4e-9. The series: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.4.49.
-HWY_INLINE VD arcTurns(VD y, VD x) {
-    const VD ax = hn::Abs(x);
-    const VD ay = hn::Abs(y);
-    const VD high = hn::Max(ax, ay);
-    const VD r = hn::IfThenElseZero(hn::Gt(high, set(0.0)), hn::Div(hn::Min(ax, ay), high));
-    const VD r2 = hn::Mul(r, r);
-    VD a = set(0.0028662257);
-    for (const double c :
-         {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944, 0.1999355085, -0.3333314528, 1.0})
-        a = hn::Add(hn::Mul(a, r2), set(c));
-    a = hn::Mul(hn::Mul(a, r), set(1.0 / kTurn));
-    a = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(set(0.25), a), a);
-    a = hn::IfThenElse(hn::Lt(x, set(0.0)), hn::Sub(set(0.5), a), a);
-    return hn::CopySign(a, y);
-}
-
 // MapEnvironment's directionOf of the places, in single precision.
 void Directions(double rotation, MapBatch& b) {
     const D d;
@@ -258,10 +232,10 @@ void Directions(double rotation, MapBatch& b) {
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
         VD sine;
         VD cosine;
-        sineAndCosine(hn::Mul(hn::Load(d, &b.y[n]), set(0.5)), sine, cosine);
+        sineAndCosine(d, hn::Mul(hn::Load(d, &b.y[n]), set(0.5)), sine, cosine);
         VD across;
         VD along;
-        sineAndCosine(hn::Sub(turned, hn::Load(d, &b.x[n])), across, along);
+        sineAndCosine(d, hn::Sub(turned, hn::Load(d, &b.x[n])), across, along);
         hn::Store(sine, d, &b.sine[n]);
         hn::Store(hn::PromoteTo(d, hn::DemoteTo(f, hn::Mul(sine, along))), d, &b.dx[n]);
         hn::Store(hn::PromoteTo(d, hn::DemoteTo(f, hn::Mul(sine, across))), d, &b.dy[n]);
@@ -277,22 +251,24 @@ void Positions(double rotation, MapBatch& b) {
         const VD dx = hn::Load(d, &b.dx[n]);
         const VD dy = hn::Load(d, &b.dy[n]);
         const VD sine = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
-        VD x = hn::Sub(turned, arcTurns(dy, dx));
+        VD x = hn::Sub(turned, arcTurns(d, dy, dx));
         x = hn::Sub(x, hn::Floor(x));
-        const VD y = hn::Mul(arcTurns(sine, hn::Load(d, &b.dz[n])), set(2.0));
+        const VD y = hn::Mul(arcTurns(d, sine, hn::Load(d, &b.dz[n])), set(2.0));
         hn::Store(sine, d, &b.sine[n]);
         hn::Store(hn::IfThenElseZero(hn::Lt(x, set(1.0)), x), d, &b.x[n]);
         hn::Store(hn::Min(hn::Max(y, set(0.0)), set(1.0)), d, &b.y[n]);
     }
 }
 
-// MapEnvironment::lookUp of the places.
+// MapEnvironment::lookUp of the places. Texels are read one by one: three floats side by side are one load, where
+// gathers would be three.
 void LookUp(const LightMap& map, MapBatch& b) {
-    static_assert(sizeof(Color) == 3 * sizeof(float));
     const D d;
     const F f;
+    const I i;
     const VD zero = set(0.0);
-    const float* texels = &map.texels[0].x;
+    alignas(64) Batch<std::int32_t> left, right, above, below;  // columns, and the first texels of rows
+    alignas(64) Batch<float> wx, wy;
     for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
         VD sx = hn::Sub(hn::Mul(hn::Load(d, &b.x[n]), set(map.width)), set(0.5));
         sx = hn::IfThenElse(hn::Lt(sx, zero), hn::Add(sx, set(map.width)), sx);
@@ -301,33 +277,23 @@ void LookUp(const LightMap& map, MapBatch& b) {
         const VD x0 = hn::Min(hn::Floor(sx), set(map.width - 1));
         const VD y0 = hn::Floor(sy);
         const VD next = hn::Add(x0, set(1.0));
-        const VD x1 = hn::IfThenZeroElse(hn::Eq(next, set(map.width)), next);
         const VD y1 = hn::Min(hn::Add(y0, set(1.0)), set(map.height - 1));
-        const VF wx = hn::DemoteTo(f, hn::Sub(sx, x0));
-        const VF wy = hn::DemoteTo(f, hn::Sub(sy, y0));
-        const auto texel = [&](VD x, VD y) {
-            return hn::DemoteTo(I(), hn::Mul(hn::Add(hn::Mul(y, set(map.width)), x), set(3.0)));
-        };
-        const auto t00 = texel(x0, y0);
-        const auto t10 = texel(x1, y0);
-        const auto t01 = texel(x0, y1);
-        const auto t11 = texel(x1, y1);
-        const VF one = hn::Set(f, 1.0f);
-        const auto row = [&](const float* channel, const auto& left, const auto& right) {
-            return hn::Add(hn::Mul(hn::Sub(one, wx), hn::GatherIndex(f, channel, left)),
-                           hn::Mul(wx, hn::GatherIndex(f, channel, right)));
-        };
-        const auto value = [&](const float* channel) {
-            return hn::Add(hn::Mul(hn::Sub(one, wy), row(channel, t00, t10)), hn::Mul(wy, row(channel, t01, t11)));
-        };
-        hn::Store(value(texels), f, &b.r[n]);
-        hn::Store(value(texels + 1), f, &b.g[n]);
-        hn::Store(value(texels + 2), f, &b.b[n]);
+        hn::Store(hn::DemoteTo(i, x0), i, &left[n]);
+        hn::Store(hn::DemoteTo(i, hn::IfThenZeroElse(hn::Eq(next, set(map.width)), next)), i, &right[n]);
+        hn::Store(hn::DemoteTo(i, hn::Mul(y0, set(map.width))), i, &above[n]);
+        hn::Store(hn::DemoteTo(i, hn::Mul(y1, set(map.width))), i, &below[n]);
+        hn::Store(hn::DemoteTo(f, hn::Sub(sx, x0)), f, &wx[n]);
+        hn::Store(hn::DemoteTo(f, hn::Sub(sy, y0)), f, &wy[n]);
+    }
+    const Color* const texels = map.texels.data();
+    for (std::size_t n = 0; n < kBatch; ++n) {
+        const auto row = [&](const Color* texel) { return (1.0f - wx[n]) * texel[left[n]] + wx[n] * texel[right[n]]; };
+        b.radiance[n] = (1.0f - wy[n]) * row(texels + above[n]) + wy[n] * row(texels + below[n]);
     }
 }
 
-}  // namespace HWY_NAMESPACE
 }  // namespace
+}  // namespace HWY_NAMESPACE
 }  // namespace stratum::shade
 HWY_AFTER_NAMESPACE();
 
@@ -356,7 +322,7 @@ void setDirections(std::span<const glm::vec3> directions, std::size_t first, std
 void get(const MapBatch& b, std::size_t first, std::size_t count, std::span<EnvironmentSample> samples) {
     for (std::size_t n = 0; n < count; ++n) {
         EnvironmentSample& sample = samples[first + n];
-        sample.radiance = {b.r[n], b.g[n], b.b[n]};
+        sample.radiance = b.radiance[n];
         const auto pdf = static_cast<float>(b.density[n] / (0.5 * kTurn * kTurn * b.sine[n]));
         sample.pdf = b.sine[n] > 0.0 && std::isfinite(pdf) ? pdf : 0.0f;
     }
@@ -414,7 +380,7 @@ void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions,
         setDirections(directions, first, count, batch);
         HWY_DYNAMIC_DISPATCH(Positions)(placed.rotation, batch);
         HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);
-        for (std::size_t n = 0; n < count; ++n) radiances[first + n] = {batch.r[n], batch.g[n], batch.b[n]};
+        for (std::size_t n = 0; n < count; ++n) radiances[first + n] = batch.radiance[n];
     }
 }
 

@@ -140,35 +140,43 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             bed_light_->sampleStream(strategy, batch.u, batch.samples);
         else
             scene_.environment->sampleStream(strategy, batch.u, batch.normals, batch.samples);
+        BrdfBatch& reflections = batch.reflections;
+        std::vector<std::size_t>& lit = batch.lit;
+        reflections.clear();
+        lit.clear();
         for (std::size_t k = 0; k < count; ++k) {
             const PathVertex& vertex = vertices[group.members[k]];
             const EnvironmentSample& light = batch.samples[k];
-            const SurfacePoint& point = vertex.path->point;
             const glm::vec3 wi = vertex.frame.toLocal(light.direction);
             if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
-            const float other = (group.bed ? kBedShare : 1.0f) * point.brdf->pdf(vertex.wo, wi);
+            lit.push_back(k);
+            reflections.addPair(*vertex.path->point.brdf, vertex.wo, wi);
+        }
+        reflections.eval();
+        for (std::size_t m = 0; m < lit.size(); ++m) {
+            const std::size_t k = lit[m];
+            const PathVertex& vertex = vertices[group.members[k]];
+            const EnvironmentSample& light = batch.samples[k];
+            const float other = (group.bed ? kBedShare : 1.0f) * reflections.densities[m];
             const float weight = balanceHeuristic(light.pdf, other);
-            const Color value = vertex.path->throughput * point.brdf->eval(vertex.wo, wi) *
-                                (wi.z * weight / light.pdf) * light.radiance;
+            const Color value = vertex.path->throughput * reflections.values[m] *
+                                (reflections.wi(m).z * weight / light.pdf) * light.radiance;
             if (!(maxComponent(value) > 0.0f)) continue;
-            shadow_rays.add(value, vertex.path->pixel) = surfaces_.leave(point, light.direction);
+            shadow_rays.add(value, vertex.path->pixel) = surfaces_.leave(vertex.path->point, light.direction);
         }
     }
 }
 
-bool PathIntegrator::scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw,
-                             Bounce& bounce) const {
+bool PathIntegrator::scatter(PathVertex& vertex, const BrdfSample& next, Bounce& bounce) const {
     Path& path = *vertex.path;
-    if (path.solid != nullptr) return scatterThrough(vertex, lobe_draw, brdf_draw, bounce);
-    const std::optional<BrdfSample> next = path.point.brdf->sample(vertex.wo, lobe_draw.x, brdf_draw);
-    if (!next) return false;
-    path.throughput *= next->f * (next->wi.z / next->pdf);
+    if (!(next.pdf > 0.0f)) return false;
+    path.throughput *= next.f * (next.wi.z / next.pdf);
     if (!(maxComponent(path.throughput) > 0.0f)) return false;
     bounce.from = &vertex;
-    bounce.direction = vertex.frame.toWorld(next->wi);
+    bounce.direction = vertex.frame.toWorld(next.wi);
     bounce.ray = surfaces_.leave(path.point, bounce.direction);
-    bounce.pdf = next->pdf;
-    bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
+    bounce.pdf = next.pdf;
+    bounce.escaped = hitLights(bounce.ray, kFar, next.pdf);
     bounce.inside = path.inside;
     return true;
 }
@@ -229,11 +237,18 @@ float PathIntegrator::fadeAt(const SurfacePoint& point) const {
 
 void PathIntegrator::scatterAll(std::span<PathVertex> vertices, std::span<const glm::vec2> lobe_draws,
                                 std::span<const glm::vec2> brdf_draws, std::span<Color> sums,
-                                std::vector<Bounce>& bounces, std::vector<Walker>& walkers) const {
+                                std::vector<Bounce>& bounces, std::vector<Walker>& walkers, BrdfBatch& batch) const {
+    batch.clear();
+    for (std::size_t n = 0; n < vertices.size(); ++n)
+        if (vertices[n].path->solid == nullptr)
+            batch.addDraw(*vertices[n].path->point.brdf, vertices[n].wo, lobe_draws[n].x, brdf_draws[n]);
+    batch.sample();
+    std::size_t drawn = 0;
     for (std::size_t n = 0; n < vertices.size(); ++n) {
         PathVertex& vertex = vertices[n];
         Bounce& bounce = bounces.emplace_back();
-        if (!scatter(vertex, lobe_draws[n], brdf_draws[n], bounce)) {
+        if (!(vertex.path->solid != nullptr ? scatterThrough(vertex, lobe_draws[n], brdf_draws[n], bounce)
+                                            : scatter(vertex, batch.samples[drawn++], bounce))) {
             bounces.pop_back();
             continue;
         }
@@ -292,7 +307,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         brdf_draws.resize(vertices.size());
         next2DStream(samplers, batch.pixels, lobe_draws);
         next2DStream(samplers, batch.pixels, brdf_draws);
-        scatterAll(vertices, lobe_draws, brdf_draws, sums, bounces, walkers);
+        scatterAll(vertices, lobe_draws, brdf_draws, sums, bounces, walkers, batch.reflections);
         gatherGroups(groups, bounces, [](const Bounce& bounce) { return bounce.from->path->point.bed; });
         for (const Group& group : groups) evalEscaped(group, bounces, batch);
         if (step == 1 && scene_.catcher) addBare(points, shadow_rays, bounces, bare);

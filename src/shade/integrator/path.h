@@ -3,6 +3,7 @@
 
 #include "shade/environment/bed_light.h"
 #include "shade/frame.h"
+#include "shade/integrator/brdf_batch.h"
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/random_walk.h"
 #include "shade/integrator/surface.h"
@@ -86,6 +87,8 @@ private:
         std::vector<glm::vec2> u;
         std::vector<glm::vec3> directions, normals;
         std::vector<EnvironmentSample> samples;
+        std::vector<std::size_t> lit;  // those that light comes from
+        BrdfBatch reflections;         // of those; of scatterAll, of all vertices
         void resize(std::size_t count);
     };
 
@@ -97,14 +100,14 @@ private:
                            ShadowRays& shadow_rays, LightBatch& batch) const;
     /// Adds one shadow ray for each light.
     void sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const;
-    /// Draws the next direction of a path and updates its throughput; false if the path ends.
-    bool scatter(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& brdf_draw, Bounce& bounce) const;
-    /// The same at the surface of a translucent solid.
+    /// Goes on in a direction drawn from the BRDF and updates the path's throughput; false if the path ends.
+    bool scatter(PathVertex& vertex, const BrdfSample& next, Bounce& bounce) const;
+    /// The same at the surface of a translucent solid, which draws it.
     bool scatterThrough(PathVertex& vertex, const glm::vec2& lobe_draw, const glm::vec2& draw, Bounce& bounce) const;
     /// Bounces in air, and walkers inside of solids, of all paths that go on.
     void scatterAll(std::span<PathVertex> vertices, std::span<const glm::vec2> lobe_draws,
                     std::span<const glm::vec2> brdf_draws, std::span<Color> sums, std::vector<Bounce>& bounces,
-                    std::vector<Walker>& walkers) const;
+                    std::vector<Walker>& walkers, BrdfBatch& batch) const;
     /// Walks on inside of solids, and lists the paths that go on from where they meet a surface.
     void walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
               std::vector<Path>& next_paths) const;

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <random>
+#include <vector>
 
 namespace stratum {
 namespace {
@@ -70,6 +72,42 @@ TEST(TableBrdf, SamplesItsDensity) {
     for (const TableBrdf* brdf : {&plain(), &excessive()})
         for (const double c : {0.1, 0.5, 0.95})
             EXPECT_LT(test::chiSquaredZ(*brdf, test::direction(c, 1.0), 300000, 3), 4.0) << c;
+}
+
+TEST(TableBrdf, StreamsAreOneByOne) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    constexpr std::size_t kCount = 1000;
+    for (const TableBrdf* brdf : {&plain(), &excessive()}) {
+        std::vector<glm::vec3> wo, wi;
+        std::vector<float> lobes;
+        std::vector<glm::vec2> u;
+        for (std::size_t n = 0; n < kCount; ++n) {
+            // Some are below the surface, where nothing is reflected.
+            wo.push_back(test::direction(n % 13 == 0 ? -0.5 : double(uniform(random)), 6.28 * double(uniform(random))));
+            wi.push_back(test::direction(n % 17 == 0 ? -0.2 : double(uniform(random)), 6.28 * double(uniform(random))));
+            lobes.push_back(uniform(random));
+            u.emplace_back(uniform(random), uniform(random));
+        }
+        std::vector<Color> values(kCount);
+        std::vector<float> densities(kCount);
+        std::vector<shade::BrdfSample> samples(kCount);
+        brdf->evalStream(wo, wi, values, densities);
+        brdf->sampleStream(wo, lobes, u, samples);
+        std::size_t drawn = 0;
+        for (std::size_t n = 0; n < kCount; ++n) {
+            const Color alone = brdf->eval(wo[n], wi[n]);
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(values[n][c], alone[c], 2e-5f * alone[c]) << n;
+            ASSERT_EQ(densities[n], brdf->pdf(wo[n], wi[n])) << n;
+            const auto sample = brdf->sample(wo[n], lobes[n], u[n]);
+            ASSERT_EQ(samples[n].pdf, sample ? sample->pdf : 0.0f) << n;
+            if (!sample) continue;
+            ++drawn;
+            ASSERT_EQ(samples[n].wi, sample->wi) << n;
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(samples[n].f[c], sample->f[c], 2e-5f * sample->f[c]) << n;
+        }
+        EXPECT_GT(drawn, kCount / 2);
+    }
 }
 
 TEST(TableBrdf, WhiteFurnace) {

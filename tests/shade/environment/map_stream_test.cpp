@@ -117,6 +117,8 @@ TEST_P(MapStream, IsOneByOneForManyMaps) {
         expectOneByOne(*noisyMap(height, false, 0.0));
         if (HasFatalFailure()) FAIL() << height;
     }
+    // Blocks with more cells a side than are compared at once.
+    expectOneByOne(*noisyMap(1040, false, 0.0));
     expectOneByOne(*noisyMap(50, false, -13.7));
     expectOneByOne(*noisyMap(64, true, 1.1));
     expectOneByOne(*shade::makeStudio({0.4, true}));
