@@ -45,8 +45,8 @@ HWY_INLINE void sineAndCosine(D d, V t, V& sine, V& cosine) {
     cosine = hn::IfThenElse(left, hn::Neg(cosines), cosines);
 }
 
-/// atan2, times 1 / (2 pi) times `turn`: 1 for turns, 4 for quarters of a turn. To 4e-9 turns in doubles, 6e-8 in
-/// floats. The series: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.4.49.
+/// atan2, times turn / (2 pi): 1 for turns, 4 for quarters of a turn. To 4e-9 turns in doubles, 1e-7 in floats. The
+/// series: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 4.4.49.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V arcTurns(D d, V y, V x, double turn = 1.0) {
     const auto set = [d](double v) HWY_ATTR { return hn::Set(d, static_cast<hn::TFromD<D>>(v)); };

@@ -9,6 +9,7 @@
 #include <numbers>
 
 namespace stratum::shade {
+
 void HalfDiffTable::directionsOf(int half, int diff, int turn, glm::dvec3& wo, glm::dvec3& wi) {
     const double warped = (half + 0.5) / kHalf;
     const double th = 0.5 * std::numbers::pi * warped * warped;

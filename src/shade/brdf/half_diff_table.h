@@ -35,8 +35,9 @@ public:
 
     /// 1/sr; both unit and above the horizon.
     Color at(const glm::vec3& wo, const glm::vec3& wi) const;
-    /// The same of many pairs, in vectors: arctangents by polynomials, to 2e-6 of a cell's width, and the cache misses
-    /// of many lookups together. Reciprocal to the bit, and the same bits on every processor.
+    /// The same of many pairs, in vectors: the cache misses of many lookups are served together. Arctangents are
+    /// polynomials, so values differ by up to 2e-5 of themselves. Reciprocal to the bit, and the same bits on every
+    /// processor.
     /// @param wi, values  as many as wo
     void at(std::span<const glm::vec3> wo, std::span<const glm::vec3> wi, std::span<Color> values) const;
     const std::vector<Color>& values() const { return values_; }
