@@ -365,7 +365,7 @@ def as_html(parts):
 
 
 def runs_line(folder):
-    runs = Table(folder / "runs.csv").rows
+    runs = Table(folder / "runs.csv").rows + Table(folder / "one_thread" / "runs.csv").rows
     if not runs:
         return "Measured before runs were recorded: each page says on which machine, when and by which command."
     machines = {r["machine"] for r in runs}

@@ -1,7 +1,7 @@
 #include "view/view_scene.h"
 
 #include "base/stopwatch.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 //
 // How to build it stands in gcode_fuzz.cpp.
 #include "base/error.h"
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/preset_names.h"
+#include "shade/palette/filament_color.h"
 #include "view/asked/message.h"
 #include "view/asked/picture_plan.h"
 

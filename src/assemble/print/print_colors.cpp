@@ -1,7 +1,7 @@
 #include "assemble/print/print_colors.h"
 
 #include "gcode/slicer/bead_colors.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>

@@ -10,7 +10,7 @@
 #include "march/file/sdf_grid.h"
 #include "march/reference/sphere_intersector.h"
 #include "march/reference/vdb_intersector.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 #include "trace/sdf_intersector.h"
 
 #include <fmt/format.h>

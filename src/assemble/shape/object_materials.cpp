@@ -1,7 +1,7 @@
 #include "assemble/shape/object_materials.h"
 
 #include "shade/brdf/brdf.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <algorithm>
 

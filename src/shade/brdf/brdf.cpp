@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/lambert.h"
 #include "shade/brdf/metal.h"
 #include "shade/brdf/plastic.h"
@@ -15,6 +14,7 @@
 #include "shade/finish/matte.h"
 #include "shade/finish/silk.h"
 #include "shade/measured/brdf_file.h"
+#include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

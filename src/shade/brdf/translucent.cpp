@@ -1,8 +1,8 @@
 #include "shade/brdf/translucent.h"
 
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/plastic.h"
 #include "shade/brdf/preset.h"
+#include "shade/palette/filament_color.h"
 
 #include <algorithm>
 #include <array>

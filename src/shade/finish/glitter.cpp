@@ -1,8 +1,8 @@
 #include "shade/finish/glitter.h"
 
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/gloss_mixture.h"
 #include "shade/camera/sampling.h"
+#include "shade/palette/filament_color.h"
 
 #include <glm/geometric.hpp>
 

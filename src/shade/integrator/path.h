@@ -1,9 +1,9 @@
 // Path tracing from the camera, with next event estimation and multiple importance sampling.
 #pragma once
 
+#include "shade/brdf/brdf_batch.h"
 #include "shade/environment/bed_light.h"
 #include "shade/frame.h"
-#include "shade/integrator/brdf_batch.h"
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/random_walk.h"
 #include "shade/integrator/surface.h"

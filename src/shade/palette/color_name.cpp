@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>
 

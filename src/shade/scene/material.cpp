@@ -1,7 +1,7 @@
 #include "shade/scene/material.h"
 
 #include "base/error.h"
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -1,6 +1,6 @@
 #include "shade/film/legend.h"
 
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "shade/analytic_prints.h"
-#include "shade/brdf/filament_color.h"
 #include "shade/brdf/lambert.h"
 #include "shade/integrator/render.h"
 #include "shade/integrator/surface.h"
+#include "shade/palette/filament_color.h"
 #include "shade/scene/scene.h"
 
 #include <gtest/gtest.h>

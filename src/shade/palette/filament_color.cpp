@@ -1,4 +1,4 @@
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include "base/text.h"
 #include "shade/film/tonemap.h"

@@ -1,4 +1,4 @@
-#include "shade/integrator/brdf_batch.h"
+#include "shade/brdf/brdf_batch.h"
 
 #include <span>
 

@@ -1,4 +1,4 @@
-#include "shade/brdf/filament_color.h"
+#include "shade/palette/filament_color.h"
 
 #include "base/error.h"
 #include "shade/analytic_prints.h"
