@@ -391,7 +391,7 @@ def main():
     if "--check" in sys.argv:
         sys.exit(0 if new == old else f"{readme}: its lines are not those of the tables; run scripts/studies_page.py")
     readme.write_text(new, encoding="utf-8")
-    pages = sorted(p.name for p in FOLDER.glob("*.html") if p.name != "index.html")
+    pages = sorted(p.relative_to(FOLDER).as_posix() for p in FOLDER.glob("**/*.html") if p.name != "index.html")
     (FOLDER / "index.html").write_text(
         "<!doctype html>\n<html lang='en'><head><meta charset='utf-8'>"
         "<meta name='viewport' content='width=device-width, initial-scale=1'><title>Studies</title>\n"
