@@ -32,8 +32,9 @@ inline shade::Color knownBrdf(const glm::dvec3& light, const glm::dvec3& detecto
     const auto body = [&](double kd) {
         return kd * (1.0 - 0.4 * std::pow(1.0 - l.z, 3.0)) * (1.0 - 0.4 * std::pow(1.0 - d.z, 3.0));
     };
-    return shade::Color(shade::Lobes{body(0.6), 0.04, 0.20}.eval(l, d), shade::Lobes{body(0.3), 0.05, 0.25}.eval(l, d),
-                        shade::Lobes{body(0.05), 0.04, 0.30}.eval(l, d));
+    const shade::GlossyPair pair(l, d);
+    return shade::Color(shade::Lobes{body(0.6), 0.04, 0.20}.eval(pair), shade::Lobes{body(0.3), 0.05, 0.25}.eval(pair),
+                        shade::Lobes{body(0.05), 0.04, 0.30}.eval(pair));
 }
 
 inline shade::BrdfScan knownScan(const std::vector<double>& degrees, std::size_t azimuths = 37,

@@ -37,7 +37,7 @@ struct CellMap {
     }
 };
 
-/// A ray in cells, and its current cell.
+/// A ray in cells, and its current cell. Inlined into the loop over cells: calls would keep its state in memory.
 class Walk {
 public:
     /// Both in cells.
@@ -52,7 +52,7 @@ public:
 
     /// Starts where [t_min, t_max] meets the box of `size` cells; false if it doesn't, or if the ray is no number.
     /// From here on the origin is where the ray meets the box, so that t and what follows from it are small numbers.
-    bool enter(double t_min, double t_max, const std::array<int, 3>& size) {
+    [[gnu::always_inline]] bool enter(double t_min, double t_max, const std::array<int, 3>& size) {
         t_start_ = t_min;
         t_end_ = t_max;
         for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,7 @@ public:
     double at(double s) const { return t_start_ + (t_ + s * (std::min(t_exit_, t_end_) - t_)); }
 
     /// Finds where the ray leaves the block [low, high) of cells that it is in.
-    void aim(const glm::ivec3& low, const glm::ivec3& high) {
+    [[gnu::always_inline]] void aim(const glm::ivec3& low, const glm::ivec3& high) {
         t_exit_ = std::numeric_limits<double>::infinity();
         exit_axis_ = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -105,7 +105,7 @@ public:
     }
 
     /// Advances to the exit found by aim(); false at the end of the ray or of the box.
-    bool advance(const glm::ivec3& low, const glm::ivec3& high, const std::array<int, 3>& size) {
+    [[gnu::always_inline]] bool advance(const glm::ivec3& low, const glm::ivec3& high, const std::array<int, 3>& size) {
         if (t_exit_ >= t_end_) return false;
         for (int axis = 0; axis < 3; ++axis) {
             const double d = direction_[axis];

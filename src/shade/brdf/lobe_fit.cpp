@@ -1,5 +1,7 @@
 #include "shade/brdf/lobe_fit.h"
 
+#include "base/parallel_for.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -14,10 +16,17 @@ constexpr double kEta = 1.5;
 constexpr double kF0 = 0.04;
 constexpr double kLeastAlpha = 0.005;
 
-struct Reading {
-    glm::dvec3 light, detector;
-    double value;
+struct Readings {
+    std::vector<GlossyPair> pairs;
+    std::array<std::vector<double>, 3> values;  // by channel, as many as pairs
 };
+
+std::vector<double> glossOf(const std::vector<GlossyPair>& pairs, double alpha) {
+    std::vector<double> gloss;
+    gloss.reserve(pairs.size());
+    for (const GlossyPair& pair : pairs) gloss.push_back(pair.gloss(alpha));
+    return gloss;
+}
 
 struct Fit {
     double kd = 0.0, ks = 0.0;
@@ -25,22 +34,18 @@ struct Fit {
 };
 
 /// kd and ks for one alpha by Gauss-Newton steps on the squared log error, both kept positive.
-Fit fitAt(const std::vector<Reading>& readings, double alpha) {
-    std::vector<double> gloss;
-    gloss.reserve(readings.size());
+/// @param gloss  glossOf() of that alpha
+Fit fitAt(const std::vector<double>& values, const std::vector<double>& gloss) {
     double diffuse = std::numeric_limits<double>::infinity();
-    for (const Reading& r : readings) {
-        gloss.push_back(Lobes::gloss(alpha, r.light, r.detector));
-        diffuse = std::min(diffuse, r.value);
-    }
+    for (const double value : values) diffuse = std::min(diffuse, value);
     Fit fit;
     fit.kd = std::max(diffuse * std::numbers::pi, 1e-6);
     fit.ks = 0.04;
     for (int step = 0; step < 16; ++step) {
         double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0, error = 0.0;
-        for (std::size_t n = 0; n < readings.size(); ++n) {
+        for (std::size_t n = 0; n < values.size(); ++n) {
             const double f = fit.kd / std::numbers::pi + fit.ks * gloss[n];
-            const double r = std::log(readings[n].value / f);
+            const double r = std::log(values[n] / f);
             // In log kd and log ks, so that neither can change its sign.
             const double a = fit.kd / std::numbers::pi / f;
             const double b = fit.ks * gloss[n] / f;
@@ -51,7 +56,7 @@ Fit fitAt(const std::vector<Reading>& readings, double alpha) {
             br += b * r;
             error += r * r;
         }
-        fit.error = error / static_cast<double>(readings.size());
+        fit.error = error / static_cast<double>(values.size());
         const double ridge = 1e-9 * (aa + bb) + 1e-12;
         aa += ridge;
         bb += ridge;
@@ -65,26 +70,29 @@ Fit fitAt(const std::vector<Reading>& readings, double alpha) {
     return fit;
 }
 
-Lobes fitChannel(const std::vector<Reading>& readings) {
-    constexpr int kCoarse = 40;
+constexpr int kCoarse = 40;  // alphas that are tried first, evenly by their logarithms
+const double kLowest = std::log(kLeastAlpha);
+const double kStep = -kLowest / (kCoarse - 1);
+
+/// The best lobes of a channel.
+/// @param coarse  its fits for the coarse alphas
+Lobes refined(const Readings& readings, std::size_t channel, const std::array<std::array<Fit, 3>, kCoarse>& coarse) {
     double best_log = 0.0;
     Fit best;
-    const double low = std::log(kLeastAlpha);
-    const double step = -low / (kCoarse - 1);
     for (int i = 0; i < kCoarse; ++i) {
-        const Fit fit = fitAt(readings, std::exp(low + i * step));
+        const Fit& fit = coarse[static_cast<std::size_t>(i)][channel];
         if (fit.error < best.error) {
             best = fit;
-            best_log = low + i * step;
+            best_log = kLowest + i * kStep;
         }
     }
     // Halving steps around the best.
-    double s = step;
+    double s = kStep;
     for (int halving = 0; halving < 7; ++halving) {
         s *= 0.5;
         for (const double candidate : {best_log - s, best_log + s}) {
-            if (candidate < low || candidate > 0.0) continue;
-            const Fit fit = fitAt(readings, std::exp(candidate));
+            if (candidate < kLowest || candidate > 0.0) continue;
+            const Fit fit = fitAt(readings.values[channel], glossOf(readings.pairs, std::exp(candidate)));
             if (fit.error < best.error) {
                 best = fit;
                 best_log = candidate;
@@ -97,50 +105,65 @@ Lobes fitChannel(const std::vector<Reading>& readings) {
 
 }  // namespace
 
-double Lobes::gloss(double alpha, const glm::dvec3& light, const glm::dvec3& detector) {
+GlossyPair::GlossyPair(const glm::dvec3& light, const glm::dvec3& detector)
+    : light_(light), detector_(detector), half_(glm::normalize(light + detector)) {
     const glm::dvec3 h = glm::normalize(light + detector);
-    const double a2 = alpha * alpha;
-    const double k = a2 * h.z * h.z + h.x * h.x + h.y * h.y;
-    const auto stretch = [a2](const glm::dvec3& w) { return std::sqrt(w.z * w.z + a2 * (w.x * w.x + w.y * w.y)); };
     const double c = std::clamp(0.5 * (glm::dot(h, light) + glm::dot(h, detector)), 0.0, 1.0);
     const double t = std::sqrt(1.0 - (1.0 - c * c) / (kEta * kEta));
     const double parallel = (kEta * c - t) / (kEta * c + t);
     const double perpendicular = (c - kEta * t) / (c + kEta * t);
-    const double fresnel = 0.5 * (parallel * parallel + perpendicular * perpendicular) / kF0;
-    const double visibility = 0.5 / std::max(stretch(detector) * light.z + stretch(light) * detector.z, 1e-12);
-    return fresnel * a2 / (std::numbers::pi * k * k) * visibility;
+    fresnel_ = 0.5 * (parallel * parallel + perpendicular * perpendicular) / kF0;
 }
 
-double Lobes::eval(const glm::dvec3& light, const glm::dvec3& detector) const {
-    return kd / std::numbers::pi + ks * gloss(alpha, light, detector);
+double GlossyPair::gloss(double alpha) const {
+    const double a2 = alpha * alpha;
+    const double k = a2 * half_.cosine * half_.cosine + half_.sine2;
+    const auto stretch = [a2](const Slope& w) { return std::sqrt(w.cosine * w.cosine + a2 * w.sine2); };
+    const double visibility =
+        0.5 / std::max(stretch(detector_) * light_.cosine + stretch(light_) * detector_.cosine, 1e-12);
+    return fresnel_ * a2 / (std::numbers::pi * k * k) * visibility;
 }
+
+double Lobes::eval(const GlossyPair& pair) const { return kd / std::numbers::pi + ks * pair.gloss(alpha); }
 
 std::array<Lobes, 3> fitLobes(const BrdfScan& scan) {
     // A subset of the readings of a fine scan is sufficient.
     const std::size_t step_a = std::max<std::size_t>(1, scan.azimuths.size() / 18);
     const std::size_t step_p = std::max<std::size_t>(1, scan.polars.size() / 45);
     constexpr double kGrazing = 85.0 * std::numbers::pi / 180.0;  // beyond, measurements are unreliable
-    std::array<Lobes, 3> lobes;
-    for (int c = 0; c < 3; ++c) {
-        float peak = 0.0f;
-        for (const Color& v : scan.values) peak = std::max(peak, v[c]);
-        std::vector<Reading> readings;
-        for (std::size_t i = 0; i < scan.incidences.size(); ++i) {
-            const double ti = scan.incidences[i];
-            for (std::size_t a = 0; a < scan.azimuths.size(); a += step_a) {
-                for (std::size_t p = 0; p < scan.polars.size(); p += step_p) {
-                    const double tp = scan.polars[p];
-                    if (tp > kGrazing) continue;
-                    const double v = static_cast<double>(scan.values[scan.index(i, a, p)][c]);
-                    const double phi = scan.azimuths[a];
-                    readings.push_back({{std::sin(ti), 0.0, std::cos(ti)},
-                                        {std::sin(tp) * std::cos(phi), std::sin(tp) * std::sin(phi), std::cos(tp)},
-                                        std::max({v, 1e-5 * static_cast<double>(peak), 1e-7})});
+    std::array<float, 3> peaks{};
+    for (const Color& v : scan.values)
+        for (int c = 0; c < 3; ++c)
+            peaks[static_cast<std::size_t>(c)] = std::max(peaks[static_cast<std::size_t>(c)], v[c]);
+    Readings readings;
+    for (std::size_t i = 0; i < scan.incidences.size(); ++i) {
+        const double ti = scan.incidences[i];
+        for (std::size_t a = 0; a < scan.azimuths.size(); a += step_a) {
+            for (std::size_t p = 0; p < scan.polars.size(); p += step_p) {
+                const double tp = scan.polars[p];
+                if (tp > kGrazing) continue;
+                const double phi = scan.azimuths[a];
+                readings.pairs.emplace_back(
+                    glm::dvec3(std::sin(ti), 0.0, std::cos(ti)),
+                    glm::dvec3(std::sin(tp) * std::cos(phi), std::sin(tp) * std::sin(phi), std::cos(tp)));
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const auto v = static_cast<double>(scan.values[scan.index(i, a, p)][static_cast<int>(c)]);
+                    readings.values[c].push_back(std::max({v, 1e-5 * static_cast<double>(peaks[c]), 1e-7}));
                 }
             }
         }
-        lobes[static_cast<std::size_t>(c)] = fitChannel(readings);
     }
+    std::array<std::array<Fit, 3>, kCoarse> coarse;
+    parallelFor(kCoarse, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            const auto gloss = glossOf(readings.pairs, std::exp(kLowest + static_cast<double>(n) * kStep));
+            for (std::size_t c = 0; c < 3; ++c) coarse[n][c] = fitAt(readings.values[c], gloss);
+        }
+    });
+    std::array<Lobes, 3> lobes;
+    parallelFor(3, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c) lobes[c] = refined(readings, c, coarse);
+    });
     return lobes;
 }
 

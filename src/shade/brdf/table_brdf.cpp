@@ -1,5 +1,6 @@
 #include "shade/brdf/table_brdf.h"
 
+#include "base/parallel_for.h"
 #include "shade/brdf/gloss_mixture.h"
 
 #include <cmath>
@@ -51,10 +52,16 @@ TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std
     scale_.fill(Color(1.0f));
     std::array<float, kNodes> shares{};
     bool scaled = false;
+    std::array<Color, kNodes> albedos;
+    parallelFor(kNodes, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            const float s = std::max(static_cast<float>(n) / (kNodes - 1), 0.01f);
+            const float cosine = s * s;
+            albedos[n] = albedo({std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine});
+        }
+    });
     for (std::size_t n = 0; n < kNodes; ++n) {
-        const float s = std::max(static_cast<float>(n) / (kNodes - 1), 0.01f);
-        const float cosine = s * s;
-        const Color a = albedo({std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine});
+        const Color& a = albedos[n];
         table_albedo_ = std::max(table_albedo_, maxComponent(a));
         // Slightly below 1, so that errors of quadrature and interpolation don't exceed it.
         for (int c = 0; c < 3; ++c) scale_[n][c] = a[c] > 0.995f ? 0.995f / a[c] : 1.0f;

@@ -1,8 +1,11 @@
 // Sums without rounding, so that it does not matter in which order and by how many processes they are added up.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace stratum::shade {
@@ -37,6 +40,39 @@ public:
     const std::vector<double>& plane(std::size_t k) const { return k == 0 ? first_ : more_[k - 1]; }
     /// For files: planes of zeros, until there are so many.
     void growTo(std::size_t planes) { more_.resize(planes - 1, std::vector<double>(size())); }
+
+    /// Adds many values to each of kCount sums that follow each other, faster than add(): the sums stay in registers.
+    /// Nobody else may add to them or read them until the run is destroyed.
+    template <std::size_t kCount>
+    class Run {
+    public:
+        Run(ExactSums& sums, std::size_t first) : sums_(sums), first_(first) {
+            for (std::size_t k = 0; k < kCount; ++k) kept_[k] = sums.first_[first + k];
+        }
+        ~Run() {
+            for (std::size_t k = 0; k < kCount; ++k) sums_.first_[first_ + k] = kept_[k];
+        }
+        Run(const Run&) = delete;
+        Run& operator=(const Run&) = delete;
+
+        /// values[k] to the sum number first + k.
+        void add(const std::array<double, kCount>& values) {
+            std::array<double, kCount> errors;
+            std::uint64_t bits = 0;
+            for (std::size_t k = 0; k < kCount; ++k) {
+                errors[k] = addTo(kept_[k], values[k]);
+                bits |= std::bit_cast<std::uint64_t>(errors[k]);
+            }
+            if (bits << 1 == 0) return;  // all are 0 or -0
+            for (std::size_t k = 0; k < kCount; ++k)
+                if (std::abs(errors[k]) > 0.0) sums_.carry(first_ + k, errors[k]);
+        }
+
+    private:
+        ExactSums& sums_;
+        std::size_t first_;
+        std::array<double, kCount> kept_;
+    };
 
 private:
     /// Adds to one double; returns what the rounding took away.

@@ -17,6 +17,7 @@ struct Stream {
     std::vector<glm::vec3> normals;
     std::vector<glm::vec2> draws;
     std::vector<glm::dvec3> directions;
+    std::vector<float> fades;
     std::vector<trace::Ray> rays;
     std::vector<std::uint8_t> blocked;
     void resize(std::size_t count) {
@@ -24,6 +25,7 @@ struct Stream {
         normals.resize(count);
         draws.resize(count);
         directions.resize(count);
+        fades.resize(count);
         rays.resize(count);
         blocked.resize(count);
     }
@@ -83,13 +85,14 @@ void AmbientOcclusion::seenStream(std::span<const trace::Ray> rays, std::span<co
         surfaces_.leave(points[pixel], directions[k], stream.rays[count]);
         stream.rays[count].t_max = distance_;
         stream.pixels[count] = pixel;  // not past the one that was read
-        count += directions[k] != glm::dvec3(0.0) && surfaces_.fade(points[pixel]) < 1.0f ? 1 : 0;
+        stream.fades[count] = surfaces_.fade(points[pixel]);
+        count += directions[k] != glm::dvec3(0.0) && stream.fades[count] < 1.0f ? 1 : 0;
     }
     counts.shadow += count;
     const std::span blocked = std::span(stream.blocked).first(count);
     surfaces_.occluded(std::span(stream.rays).first(count), tracer, blocked);
     for (std::size_t k = 0; k < count; ++k)
-        if (blocked[k] != 0) pixels[stream.pixels[k]].rgb = Color(surfaces_.fade(points[stream.pixels[k]]));
+        if (blocked[k] != 0) pixels[stream.pixels[k]].rgb = Color(stream.fades[k]);
 }
 
 }  // namespace stratum::shade

@@ -55,7 +55,7 @@ Pixel Integrator::radiance(const trace::Ray& ray, TraceContext& context) const {
     return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
 }
 
-void Integrator::radianceStream(std::span<const trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
+void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                                 RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
     counts.primary += rays.size();
     surfaces_.nearest(rays, tracer, points);

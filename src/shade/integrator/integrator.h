@@ -71,8 +71,9 @@ public:
     /// Radiance along a camera ray; finite. Draws from context.sampler in a fixed order.
     Pixel radiance(const trace::Ray& ray, TraceContext& context) const;
     /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
+    /// @param rays    end at the bed afterwards
     /// @param points  output: the first surface that each ray hits, for the layers of a film; t is infinite if none
-    void radianceStream(std::span<const trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
+    void radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                         RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const;
     virtual FilmContent content() const { return FilmContent::radiance; }
 

@@ -162,7 +162,7 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             const Color value = vertex.path->throughput * reflections.values[m] *
                                 (reflections.wi(m).z * weight / light.pdf) * light.radiance;
             if (!(maxComponent(value) > 0.0f)) continue;
-            shadow_rays.add(value, vertex.path->pixel) = surfaces_.leave(vertex.path->point, light.direction);
+            surfaces_.leave(vertex.path->point, light.direction, shadow_rays.add(value, vertex.path->pixel));
         }
     }
 }
@@ -174,7 +174,7 @@ bool PathIntegrator::scatter(PathVertex& vertex, const BrdfSample& next, Bounce&
     if (!(maxComponent(path.throughput) > 0.0f)) return false;
     bounce.from = &vertex;
     bounce.direction = vertex.frame.toWorld(next.wi);
-    bounce.ray = surfaces_.leave(path.point, bounce.direction);
+    surfaces_.leave(path.point, bounce.direction, bounce.ray);
     bounce.pdf = next.pdf;
     bounce.escaped = hitLights(bounce.ray, kFar, next.pdf);
     bounce.inside = path.inside;
@@ -311,15 +311,19 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         gatherGroups(groups, bounces, [](const Bounce& bounce) { return bounce.from->path->point.bed; });
         for (const Group& group : groups) evalEscaped(group, bounces, batch);
         if (step == 1 && scene_.catcher) addBare(points, shadow_rays, bounces, bare);
-        if (last) std::erase_if(bounces, [](const Bounce& b) { return !(maxComponent(b.escaped) > 0.0f); });
+        const auto dark = [](const Bounce& bounce) { return !(maxComponent(bounce.escaped) > 0.0f); };
         const bool only_escape = last && extended_lights_.empty();
-        if (only_escape)
+        if (only_escape) {
             for (const Bounce& bounce : bounces) {
+                if (dark(bounce)) continue;
                 const Path& path = *bounce.from->path;
                 escaped_rays.add(path.throughput * bounce.escaped, path.pixel) = bounce.ray;
             }
+        } else if (last) {
+            std::erase_if(bounces, dark);
+        }
         counts.shadow += shadow_rays.rays.size();
-        counts.bounce += bounces.size();
+        counts.bounce += only_escape ? escaped_rays.rays.size() : bounces.size();
         addUnoccluded(shadow_rays, tracer, sums);
         addUnoccluded(escaped_rays, tracer, sums);
         if (only_escape) break;

@@ -15,18 +15,19 @@ enum Sum : std::size_t { kRed, kGreen, kBlue, kAlpha, kLuminance, kSquare, kOwn 
 PixelSums::PixelSums(std::size_t pixels, std::vector<Aov> aovs)
     : aovs_(std::move(aovs)), ids_(idSums(aovs_)), pixels_(pixels), each_(kOwn + ids_.size()), sums_(pixels * each_) {}
 
-void PixelSums::add(std::size_t pixel, const Pixel& sample, const AovRecorder& recorder, const SurfacePoint& point,
-                    const glm::dvec3& direction) {
+void PixelSums::add(std::size_t pixel, std::span<const Pixel> samples, const AovRecorder& recorder,
+                    std::span<const SurfacePoint> points, std::span<const trace::Ray> rays) {
     const std::size_t at = pixel * each_;
-    sums_.add(at + kRed, static_cast<double>(sample.rgb.r));
-    sums_.add(at + kGreen, static_cast<double>(sample.rgb.g));
-    sums_.add(at + kBlue, static_cast<double>(sample.rgb.b));
-    sums_.add(at + kAlpha, static_cast<double>(sample.alpha));
-    // Of a transparent picture, that of the picture with a bed: the noise of shadows counts.
-    const auto y = static_cast<double>(shade::luminance(sample.rgb) + (1.0f - sample.alpha) * recorder.bareBed());
-    sums_.add(at + kLuminance, y);
-    sums_.add(at + kSquare, y * y);
-    recorder.add(point, direction, sums_, at + kOwn);
+    ExactSums::Run<kOwn> own(sums_, at);
+    for (const Pixel& sample : samples) {
+        // Of a transparent picture, that of the picture with a bed: the noise of shadows counts.
+        const auto y = static_cast<double>(shade::luminance(sample.rgb) + (1.0f - sample.alpha) * recorder.bareBed());
+        // In the order of Sum.
+        own.add({static_cast<double>(sample.rgb.r), static_cast<double>(sample.rgb.g),
+                 static_cast<double>(sample.rgb.b), static_cast<double>(sample.alpha), y, y * y});
+    }
+    for (std::size_t n = 0; n < samples.size() && !aovs_.empty(); ++n)
+        recorder.add(points[n], rays[n].direction, sums_, at + kOwn);
 }
 
 void PixelSums::add(std::size_t pixel, const PixelSums& later, std::size_t its_pixel) {

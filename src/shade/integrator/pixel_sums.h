@@ -6,6 +6,7 @@
 #include "shade/integrator/aov.h"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace stratum::shade {
@@ -17,9 +18,9 @@ public:
     PixelSums() = default;
     PixelSums(std::size_t pixels, std::vector<Aov> aovs);
 
-    /// Adds a sample, whose first hit is `point`.
-    void add(std::size_t pixel, const Pixel& sample, const AovRecorder& recorder, const SurfacePoint& point,
-             const glm::dvec3& direction);
+    /// Adds samples, and their rays' first hits. `points` and `rays` are as long as `samples`.
+    void add(std::size_t pixel, std::span<const Pixel> samples, const AovRecorder& recorder,
+             std::span<const SurfacePoint> points, std::span<const trace::Ray> rays);
     /// Adds the later samples of a pixel, of the same layers.
     void add(std::size_t pixel, const PixelSums& later, std::size_t its_pixel);
 

@@ -77,16 +77,15 @@ bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoin
     return print || bed;
 }
 
-void Surfaces::nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
+void Surfaces::nearest(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
     nearest(rays, scene_.bed ? &*scene_.bed : nullptr, tracer, points);
 }
 
-void Surfaces::nearestInside(std::span<const trace::Ray> rays, trace::Tracer& tracer,
-                             std::span<SurfacePoint> points) const {
+void Surfaces::nearestInside(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
     nearest(rays, contact_ ? &*contact_ : nullptr, tracer, points);
 }
 
-void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+void Surfaces::nearest(std::span<trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
                        std::span<SurfacePoint> points) const {
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<trace::Hit> hits;
@@ -98,17 +97,12 @@ void Surfaces::nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::
     static thread_local std::vector<double> beds;
     if (bed != nullptr) {
         beds.resize(rays.size());
-        static thread_local std::vector<trace::Ray> limited;
-        limited.resize(rays.size());
         for (std::size_t n = 0; n < rays.size(); ++n) {
             beds[n] = bed->intersect(rays[n]).value_or(kNone);
-            limited[n] = rays[n];
-            limited[n].t_max = std::min(rays[n].t_max, beds[n]);
+            rays[n].t_max = std::min(rays[n].t_max, beds[n]);
         }
-        tracer.intersectStream(limited, hits);
-    } else {
-        tracer.intersectStream(rays, hits);
     }
+    tracer.intersectStream(rays, hits);
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
             onPrint(rays[n], hits[n], tracer, points[n]);

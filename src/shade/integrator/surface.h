@@ -36,20 +36,26 @@ public:
 
     /// The nearest surface in the ray's interval; false if there is none.
     bool nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoint& point) const;
-    /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`.
-    void nearest(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
+    /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`, which end
+    /// at the bed afterwards.
+    void nearest(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
     /// The same for rays inside of a translucent print. What stands on the bed touches it without a gap: a bottom less
     /// than a twentieth of a voxel above the bed is the bed.
-    void nearestInside(std::span<const trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
+    void nearestInside(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
     bool occluded(const trace::Ray& ray, trace::Tracer& tracer) const;
     /// blocked[i] is 1 or 0. `blocked` is as long as `rays`, which are overwritten.
     void occluded(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<std::uint8_t> blocked) const;
     /// A ray from a point, offset so that it doesn't hit the same surface again.
     /// @param direction  world space, near unit length
     trace::Ray leave(const SurfacePoint& point, const glm::vec3& direction) const {
-        return {point.position + offset_ * point.geometric, glm::normalize(glm::dvec3(direction))};
+        trace::Ray ray;
+        leave(point, direction, ray);
+        return ray;
     }
     /// The same where the ray stays: what is copied in one piece waits for the pieces that it was made of.
+    void leave(const SurfacePoint& point, const glm::vec3& direction, trace::Ray& ray) const {
+        leave(point, glm::normalize(glm::dvec3(direction)), ray);
+    }
     /// @param unit  of length 1 to the last bits
     void leave(const SurfacePoint& point, const glm::dvec3& unit, trace::Ray& ray) const {
         for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +80,7 @@ private:
     // They set every field, where it stays: to copy what was just written in pieces takes longer than to write it.
     void onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer, SurfacePoint& point) const;
     static void onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoint& point);
-    void nearest(std::span<const trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+    void nearest(std::span<trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
                  std::span<SurfacePoint> points) const;
 
     const SceneDescription& scene_;

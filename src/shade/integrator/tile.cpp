@@ -65,9 +65,13 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
         integrator.radianceStream(std::span(worker.rays).first(waiting), std::span(worker.samplers).first(waiting),
                                   *worker.tracer, rays_, std::span(worker.points).first(waiting),
                                   std::span(worker.pixels).first(waiting));
-        for (std::size_t n = 0; n < waiting; ++n) {
-            sums_.add(worker.order[pixel], worker.pixels[n], recorder, worker.points[n], worker.rays[n].direction);
-            if (++taken < each) continue;
+        for (std::size_t n = 0; n < waiting;) {
+            const std::size_t count = std::min(each - taken, waiting - n);
+            sums_.add(worker.order[pixel], std::span(worker.pixels).subspan(n, count), recorder,
+                      std::span(worker.points).subspan(n, count), std::span(worker.rays).subspan(n, count));
+            n += count;
+            taken += count;
+            if (taken < each) continue;
             taken = 0;
             ++pixel;
         }

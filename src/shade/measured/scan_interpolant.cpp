@@ -18,15 +18,17 @@ glm::dvec3 directionOf(double polar, double azimuth) {
     return {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)};
 }
 
+// Of vectors that are no longer than 2: no care for overflow is needed.
+double lengthOf(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// Maps a projected direction when the mirror point moves.
-/// @param from, to  incidences; their mirror points lie at azimuth pi
-void carry(double from, double to, double& polar, double& azimuth) {
-    const double m = -std::sin(from);
-    const double n = -std::sin(to);
+/// @param m, n  where the mirror points of both incidences lie along x: at minus their sines
+/// @param at    the direction; polar and azimuth are its angles
+void carry(double m, double n, const glm::dvec3& at, double& polar, double& azimuth) {
     if (m == n) return;
-    const double x = std::sin(polar) * std::cos(azimuth) - m;
-    const double y = std::sin(polar) * std::sin(azimuth);
-    const double r = std::hypot(x, y);
+    const double x = at.x - m;
+    const double y = at.y;
+    const double r = lengthOf(x, y);
     double px = n;
     double py = 0.0;
     if (r > 0.0) {
@@ -39,13 +41,14 @@ void carry(double from, double to, double& polar, double& azimuth) {
         px = n + share * (m + rim * ux - n);
         py = share * rim * uy;
     }
-    polar = std::asin(std::min(std::hypot(px, py), 1.0));
+    polar = std::asin(std::min(lengthOf(px, py), 1.0));
     azimuth = std::atan2(py, px);
 }
 
 }  // namespace
 
 ScanInterpolant::ScanInterpolant(const BrdfScan& scan) : scan_(scan), lobes_(fitLobes(scan)) {
+    for (const double i : scan.incidences) sines_.push_back(std::sin(i));
     glm::dvec3 least(0.0);
     for (const Color& v : scan.values) least = glm::max(least, glm::dvec3(v));
     least = glm::max(least * 1e-5, glm::dvec3(1e-7));  // a floor for the logarithm, below that of scatterometers
@@ -56,9 +59,8 @@ ScanInterpolant::ScanInterpolant(const BrdfScan& scan) : scan_(scan), lobes_(fit
             for (const double p : scan.polars) {
                 const glm::dvec3 value = glm::max(glm::dvec3(scan.values[n++]), least);
                 glm::dvec3 r;
-                for (int c = 0; c < 3; ++c)
-                    r[c] = std::log(value[c] / lobes_[static_cast<std::size_t>(c)].eval(
-                                                   directionOf(i, 0.0), directionOf(std::min(p, kHighest), a)));
+                const GlossyPair pair(directionOf(i, 0.0), directionOf(std::min(p, kHighest), a));
+                for (int c = 0; c < 3; ++c) r[c] = std::log(value[c] / lobes_[static_cast<std::size_t>(c)].eval(pair));
                 residuals_.push_back(r);
             }
         }
@@ -67,8 +69,7 @@ ScanInterpolant::ScanInterpolant(const BrdfScan& scan) : scan_(scan), lobes_(fit
 }
 
 glm::dvec3 ScanInterpolant::residual(std::size_t incidence, double polar, double azimuth) const {
-    const double folded = std::abs(std::remainder(azimuth, 2.0 * std::numbers::pi));
-    const NodePlace a = placeAmong(scan_.azimuths, folded);
+    const NodePlace a = placeAmong(scan_.azimuths, std::abs(azimuth));
     const NodePlace p = placeAmong(scan_.polars, polar);
     const auto ring = [&](std::size_t i) {
         const glm::dvec3* r = &residuals_[scan_.index(incidence, i, p.low)];
@@ -81,11 +82,12 @@ glm::dvec3 ScanInterpolant::oneWay(double incidence, double polar, double azimut
     glm::dvec3 result;
     const glm::dvec3 light = directionOf(incidence, 0.0);
     const glm::dvec3 detector = directionOf(polar, azimuth);
-    for (int c = 0; c < 3; ++c) result[c] = std::log(lobes_[static_cast<std::size_t>(c)].eval(light, detector));
+    const GlossyPair pair(light, detector);
+    for (int c = 0; c < 3; ++c) result[c] = std::log(lobes_[static_cast<std::size_t>(c)].eval(pair));
     const auto carried = [&](std::size_t i) {
         double p = polar;
         double a = azimuth;
-        carry(incidence, scan_.incidences[i], p, a);
+        carry(-light.x, -sines_[i], detector, p, a);
         return residual(i, p, a);
     };
     const NodePlace place = placeAmong(scan_.incidences, incidence);
@@ -104,7 +106,7 @@ double ScanInterpolant::distanceToMeasured(double incidence) const {
 
 glm::dvec3 ScanInterpolant::eval(const glm::dvec3& light, const glm::dvec3& detector) const {
     const auto polarOf = [](const glm::dvec3& d) {
-        return std::min(std::atan2(std::hypot(d.x, d.y), std::max(d.z, 0.0)), kHighest);
+        return std::min(std::atan2(lengthOf(d.x, d.y), std::max(d.z, 0.0)), kHighest);
     };
     const double ti = polarOf(light);
     const double to = polarOf(detector);

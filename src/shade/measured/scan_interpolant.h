@@ -5,6 +5,7 @@
 #include "shade/brdf/lobe_fit.h"
 
 #include <array>
+#include <vector>
 
 namespace stratum::shade {
 
@@ -31,10 +32,12 @@ public:
 private:
     /// Logarithm of step 2, by angles: of light and detector to the normal, and between them around it.
     glm::dvec3 oneWay(double incidence, double polar, double azimuth) const;
+    /// @param azimuth  in [-pi, pi]
     glm::dvec3 residual(std::size_t incidence, double polar, double azimuth) const;
     double distanceToMeasured(double incidence) const;
 
-    BrdfScan scan_;  // only its angles
+    BrdfScan scan_;              // only its angles
+    std::vector<double> sines_;  // of its incidences
     std::vector<glm::dvec3> residuals_;
     std::array<Lobes, 3> lobes_;
 };

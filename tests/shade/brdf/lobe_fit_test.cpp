@@ -14,7 +14,8 @@ TEST(LobeFit, FindsWhatIsThere) {
     const auto scan = shade::makeScan(
         [&](const glm::dvec3& l, glm::dvec3 d) {
             d.z = std::max(d.z, 1e-4);
-            return shade::Color(truth[0].eval(l, d), truth[1].eval(l, d), truth[2].eval(l, d));
+            const shade::GlossyPair pair(l, d);
+            return shade::Color(truth[0].eval(pair), truth[1].eval(pair), truth[2].eval(pair));
         },
         test::radians({0, 20, 40, 60}), shade::evenAngles(0.0, std::numbers::pi, 37),
         shade::evenAngles(0.0, 0.5 * std::numbers::pi, 91));

@@ -77,6 +77,24 @@ TEST(ExactSums, DoNotDependOnOrderOrDivision) {
     }
 }
 
+TEST(ExactSums, RunsAddWhatOneByOneAdds) {
+    std::mt19937_64 random(8);
+    for (const int widest : {2, 40, 140}) {
+        ExactSums one_by_one(5);
+        ExactSums in_runs(5);
+        for (int part = 0; part < 3; ++part) {
+            ExactSums::Run<3> run(in_runs, 1);
+            for (int n = 0; n < 20; ++n) {
+                const std::vector<double> v = randomValues(random, widest, 3);
+                run.add({v[0], v[1], v[2]});
+                for (std::size_t k = 0; k < 3; ++k) one_by_one.add(1 + k, v[k]);
+            }
+        }
+        ASSERT_EQ(in_runs.planes(), one_by_one.planes()) << widest;
+        for (std::size_t k = 0; k < in_runs.planes(); ++k) EXPECT_EQ(in_runs.plane(k), one_by_one.plane(k)) << widest;
+    }
+}
+
 TEST(ExactSums, OfLikeValuesNeedOnePlane) {
     ExactSums sums(1);
     for (int n = 0; n < 65536; ++n) sums.add(0, 0.7f + 1e-3f * static_cast<float>(n % 100));

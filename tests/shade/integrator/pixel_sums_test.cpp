@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace stratum {
@@ -16,23 +17,25 @@ using shade::PixelSums;
 
 constexpr const char* kLayers = "normal,layer,variance,samples";
 
-struct Sample {
-    Pixel pixel;
-    shade::SurfacePoint point;
+struct Samples {
+    std::vector<Pixel> pixels;
+    std::vector<shade::SurfacePoint> points;
+    std::vector<trace::Ray> rays;
 };
 
 // Values as different as light can be: a sum of doubles would depend on their order. Some hit nothing, the second hit
 // is the first that has a number of a layer.
-std::vector<Sample> samples() {
-    std::vector<Sample> all;
+Samples samples() {
+    Samples all;
     for (int n = 0; n < 7; ++n) {
-        Sample sample;
+        shade::SurfacePoint point;
         const float v = std::ldexp(1.0f / 3.0f, 25 * (n % 5) - 60);
-        sample.pixel = {shade::Color(v, 1.0f - v, 1e4f * v), 0.1f * static_cast<float>(n)};
-        sample.point.t = n % 3 == 1 ? std::numeric_limits<double>::infinity() : 2.0;
-        sample.point.normal = {std::sin(n), 1e-9 * n, std::cos(n)};
-        sample.point.labels[static_cast<std::size_t>(shade::Label::layer)] = n < 2 ? -1.0f : static_cast<float>(10 + n);
-        all.push_back(sample);
+        all.pixels.push_back({shade::Color(v, 1.0f - v, 1e4f * v), 0.1f * static_cast<float>(n)});
+        point.t = n % 3 == 1 ? std::numeric_limits<double>::infinity() : 2.0;
+        point.normal = {std::sin(n), 1e-9 * n, std::cos(n)};
+        point.labels[static_cast<std::size_t>(shade::Label::layer)] = n < 2 ? -1.0f : static_cast<float>(10 + n);
+        all.points.push_back(point);
+        all.rays.push_back({{0.0, 0.0, 5.0}, {0.0, 0.0, -1.0}});
     }
     return all;
 }
@@ -48,11 +51,11 @@ TEST(PixelSums, OfSharesAreThoseOfAll) {
     const auto ball = test::sphere({0, 0, 0}, 1.0);
     const auto scene = shade::makeScene({}, ball, 20, 20);
     const shade::AovRecorder recorder(scene, ball, shade::parseAovs(kLayers));
-    const std::vector<Sample> all = samples();
+    const Samples all = samples();
     const auto sumsOf = [&](std::size_t first, std::size_t end) {
         PixelSums sums(1, recorder.aovs());
-        for (std::size_t n = first; n < end; ++n)
-            sums.add(0, all[n].pixel, recorder, all[n].point, glm::dvec3(0.0, 0.0, -1.0));
+        sums.add(0, std::span(all.pixels).subspan(first, end - first), recorder,
+                 std::span(all.points).subspan(first, end - first), std::span(all.rays).subspan(first, end - first));
         return sums;
     };
     const shade::Film whole = filmOf(sumsOf(0, 7), 7);
@@ -74,8 +77,9 @@ TEST(PixelSums, MeanAndVariance) {
     const auto scene = shade::makeScene({}, ball, 20, 20);
     const shade::AovRecorder recorder(scene, ball, {});
     PixelSums sums(2, {});
-    for (const float v : {1.0f, 2.0f, 3.0f, 6.0f})
-        sums.add(1, {shade::Color(v), 1.0f}, recorder, shade::SurfacePoint(), glm::dvec3(0.0, 0.0, -1.0));
+    std::vector<Pixel> pixels;
+    for (const float v : {1.0f, 2.0f, 3.0f, 6.0f}) pixels.push_back({shade::Color(v), 1.0f});
+    sums.add(1, pixels, recorder, std::vector<shade::SurfacePoint>(4), std::vector<trace::Ray>(4));
     EXPECT_NEAR(sums.luminance(1, 4), 3.0, 1e-6);
     EXPECT_NEAR(sums.variance(1, 4), (12.5 - 9.0) / 3.0, 1e-6);
     EXPECT_EQ(sums.luminance(0, 4), 0.0);

@@ -251,7 +251,7 @@ TEST(Material, StreamsForgetTheObjectsOfEarlierScenes) {
     auto scene = shade::makeScene(options, ball, 8, 8);
     scene.objects.emplace_back(shade::makeBrdf("lambert:0,0,1"));
     scene.objects.emplace_back(shade::makeBrdf("lambert:0,1,0"));
-    const std::vector<trace::Ray> rays(4, {{5, 0, 0.5}, {-1, 0, 0}});
+    std::vector<trace::Ray> rays(4, {{5, 0, 0.5}, {-1, 0, 0}});
     std::vector<shade::SurfacePoint> points(rays.size());
     shade::Surfaces(scene, two).nearest(rays, *two.makeTracer(), points);
     EXPECT_NEAR(points.back().albedo.g, 1, 1e-5f);
