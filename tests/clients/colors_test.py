@@ -18,7 +18,7 @@ from run_tools import BIN, SOURCE, check, gcode, run
 FOLDER = tempfile.mkdtemp(prefix="stratum_colors_")
 INSIDE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "colors_inside.py")
 PRINT = gcode("two_tone.gcode")
-COMMON = ["--layers", "6:10", "--voxel-size", "0.2"]
+COMMON = ["--layers", "6:10", "--voxel-size", "0.3"]
 FIRST, SECOND = "#c04020", "#2060e0"
 COLORS = ["--color", f"{FIRST},{SECOND}"]
 
@@ -267,7 +267,7 @@ def trace(name, source, *options):
     return json.loads(run(tool, source, "-o", path, "--size", "160x120", "--spp", "4", "--stats", "-", *options))
 
 
-view = ["--view", "top", "--layers", "6:10", "--voxel-size", "0.2"]
+view = ["--view", "top", "--layers", "6:10", "--voxel-size", "0.3"]
 report = trace("tools.png", PRINT, *view, *COLORS)
 stated = [entry["color"] for entry in report["material"]["colors"]]
 check(sorted(stated) == sorted([FIRST, SECOND]), f"vdbtrace: a colour a tool: {stated}")

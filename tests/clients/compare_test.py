@@ -67,10 +67,10 @@ def cylinder_distance(p):
     return numpy.linalg.norm(numpy.maximum(q, 0), axis=-1) + numpy.minimum(q.max(axis=-1), 0)
 
 
-RINGS = 180
+RINGS, SIDES = 60, 120  # up to 4 um from the round surface
 ball = [(math.sin(math.pi * n / RINGS) if 0 < n < RINGS else 0.0, 6 - 6 * math.cos(math.pi * n / RINGS)) for n in range(RINGS + 1)]
-SHAPES = {"box": (box(), box_distance), "sphere": (turned_plan(6, 360, ball), sphere_distance),
-          "cylinder": (turned_plan(6, 360, [(0.0, 0.0), (1.0, 0.0), (1.0, 12.0), (0.0, 12.0)]), cylinder_distance)}
+SHAPES = {"box": (box(), box_distance), "sphere": (turned_plan(6, SIDES, ball), sphere_distance),
+          "cylinder": (turned_plan(6, SIDES, [(0.0, 0.0), (1.0, 0.0), (1.0, 12.0), (0.0, 12.0)]), cylinder_distance)}
 
 
 def compare(sliced, model, *options):

@@ -169,7 +169,7 @@ else:
     try:
         for name, command in (("vdb", conversion(os.path.join(full, "a.vdb"))), ("stl", conversion(os.path.join(full, "a.stl"))),
                               ("exr", [VDBTRACE, vdb, "-o", os.path.join(full, "a.exr"), "--size", "400x300", "--spp", "1"]),
-                              ("png", [VDBTRACE, vdb, "-o", os.path.join(full, "a.png"), "--size", "1280x960", "--spp", "1"])):
+                              ("png", [VDBTRACE, vdb, "-o", os.path.join(full, "a.png"), "--size", "640x480", "--spp", "1"])):
             put_old(os.path.join(full, "a." + name))
             done = subprocess.run(command, capture_output=True, text=True)
             print(f"disk full, .{name}")

@@ -165,7 +165,7 @@ call("part.gcode", "-o", "alone.png", *QUICK, "--eye", "150,-160,120")
 check(pixels("lit.png")[:one] == pixels("alone.png"), "the light is that of the first key")
 
 # --- stopped and gone on ---------------------------------------------------------------------------------------------------------
-LONG = ["part.gcode", "--film", "kill.png", "--size", "256x192", "--spp", "8", "--voxels-per-layer", "2", "--quiet",
+LONG = ["part.gcode", "--film", "kill.png", "--size", "128x96", "--spp", "8", "--voxels-per-layer", "2", "--quiet",
         "--seconds", "2", "--fps", "8", "--nozzle"]
 whole = call(*LONG)
 check(whole.returncode == 0, f"a longer film: {whole.stderr.strip()}")

@@ -44,7 +44,8 @@ check("settings" in tile["material"]["colors"][0]["from"] and skips_lookup(tile)
 
 # --- samples: a small picture gets more, an .exr is not denoised ---------------------------------------------------------
 def samples(size, output="p.png"):
-    done = call(VDBTRACE, gcode("tile.gcode"), *G, "-o", path(output), "--size", size, "--integrator", "direct", "--stats", "-", "--quiet")
+    done = call(VDBTRACE, gcode("tile.gcode"), *G, "-o", path(output), "--size", size, "--crop", "16,16,48,40", "--integrator",
+                "direct", "--stats", "-", "--quiet")
     return json.loads(done.stdout)["image"]["spp"]
 
 

@@ -81,9 +81,9 @@ def drag(dx, dy):
           const at = (type, x, y, buttons) => c.dispatchEvent(new PointerEvent(type,
               { pointerId: 1, clientX: b.left + x, clientY: b.top + y, buttons, button: 0, bubbles: true }));
           c.setPointerCapture = () => {};
-          at('pointerdown', 150, 150, 1);
-          for (let n = 1; n <= 10; ++n) at('pointermove', 150 + arguments[0] * n / 10, 150 + arguments[1] * n / 10, 1);
-          at('pointerup', 150 + arguments[0], 150 + arguments[1], 0);""", dx, dy)
+          at('pointerdown', 100, 100, 1);
+          for (let n = 1; n <= 10; ++n) at('pointermove', 100 + arguments[0] * n / 10, 100 + arguments[1] * n / 10, 1);
+          at('pointerup', 100 + arguments[0], 100 + arguments[1], 0);""", dx, dy)
 
 
 def status(url, headers=None):
@@ -228,7 +228,7 @@ def losing():
 
 shutil.copy(gcode("tile.gcode"), PART)
 server, url = start()
-page = browser(f"{FOLDER}/profile", 800, 460, 30)
+page = browser(f"{FOLDER}/profile", 780, 340, 30)
 try:
     first = opening()
     turning(first)

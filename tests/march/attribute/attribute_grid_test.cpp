@@ -103,13 +103,13 @@ TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {
         }
         return "(none)";
     };
-    const auto path = write({surface, tool, openvdb::BoolGrid::create()});
+    const auto path = write({surface, tool, openvdb::GridBase::createGrid("Tree_bool_5_4_3")});
     EXPECT_EQ(refusal(path, "tool"), "(none)");
     EXPECT_NE(refusal(path, "layer").find("gcode2vdb --grids layer"), std::string::npos);
     EXPECT_NE(refusal(path, "layer").find("surface, tool"), std::string::npos) << refusal(path, "layer");
     tool->transform().postTranslate(openvdb::Vec3d(0.1, 0, 0));
     EXPECT_NE(refusal(write({surface, tool}), "tool").find("another lattice"), std::string::npos);
-    const auto flags = openvdb::BoolGrid::create();
+    const auto flags = openvdb::GridBase::createGrid("Tree_bool_5_4_3");
     flags->setName("flags");
     EXPECT_NE(refusal(write({surface, flags}), "flags").find("holds bool"), std::string::npos);
     EXPECT_NE(refusal("/nonexistent.vdb", "tool").find("can't be opened"), std::string::npos);

@@ -78,7 +78,7 @@ TEST_F(VdbCheck, AcceptsWhatOpenVdbWrites) {
     zipped->setName("zipped");
     const auto twin = grid->copy();
     twin->setName("twin");
-    const auto points = openvdb::BoolGrid::create(false);
+    const auto points = openvdb::GridBase::createGrid("Tree_bool_5_4_3");
     points->setName("points");
     for (const std::uint32_t compression :
          {kMaskFlag | kBloscFlag, kMaskFlag | kZip, kBloscFlag, kZip, kMaskFlag, std::uint32_t{0}}) {
