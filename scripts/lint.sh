@@ -11,7 +11,7 @@ printf '%s\n' "${sources[@]}" | xargs -P "$(nproc)" -n 40 clang-format --dry-run
 echo "clang-format: ${#sources[@]} files are formatted"
 # Without precompiled headers: a unit that forgot an include is found here. The tests are left to the compiler's warnings:
 # GoogleTest's macros are not written for these checks.
-cmake -S . -B build/lint -G Ninja -DSTRATUM_TESTS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+cmake -S . -B build/lint -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DSTRATUM_TESTS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
 base=$(cat scripts/lint_base)
 [[ "${1:-}" == --all ]] && base=none
 mapfile -t units < <(python3 scripts/changed_units.py "$base")

@@ -17,14 +17,14 @@ install_packages() {
     "${run[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# What the tools are built with.
-BUILD_PACKAGES=(g++ cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev liblz4-dev
+# What the tools are built with. Why clang: docs/benchmarks.md, "Compilers".
+BUILD_PACKAGES=(clang lld cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev liblz4-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
     libassimp-dev libhwy-dev libdeflate-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libzip-dev libstb-dev pkg-config
     pybind11-dev python3-dev python3-numpy)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
-# are started by their test, not as services of the machine.
-TEST_PACKAGES=(admesh calculix-ccx ffmpeg lib3mf1 libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
+# are started by their test, not as services of the machine. GCC compiles the programs of others that use our libraries.
+TEST_PACKAGES=(g++ admesh calculix-ccx ffmpeg lib3mf1 libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
     prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium appstream desktop-file-utils
     shared-mime-info libxml2-utils mmdebstrap xvfb locales libgl1-mesa-dri)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.

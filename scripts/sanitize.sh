@@ -4,8 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-# Clang compiles these templates in 0.6 of the time, and its UndefinedBehaviorSanitizer knows more.
-install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 clang libclang-rt-dev lld llvm
+install_packages "${BUILD_PACKAGES[@]}" libgtest-dev python3 libclang-rt-dev llvm
 # Freed blocks are kept for a while by the allocator; with large grids that alone would fill the memory.
 export ASAN_OPTIONS=quarantine_size_mb=64 LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
 for sanitizer in asan tsan; do

@@ -16,8 +16,7 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOST = 6  # units in a file
-# Of GCC, whose warnings clang does not all know.
-CLANG = ["--quiet", "--extra-arg=-Wno-unknown-warning-option"]
+CLANG = ["--quiet"]
 
 
 def batches(units, commands):

@@ -1,7 +1,7 @@
 // libFuzzer: any bytes as a container, and what comes out as a program. Only InputError and UsageError may come
 // out of it.
 //
-//   cmake --preset release -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DSTRATUM_FUZZ=ON
+//   cmake --preset release -B build/fuzz -DSTRATUM_FUZZ=ON
 //       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
 //   cmake --build build/fuzz --target container_fuzz
 //   build/fuzz/bin/container_fuzz -max_total_time=300 -rss_limit_mb=4096 -max_len=65536 FOLDER

@@ -2,7 +2,7 @@
 // reading it, and a toolpath that is read must be one that can be drawn: finite places, positive sections, no index out
 // of bounds.
 //
-//   cmake --preset release -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DSTRATUM_FUZZ=ON
+//   cmake --preset release -B build/fuzz -DSTRATUM_FUZZ=ON
 //       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
 //   cmake --build build/fuzz --target gcode_fuzz
 //   build/fuzz/bin/gcode_fuzz -dict=tests/fuzz/gcode.dict -max_total_time=300 -max_len=4096 FOLDER tests/fuzz/gcode
