@@ -14,6 +14,8 @@
 #include "march/brick/lanes-inl.h"
 #include "trace/intersector.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstdint>
