@@ -62,7 +62,7 @@ TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
         EXPECT_EQ(openvdb::tools::checkLevelSet(*grid, 8), "");
 
         // Active voxels drawn at random, the same for every run.
-        constexpr std::size_t kPoints = 80000;
+        constexpr std::size_t kPoints = 120000;
         const auto points = test::randomActiveVoxels(*grid, kPoints);
         std::atomic<std::size_t> outside{0};
         std::atomic<std::size_t> inside{0};
