@@ -105,10 +105,9 @@ Lobes refined(const Readings& readings, std::size_t channel, const std::array<st
 
 }  // namespace
 
-GlossyPair::GlossyPair(const glm::dvec3& light, const glm::dvec3& detector)
-    : light_(light), detector_(detector), half_(glm::normalize(light + detector)) {
-    const glm::dvec3 h = glm::normalize(light + detector);
-    const double c = std::clamp(0.5 * (glm::dot(h, light) + glm::dot(h, detector)), 0.0, 1.0);
+GlossyPair::GlossyPair(const glm::dvec3& light, const glm::dvec3& detector, const glm::dvec3& half)
+    : light_(light), detector_(detector), half_(half) {
+    const double c = std::clamp(0.5 * (glm::dot(half, light) + glm::dot(half, detector)), 0.0, 1.0);
     const double t = std::sqrt(1.0 - (1.0 - c * c) / (kEta * kEta));
     const double parallel = (kEta * c - t) / (kEta * c + t);
     const double perpendicular = (c - kEta * t) / (c + kEta * t);

@@ -3,6 +3,8 @@
 
 #include "shade/brdf/brdf_scan.h"
 
+#include <glm/geometric.hpp>
+
 #include <array>
 
 namespace stratum::shade {
@@ -10,11 +12,14 @@ namespace stratum::shade {
 /// What the glossy lobes of a pair of directions have in common. Light and detector are unit, z up.
 class GlossyPair {
 public:
-    GlossyPair(const glm::dvec3& light, const glm::dvec3& detector);
+    GlossyPair(const glm::dvec3& light, const glm::dvec3& detector)
+        : GlossyPair(light, detector, glm::normalize(light + detector)) {}
     /// Of a GGX lobe with this alpha and a reflectance of 1 at normal incidence, 1/sr.
     double gloss(double alpha) const;
 
 private:
+    GlossyPair(const glm::dvec3& light, const glm::dvec3& detector, const glm::dvec3& half);
+
     struct Slope {
         explicit Slope(const glm::dvec3& d) : cosine(d.z), sine2(d.x * d.x + d.y * d.y) {}
         double cosine, sine2;  // of the angle to the normal, and the square of its sine

@@ -26,8 +26,8 @@ void PixelSums::add(std::size_t pixel, std::span<const Pixel> samples, const Aov
         own.add({static_cast<double>(sample.rgb.r), static_cast<double>(sample.rgb.g),
                  static_cast<double>(sample.rgb.b), static_cast<double>(sample.alpha), y, y * y});
     }
-    for (std::size_t n = 0; n < samples.size() && !aovs_.empty(); ++n)
-        recorder.add(points[n], rays[n].direction, sums_, at + kOwn);
+    if (aovs_.empty()) return;
+    for (std::size_t n = 0; n < samples.size(); ++n) recorder.add(points[n], rays[n].direction, sums_, at + kOwn);
 }
 
 void PixelSums::add(std::size_t pixel, const PixelSums& later, std::size_t its_pixel) {
