@@ -371,8 +371,9 @@ private:
         corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
         const M in0 = hn::Lt(f.c0, zero);
-        const M in1 = hn::Lt(f.c0 + f.c1 / constant(3), zero);
-        const M in2 = hn::Lt(f.c0 + (constant(2) * f.c1 + f.c2) / constant(3), zero);
+        const V three_c0 = constant(3) * f.c0;
+        const M in1 = hn::Lt(three_c0 + f.c1, zero);
+        const M in2 = hn::Lt(three_c0 + (constant(2) * f.c1 + f.c2), zero);
         const M in3 = hn::Lt(f.end, zero);
         const M differ = hn::Xor(in0, in3);
         const M between = hn::Or(hn::Xor(in0, in1), hn::Xor(in1, in2));

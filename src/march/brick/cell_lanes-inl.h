@@ -75,7 +75,8 @@ HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&ro
     const D d;
     const V zero = hn::Zero(d);
     const V half = constant(0.5);
-    const V step = constant(kRootStep);
+    const V last_step = constant(kRootStep);
+    const V rounding = constant(kRootRounding);
     V slope3[kCount];
     V slope2[kCount];
     M in_low[kCount];
@@ -96,16 +97,21 @@ HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&ro
         M any = active[0];
         for (int k = 0; k < kCount; ++k) {
             const V value = ((f[k].c3 * s[k] + f[k].c2) * s[k] + f[k].c1) * s[k] + f[k].c0;
+            const V rise = slope3[k] * s[k];
+            const V slope = (rise + slope2[k]) * s[k] + f[k].c1;
+            const V step = value * slope / (slope * slope - value * (rise + f[k].c2));
             const M exact = hn::Eq(value, zero);
             const M same = hn::Not(hn::Xor(hn::Lt(value, zero), in_low[k]));
             low[k] = hn::IfThenElse(same, s[k], low[k]);
             high[k] = hn::IfThenElse(same, high[k], s[k]);
-            const V newton = s[k] - value / ((slope3[k] * s[k] + slope2[k]) * s[k] + f[k].c1);
-            const M inside = hn::And(hn::Gt(newton, low[k]), hn::Lt(newton, high[k]));
-            V next = hn::IfThenElse(inside, newton, half * (low[k] + high[k]));
-            next = hn::IfThenElse(exact, s[k], next);
+            const V halley = s[k] - step;
+            const M inside = hn::And(hn::Ge(halley, low[k] - rounding), hn::Le(halley, high[k] + rounding));
+            const V middle = half * (low[k] + high[k]);
+            const M ended = hn::Or(hn::Eq(middle, low[k]), hn::Eq(middle, high[k]));
+            V next = hn::IfThenElse(inside, clampTo(halley, low[k], high[k]), middle);
             const M done =
-                hn::Or(hn::Le(hn::Abs(next - s[k]), step), hn::Or(hn::Eq(next, low[k]), hn::Eq(next, high[k])));
+                hn::Or(exact, hn::Or(hn::And(inside, hn::Le(hn::Abs(step), last_step)), hn::AndNot(inside, ended)));
+            next = hn::IfThenElse(exact, s[k], next);
             root[k] = hn::IfThenElse(active[k], next, root[k]);
             active[k] = hn::AndNot(done, active[k]);
             any = k == 0 ? active[k] : hn::Or(any, active[k]);

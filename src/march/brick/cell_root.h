@@ -67,6 +67,8 @@ struct SegmentCubic {
     }
     double operator()(double s) const { return ((c3 * s + c2) * s + c1) * s + c0; }
     double slope(double s) const { return (3 * c3 * s + 2 * c2) * s + c1; }
+    /// Half the second derivative.
+    double bend(double s) const { return 3 * c3 * s + c2; }
 };
 
 inline bool isInside(double value) { return value < 0; }
@@ -76,9 +78,10 @@ inline bool isInside(double value) { return value < 0; }
 inline std::optional<std::pair<double, double>> firstCrossing(const SegmentCubic& f) {
     const bool in0 = isInside(f.c0);
     const bool in3 = isInside(f.end);
-    // Bernstein coefficients enclose the curve and bound its sign changes by theirs.
-    const bool in1 = isInside(f.c0 + f.c1 / 3);
-    const bool in2 = isInside(f.c0 + (2 * f.c1 + f.c2) / 3);
+    // Bernstein coefficients enclose the curve and bound its sign changes by theirs. The two inner ones times 3: a sign
+    // needs no division.
+    const bool in1 = isInside(3 * f.c0 + f.c1);
+    const bool in2 = isInside(3 * f.c0 + (2 * f.c1 + f.c2));
     const int changes = static_cast<int>(in0 != in1) + static_cast<int>(in1 != in2) + static_cast<int>(in2 != in3);
     if (changes == 0) return std::nullopt;
     if (changes == 1) return std::pair{0.0, 1.0};
@@ -101,12 +104,15 @@ inline std::optional<std::pair<double, double>> firstCrossing(const SegmentCubic
     return std::nullopt;
 }
 
-/// The last step of refineRoot(), in lengths of the segment. Newton's steps square the error, so after one this short
-/// only rounding errors remain; after bisection the error is at most this.
-inline constexpr double kRootStep = 1e-8;
+/// The last step of refineRoot(), in lengths of the segment. Halley's steps cube the error, so after one this short
+/// only rounding errors remain.
+inline constexpr double kRootStep = 1e-6;
+/// A step may end so far beyond the bracket, by rounding: fields that are flat, so that the chord meets the zero
+/// itself, and zeros at an end are common, because layers are printed on planes of voxels.
+inline constexpr double kRootRounding = 0x1p-40;
 inline constexpr int kRootSteps = 60;
 
-/// The zero in a bracket from firstCrossing(): Newton's steps where they stay inside, else bisection. The number of
+/// The zero in a bracket from firstCrossing(): Halley's steps where they stay inside, else bisection. The number of
 /// steps is bounded.
 inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracket) {
     auto [low, high] = bracket;
@@ -117,14 +123,20 @@ inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracke
     // counts as outside, and the crossing may be before it.
     const double chord = low + (high - low) * at_low / (at_low - at_high);
     double s = chord > low && chord < high ? chord : 0.5 * (low + high);
-    for (int step = 0; step < kRootSteps; ++step) {
+    for (int n = 0; n < kRootSteps; ++n) {
         const double value = f(s);
+        const double slope = f.slope(s);
+        const double step = value * slope / (slope * slope - value * f.bend(s));
         if (value == 0) return s;
         (isInside(value) == in_low ? low : high) = s;
-        const double slope = f.slope(s);
-        double next = s - value / slope;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        if (std::abs(next - s) <= kRootStep || next == low || next == high) return next;
+        double next = s - step;
+        if (next >= low - kRootRounding && next <= high + kRootRounding) {
+            next = std::min(std::max(next, low), high);
+            if (std::abs(step) <= kRootStep) return next;
+        } else {
+            next = 0.5 * (low + high);
+            if (next == low || next == high) return next;
+        }
         s = next;
     }
     return s;
