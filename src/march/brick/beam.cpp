@@ -13,8 +13,6 @@ constexpr double kRaysPerBeam = 4;
 constexpr int kBrick = BrickGrid::kBrickEdge;
 constexpr int kMacro = BrickGrid::kMacroEdge;
 constexpr int kPart = kBrick / 2;  // cells of a block
-// Depths end so much before a block, in cells: a ray begins in the empty space before it, as if it had come from there.
-constexpr double kBefore = 0x1p-6;
 
 // The bricks of a macro cell that lie in one of its four slabs across an axis.
 constexpr std::uint64_t slabMask(int axis, int slab) {
@@ -61,7 +59,7 @@ void Beams::begin(const RayFan& fan, std::size_t rays) {
 }
 
 void Beams::findDepths() {
-    depths_.fill(kInfinity);
+    planes_.fill(kInfinity);
     const int slabs = grid_.size()[static_cast<std::size_t>(fan_.main)] / kMacro;
     // Slabs are counted along the way; those behind the eye are left out.
     const double at = fan_.eye[fan_.main] / kMacro;
@@ -125,78 +123,99 @@ void Beams::meetMacros(int slab) {
     for (int n = 0; n < kMacro / kBrick; ++n) {
         const int thin = fan_.forth ? n : kMacro / kBrick - 1 - n;
         const std::uint64_t among = any & kSlabMask[fan_.main][thin];
-        const int from = slab * kMacro + thin * kBrick;
         if (among == 0) continue;
-        const Layer bricks(fan_, from, from + kBrick);
-        const bool behind = bricks.far <= 0;
-        if (behind || !cover(bricks, box)) continue;
-        for (int half = 0; half < 2; ++half) {  // blocks of a half have one depth
-            const int part = fan_.forth ? half : 1 - half;
-            const int block = from + part * kPart;
-            const Layer parts(fan_, block, block + kPart);
-            forEachMacro(box.low, box.high, [&](int x, int y, int z) {
-                const MacroCell& macro = grid_.macroCell(x, y, z);
-                if ((macro.bricks & among) != 0)
-                    meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, part, bricks, parts);
-            });
+        for (int m = 0; m < 2; ++m) {
+            const int half = fan_.forth ? m : 1 - m;
+            const int from = slab * kMacro + thin * kBrick + half * kPart;
+            meetBlocks({fan_, from, from + kPart}, among, half);
         }
     }
+}
+
+// A layer of blocks, of these bricks.
+void Beams::meetBlocks(const Layer& layer, std::uint64_t among, int half) {
+    const bool behind = layer.far <= 0;
+    Box box;
+    if (behind || !cover(layer, box)) return;
+    project(layer, box);
+    const double plane = fan_.forth ? layer.from : -layer.to;
+    forEachMacro(box.low, box.high, [&](int x, int y, int z) {
+        const MacroCell& macro = grid_.macroCell(x, y, z);
+        if ((macro.bricks & among) != 0)
+            meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, half, plane);
+    });
+}
+
+// All blocks of the macro cells in the box.
+void Beams::project(const Layer& layer, const Box& box) {
+    columns_.clear();
+    rows_.clear();
+    for (int k = 0; k < 2; ++k) {
+        const auto axis = static_cast<std::size_t>((fan_.main + 1 + k) % 3);
+        const int begin = box.low[axis] / kMacro * kMacro;
+        const int end = box.high[axis] / kMacro * kMacro + kMacro;
+        first_[k] = begin / kPart;
+        for (int cell = begin; cell < end; cell += kPart) {
+            const Range range = rangeOf(k, cell, layer);
+            if (k == 0)
+                columns_.push_back(range.last < range.first ? 0 : ~0U >> (31 - range.last) & ~0U << range.first);
+            else
+                rows_.push_back(range);
+        }
+    }
+}
+
+// The columns or rows that the cells [cell, cell + kPart) along an axis across are in.
+Beams::Range Beams::rangeOf(int k, int cell, const Layer& layer) const {
+    const double least = cell - fan_.eye[(fan_.main + 1 + k) % 3] - layer.margin;
+    const double most = least + kPart + 2 * layer.margin;
+    const double low = least * (least < 0 ? layer.per_near : layer.per_far);
+    const double high = most * (most > 0 ? layer.per_near : layer.per_far);
+    if (!(high >= fan_.low[k])) return {0, -1};
+    if (!(low <= fan_.high[k])) return {count_[k], count_[k] - 1};
+    // All beams are in one row if there is one slope: the scale is 0, and infinite slopes must not meet it.
+    const double first = low > fan_.low[k] ? (low - fan_.low[k]) * scale_[k] : 0;
+    const double last = high < fan_.high[k] ? (high - fan_.low[k]) * scale_[k] : count_[k] - 1;
+    return {static_cast<int>(first), std::min(static_cast<int>(last), count_[k] - 1)};
 }
 
 // One layer of blocks, of some bricks of a macro cell.
 void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int half,
-                       const Layer& bricks, const Layer& parts) {
-    const double depth = parts.near - kBefore;
+                       double plane) {
+    const auto main = static_cast<std::size_t>(fan_.main);
+    const std::size_t across[2] = {(main + 1) % 3, (main + 2) % 3};
     for (; among != 0; among &= among - 1) {
         const int bit = std::countr_zero(among);
-        const int x = bit >> 4;
-        const int y = bit >> 2 & 3;
-        const int z = bit & 3;
-        const std::array<int, 3> brick = {corner[0] + x * kBrick, corner[1] + y * kBrick, corner[2] + z * kBrick};
-        Rectangle beams;
-        if (!project(brick, kBrick, bricks, beams) || !anyOpen(beams)) continue;
-        const std::size_t index = BrickGrid::brickIndex(macro, x, y, z);
-        for (int part = 0; part < 8; ++part) {
-            const std::array<int, 3> at = {part >> 2, part >> 1 & 1, part & 1};
-            if (at[static_cast<std::size_t>(fan_.main)] != half ||
-                grid_.surface(index, static_cast<std::size_t>(part)) == 0)
-                continue;
-            if (project({brick[0] + at[0] * kPart, brick[1] + at[1] * kPart, brick[2] + at[2] * kPart}, kPart, parts,
-                        beams))
-                meet(beams, depth);
-        }
+        const std::array<int, 3> brick = {bit >> 4, bit >> 2 & 3, bit & 3};
+        const auto place = [&](int k) {
+            return static_cast<std::size_t>((corner[across[k]] + brick[across[k]] * kBrick) / kPart - first_[k]);
+        };
+        const std::uint32_t* const columns = &columns_[place(0)];
+        const Range* const rows = &rows_[place(1)];
+        if (!anyOpen({rows[0].first, rows[1].last}, columns[0] | columns[1])) continue;
+        const std::size_t index = BrickGrid::brickIndex(macro, brick[0], brick[1], brick[2]);
+        for (std::size_t a = 0; a < 2; ++a)
+            for (std::size_t b = 0; b < 2; ++b) {
+                std::array<std::size_t, 3> at{};
+                at[main] = static_cast<std::size_t>(half);
+                at[across[0]] = a;
+                at[across[1]] = b;
+                if (grid_.surface(index, at[0] << 2 | at[1] << 1 | at[2]) != 0) meet(rows[b], columns[a], plane);
+            }
     }
 }
 
-// The beams that a cube of cells is in; false if there is none.
-bool Beams::project(const std::array<int, 3>& corner, int edge, const Layer& layer, Rectangle& beams) const {
-    for (int k = 0; k < 2; ++k) {
-        const int axis = (fan_.main + 1 + k) % 3;
-        const double least = corner[static_cast<std::size_t>(axis)] - fan_.eye[axis] - layer.margin;
-        const double most = least + edge + 2 * layer.margin;
-        const double low = least * (least < 0 ? layer.per_near : layer.per_far);
-        const double high = most * (most > 0 ? layer.per_near : layer.per_far);
-        if (!(high >= fan_.low[k] && low <= fan_.high[k])) return false;
-        // All beams are in one row if there is one slope: the scale is 0, and infinite slopes must not meet it.
-        const double first = low > fan_.low[k] ? (low - fan_.low[k]) * scale_[k] : 0;
-        const double last = high < fan_.high[k] ? (high - fan_.low[k]) * scale_[k] : count_[k] - 1;
-        beams.first[k] = static_cast<int>(first);
-        beams.last[k] = std::min(static_cast<int>(last), count_[k] - 1);
-    }
-    return true;
-}
-
-bool Beams::anyOpen(const Rectangle& beams) const {
+bool Beams::anyOpen(const Range& rows, std::uint32_t columns) const {
     std::uint32_t open = 0;
-    for (int row = beams.first[1]; row <= beams.last[1]; ++row) open |= open_[static_cast<std::size_t>(row)];
-    return (open & beams.columns()) != 0;
+    for (int row = rows.first; row <= rows.last; ++row) open |= open_[static_cast<std::size_t>(row)];
+    return (open & columns) != 0;
 }
 
-void Beams::meet(const Rectangle& beams, double depth) {
-    const std::uint32_t columns = beams.columns();
-    for (auto row = static_cast<std::size_t>(beams.first[1]); row <= static_cast<std::size_t>(beams.last[1]); ++row) {
+void Beams::meet(const Range& rows, std::uint32_t columns, double plane) {
+    for (int n = rows.first; n <= rows.last; ++n) {
+        const auto row = static_cast<std::size_t>(n);
         for (std::uint32_t met = open_[row] & columns; met != 0; met &= met - 1)
-            depths_[row * kMostSide + static_cast<std::size_t>(std::countr_zero(met))] = depth;
+            planes_[row * kMostSide + static_cast<std::size_t>(std::countr_zero(met))] = plane;
         open_[row] &= ~columns;
     }
 }

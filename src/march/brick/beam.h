@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace stratum::march {
 
@@ -40,18 +41,17 @@ public:
     void open(int column, int row) { open_[static_cast<std::size_t>(row)] |= 1U << column; }
     /// Finds the depths of the beams that have rays.
     void findDepths();
-    /// By row * kMostSide + column: how far along the main axis the beam meets no surface cell; infinite if it meets
-    /// none at all. A small part of a cell before the first block that may have one.
-    const double* depths() const { return depths_.data(); }
+    /// By row * kMostSide + column: the plane across the main axis before which the beam meets no surface cell;
+    /// infinite if it meets none at all. Counted along the way: its cell, or minus that where the rays descend.
+    const double* planes() const { return planes_.data(); }
 
 private:
     struct Box {
         std::array<int, 3> low, high;  // cells, inclusive
     };
-    // Beams, from the first to the last.
-    struct Rectangle {
-        int first[2], last[2];
-        std::uint32_t columns() const { return ~0U >> (31 - last[0]) & ~0U << first[0]; }
+    // Columns or rows of beams, from the first to the last; none if the last is before the first.
+    struct Range {
+        int first, last;
     };
 
     // Cells [from, to) of the main axis: how far along it the fan comes to them and leaves them, the inverses of both,
@@ -65,11 +65,13 @@ private:
     bool shrink();
     bool cover(const Layer& layer, Box& box) const;
     void meetMacros(int slab);
+    void meetBlocks(const Layer& layer, std::uint64_t among, int half);
+    void project(const Layer& layer, const Box& box);
+    Range rangeOf(int k, int cell, const Layer& layer) const;
     void meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int half,
-                    const Layer& bricks, const Layer& parts);
-    bool project(const std::array<int, 3>& corner, int edge, const Layer& layer, Rectangle& beams) const;
-    bool anyOpen(const Rectangle& beams) const;
-    void meet(const Rectangle& beams, double depth);
+                    double plane);
+    bool anyOpen(const Range& rows, std::uint32_t columns) const;
+    void meet(const Range& rows, std::uint32_t columns, double plane);
 
     const BrickGrid& grid_;
     RayFan fan_;
@@ -77,7 +79,12 @@ private:
     int count_[2];             // columns and rows
     double scale_[2];
     std::array<std::uint32_t, kMostSide> open_;  // by row, a bit for each column: beams that have met nothing yet
-    std::array<double, std::size_t{kMostSide} * kMostSide> depths_;
+    std::array<double, std::size_t{kMostSide} * kMostSide> planes_;
+    // Of the blocks of a layer, whose projection has two factors: which columns and rows they are in, by their place
+    // along either axis across, from the block first_ on.
+    int first_[2];
+    std::vector<std::uint32_t> columns_;  // a bit for each
+    std::vector<Range> rows_;
 };
 
 }  // namespace stratum::march

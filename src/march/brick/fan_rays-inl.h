@@ -34,8 +34,8 @@ public:
 
     FanRays(const BrickGrid& grid, const CellMap& map, const RayBox& box) : map_(map), box_(box), beams_(grid) {}
 
-    /// Keeps those of the rays that come to a block with surface. False if they have not one origin or no axis along
-    /// which they all move, or are too few.
+    /// Keeps those of the rays whose beams come to a block with surface. False if they have not one origin or no axis
+    /// along which they all move, or are too few.
     bool begin(std::span<const trace::Ray> rays) {
         kept_ = next_ = 0;
         if (rays.size() < kFewRays || rays.size() > kMost || !mayHaveOneOrigin(rays)) return false;
@@ -54,26 +54,28 @@ public:
     }
 
     std::size_t left() const { return kept_ - next_; }
-    /// The next rays, as many as lanes have; if they are fewer, the first lanes. `from`: where they begin, from their
-    /// start on. `index`: their places among all of begin().
-    struct Next {
-        LaneRays rays;
-        V start, length, from, index;
-    };
-    HWY_INLINE Next next() {
+    /// The next rays, as many as lanes have, where they come to their first block: all fields of the queue. kIndex:
+    /// their places among all of begin(). Returns which come there.
+    HWY_INLINE M next(V out[kQueued]) {
         const D d;
-        Next n;
+        const V zero = hn::Zero(d);
+        LaneRays lanes;
         for (int axis = 0; axis < 3; ++axis) {
-            n.rays.o[axis] = constant(fan_.eye[axis]);
-            n.rays.dir[axis] = hn::LoadU(d, direction_[axis] + next_);
-            n.rays.inverse[axis] = inverseOf(n.rays.dir[axis]);
+            lanes.o[axis] = constant(fan_.eye[axis]);
+            lanes.dir[axis] = hn::LoadU(d, direction_[axis] + next_);
         }
-        n.start = hn::LoadU(d, start_ + next_);
-        n.length = hn::LoadU(d, length_ + next_);
-        n.from = hn::LoadU(d, from_ + next_);
-        n.index = hn::LoadU(d, index_ + next_);
+        box_.invert(lanes);
+        V start = hn::LoadU(d, t_min_ + next_);
+        V end = hn::LoadU(d, t_max_ + next_);
+        const VI left = whole(static_cast<std::int64_t>(kept_ - next_));
+        const M good = hn::And(box_.clip(lanes, start, end), toDouble(hn::Lt(hn::Iota(DI(), 0), left)));
+        box_.mirror(lanes, start, out);
+        out[kEnd] = end - start;
+        out[kStart] = start;
+        out[kIndex] = hn::LoadU(d, index_ + next_);
+        const M there = moveTo(hn::LoadU(d, plane_ + next_), out);
         next_ = std::min<std::size_t>(next_ + kLanes, kept_);
-        return n;
+        return hn::And(good, there);
     }
 
 private:
@@ -86,8 +88,7 @@ private:
         return rays[1].origin == rays[0].origin && rays[rays.size() / 2].origin == rays[0].origin;
     }
 
-    // Directions in cells, the rays' parts in the grid's box, and slopes. False if not all rays have the first one's
-    // origin and a common axis.
+    // Directions in cells, and slopes. False if not all rays have the first one's origin and a common axis.
     bool place(std::span<const trace::Ray> rays) {
         const D d;
         const V infinity = constant(std::numeric_limits<double>::infinity());
@@ -101,28 +102,24 @@ private:
                 hwy::Prefetch(&rays[n]);
             V in[8];
             loadRays(&rays[first], static_cast<int>(std::min<std::size_t>(rays.size() - first, kLanes)), in);
-            LaneRays lanes;
+            V direction[3];
             for (int axis = 0; axis < 3; ++axis) {
-                lanes.o[axis] = constant(fan_.eye[axis]);
                 common = hn::And(common, hn::Eq(in[axis], constant(rays[0].origin[axis])));
+                direction[axis] = box_.across(axis, in + 3);
+                hn::Store(direction[axis], d, direction_[axis] + first);
             }
-            box_.turn(in + 3, lanes);
-            V start = in[6];
-            V end = in[7];
-            const M good = box_.clip(lanes, start, end);
-            const V way = hn::Abs(lanes.inverse[fan_.main]);
-            common = hn::And(common, hn::And(hn::Gt(lanes.dir[fan_.main] * sign, zero), hn::Lt(way, infinity)));
+            const V ahead = direction[fan_.main] * sign;
+            const V way = constant(1) / ahead;
+            common = hn::And(common, hn::And(hn::Gt(ahead, zero), hn::Lt(way, infinity)));
             for (int k = 0; k < 2; ++k) {
-                const V slope = lanes.dir[(fan_.main + 1 + k) % 3] * way;
+                const V slope = direction[(fan_.main + 1 + k) % 3] * way;
                 common = hn::And(common, hn::Lt(hn::Abs(slope), constant(kSteepest)));
                 low[k] = hn::Min(low[k], slope);
                 high[k] = hn::Max(high[k], slope);
                 hn::Store(slope, d, slope_[k] + first);
             }
-            for (int axis = 0; axis < 3; ++axis) hn::Store(lanes.dir[axis], d, direction_[axis] + first);
-            hn::Store(start, d, start_ + first);
-            // Rays without a part get a negative length.
-            hn::Store(hn::IfThenElse(good, end - start, constant(-1)), d, length_ + first);
+            hn::Store(in[6], d, t_min_ + first);
+            hn::Store(in[7], d, t_max_ + first);
         }
         if (!hn::AllTrue(d, common)) return false;
         for (int k = 0; k < 2; ++k) {
@@ -148,39 +145,60 @@ private:
         }
         static_assert(Beams::kMostSide == 1 << 5);
         for (std::size_t n = 0; n < count; ++n)
-            if (length_[n] >= 0)
-                beams_.open(static_cast<int>(beam_[n] % Beams::kMostSide),
-                            static_cast<int>(beam_[n] / Beams::kMostSide));
+            beams_.open(static_cast<int>(beam_[n] % Beams::kMostSide), static_cast<int>(beam_[n] / Beams::kMostSide));
     }
 
     // Moves the rays that are kept to the front.
     void keep(std::size_t count) {
         const D d;
-        const V zero = hn::Zero(d);
+        const V infinity = constant(std::numeric_limits<double>::infinity());
         for (std::size_t first = 0; first < count; first += kLanes) {
-            const V length = hn::Load(d, length_ + first);
-            const V depth = hn::GatherIndex(d, beams_.depths(), hn::Load(DI(), beam_ + first));
-            V row[kRows];
-            for (int axis = 0; axis < 3; ++axis) row[axis] = hn::Load(d, direction_[axis] + first);
-            const V start = hn::Load(d, start_ + first);
-            const V from = hn::Max(depth * hn::Abs(inverseOf(row[fan_.main])) - start, zero);
+            const V plane = hn::GatherIndex(d, beams_.planes(), hn::Load(DI(), beam_ + first));
             const VI index = hn::Iota(DI(), static_cast<std::int64_t>(first));
-            M good = hn::And(hn::Ge(length, zero), hn::Lt(from, length));
-            good = hn::And(good, toDouble(hn::Lt(index, whole(static_cast<std::int64_t>(count)))));
-            const unsigned kept = bitsOf(good);
+            const unsigned kept = bitsOf(
+                hn::And(hn::Lt(plane, infinity), toDouble(hn::Lt(index, whole(static_cast<std::int64_t>(count))))));
             if (kept == 0) continue;
-            row[3] = start;
-            row[4] = length;
-            row[5] = from;
-            row[6] = toReal(index);
             const auto table = tableIndices(kTable.source[kept]);
-            double* const to[kRows] = {direction_[0], direction_[1], direction_[2], start_, length_, from_, index_};
-            for (int n = 0; n < kRows; ++n) hn::StoreU(hn::TableLookupLanes(row[n], table), d, to[n] + kept_);
+            const auto pack = [&](V row, double* to)
+                                  HWY_ATTR { hn::StoreU(hn::TableLookupLanes(row, table), d, to + kept_); };
+            for (double* const row : {direction_[0], direction_[1], direction_[2], t_min_, t_max_})
+                pack(hn::Load(d, row + first), row);
+            pack(plane, plane_);
+            pack(toReal(index), index_);
             kept_ += static_cast<std::size_t>(std::popcount(kept));
         }
     }
 
-    static constexpr int kRows = 7;
+    // To a plane across the main axis, before which a ray meets no surface: t, face and cell there. False if the ray
+    // ends before.
+    HWY_INLINE M moveTo(V plane, V out[kQueued]) const {
+        const D d;
+        const V zero = hn::Zero(d);
+        const int main = fan_.main;
+        const V t = (plane - out[kO + main]) * out[kInverse + main];
+        out[kT] = t;
+        // A walk to the plane would come through this cell's face on it if the planes of the cell's other faces are met
+        // before and after, rounding included. Then its t is this one.
+        M entered = hn::Gt(t, zero);
+        VI cell[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            if (axis == main) continue;
+            cell[axis] = box_.cellAt(axis, out);
+            const V low = toReal(cell[axis]);
+            const V before = (low - out[kO + axis]) * out[kInverse + axis];
+            const V after = (low + constant(1) - out[kO + axis]) * out[kInverse + axis];
+            entered = hn::And(entered, hn::And(hn::Lt(before, t), hn::Gt(after, t)));
+        }
+        // Other rays begin a little before, in empty space, as if they had come from there.
+        const V early = hn::Max((plane - constant(kBefore) - out[kO + main]) * out[kInverse + main], zero);
+        out[kT] = hn::IfThenElse(entered, t, early);
+        out[kFace] = hn::IfThenElse(entered, constant(main), constant(-1));
+        for (int axis = 0; axis < 3; ++axis) out[kCell + axis] = hn::BitCast(d, box_.cellAt(axis, out));
+        out[kCell + main] = hn::IfThenElse(entered, hn::BitCast(d, floorToWhole(plane)), out[kCell + main]);
+        return hn::Lt(out[kT], out[kEnd]);
+    }
+
+    static constexpr double kBefore = 0x1p-6;  // cells
     static constexpr std::size_t kRoom = kMost + kLanes;
 
     const CellMap& map_;
@@ -190,7 +208,7 @@ private:
     std::size_t kept_ = 0, next_ = 0;
     HWY_ALIGN double direction_[3][kRoom];
     HWY_ALIGN double slope_[2][kRoom];
-    HWY_ALIGN double start_[kRoom], length_[kRoom], from_[kRoom], index_[kRoom];
+    HWY_ALIGN double t_min_[kRoom], t_max_[kRoom], plane_[kRoom], index_[kRoom];
     HWY_ALIGN std::int64_t beam_[kRoom];
 };
 

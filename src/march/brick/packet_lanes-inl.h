@@ -34,12 +34,12 @@ enum Field {
     kEnd = kFlip + 3,
     kStart,
     kIndex,
-    kT,               // from the entry into the box on
-    kQueued,          // fields that a ray in the queue has
-    kFace = kQueued,  // axis of the face that the cell was entered by, or -1
+    kT,       // from the entry into the box on
+    kFace,    // axis of the face that the cell was entered by, or -1
+    kQueued,  // fields that a ray in the queue has
     // By Marcher::look(): in a brick, eight times its index and the number of its 4^3 cells, and -1; elsewhere, 0, and
     // how far the empty block reaches: over all cells that differ in the low bits only, and so many more ahead.
-    kPart,
+    kPart = kQueued,
     kWord,  // of clearCells(): kPart, or the same of the slot
     kLowBits,
     kBeyond,
@@ -61,11 +61,6 @@ HWY_INLINE void storeWhole(Packet& p, int field, VI v) { store(p, field, hn::Bit
 struct LaneRays {
     V o[3], dir[3], inverse[3];
 };
-/// Of such directions.
-HWY_INLINE V inverseOf(V direction) {
-    const V infinity = constant(std::numeric_limits<double>::infinity());
-    return hn::IfThenElse(hn::Eq(direction, hn::Zero(D())), infinity, constant(1) / direction);
-}
 
 /// The fields of the first `count` rays, 1 to kLanes; the other lanes repeat the last one.
 HWY_INLINE void loadRays(const trace::Ray* rays, int count, V in[8]) {
@@ -101,15 +96,22 @@ public:
 
     /// `in`: the fields of trace::Ray.
     HWY_INLINE void toCells(const V in[8], LaneRays& lanes) const {
-        for (int axis = 0; axis < 3; ++axis) lanes.o[axis] = across(axis, in) + constant(map_.origin[axis]);
-        turn(in + 3, lanes);
+        for (int axis = 0; axis < 3; ++axis) {
+            lanes.o[axis] = across(axis, in) + constant(map_.origin[axis]);
+            lanes.dir[axis] = across(axis, in + 3);
+        }
+        invert(lanes);
     }
-    /// Directions alone.
-    HWY_INLINE void turn(const V direction[3], LaneRays& lanes) const {
+    /// Of a direction, in cells.
+    HWY_INLINE V across(int axis, const V v[3]) const {
+        return constant(map_.to_cells[0][axis]) * v[0] + constant(map_.to_cells[1][axis]) * v[1] +
+               constant(map_.to_cells[2][axis]) * v[2];
+    }
+    /// Inverses, of directions in cells.
+    static HWY_INLINE void invert(LaneRays& lanes) {
         const V infinity = constant(std::numeric_limits<double>::infinity());
         const V largest = constant(std::numeric_limits<double>::max());
         for (int axis = 0; axis < 3; ++axis) {
-            lanes.dir[axis] = across(axis, direction);
             lanes.inverse[axis] = constant(1) / lanes.dir[axis];
             const M finite = hn::Le(hn::Abs(lanes.inverse[axis]), largest);
             lanes.dir[axis] = hn::IfThenElseZero(finite, lanes.dir[axis]);
@@ -139,12 +141,11 @@ public:
         return hn::And(good, hn::And(hn::Le(start, end), hn::Lt(hn::Abs(start), infinity)));
     }
 
-    /// Position, direction and cell at the start, mirrored so that every direction ascends.
-    HWY_INLINE void placeInCells(const LaneRays& lanes, V start, V out[kQueued]) const {
+    /// Position and direction at the start, mirrored so that every direction ascends.
+    HWY_INLINE void mirror(const LaneRays& lanes, V start, V out[kQueued]) const {
         const D d;
-        const V zero = hn::Zero(d);
         for (int axis = 0; axis < 3; ++axis) {
-            const M still = hn::Eq(lanes.dir[axis], zero);
+            const M still = hn::Eq(lanes.dir[axis], hn::Zero(d));
             const V at = lanes.o[axis] + start * lanes.dir[axis];
             const V within = hn::IfThenElse(still, hn::Min(at, constant(last_position_[axis])), at);
             const V sign = hn::And(lanes.dir[axis], constant(-0.0));
@@ -154,19 +155,17 @@ public:
             out[kD + axis] = hn::Abs(lanes.dir[axis]);
             out[kInverse + axis] = hn::Abs(lanes.inverse[axis]);
             out[kFlip + axis] = hn::BitCast(d, flip);
-            const VI size = whole(whole_size_[axis]);
-            const VI least = hn::Neg(hn::And(flip, size));
-            const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
-            out[kCell + axis] = hn::BitCast(d, hn::Min(hn::Max(cell, least), least + size - whole(1)));
         }
+    }
+    /// The cell at out[kT] along an axis, after mirror().
+    HWY_INLINE VI cellAt(int axis, const V out[kQueued]) const {
+        const VI size = whole(whole_size_[axis]);
+        const VI least = hn::Neg(hn::And(hn::BitCast(DI(), out[kFlip + axis]), size));
+        const VI cell = floorToWhole(out[kO + axis] + out[kT] * out[kD + axis]);
+        return hn::Min(hn::Max(cell, least), least + size - whole(1));
     }
 
 private:
-    HWY_INLINE V across(int axis, const V v[3]) const {
-        return constant(map_.to_cells[0][axis]) * v[0] + constant(map_.to_cells[1][axis]) * v[1] +
-               constant(map_.to_cells[2][axis]) * v[2];
-    }
-
     const CellMap& map_;
     double size_[3];
     double last_position_[3];  // just below the box's far faces

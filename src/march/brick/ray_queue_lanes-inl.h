@@ -68,7 +68,6 @@ private:
             const V row = hn::LoadU(d, queue_[n] + head_);
             store(p, n, hn::IfThenElse(taken, hn::TableLookupLanes(row, table), load(p, n)));
         }
-        store(p, kFace, hn::IfThenElse(taken, constant(-1), load(p, kFace)));
         p.alive |= idle;
         head_ += std::popcount(idle);
     }
@@ -96,18 +95,15 @@ private:
         V end = in[7];
         const M good = hn::AndNot(toDouble(hn::Gt(lane, last)), box_.clip(lanes, start, end));
         V out[kQueued];
+        box_.mirror(lanes, start, out);
         out[kEnd] = end - start;
         out[kT] = hn::Zero(d);
         out[kStart] = start;
         out[kIndex] = toReal(lane + whole(static_cast<std::int64_t>(next_)));
+        out[kFace] = constant(-1);
+        for (int axis = 0; axis < 3; ++axis) out[kCell + axis] = hn::BitCast(d, box_.cellAt(axis, out));
         next_ += count;
-        box_.placeInCells(lanes, start, out);
-        const unsigned kept = bitsOf(good);
-        if (kept != kAllLanes) {
-            const auto table = tableIndices(kTable.source[kept]);
-            for (V& v : out) v = hn::TableLookupLanes(v, table);
-        }
-        append(out, std::popcount(kept));
+        append(out, good);
     }
     // The next rays, as many as can be, form a fan or are queued one by one.
     void tryFan() {
@@ -117,21 +113,21 @@ private:
         fan_from_ = next_;
         next_ = tried_;
     }
-    // The skipped part is empty; starting in empty space changes neither the surface cells nor their entries.
     void enqueueFan() {
-        const auto count = static_cast<int>(std::min<std::size_t>(fan_.left(), kLanes));
-        const FanRays::Next n = fan_.next();
         V out[kQueued];
-        out[kEnd] = n.length;
-        out[kT] = n.from;
-        out[kStart] = n.start;
-        out[kIndex] = n.index + constant(static_cast<double>(fan_from_));
-        box_.placeInCells(n.rays, n.start, out);
-        append(out, count);
+        const M good = fan_.next(out);
+        out[kIndex] = out[kIndex] + constant(static_cast<double>(fan_from_));
+        append(out, good);
     }
-    HWY_INLINE void append(const V out[kQueued], int count) {
+    // Those of the rays that are good.
+    HWY_INLINE void append(V out[kQueued], M good) {
+        const unsigned kept = bitsOf(good);
+        if (kept != kAllLanes) {
+            const auto table = tableIndices(kTable.source[kept]);
+            for (int n = 0; n < kQueued; ++n) out[n] = hn::TableLookupLanes(out[n], table);
+        }
         for (int n = 0; n < kQueued; ++n) hn::StoreU(out[n], D(), queue_[n] + tail_);
-        tail_ += count;
+        tail_ += std::popcount(kept);
     }
 
     const RayBox box_;
