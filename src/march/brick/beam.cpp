@@ -55,17 +55,27 @@ void Beams::begin(const RayFan& fan, std::size_t rays) {
     // A little less, so that the greatest slope is in the last beam.
     scale_[0] = width > 0 ? count_[0] * (1 - 1e-9) / width : 0;
     scale_[1] = height > 0 ? count_[1] * (1 - 1e-9) / height : 0;
-    open_.fill(0);
+    has_rays_.fill(0);
 }
 
 void Beams::findDepths() {
     planes_.fill(kInfinity);
+    openAll();
     const int slabs = grid_.size()[static_cast<std::size_t>(fan_.main)] / kMacro;
     // Slabs are counted along the way; those behind the eye are left out.
     const double at = fan_.eye[fan_.main] / kMacro;
     const int begin =
         static_cast<int>(std::clamp(std::floor(fan_.forth ? at : slabs - at), 0.0, static_cast<double>(slabs)));
     for (int slab = begin; slab < slabs && shrink(); ++slab) meetMacros(fan_.forth ? slab : slabs - 1 - slab);
+}
+
+// Those with rays.
+void Beams::openAll() {
+    for (std::size_t row = 0; row < kMostSide; ++row) {
+        open_[row] = 0;
+        for (std::size_t column = 0; column < kMostSide; ++column)
+            open_[row] |= std::uint32_t{has_rays_[row * kMostSide + column]} << column;
+    }
 }
 
 // The slopes of the beams that are open; false if there is none.
@@ -107,19 +117,20 @@ bool Beams::cover(const Layer& layer, Box& box) const {
     return true;
 }
 
-template <typename Visit>
-static void forEachMacro(const std::array<int, 3>& low, const std::array<int, 3>& high, const Visit& visit) {
-    for (int x = low[0] / kMacro; x <= high[0] / kMacro; ++x)
-        for (int y = low[1] / kMacro; y <= high[1] / kMacro; ++y)
-            for (int z = low[2] / kMacro; z <= high[2] / kMacro; ++z) visit(x, y, z);
-}
-
 // A slab of macro cells.
 void Beams::meetMacros(int slab) {
     Box box;
     if (!cover({fan_, slab * kMacro, (slab + 1) * kMacro}, box)) return;
+    found_.clear();
     std::uint64_t any = 0;
-    forEachMacro(box.low, box.high, [&](int x, int y, int z) { any |= grid_.macroCell(x, y, z).bricks; });
+    for (int x = box.low[0] / kMacro; x <= box.high[0] / kMacro; ++x)
+        for (int y = box.low[1] / kMacro; y <= box.high[1] / kMacro; ++y)
+            for (int z = box.low[2] / kMacro; z <= box.high[2] / kMacro; ++z) {
+                const MacroCell& macro = grid_.macroCell(x, y, z);
+                if (macro.bricks == 0) continue;
+                any |= macro.bricks;
+                found_.push_back({&macro, {x * kMacro, y * kMacro, z * kMacro}});
+            }
     for (int n = 0; n < kMacro / kBrick; ++n) {
         const int thin = fan_.forth ? n : kMacro / kBrick - 1 - n;
         const std::uint64_t among = any & kSlabMask[fan_.main][thin];
@@ -139,11 +150,15 @@ void Beams::meetBlocks(const Layer& layer, std::uint64_t among, int half) {
     if (behind || !cover(layer, box)) return;
     project(layer, box);
     const double plane = fan_.forth ? layer.from : -layer.to;
-    forEachMacro(box.low, box.high, [&](int x, int y, int z) {
-        const MacroCell& macro = grid_.macroCell(x, y, z);
-        if ((macro.bricks & among) != 0)
-            meetBricks(macro, {x * kMacro, y * kMacro, z * kMacro}, macro.bricks & among, half, plane);
-    });
+    const auto within = [&](const std::array<int, 3>& corner) {
+        bool in = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            in &= corner[axis] <= box.high[axis] && corner[axis] + kMacro > box.low[axis];
+        return in;
+    };
+    for (const Found& found : found_)
+        if ((found.macro->bricks & among) != 0 && within(found.corner))
+            meetBricks(*found.macro, found.corner, found.macro->bricks & among, half, plane);
 }
 
 // All blocks of the macro cells in the box.

@@ -37,8 +37,8 @@ public:
     void begin(const RayFan& fan, std::size_t rays);
     /// Column (k = 0) or row (k = 1) of a slope is the integer below (slope - fan.low[k]) * scale(k).
     double scale(int k) const { return scale_[k]; }
-    /// The beam in this column and row has rays.
-    void open(int column, int row) { open_[static_cast<std::size_t>(row)] |= 1U << column; }
+    /// The beam at row * kMostSide + column has rays.
+    void open(std::size_t row_and_column) { has_rays_[row_and_column] = 1; }
     /// Finds the depths of the beams that have rays.
     void findDepths();
     /// By row * kMostSide + column: the plane across the main axis before which the beam meets no surface cell;
@@ -62,6 +62,7 @@ private:
         double near, far, per_near, per_far, margin;
     };
 
+    void openAll();
     bool shrink();
     bool cover(const Layer& layer, Box& box) const;
     void meetMacros(int slab);
@@ -78,8 +79,16 @@ private:
     double low_[2], high_[2];  // slopes of the beams that have met nothing yet
     int count_[2];             // columns and rows
     double scale_[2];
+    // By row and column, a byte each: rays come in an order in which bits would wait for one another.
+    std::array<std::uint8_t, std::size_t{kMostSide} * kMostSide> has_rays_;
     std::array<std::uint32_t, kMostSide> open_;  // by row, a bit for each column: beams that have met nothing yet
     std::array<double, std::size_t{kMostSide} * kMostSide> planes_;
+    // Of a slab: macro cells with bricks, and their corners.
+    struct Found {
+        const MacroCell* macro;
+        std::array<int, 3> corner;
+    };
+    std::vector<Found> found_;
     // Of the blocks of a layer, whose projection has two factors: which columns and rows they are in, by their place
     // along either axis across, from the block first_ on.
     int first_[2];

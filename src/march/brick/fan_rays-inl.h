@@ -144,8 +144,7 @@ private:
             hn::Store(hn::ShiftLeft<5>(row) + column, DI(), beam_ + first);
         }
         static_assert(Beams::kMostSide == 1 << 5);
-        for (std::size_t n = 0; n < count; ++n)
-            beams_.open(static_cast<int>(beam_[n] % Beams::kMostSide), static_cast<int>(beam_[n] / Beams::kMostSide));
+        for (std::size_t n = 0; n < count; ++n) beams_.open(static_cast<std::size_t>(beam_[n]));
     }
 
     // Moves the rays that are kept to the front.

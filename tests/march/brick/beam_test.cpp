@@ -100,7 +100,7 @@ TEST(Beams, NoSurfaceCellLiesBeforeTheirDepths) {
         for (const Slope& slope : slopes) {
             const auto [column, row] = beamOf(slope);
             ASSERT_LT(std::max(column, row), Beams::kMostSide);
-            beams.open(column, row);
+            beams.open(static_cast<std::size_t>(row * Beams::kMostSide + column));
         }
         beams.findDepths();
         for (std::size_t r = 0; r < rays.size(); ++r) {
@@ -134,7 +134,7 @@ TEST(Beams, WithoutRaysAreNotLookedFor) {
         fan.high[k] = 0.5;
     }
     beams.begin(fan, 1024);
-    beams.open(8, 8);
+    beams.open(8 * Beams::kMostSide + 8);
     beams.findDepths();
     for (int n = 0; n < Beams::kMostSide * Beams::kMostSide; ++n)
         if (n != 8 * Beams::kMostSide + 8) {
