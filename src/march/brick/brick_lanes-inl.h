@@ -183,7 +183,8 @@ private:
             prefetch(grid_.slots(), hn::ShiftRight<3>(part));
         } else {
             storeWhole(p, kWord, part);
-            prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), part);
+            // Beams have just read the bits of the blocks that rays of a fan come to.
+            if (!queue_.isFan()) prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), part);
         }
     }
 

@@ -50,6 +50,9 @@ public:
         if (std::popcount(kAllLanes & ~p.alive) >= kRefill) refillNow(p);
     }
 
+    /// Whether the last rays that were queued came from one eye.
+    bool isFan() const { return is_fan_; }
+
 private:
     void refillNow(Packet& p) {
         const D d;
@@ -78,7 +81,8 @@ private:
     void enqueue() {
         if constexpr (kFans) {
             if (next_ == tried_ && fan_.left() == 0) tryFan();
-            if (fan_.left() > 0) return enqueueFan();
+            is_fan_ = fan_.left() > 0;
+            if (is_fan_) return enqueueFan();
             if (next_ == tried_) return;
         }
         const D d;
@@ -135,7 +139,8 @@ private:
     std::size_t next_ = 0;  // the first ray that hasn't been queued, nor given to fan_
     std::conditional_t<kFans, FanRays, NoFan> fan_;
     std::size_t tried_ = 0, fan_from_ = 0;  // rays before the first were tried as a fan; the fan's first one
-    int head_ = 0, tail_ = 0;               // of the queue
+    bool is_fan_ = false;
+    int head_ = 0, tail_ = 0;  // of the queue
     HWY_ALIGN double queue_[kQueued][kQueue + 2 * kLanes];
 };
 
