@@ -94,6 +94,53 @@ TEST_P(BrickStream, HasThemForPicturesToo) {
     }
 }
 
+// Signs at random, so that nearly every cell is a surface cell.
+openvdb::FloatGrid::Ptr noise() {
+    auto grid = openvdb::FloatGrid::create(3.0F);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    auto accessor = grid->getAccessor();
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> value(-1, 1);
+    for (int x = -12; x < 12; ++x)
+        for (int y = -12; y < 12; ++y)
+            for (int z = -12; z < 12; ++z) accessor.setValue({x, y, z}, value(random));
+    return grid;
+}
+
+// From corners of cells through corners of cells: rays that meet several planes at once, or nearly so by rounding.
+TEST_P(BrickStream, HasThemForPicturesAlongEdgesAndCorners) {
+    const auto grid = noise();
+    for (const bool turned : {false, true}) {
+        if (turned) grid->transform().postRotate(0.4, openvdb::math::Y_AXIS);
+        const auto intersector = makeBrickIntersector(*grid);
+        const auto tracer = intersector->makeTracer();
+        const auto toWorld = [&](const glm::ivec3& index) {
+            const openvdb::Vec3d p = grid->indexToWorld(openvdb::Coord(index.x, index.y, index.z));
+            return glm::dvec3(p.x(), p.y(), p.z());
+        };
+        std::mt19937 random(14);
+        std::uniform_int_distribution<int> where(-12, 12);
+        std::uniform_int_distribution<int> step(-4, 4);
+        std::size_t hits = 0;
+        for (int view = 0; view < 300; ++view) {
+            const auto axis = static_cast<glm::length_t>(view % 3);
+            glm::ivec3 eye(where(random), where(random), where(random));
+            eye[axis] = view % 2 == 0 ? -32 : 32;
+            std::vector<trace::Ray> rays(300);
+            for (trace::Ray& ray : rays) {
+                glm::ivec3 along(step(random), step(random), step(random));
+                along[axis] = view % 2 == 0 ? 8 : -8;
+                ray.origin = toWorld(eye);
+                ray.direction = glm::normalize(toWorld(eye + along) - ray.origin);
+            }
+            const StreamTally tally = compare(*tracer, rays);
+            hits += tally.hits;
+            ASSERT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U) << view;
+        }
+        EXPECT_GT(hits, 20000U);
+    }
+}
+
 TEST_P(BrickStream, FollowsTheTransform) {
     const auto grid = test::rubble(0.1F, false);
     grid->transform().postRotate(0.7, openvdb::math::X_AXIS);
