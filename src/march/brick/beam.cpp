@@ -163,35 +163,49 @@ void Beams::meetBlocks(const Layer& layer, std::uint64_t among, int half) {
 
 // All blocks of the macro cells in the box.
 void Beams::project(const Layer& layer, const Box& box) {
-    columns_.clear();
-    rows_.clear();
     for (int k = 0; k < 2; ++k) {
         const auto axis = static_cast<std::size_t>((fan_.main + 1 + k) % 3);
         const int begin = box.low[axis] / kMacro * kMacro;
         const int end = box.high[axis] / kMacro * kMacro + kMacro;
-        first_[k] = begin / kPart;
-        for (int cell = begin; cell < end; cell += kPart) {
-            const Range range = rangeOf(k, cell, layer);
-            if (k == 0)
-                columns_.push_back(range.last < range.first ? 0 : ~0U >> (31 - range.last) & ~0U << range.first);
-            else
-                rows_.push_back(range);
-        }
+        begin_[k] = begin / kPart;
+        project(k, layer, begin, end, k == 0 ? column_range_ : rows_);
+    }
+    columns_.resize(column_range_.first.size());
+    for (std::size_t n = 0; n < columns_.size(); ++n) {
+        const int first = column_range_.first[n];
+        const int last = column_range_.last[n];
+        columns_[n] = last < first ? 0 : ~0U >> (31 - last) & ~0U << first;
     }
 }
 
-// The columns or rows that the cells [cell, cell + kPart) along an axis across are in.
-Beams::Range Beams::rangeOf(int k, int cell, const Layer& layer) const {
-    const double least = cell - fan_.eye[(fan_.main + 1 + k) % 3] - layer.margin;
-    const double most = least + kPart + 2 * layer.margin;
-    const double low = least * (least < 0 ? layer.per_near : layer.per_far);
-    const double high = most * (most > 0 ? layer.per_near : layer.per_far);
-    if (!(high >= fan_.low[k])) return {0, -1};
-    if (!(low <= fan_.high[k])) return {count_[k], count_[k] - 1};
-    // All beams are in one row if there is one slope: the scale is 0, and infinite slopes must not meet it.
-    const double first = low > fan_.low[k] ? (low - fan_.low[k]) * scale_[k] : 0;
-    const double last = high < fan_.high[k] ? (high - fan_.low[k]) * scale_[k] : count_[k] - 1;
-    return {static_cast<int>(first), std::min(static_cast<int>(last), count_[k] - 1)};
+// Blocks between these cells along an axis across. Without branches, so that compilers make vectors of it.
+void Beams::project(int k, const Layer& layer, int begin, int end, Ranges& ranges) const {
+    const int blocks = (end - begin) / kPart;
+    ranges.first.resize(static_cast<std::size_t>(blocks));
+    ranges.last.resize(static_cast<std::size_t>(blocks));
+    int* const first = ranges.first.data();
+    int* const last = ranges.last.data();
+    const double start = begin - fan_.eye[(fan_.main + 1 + k) % 3] - layer.margin;
+    const double edge = kPart + 2 * layer.margin;
+    const double near = layer.per_near;
+    const double far = layer.per_far;
+    const double least_slope = fan_.low[k];
+    const double most_slope = fan_.high[k];
+    const double scale = scale_[k];
+    const double count = count_[k];
+    for (int n = 0; n < blocks; ++n) {
+        const double least = start + n * kPart;
+        const double most = least + edge;
+        const double low = least * (least < 0 ? near : far);
+        const double high = most * (most > 0 ? near : far);
+        // Of infinite slopes, and with a scale of 0, these are no numbers: then all beams are met.
+        const double from = (low - least_slope) * scale;
+        const double to = (high - least_slope) * scale;
+        const double clamped_from = from > 0 ? from : 0;
+        const double clamped_to = to < count - 1 ? to : count - 1;
+        first[n] = static_cast<int>(low <= most_slope ? clamped_from : count);
+        last[n] = static_cast<int>(high >= least_slope ? clamped_to : -1);
+    }
 }
 
 // One layer of blocks, of some bricks of a macro cell.
@@ -203,11 +217,12 @@ void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner,
         const int bit = std::countr_zero(among);
         const std::array<int, 3> brick = {bit >> 4, bit >> 2 & 3, bit & 3};
         const auto place = [&](int k) {
-            return static_cast<std::size_t>((corner[across[k]] + brick[across[k]] * kBrick) / kPart - first_[k]);
+            return static_cast<std::size_t>((corner[across[k]] + brick[across[k]] * kBrick) / kPart - begin_[k]);
         };
         const std::uint32_t* const columns = &columns_[place(0)];
-        const Range* const rows = &rows_[place(1)];
-        if (!anyOpen({rows[0].first, rows[1].last}, columns[0] | columns[1])) continue;
+        const int* const first = &rows_.first[place(1)];
+        const int* const last = &rows_.last[place(1)];
+        if (!anyOpen(first[0], last[1], columns[0] | columns[1])) continue;
         const std::size_t index = BrickGrid::brickIndex(macro, brick[0], brick[1], brick[2]);
         for (std::size_t a = 0; a < 2; ++a)
             for (std::size_t b = 0; b < 2; ++b) {
@@ -215,19 +230,20 @@ void Beams::meetBricks(const MacroCell& macro, const std::array<int, 3>& corner,
                 at[main] = static_cast<std::size_t>(half);
                 at[across[0]] = a;
                 at[across[1]] = b;
-                if (grid_.surface(index, at[0] << 2 | at[1] << 1 | at[2]) != 0) meet(rows[b], columns[a], plane);
+                if (grid_.surface(index, at[0] << 2 | at[1] << 1 | at[2]) != 0)
+                    meet(first[b], last[b], columns[a], plane);
             }
     }
 }
 
-bool Beams::anyOpen(const Range& rows, std::uint32_t columns) const {
+bool Beams::anyOpen(int first_row, int last_row, std::uint32_t columns) const {
     std::uint32_t open = 0;
-    for (int row = rows.first; row <= rows.last; ++row) open |= open_[static_cast<std::size_t>(row)];
+    for (int row = first_row; row <= last_row; ++row) open |= open_[static_cast<std::size_t>(row)];
     return (open & columns) != 0;
 }
 
-void Beams::meet(const Range& rows, std::uint32_t columns, double plane) {
-    for (int n = rows.first; n <= rows.last; ++n) {
+void Beams::meet(int first_row, int last_row, std::uint32_t columns, double plane) {
+    for (int n = first_row; n <= last_row; ++n) {
         const auto row = static_cast<std::size_t>(n);
         for (std::uint32_t met = open_[row] & columns; met != 0; met &= met - 1)
             planes_[row * kMostSide + static_cast<std::size_t>(std::countr_zero(met))] = plane;

@@ -49,9 +49,10 @@ private:
     struct Box {
         std::array<int, 3> low, high;  // cells, inclusive
     };
-    // Columns or rows of beams, from the first to the last; none if the last is before the first.
-    struct Range {
-        int first, last;
+    // Columns or rows of beams that each of a sequence of cubes is in: from the first to the last; none if the last is
+    // before the first.
+    struct Ranges {
+        std::vector<int> first, last;
     };
 
     // Cells [from, to) of the main axis: how far along it the fan comes to them and leaves them, the inverses of both,
@@ -68,11 +69,11 @@ private:
     void meetMacros(int slab);
     void meetBlocks(const Layer& layer, std::uint64_t among, int half);
     void project(const Layer& layer, const Box& box);
-    Range rangeOf(int k, int cell, const Layer& layer) const;
+    void project(int k, const Layer& layer, int begin, int end, Ranges& ranges) const;
     void meetBricks(const MacroCell& macro, const std::array<int, 3>& corner, std::uint64_t among, int half,
                     double plane);
-    bool anyOpen(const Range& rows, std::uint32_t columns) const;
-    void meet(const Range& rows, std::uint32_t columns, double plane);
+    bool anyOpen(int first_row, int last_row, std::uint32_t columns) const;
+    void meet(int first_row, int last_row, std::uint32_t columns, double plane);
 
     const BrickGrid& grid_;
     RayFan fan_;
@@ -90,10 +91,10 @@ private:
     };
     std::vector<Found> found_;
     // Of the blocks of a layer, whose projection has two factors: which columns and rows they are in, by their place
-    // along either axis across, from the block first_ on.
-    int first_[2];
+    // along either axis across, from the block begin_ on.
+    int begin_[2];
+    Ranges column_range_, rows_;
     std::vector<std::uint32_t> columns_;  // a bit for each
-    std::vector<Range> rows_;
 };
 
 }  // namespace stratum::march
