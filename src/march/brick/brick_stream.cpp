@@ -21,7 +21,6 @@ namespace HWY_NAMESPACE {
 bool intersectAll(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays,
                   std::span<trace::Hit> hits) {
 #if STRATUM_WIDE_LANES
-    for (trace::Hit& hit : hits) hit.t = std::numeric_limits<double>::infinity();
     Marcher<false>(grid, map, rays, hits.data(), nullptr).run();
     return true;
 #else
@@ -54,6 +53,8 @@ HWY_EXPORT(occludedAll);
 
 bool streamIntersect(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays,
                      std::span<trace::Hit> hits) {
+    // Here and not for each target: AVX-512 would scatter them, which is slower than storing one by one.
+    for (trace::Hit& hit : hits) hit.t = std::numeric_limits<double>::infinity();
     return HWY_DYNAMIC_DISPATCH(intersectAll)(grid, map, rays, hits);
 }
 
