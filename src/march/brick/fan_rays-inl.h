@@ -179,11 +179,9 @@ private:
         // A walk to the plane would come through this cell's face on it if the planes of the cell's other faces are met
         // before and after, rounding included. Then its t is this one.
         M entered = hn::Gt(t, zero);
-        VI cell[3];
         for (int axis = 0; axis < 3; ++axis) {
             if (axis == main) continue;
-            cell[axis] = box_.cellAt(axis, out);
-            const V low = toReal(cell[axis]);
+            const V low = toReal(box_.cellAt(axis, out));
             const V before = (low - out[kO + axis]) * out[kInverse + axis];
             const V after = (low + constant(1) - out[kO + axis]) * out[kInverse + axis];
             entered = hn::And(entered, hn::And(hn::Lt(before, t), hn::Gt(after, t)));
