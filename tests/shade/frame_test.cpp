@@ -24,5 +24,14 @@ TEST(Frame, IsOrthonormalForEveryNormal) {
     }
 }
 
+// The last bit of a vertical wall's normal is rounding, and must not decide where rays go.
+TEST(Frame, IsTheSameOnBothSidesOfUpright) {
+    for (const float z : {0.0f, -0.0f, 1e-16f, -1e-16f}) {
+        const shade::Frame f(glm::vec3(0.6f, -0.8f, z));
+        EXPECT_NEAR(glm::length(f.x - glm::vec3(0.64f, 0.48f, -0.6f)), 0.0f, 1e-6f) << z;
+        EXPECT_NEAR(glm::length(f.y - glm::vec3(0.48f, 0.36f, 0.8f)), 0.0f, 1e-6f) << z;
+    }
+}
+
 }  // namespace
 }  // namespace stratum

@@ -90,7 +90,7 @@ HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&ro
         low[k] = zero;
         high[k] = constant(1);
         const V chord = f[k].c0 / (f[k].c0 - f[k].end);
-        s[k] = hn::IfThenElse(hn::And(hn::Gt(chord, low[k]), hn::Lt(chord, high[k])), chord, half);
+        s[k] = clampTo(chord, constant(kRootMargin), constant(1 - kRootMargin));
         root[k] = s[k];
     }
     for (int n = 0; n < kRootSteps; ++n) {
@@ -101,11 +101,13 @@ HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&ro
             const V slope = (rise + slope2[k]) * s[k] + f[k].c1;
             const V step = value * slope / (slope * slope - value * (rise + f[k].c2));
             const M exact = hn::Eq(value, zero);
-            const M same = hn::Not(hn::Xor(hn::Lt(value, zero), in_low[k]));
-            low[k] = hn::IfThenElse(same, s[k], low[k]);
-            high[k] = hn::IfThenElse(same, high[k], s[k]);
+            const M before = hn::Not(hn::Xor(hn::Lt(value, zero), in_low[k]));
+            low[k] = hn::IfThenElse(before, s[k], low[k]);
+            high[k] = hn::IfThenElse(before, high[k], s[k]);
             const V halley = s[k] - step;
-            const M inside = hn::And(hn::Ge(halley, low[k] - rounding), hn::Le(halley, high[k] + rounding));
+            const M inside = hn::And(hn::Ne(step, zero),
+                                     hn::And(hn::Ge(halley, low[k] - hn::IfThenZeroElse(before, rounding)),
+                                             hn::Le(halley, high[k] + hn::IfThenElseZero(before, rounding))));
             const V middle = half * (low[k] + high[k]);
             const M ended = hn::Or(hn::Eq(middle, low[k]), hn::Eq(middle, high[k]));
             V next = hn::IfThenElse(inside, clampTo(halley, low[k], high[k]), middle);

@@ -107,9 +107,12 @@ inline std::optional<std::pair<double, double>> firstCrossing(const SegmentCubic
 /// The last step of refineRoot(), in lengths of the segment. Halley's steps cube the error, so after one this short
 /// only rounding errors remain.
 inline constexpr double kRootStep = 1e-6;
-/// A step may end so far beyond the bracket, by rounding: fields that are flat, so that the chord meets the zero
-/// itself, and zeros at an end are common, because layers are printed on planes of voxels.
+/// A step towards the crossing may end so far beyond the bracket, by rounding: zeros at an end are common, because
+/// layers are printed on planes of voxels. A step away from it heads for another zero, outside the bracket, which may
+/// be as near: where two layers touch, a field can come to -1e-16 and turn.
 inline constexpr double kRootRounding = 0x1p-40;
+/// The first step begins at least so far from both ends, in lengths of the bracket.
+inline constexpr double kRootMargin = 0x1p-10;
 inline constexpr int kRootSteps = 60;
 
 /// The zero in a bracket from firstCrossing(): Halley's steps where they stay inside, else bisection. The number of
@@ -119,18 +122,21 @@ inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracke
     const bool in_low = low == 0 ? isInside(f.c0) : isInside(f(low));
     const double at_low = low == 0 ? f.c0 : f(low);
     const double at_high = high == 1 ? f.end : f(high);
-    // The chord's zero is a better start than the middle, unless it is the bracket's end: the value there is 0, which
-    // counts as outside, and the crossing may be before it.
+    // Starts at the chord's zero, but not at an end: the value there may be 0 but for rounding, and the crossing
+    // elsewhere.
     const double chord = low + (high - low) * at_low / (at_low - at_high);
-    double s = chord > low && chord < high ? chord : 0.5 * (low + high);
+    const double margin = kRootMargin * (high - low);
+    double s = std::min(std::max(chord, low + margin), high - margin);
     for (int n = 0; n < kRootSteps; ++n) {
         const double value = f(s);
         const double slope = f.slope(s);
         const double step = value * slope / (slope * slope - value * f.bend(s));
         if (value == 0) return s;
-        (isInside(value) == in_low ? low : high) = s;
+        const bool before = isInside(value) == in_low;  // the crossing
+        (before ? low : high) = s;
         double next = s - step;
-        if (next >= low - kRootRounding && next <= high + kRootRounding) {
+        // A step of 0 with a value that isn't: the slope is 0.
+        if (step != 0 && next >= low - (before ? 0 : kRootRounding) && next <= high + (before ? kRootRounding : 0)) {
             next = std::min(std::max(next, low), high);
             if (std::abs(step) <= kRootStep) return next;
         } else {

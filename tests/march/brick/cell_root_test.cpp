@@ -60,6 +60,29 @@ TEST(CellRoot, AZeroAtTheEndIsNotTheCrossingBeforeIt) {
     EXPECT_NEAR(refinedOrNan(entering), 0.75, 1e-15);
 }
 
+// Where layers touch, a ray inside comes to a voxel plane at -1e-16 and turns back inside: no crossing, though a zero is
+// less than a rounding before the segment. The crossing is where the ray leaves later on.
+TEST(CellRoot, AZeroJustBeforeTheSegmentIsNotTheCrossing) {
+    const Corners v = {-0x1p-53, 0.5, -0x1p-53, 0.5, -0x1p-53, -0.25, -0x1p-53, -0.25};
+    const SegmentCubic f(v, {0.75, 0, 0}, {0, 0, 1});  // -0.0625 s + 0.5625 s^2
+    ASSERT_LT(f.c0, 0);
+    ASSERT_LT(f.slope(0), 0);
+    ASSERT_GT(f.end, 0);
+    EXPECT_NEAR(refinedOrNan(f), 1.0 / 9, 1e-14);
+    // The same backwards: the zero is beyond the end.
+    const SegmentCubic back(v, {0, 0, 1}, {0.75, 0, 0});
+    EXPECT_NEAR(refinedOrNan(back), 8.0 / 9, 1e-14);
+}
+
+// The chord from (0, -27) to (1, 81) is zero at 1/4, where the slope is 0 and the field is not.
+TEST(CellRoot, NoSlopeIsNoZero) {
+    const Corners v = {-27, -23, -23, -51, -23, -51, -51, 81};
+    const SegmentCubic f(v, {0, 0, 0}, {1, 1, 1});
+    ASSERT_EQ(f.slope(0.25), 0);
+    ASSERT_EQ(f(0.25), -27);
+    EXPECT_NEAR(f(refinedOrNan(f)), 0, 1e-12);
+}
+
 TEST(CellRoot, FindsTheFirstRootOfAnyCubic) {
     // Against a scan in 2000 steps, which may itself miss a pair of roots closer than that.
     std::mt19937 random(2);
