@@ -105,9 +105,9 @@ HWY_INLINE void refine(const LaneCubic (&f)[kCount], M (&active)[kCount], V (&ro
             low[k] = hn::IfThenElse(before, s[k], low[k]);
             high[k] = hn::IfThenElse(before, high[k], s[k]);
             const V halley = s[k] - step;
-            const M inside = hn::And(hn::Ne(step, zero),
-                                     hn::And(hn::Ge(halley, low[k] - hn::IfThenZeroElse(before, rounding)),
-                                             hn::Le(halley, high[k] + hn::IfThenElseZero(before, rounding))));
+            const M inside =
+                hn::And(hn::Ne(step, zero), hn::And(hn::Ge(halley, low[k] - hn::IfThenZeroElse(before, rounding)),
+                                                    hn::Le(halley, high[k] + hn::IfThenElseZero(before, rounding))));
             const V middle = half * (low[k] + high[k]);
             const M ended = hn::Or(hn::Eq(middle, low[k]), hn::Eq(middle, high[k]));
             V next = hn::IfThenElse(inside, clampTo(halley, low[k], high[k]), middle);

@@ -60,8 +60,8 @@ TEST(CellRoot, AZeroAtTheEndIsNotTheCrossingBeforeIt) {
     EXPECT_NEAR(refinedOrNan(entering), 0.75, 1e-15);
 }
 
-// Where layers touch, a ray inside comes to a voxel plane at -1e-16 and turns back inside: no crossing, though a zero is
-// less than a rounding before the segment. The crossing is where the ray leaves later on.
+// Where layers touch, a ray inside comes to a voxel plane at -1e-16 and turns back inside: no crossing, though a zero
+// is less than a rounding before the segment. The crossing is where the ray leaves later on.
 TEST(CellRoot, AZeroJustBeforeTheSegmentIsNotTheCrossing) {
     const Corners v = {-0x1p-53, 0.5, -0x1p-53, 0.5, -0x1p-53, -0.25, -0x1p-53, -0.25};
     const SegmentCubic f(v, {0.75, 0, 0}, {0, 0, 1});  // -0.0625 s + 0.5625 s^2
