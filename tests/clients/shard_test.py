@@ -21,6 +21,9 @@ SMALL = ["--size", "160x120", "--voxels-per-layer", "2", "--quiet"]
 # take longer than a shard of a small picture.
 PLAIN = ["--brdf", "lambert:0.8,0.5,0.3", "--env", "constant:1,1,1"]
 NOISY = [*PLAIN, "--no-denoise", "--exposure", "1"]
+# Of every kind of picture with STRATUM_LONG=1, else of the first.
+COUNTS = (1, 2, 7)
+LONG_RUN = "STRATUM_LONG" in os.environ
 SLURM = {name: value for name, value in os.environ.items() if not name.startswith("SLURM_")}
 
 
@@ -85,10 +88,10 @@ PICTURES = (
     ("depth", "depth.png", ["--spp", "2", "--integrator", "depth"]),
     ("a given exposure", "bright.png", [*PLAIN, "--spp", "2", "--exposure", "0.7", "--seed", "3"]),
 )
-for what, name, options in PICTURES:
+for n, (what, name, options) in enumerate(PICTURES):
     whole = "whole_" + name
     trace(whole, *options)
-    for count in (1, 2, 7):
+    for count in COUNTS if n == 0 or LONG_RUN else COUNTS[-1:]:
         stem, ending = os.path.splitext(name)
         for index in range(count):
             trace(name, *options, shard=f"{index}/{count}")
@@ -108,10 +111,10 @@ SAMPLES = (
      [*PLAIN, "--spp", "9", "--f-number", "2", "--view", "front", "--crop", "30,20,130,100"]),
     ("depth, shares of the samples", "depth.exr", ["--spp", "7", "--integrator", "depth", "--seed", "3"]),
 )
-for what, name, options in SAMPLES:
+for n, (what, name, options) in enumerate(SAMPLES):
     whole = "whole_" + name
     trace(whole, *options)
-    for count in (1, 2, 7):
+    for count in COUNTS if n == 0 or LONG_RUN else COUNTS[-1:]:
         stem, ending = os.path.splitext(name)
         for index in range(count):
             trace(name, *options, "--shard-by", "samples", *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
@@ -122,12 +125,13 @@ for what, name, options in SAMPLES:
             os.remove(path(part))
 
 # --- many pieces: one tile each -------------------------------------------------------------------------------------------
-MANY = [VDBTRACE, TILE, "--size", "256x256", "--voxels-per-layer", "2", *NOISY, "--spp", "2", "--quiet"]
+SIDE = 8 if LONG_RUN else 4  # tiles of 32 x 32 pixels
+MANY = [VDBTRACE, TILE, "--size", f"{32 * SIDE}x{32 * SIDE}", "--voxels-per-layer", "2", *NOISY, "--spp", "2", "--quiet"]
 does(*MANY, "-o", "whole_many.png")
-for index in range(64):
-    does(*MANY, "-o", "many.png", "--shard", f"{index}/64")
-does(VDBMERGE, "many.png", *parts("many", 64), "--quiet")
-check(same("many.png", "whole_many.png"), "| path | many.png | 64 | the same bytes |")
+for index in range(SIDE * SIDE):
+    does(*MANY, "-o", "many.png", "--shard", f"{index}/{SIDE * SIDE}")
+does(VDBMERGE, "many.png", *parts("many", SIDE * SIDE), "--quiet")
+check(same("many.png", "whole_many.png"), f"| path | many.png | {SIDE * SIDE} | the same bytes |")
 
 # --- pieces of every picture of a series ----------------------------------------------------------------------------------
 TURN = [*NOISY, "--spp", "2", "--turntable", "2"]
@@ -320,7 +324,7 @@ def convert(output, *options, shard=None, env=None):
 
 VOXEL = ["--voxel-size", "0.1", "--quiet"]
 for what, counts, options in (
-        ("a print", (1, 2, 7, 64), []),
+        ("a print", (*COUNTS, 64) if LONG_RUN else COUNTS, []),
         ("`--precision half --compression zip`", (3,), ["--precision", "half", "--compression", "zip"]),
         ("`--up y --origin center --beads settled`", (3,), ["--up", "y", "--origin", "center", "--beads", "settled"])):
     convert("whole.vdb", *VOXEL, *options)

@@ -58,7 +58,7 @@ void Beams::begin(const RayFan& fan, std::size_t rays) {
     has_rays_.fill(0);
 }
 
-void Beams::findDepths() {
+void Beams::findPlanes() {
     planes_.fill(kInfinity);
     openAll();
     const int slabs = grid_.size()[static_cast<std::size_t>(fan_.main)] / kMacro;

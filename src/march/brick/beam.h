@@ -1,9 +1,9 @@
 // A small depth buffer for the rays of one eye: how much empty space before the first surface they can skip.
 //
 // After the beam optimization of Laine and Karras, "Efficient Sparse Voxel Octrees" (I3D 2010): rays are sorted by
-// direction into small beams, and each beam gets a depth before which it meets nothing. Here the depths of all beams
-// are found at once, as a rasterizer would: blocks of 4^3 cells with surface are projected, from near to far, until
-// every beam has met one.
+// direction into small beams, and each beam gets a plane across the rays before which it meets nothing. Here the planes
+// of all beams are found at once, as a rasterizer would: blocks of 4^3 cells with surface are projected, from near to
+// far, until every beam has met one.
 #pragma once
 
 #include "march/brick/brick_grid.h"
@@ -39,8 +39,8 @@ public:
     double scale(int k) const { return scale_[k]; }
     /// The beam at row * kMostSide + column has rays.
     void open(std::size_t row_and_column) { has_rays_[row_and_column] = 1; }
-    /// Finds the depths of the beams that have rays.
-    void findDepths();
+    /// Finds the planes of the beams that have rays.
+    void findPlanes();
     /// By row * kMostSide + column: the plane across the main axis before which the beam meets no surface cell;
     /// infinite if it meets none at all. Counted along the way: its cell, or minus that where the rays descend.
     const double* planes() const { return planes_.data(); }

@@ -48,7 +48,7 @@ public:
         if (!std::isfinite(fan_.eye.x + fan_.eye.y + fan_.eye.z) || !place(rays)) return false;
         beams_.begin(fan_, rays.size());
         sort(rays.size());
-        beams_.findDepths();
+        beams_.findPlanes();
         keep(rays.size());
         return true;
     }

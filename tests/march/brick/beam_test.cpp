@@ -102,7 +102,7 @@ TEST(Beams, NoSurfaceCellLiesBeforeTheirDepths) {
             ASSERT_LT(std::max(column, row), Beams::kMostSide);
             beams.open(static_cast<std::size_t>(row * Beams::kMostSide + column));
         }
-        beams.findDepths();
+        beams.findPlanes();
         for (std::size_t r = 0; r < rays.size(); ++r) {
             const auto [column, row] = beamOf(slopes[r]);
             const double plane = beams.planes()[row * Beams::kMostSide + column];
@@ -135,7 +135,7 @@ TEST(Beams, WithoutRaysAreNotLookedFor) {
     }
     beams.begin(fan, 1024);
     beams.open(8 * Beams::kMostSide + 8);
-    beams.findDepths();
+    beams.findPlanes();
     for (int n = 0; n < Beams::kMostSide * Beams::kMostSide; ++n)
         if (n != 8 * Beams::kMostSide + 8) {
             ASSERT_TRUE(std::isinf(beams.planes()[n])) << n;
