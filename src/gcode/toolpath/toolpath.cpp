@@ -48,7 +48,8 @@ double beadLength(const Toolpath& toolpath, const Bead& bead) {
                                      std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y));
         plan = radius * std::abs(arc.sweep);
     }
-    return std::hypot(plan, bead.z1 - bead.z0);
+    const double rise = bead.z1 - bead.z0;
+    return rise == 0 ? plan : std::hypot(plan, rise);
 }
 
 double beadSeconds(const Toolpath& toolpath, const Bead& bead) {
