@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace stratum::shade {
 namespace {
@@ -36,35 +37,53 @@ std::string_view labelName(Label label) {
     return kNames[static_cast<std::size_t>(label)];
 }
 
-double restingHeight(const trace::Intersector& print) {
-    constexpr std::size_t kSide = 128;
+namespace {
+
+// The lowest surface that side x side rays from below meet, up to `reach` above the box's floor; infinite if none does.
+double lowestSurface(const trace::Intersector& print, std::size_t side, double reach) {
     const trace::Box box = print.bounds();
     const glm::dvec3 size = box.max - box.min;
     const double below = std::max(size.z, print.voxelSize());
+    const auto share = [side](std::size_t n) { return (static_cast<double>(n) + 0.5) / static_cast<double>(side); };
+    std::vector<double> lowest_of(side, std::numeric_limits<double>::infinity());
+    parallelFor(side, 1, [&](std::size_t first, std::size_t last) {
+        const auto tracer = print.makeTracer();
+        std::vector<trace::Ray> rays(side);
+        std::vector<trace::Hit> hits(side);
+        for (std::size_t i = first; i != last; ++i) {
+            for (std::size_t j = 0; j < side; ++j) {
+                rays[j].origin = {box.min.x + size.x * share(i), box.min.y + size.y * share(j), box.min.z - below};
+                rays[j].direction = {0.0, 0.0, 1.0};
+                rays[j].t_max = below + reach;
+            }
+            tracer->intersectStream(rays, hits);
+            for (const trace::Hit& hit : hits)
+                if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
+        }
+    });
+    return *std::min_element(lowest_of.begin(), lowest_of.end());
+}
+
+}  // namespace
+
+double restingHeight(const trace::Intersector& print) {
+    constexpr std::size_t kSide = 128;
+    constexpr std::size_t kFewSide = 32;
+    // The floor of a level set's box is below its lowest surface by its narrow band, of three voxels unless asked for
+    // otherwise, and a voxel at most.
+    constexpr double kNear = 4;  // voxels
+    const trace::Box box = print.bounds();
+    const double height = box.max.z - box.min.z;
     // Increases the height in at most five steps, also for a voxel size of 0 (analytic shapes, triangles), and no
     // higher than necessary: leaves may be evaluated on demand, and a print that rests on the bed is hit in the first
     // step.
-    for (double reach = std::max(8 * print.voxelSize(), size.z / 256);; reach *= 4) {
-        const bool whole = !(reach < size.z);
-        std::array<double, kSide> lowest_of{};
-        parallelFor(kSide, 1, [&](std::size_t first, std::size_t last) {
-            const auto tracer = print.makeTracer();
-            std::array<trace::Ray, kSide> rays;
-            std::array<trace::Hit, kSide> hits;
-            for (std::size_t i = first; i != last; ++i) {
-                for (std::size_t j = 0; j < kSide; ++j) {
-                    rays[j].origin = {box.min.x + size.x * (static_cast<double>(i) + 0.5) / kSide,
-                                      box.min.y + size.y * (static_cast<double>(j) + 0.5) / kSide, box.min.z - below};
-                    rays[j].direction = {0.0, 0.0, 1.0};
-                    rays[j].t_max = whole ? std::numeric_limits<double>::infinity() : below + reach;
-                }
-                tracer->intersectStream(rays, hits);
-                lowest_of[i] = std::numeric_limits<double>::infinity();
-                for (const trace::Hit& hit : hits)
-                    if (std::isfinite(hit.t)) lowest_of[i] = std::min(lowest_of[i], hit.position.z);
-            }
-        });
-        const double lowest = *std::min_element(lowest_of.begin(), lowest_of.end());
+    double reach = std::max(8 * print.voxelSize(), height / 256);
+    // Few rays will do if what they meet is as low as the box allows: each makes bricks that the camera does not see.
+    const double low = lowestSurface(print, kFewSide, reach);
+    if (low - box.min.z <= kNear * print.voxelSize()) return std::max(low, box.min.z);
+    for (;; reach *= 4) {
+        const bool whole = !(reach < height);
+        const double lowest = lowestSurface(print, kSide, whole ? std::numeric_limits<double>::infinity() : reach);
         if (std::isfinite(lowest)) return std::clamp(lowest, box.min.z, box.max.z);
         if (whole) return box.min.z;
     }

@@ -84,8 +84,8 @@ struct SceneDescription {
 /// Throws UsageError.
 SceneDescription makeScene(const SceneOptions& options, const trace::Intersector& print, int width, int height);
 
-/// Height of the print's lowest surface, world units. Found with a few thousand upward rays, because print.bounds() is
-/// the box of the narrow band, which reaches lower; bounds().min.z if no ray hits anything.
+/// Height of the print's lowest surface, world units. Found with upward rays, a thousand or some thousands, because
+/// print.bounds() is the box of the narrow band, which reaches lower; bounds().min.z if no ray hits anything.
 double restingHeight(const trace::Intersector& print);
 
 }  // namespace stratum::shade

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 namespace stratum {
 namespace {
@@ -36,9 +37,29 @@ TEST(MakeScene, FindsTheBedInFewStepsWithoutVoxels) {
         return ball.makeTracer()->intersect(ray, hit);
     });
     EXPECT_NEAR(shade::restingHeight(high), 0.0, 1e-3);
-    EXPECT_LE(asked.load(), 5 * 128 * 128);
+    EXPECT_LE(asked.load(), 32 * 32 + 5 * 128 * 128);
     const NoVoxels empty({{-5, -5, 0}, {5, 5, 0}}, 1e-6, [](const trace::Ray&, trace::Hit&) { return false; });
     EXPECT_EQ(shade::restingHeight(empty), 0.0);
+}
+
+// A plate with a foot of 0.5 mm that a ray in 16 000 meets; counts the rays that it is asked.
+TEST(MakeScene, FewRaysFindWhatRestsOnItsBoxAndMoreASmallFoot) {
+    std::atomic<int> asked{0};
+    const auto plate = [&asked](double floor, double foot) {
+        return test::FunctionIntersector(
+            {{-32, -32, floor}, {32, 32, 40}}, 1e-6, [&asked, foot](const trace::Ray& ray, trace::Hit& hit) {
+                ++asked;
+                const bool at_foot = std::abs(ray.origin.x - 8.75) < 0.25 && std::abs(ray.origin.y + 3.25) < 0.25;
+                hit.position = ray.origin;
+                hit.position.z = at_foot ? foot : 0.0;
+                hit.t = hit.position.z - ray.origin.z;
+                return hit.t <= ray.t_max;
+            });
+    };
+    EXPECT_EQ(shade::restingHeight(plate(-0.3, 0.0)), 0.0);  // a band of three voxels
+    EXPECT_EQ(asked.exchange(0), 32 * 32);
+    EXPECT_EQ(shade::restingHeight(plate(-0.8, -0.5)), -0.5);
+    EXPECT_EQ(asked.load(), 32 * 32 + 128 * 128);
 }
 
 TEST(MakeScene, NoBedFromBelowOrOnDemand) {
