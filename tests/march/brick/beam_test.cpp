@@ -68,7 +68,7 @@ double firstSurface(const BrickGrid& bricks, const glm::dvec3& eye, const glm::d
     }
 }
 
-TEST(Beams, NoSurfaceCellLiesBeforeTheirDepths) {
+TEST(Beams, NoSurfaceCellLiesBeforeTheirPlanes) {
     const auto grid = test::rubble(0.1F, false);
     const BrickGrid bricks(*grid, BrickValues::Int16);
     const CellMap map(*grid->transform().baseMap(), bricks.origin());
