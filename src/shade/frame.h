@@ -1,8 +1,8 @@
 // The local frame of a surface point: z is the normal.
 //
-// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1) 2017. There x and y turn around where
+// Source: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1) 2017. There the basis flips where
 // normal.z changes its sign. Walls of prints are vertical, and the last bit of their normals is rounding, which would
-// decide where rays go; so here they turn at another z, which only overhangs have.
+// decide where rays go; so here it flips at another z, which only overhangs have.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -11,14 +11,14 @@
 namespace stratum::shade {
 
 struct Frame {
-    /// Of the normal: below it x and y turn around. Not near -1, where 1 + z cancels.
-    static constexpr float kTurnZ = -0.55f;
+    /// The basis is another one where normal.z is below. Not near -1, where 1 + z cancels.
+    static constexpr float kFlipZ = -0.55f;
 
     glm::vec3 x, y, z;  ///< orthonormal, right-handed
 
     /// @param normal  unit
     explicit Frame(const glm::vec3& normal) : z(normal) {
-        const float sign = normal.z < kTurnZ ? -1.0f : 1.0f;
+        const float sign = normal.z < kFlipZ ? -1.0f : 1.0f;
         const float a = -1.0f / (sign + normal.z);
         const float b = normal.x * normal.y * a;
         x = glm::vec3(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);

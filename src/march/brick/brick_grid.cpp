@@ -44,7 +44,7 @@ public:
 
     // The mutex to lock while laying out a brick. Two bricks rarely share one. It spins: a brick takes some 10
     // microseconds, about as long as to put a thread to sleep and wake it.
-    tbb::spin_mutex& doorOf(std::size_t brick) const { return doors_[brick % doors_.size()]; }
+    tbb::spin_mutex& mutexOf(std::size_t brick) const { return mutexes_[brick % mutexes_.size()]; }
 
     // Coordinates in bricks. False if there is no room.
     bool layOut(std::size_t brick, int x, int y, int z) const {
@@ -233,7 +233,7 @@ private:
     const std::shared_ptr<const LeafField> field_;
     const float scale_;
     const NeighborSigns neighbors_;  // of a field
-    mutable std::array<tbb::spin_mutex, 1024> doors_;
+    mutable std::array<tbb::spin_mutex, 1024> mutexes_;
     mutable tbb::enumerable_thread_specific<LeafCache<float>> float_caches_;
     mutable tbb::enumerable_thread_specific<LeafCache<std::int16_t>> quanta_caches_;
 };
@@ -274,7 +274,7 @@ BrickGrid::~BrickGrid() = default;
 
 bool BrickGrid::ensureBrick(std::size_t brick, int x, int y, int z) const {
     if (slots_.of(brick) != 0) return true;
-    const tbb::spin_mutex::scoped_lock lock(layouter_->doorOf(brick));
+    const tbb::spin_mutex::scoped_lock lock(layouter_->mutexOf(brick));
     if (slots_.of(brick) != 0) return true;
     return layouter_->layOut(brick, x, y, z);
 }

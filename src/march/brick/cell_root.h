@@ -132,7 +132,7 @@ inline double refineRoot(const SegmentCubic& f, std::pair<double, double> bracke
         const double slope = f.slope(s);
         const double step = value * slope / (slope * slope - value * f.bend(s));
         if (value == 0) return s;
-        const bool before = isInside(value) == in_low;  // the crossing
+        const bool before = isInside(value) == in_low;  // s, of the crossing
         (before ? low : high) = s;
         double next = s - step;
         // A step of 0 with a value that isn't: the slope is 0.

@@ -76,7 +76,7 @@ HWY_INLINE Float3 aroundZ(VF u, VF v) {
 // Frame(n).toWorld(v)
 HWY_INLINE Float3 toWorld(const Float3& n, const Float3& v) {
     const VF one = constant(1.0f);
-    const VF sign = hn::IfThenElse(hn::Lt(n.z, constant(shade::Frame::kTurnZ)), constant(-1.0f), one);
+    const VF sign = hn::IfThenElse(hn::Lt(n.z, constant(shade::Frame::kFlipZ)), constant(-1.0f), one);
     const VF a = hn::Div(constant(-1.0f), hn::Add(sign, n.z));
     const VF b = hn::Mul(hn::Mul(n.x, n.y), a);
     const VF xx = hn::Add(one, hn::Mul(hn::Mul(hn::Mul(sign, n.x), n.x), a));

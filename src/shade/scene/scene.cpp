@@ -24,21 +24,6 @@ Color paperRadiance(const SceneDescription& scene, const Color& albedo, const gl
     return albedo * irradiance * kInvPi;
 }
 
-}  // namespace
-
-Label parseLabel(std::string_view text) {
-    for (std::size_t n = 0; n < kLabels; ++n)
-        if (labelName(static_cast<Label>(n)) == text) return static_cast<Label>(n);
-    throw UsageError(fmt::format("{}: no label; choose layer, tool or feature", text));
-}
-
-std::string_view labelName(Label label) {
-    constexpr std::array<std::string_view, kLabels> kNames = {"layer", "tool", "feature"};
-    return kNames[static_cast<std::size_t>(label)];
-}
-
-namespace {
-
 // The lowest surface that side x side rays from below meet, up to `reach` above the box's floor; infinite if none does.
 double lowestSurface(const trace::Intersector& print, std::size_t side, double reach) {
     const trace::Box box = print.bounds();
@@ -65,6 +50,17 @@ double lowestSurface(const trace::Intersector& print, std::size_t side, double r
 }
 
 }  // namespace
+
+Label parseLabel(std::string_view text) {
+    for (std::size_t n = 0; n < kLabels; ++n)
+        if (labelName(static_cast<Label>(n)) == text) return static_cast<Label>(n);
+    throw UsageError(fmt::format("{}: no label; choose layer, tool or feature", text));
+}
+
+std::string_view labelName(Label label) {
+    constexpr std::array<std::string_view, kLabels> kNames = {"layer", "tool", "feature"};
+    return kNames[static_cast<std::size_t>(label)];
+}
 
 double restingHeight(const trace::Intersector& print) {
     constexpr std::size_t kSide = 128;
