@@ -286,7 +286,7 @@ def left_out_line(folder):
     line = []
     if off.rows:
         worst = max(off.rows, key=lambda r: number(r, "percent"))
-        line += [f"what is off takes at most ", Number(f"{number(worst, 'percent'):.2g} %", worst, "need"),
+        line += ["A capability that is off takes at most ", Number(f"{number(worst, 'percent'):.2g} %", worst, "need"),
                  f" of a run's instructions ({worst['capability']}; {len(off.rows)} capabilities)"]
     need = Table(folder / "need.csv")
 
@@ -296,12 +296,12 @@ def left_out_line(folder):
     names = {r["capability"] for r in need.rows} - {"none", "none, once more"}
     if names and need.where(capability="none"):
         dearest = max(names, key=median)
-        line += ["; switched on, " if line else "switched on, ", f"{dearest} takes the most: ",
+        line += [". " if line else "", f"Of those that are on, {dearest} takes the most: ",
                  Number(f"{median(dearest) / median('none'):.1f} ×", need.where(capability=dearest)[0], "need"),
-                 " the least picture's CPU time; the same twice differs by ",
+                 " the CPU time of a picture without any. The same picture twice differs by ",
                  Number(percent(100 * (median("none, once more") / median("none") - 1)),
                         need.where(capability="none, once more")[0], "need")]
-    return ["What was left out? ", *line, "."] if line else None
+    return ["What does a picture pay for what it does not use? ", *line, "."] if line else None
 
 
 def plastic_line(folder):

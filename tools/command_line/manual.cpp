@@ -235,7 +235,7 @@ std::string shortUsage(const CLI::App& app) {
     }
     for (const CLI::Option* option : app.get_options())
         if (option->get_positional()) text += fmt::format(" {}...", typeName(*option));
-    return fmt::format("{} [OPTIONS]\n{}\n{} -h lists the options that most need.\n", text, firstExamples(app),
+    return fmt::format("{} [OPTIONS]\n{}\n{} -h lists the options that most people need.\n", text, firstExamples(app),
                        app.get_name());
 }
 
@@ -275,7 +275,7 @@ std::string bashCompletion(const CLI::App& app) {
 void addManual(CLI::App& app, const std::vector<std::string>& brief) {
     app.formatter(std::make_shared<HelpFormatter>(brief));
     app.set_help_all_flag("--help-all", "All options and examples")->group(kCommonGroup);
-    app.get_help_ptr()->description("The options that most need")->group(kCommonGroup);
+    app.get_help_ptr()->description("The options that most people need")->group(kCommonGroup);
     app.add_option_function<std::string>(
            "--write-manual",
            [&app](const std::string& kind) {

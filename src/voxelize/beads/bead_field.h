@@ -1,6 +1,6 @@
 // The exact field of one bead, and the distance in the plan (xy) that it is computed from.
 //
-// With rho the plan distance to the path and c = (width - height) / 2, a level bead is a plan capsule swept by a ball
+// With rho the plan distance to the path and c = (width - height) / 2, a level bead is a capsule in xy, swept by a ball
 //     phi(p) = hypot(max(rho - c, 0), z - z_c) - height / 2        (mm, negative inside)
 // which is the exact signed distance outside. It is column-separable: rho does not depend on z. A section with corners
 // of radius r < height / 2 has straight sides of height 2 a, a = height / 2 - r:
