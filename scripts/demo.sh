@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
 install_packages "${BUILD_PACKAGES[@]}"
-cmake --preset demo >/dev/null
+cmake --preset demo $(compiler_choice) >/dev/null
 cmake --build --preset demo
 mkdir -p out
 build/release/bin/gcode2vdb data/gcode/hull.gcode -o out/hull.vdb --features -skirt,-brim

@@ -5,8 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-install_packages "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"
-cmake --preset release >/dev/null
+install_packages "${BUILD_PACKAGES[@]}"
+install_packages --available "${TEST_PACKAGES[@]}"
+cmake --preset release $(compiler_choice) >/dev/null
 cmake --build --preset release
 ctest --test-dir build/release --output-on-failure -j"$(nproc)" "$@"
 python3 scripts/test_counts.py build/release
