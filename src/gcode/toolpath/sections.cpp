@@ -49,7 +49,7 @@ void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::opt
     if (!toolpath.cut_short.empty() && !toolpath.empty()) {
         const Bead& last = toolpath.beads.back();
         warnings.add(fmt::format("the program seems to be cut short ({}); its last layer is {}, at z = {:g} mm",
-                                 toolpath.cut_short, toolpath.runOf(last).layer, last.z1),
+                                 toolpath.cut_short, toolpath.runOf(last).layer, double{last.z1}),
                      toolpath.lineOf(last));
     }
 }

@@ -35,8 +35,8 @@ void writeToolpathCsv(const Toolpath& toolpath, const std::filesystem::path& pat
         const Run& run = toolpath.runOf(bead);
         const double length = beadLength(toolpath, bead);
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},", toolpath.lineOf(bead), run.layer,
-                       featureName(run.feature), run.tool, run.object, bead.x0, bead.y0, bead.z0, bead.x1, bead.y1,
-                       bead.z1);
+                       featureName(run.feature), run.tool, run.object, double{bead.x0}, double{bead.y0},
+                       double{bead.z0}, double{bead.x1}, double{bead.y1}, double{bead.z1});
         if (bead.arc >= 0) {
             const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
             fmt::format_to(std::back_inserter(text), "{},{},{},", arc.center_x, arc.center_y, arc.sweep);
