@@ -91,15 +91,18 @@ void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
 void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
     const char* plastic = kPlastic;
     // First: the options after it override what the preset says.
-    completes(app.add_option_function<std::string>(
-                  "--printer",
-                  [&options](const std::string& preset) {
-                      deposit::usePrinter(preset, options.read);
-                      options.printer = preset;
-                  },
-                  "What the printer makes of the program: ideal: beads as commanded (default); typical: a model of a "
-                  "tuned printer, all effects below; or a JSON file. Other options override it"),
-              Completion::preset, {"ideal", "typical"})
+    completes(
+        app.add_option_function<std::string>(
+            "--printer",
+            [&options](const std::string& preset) {
+                deposit::usePrinter(preset, options.read);
+                options.printer = preset;
+            },
+            "What the printer makes of the program: ideal: beads as commanded (default); typical: a model of a "
+            "tuned printer, all effects below; or a file: its limits, for true times, from Klipper's printer.cfg, "
+            "RepRapFirmware's config.g or a report of Marlin's M503, or all of it as JSON. Other options override "
+            "it"),
+        Completion::preset, {"ideal", "typical"})
         ->type_name("PRESET|FILE")
         ->group(plastic);
     app.add_option(
@@ -158,7 +161,8 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->group(reading);
     app.add_option(
            "--planner", options.read.corner_rule,
-           "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity")
+           "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity, "
+           "marlin-jerk, reprap-jerk")
         ->transform(namesOf(gcode::kCornerRules))
         ->type_name("RULE")
         ->group(reading);

@@ -108,7 +108,7 @@ void FlowRecorder::layPhase(const Phase& phase, const motion::Segment& segment) 
     const auto lay = [&](double s, double t) {
         FlowInterval one;
         one.bead = segment.bead;
-        one.tapers = !segment.curved && segment.direction[2] == 0;
+        one.tapers = segment.radius == 0 && segment.direction[2] == 0;
         one.s0 = along_ + s_before;
         one.s1 = along_ + s;
         one.commanded = segment.direction[3] * segment.filament_area;

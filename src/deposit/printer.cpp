@@ -2,8 +2,13 @@
 
 #include "base/error.h"
 #include "base/json_section.h"
-#include "base/mapped_file.h"
 #include "base/nearest_name.h"
+#include "base/text.h"
+#include "deposit/limits/command_limits.h"
+#include "deposit/limits/json_limits.h"
+#include "deposit/limits/klipper_config.h"
+#include "deposit/limits/klipper_limits.h"
+#include "deposit/limits/printer_text.h"
 #include "gcode/machine/machine_limits.h"
 
 #include <fast_float/fast_float.h>
@@ -23,6 +28,8 @@ using gcode::DepositModel;
 using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 2> kPresets{"ideal", "typical"};
+constexpr std::string_view kKinds =
+    "Klipper's printer.cfg, RepRapFirmware's config.g, a report of Marlin's M503, or JSON";
 
 // docs/deposit.md, "Printers", says where each number is from.
 DepositModel typicalPrinter() {
@@ -44,43 +51,28 @@ bool readNumber(JsonSection& section, const char* key, double least, double most
     return true;
 }
 
-void readAxes(JsonSection& section, const char* key, double least, double most,
-              std::array<double, gcode::kMotionAxes>& values) {
-    const std::vector<double> numbers = section.numbers(key, gcode::kMotionAxes);
-    for (std::size_t axis = 0; axis < numbers.size(); ++axis) {
-        if (!(numbers[axis] >= least && numbers[axis] <= most))
-            section.fail(key, fmt::format("numbers from {:g} to {:g}, for x, y, z and the extruder", least, most));
-        values[axis] = numbers[axis];
-    }
+bool isJson(std::string_view text) {
+    text = trim(text, " \t\r\n");
+    return text.starts_with('{') || (text.starts_with('[') && !looksLikeKlipperConfig(text));
 }
 
-gcode::MachineLimits readLimits(JsonSection section) {
-    using namespace gcode;
-    MachineLimits limits;
-    readAxes(section, "speed_mm_s", 1e-3, kFastestAxis, limits.speed);
-    readAxes(section, "acceleration_mm_s2", kWeakestAxis, kStrongestAxis, limits.acceleration);
-    readAxes(section, "jerk_mm_s", 0, kFastestAxis, limits.jerk);
-    readNumber(section, "printing_mm_s2", kWeakestAxis, kStrongestAxis, limits.printing);
-    readNumber(section, "travel_mm_s2", kWeakestAxis, kStrongestAxis, limits.travel);
-    readNumber(section, "retracting_mm_s2", kWeakestAxis, kStrongestAxis, limits.retracting);
-    readNumber(section, "junction_deviation_mm", 1e-6, kLongestDeviation, limits.junction_deviation);
-    readNumber(section, "corner_velocity_mm_s", 0, kFastestAxis, limits.corner_velocity);
-    section.finish();
-    return limits;
+// A file of a firmware, told by its content.
+gcode::PrinterLimits readFirmwareLimits(const std::string& path, std::string_view text) {
+    if (trim(text, " \t\r\n").empty()) throw InputError(fmt::format("{}: is empty; expected {}", path, kKinds));
+    if (looksLikeKlipperConfig(text)) return readKlipperLimits(path, text);
+    const auto firmware = firmwareOfCommands(path, text);
+    if (!firmware) throw InputError(fmt::format("{}: no limit of a printer in it; expected {}", path, kKinds));
+    return readCommandLimits(path, text, *firmware);
 }
 
-void readPrinter(const std::string& path, gcode::ReadOptions& options) {
-    const MappedFile file(path);
-    constexpr std::size_t kLargestFile = 1 << 20;
-    if (file.bytes().size() > kLargestFile)
-        throw InputError(
-            fmt::format("{}: {} bytes are too many for a printer; is it the right file?", path, file.bytes().size()));
+// Of the project's own JSON.
+void readJson(const std::string& path, const std::string& text, gcode::ReadOptions& options) {
     Json json;
     try {
-        json = Json::parse(file.bytes());
+        json = Json::parse(text);
     } catch (const Json::exception& error) {
         throw InputError(
-            fmt::format("{}: no JSON: {}; docs/deposit.md has an example of a printer", path, error.what()));
+            fmt::format("{}: no JSON: {}; docs/printers.md has an example of a printer", path, error.what()));
     }
     JsonSection section(json, "", path);
     DepositModel deposit;
@@ -103,9 +95,21 @@ void readPrinter(const std::string& path, gcode::ReadOptions& options) {
         deposit.pressure_advance = advance;
     readNumber(section, "nozzle_diameter_mm", 0.05, 10, deposit.nozzle_diameter);
     readNumber(section, "sag", 0, kMostSag, deposit.sag);
-    if (auto limits = section.section("limits")) options.limits = readLimits(std::move(*limits));
+    if (const Json* limits = section.find("limits"); limits != nullptr && limits->is_string()) {
+        const auto other = std::filesystem::path(path).parent_path() / limits->get<std::string>();
+        options.printer =
+            readFirmwareLimits(other.string(), readIncludedText(other.string(), section.file() + ": limits"));
+    } else if (auto keys = section.section("limits")) {
+        options.printer = readJsonLimits(std::move(*keys), text);
+    }
     section.finish();
     options.deposit = deposit;
+}
+
+void readPrinter(const std::string& path, gcode::ReadOptions& options) {
+    const std::string text = readPrinterText(path, path);
+    if (isJson(text)) return readJson(path, text, options);
+    options.printer = readFirmwareLimits(path, text);
 }
 
 }  // namespace
@@ -115,11 +119,11 @@ void usePrinter(const std::string& preset, gcode::ReadOptions& options) {
         options.deposit = {};
     } else if (preset == "typical") {
         options.deposit = typicalPrinter();
-    } else if (std::filesystem::exists(preset)) {
+    } else if (std::error_code failed; std::filesystem::exists(preset, failed)) {
         readPrinter(preset, options);
     } else {
-        throw UsageError(fmt::format("--printer {}: expected ideal, typical, or a JSON file of a printer{}", preset,
-                                     didYouMean(preset, kPresets)));
+        throw UsageError(fmt::format("--printer {}: expected ideal, typical, or a file that is there: {}{}", preset,
+                                     kKinds, didYouMean(preset, kPresets)));
     }
 }
 

@@ -8,10 +8,11 @@
 
 namespace stratum::deposit {
 
-/// Sets options.deposit, and the limits of motion if the preset has some, from "ideal" (beads as commanded), "typical",
-/// or a JSON file (docs/deposit.md has its keys). "typical" is a model of a tuned printer with direct drive, with the
-/// sources of its numbers there. Throws UsageError for an unknown name, InputError for a file with unknown or
-/// impossible values, with its place.
+/// Sets options.deposit from "ideal" (beads as commanded) or "typical", a model of a tuned printer with direct drive
+/// (docs/deposit.md has the sources of its numbers); or options.printer from a file, told by its content: Klipper's
+/// printer.cfg, RepRapFirmware's config.g, a report of Marlin's M503; or both from JSON (docs/printers.md has all of
+/// them). Throws UsageError for an unknown name, InputError with the place for a file with unknown or impossible
+/// values.
 void usePrinter(const std::string& preset, gcode::ReadOptions& options);
 
 /// Sets the corners of the section from "stadium", a radius in mm ("0.05"), or a percentage of half the height ("50%").

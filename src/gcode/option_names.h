@@ -20,12 +20,14 @@ inline constexpr OptionNames<Firmware, 4> kFirmwares = {{{"auto", Firmware::auto
                                                          {"klipper", Firmware::klipper},
                                                          {"reprap", Firmware::reprap}}};
 
-inline constexpr OptionNames<CornerRule, 6> kCornerRules = {{{"auto", CornerRule::automatic},
+inline constexpr OptionNames<CornerRule, 8> kCornerRules = {{{"auto", CornerRule::automatic},
                                                              {"jerk", CornerRule::jerk},
                                                              {"slicer-jerk", CornerRule::slicer_jerk},
                                                              {"plan-jerk", CornerRule::plan_jerk},
                                                              {"junction-deviation", CornerRule::junction_deviation},
-                                                             {"corner-velocity", CornerRule::corner_velocity}}};
+                                                             {"corner-velocity", CornerRule::corner_velocity},
+                                                             {"marlin-jerk", CornerRule::marlin_jerk},
+                                                             {"reprap-jerk", CornerRule::reprap_jerk}}};
 
 inline constexpr OptionNames<DepositModel::Beads, 2> kBeadModels = {
     {{"capsule", DepositModel::Beads::capsule}, {"settled", DepositModel::Beads::settled}}};

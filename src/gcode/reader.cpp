@@ -29,6 +29,10 @@ void checkOptions(const ReadOptions& options) {
     for (const double diameter : options.filament_diameters)
         if (!(diameter >= 0.1 && diameter <= 100))
             throw UsageError(fmt::format("filament diameter {} mm: expected 0.1 to 100, e.g. 1.75 or 2.85", diameter));
+    if (options.printer && options.printer->firmware != Firmware::automatic &&
+        options.firmware != Firmware::automatic && options.firmware != options.printer->firmware)
+        throw UsageError(fmt::format("{} is of {}, not of {}; leave out one of the two", options.printer->name,
+                                     firmwareName(options.printer->firmware), firmwareName(options.firmware)));
     if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
         throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
 }
@@ -125,7 +129,8 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     Machine machine(settings, options, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
     if (options.motion != nullptr) {
-        motion.emplace(*options.motion, readMachineSettings(text, options.corner_rule, options.limits), warnings);
+        motion.emplace(*options.motion,
+                       readMachineSettings(text, options.corner_rule, options.printer, machine.firmware()), warnings);
         machine.recordMotion(&*motion);
     }
     Lexer lexer(text);
@@ -138,6 +143,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
             options.progress(before + (1 - before) * static_cast<double>(reported) / static_cast<double>(text.size()));
         }
     }
+    if (motion) motion->finish();
     Toolpath& recorded = recorder.toolpath();
     if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
     takeFilament(settings.footer, machine, recorded, warnings);

@@ -1,9 +1,7 @@
 #include "motion/corner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 namespace stratum::motion {
 namespace {
@@ -12,20 +10,9 @@ using gcode::CornerRule;
 using gcode::kMotionAxes;
 using gcode::MachineLimits;
 
-constexpr double kLeastPlannedSpeed = 0.05;    // mm/s: Marlin's MINIMUM_PLANNER_SPEED
-constexpr double kStraight = 0.999999;         // cosine beyond which two directions are one, as in Marlin
-constexpr double kExtruderCornerVelocity = 1;  // mm/s of E: Klipper's instantaneous_corner_velocity
-constexpr double kPlainSpeed = 1e9;            // mm/s: no bound
-
-// The change of speed by axis. An axis that reverses stops and starts: the larger of both counts, not their sum.
-double axisJump(double before, double after) {
-    if (before > after) return after > 0 || before < 0 ? before - after : std::max(before, -after);
-    return after < 0 || before > 0 ? after - before : std::max(-before, after);
-}
-
 double jerkCorner(const Segment& from, const Segment& to, const MachineLimits& limits) {
     // The slicers' estimators use the programmed speed of the previous segment, not the limited one.
-    const double speed_from = limits.rule == CornerRule::jerk ? from.speed : from.asked;
+    const double speed_from = limits.rule == CornerRule::slicer_jerk ? from.asked : from.speed;
     const double slower = std::min(speed_from, to.speed);
     const double safe_from = restSpeed(from, limits);
     const double safe_to = restSpeed(to, limits);
@@ -53,101 +40,56 @@ double planJerkCorner(const Segment& from, const Segment& to, const MachineLimit
     return std::min(from.speed, to.speed * factor);
 }
 
-// The largest acceleration along a direction (of any length) within the limits of all axes.
-double accelerationAlong(const std::array<double, kMotionAxes>& direction, double norm, double acceleration,
-                         const MachineLimits& limits) {
+// Every axis may jump by its jerk at the speed that both segments share.
+double repRapCorner(const Segment& from, const Segment& to, const MachineLimits& limits) {
+    // By default a move begins at rest after one of another kind: printing, travelling, retracting.
+    const auto inPlane = [](const Segment& s) { return s.direction[0] != 0 || s.direction[1] != 0; };
+    const auto prints = [&](const Segment& s) { return inPlane(s) && s.direction[3] > 0; };
+    const auto drives = [&](const Segment& s) { return s.direction[3] != 0 && !prints(s); };
+    if (limits.jerk_policy == 0 &&
+        (inPlane(from) != inPlane(to) || prints(from) != prints(to) || drives(from) != drives(to)))
+        return 0;
+    double speed = std::min(from.speed, to.speed);
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-        const double share = std::abs(direction[axis]) / norm;
-        if (share * acceleration > limits.acceleration[axis]) acceleration = limits.acceleration[axis] / share;
+        const double jump = std::abs(to.direction[axis] - from.direction[axis]);
+        if (jump * speed > limits.jerk[axis]) speed = limits.jerk[axis] / jump;
     }
-    return acceleration;
-}
-
-double deviationCorner(const Segment& from, const Segment& to, const MachineLimits& limits) {
-    // Directions as they are in Marlin 2, E included, of unit length.
-    double dot = 0;
-    double norm_from = 0;
-    double norm_to = 0;
-    for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-        dot += from.direction[axis] * to.direction[axis];
-        norm_from += from.direction[axis] * from.direction[axis];
-        norm_to += to.direction[axis] * to.direction[axis];
-    }
-    const double cosine = -dot / std::sqrt(norm_from * norm_to);  // of the angle inside the corner
-    const double slower = std::min(from.speed, to.speed);
-    if (cosine > kStraight) return std::min(kLeastPlannedSpeed, slower);  // back the way it came
-    if (cosine < -kStraight) return slower;
-    std::array<double, kMotionAxes> across{};
-    double norm = 0;
-    for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-        across[axis] = to.direction[axis] / std::sqrt(norm_to) - from.direction[axis] / std::sqrt(norm_from);
-        norm += across[axis] * across[axis];
-    }
-    const double acceleration = accelerationAlong(across, std::sqrt(norm), to.acceleration, limits);
-    const double sine = std::sqrt(0.5 * (1 - cosine));  // of half the angle
-    double squared = acceleration * limits.junction_deviation * sine / (1 - sine);
-    // Short segments of a curve: the limit of their circle.
-    if (to.length < 1 && cosine < -std::numbers::sqrt2 / 2)
-        squared = std::min(squared, to.length * acceleration / std::acos(-cosine));
-    return std::min(std::sqrt(squared), slower);
-}
-
-double velocityCorner(const Segment& from, const Segment& to, const MachineLimits& limits) {
-    if (!from.travels || !to.travels) return 0;  // moves of E alone begin and end at rest
-    const double slower = std::min(from.speed, to.speed);
-    double squared = slower * slower;
-    const double feed = std::abs(to.direction[3] - from.direction[3]);
-    if (feed > 0) squared = std::min(squared, std::pow(kExtruderCornerVelocity / feed, 2));
-    double dot = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) dot += from.direction[axis] * to.direction[axis];
-    const double sine = std::sqrt(std::max(0.5 * (1 + dot), 0.0));  // of half the angle inside the corner
-    const double cosine = std::sqrt(std::max(0.5 * (1 - dot), 0.0));
-    if (!(sine < 1 && cosine > 0)) return std::sqrt(squared);
-    // d a, with the a of the slower of the two: because of z it may be below the machine's.
-    const double weaker = std::min({from.acceleration, to.acceleration, limits.printing}) / limits.printing;
-    const double deviation = weaker * limits.corner_velocity * limits.corner_velocity * (std::numbers::sqrt2 - 1);
-    squared = std::min(squared, deviation * sine / (1 - sine));
-    const double quarter_tangent = 0.25 * sine / cosine;
-    for (const Segment* segment : {&from, &to})
-        squared = std::min(squared, 2 * segment->length * segment->acceleration * quarter_tangent);
-    return std::sqrt(squared);
+    return speed;
 }
 
 }  // namespace
 
+double axisJump(double before, double after) {
+    if (before > after) return after > 0 || before < 0 ? before - after : std::max(before, -after);
+    return after < 0 || before > 0 ? after - before : std::max(-before, after);
+}
+
 double restSpeed(const Segment& segment, const MachineLimits& limits) {
-    double speed = kPlainSpeed;
+    double speed = segment.speed;
     switch (limits.rule) {
-        case CornerRule::corner_velocity:
+        case CornerRule::reprap_jerk:
             return 0;
-        case CornerRule::junction_deviation:
-            return std::min(kLeastPlannedSpeed, segment.speed);
         case CornerRule::plan_jerk:
             // Half the change of speed, and for the slow axes only if theirs is larger.
-            speed = limits.jerk[0] / 2;
+            speed = std::min(speed, limits.jerk[0] / 2);
             for (const std::size_t axis : {std::size_t{2}, std::size_t{3}})
                 if (std::abs(segment.direction[axis]) * segment.speed > limits.jerk[axis] / 2)
                     speed = std::min(speed, limits.jerk[axis] / 2);
-            break;
-        case CornerRule::automatic:
-        case CornerRule::jerk:
-        case CornerRule::slicer_jerk:
+            return speed;
+        default:
             for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
                 if (std::abs(segment.direction[axis]) * segment.speed > limits.jerk[axis])
                     speed = std::min(speed, limits.jerk[axis]);
-            break;
+            return speed;
     }
-    return std::min(speed, segment.speed);
 }
 
 double cornerSpeed(const Segment& from, const Segment& to, const MachineLimits& limits) {
     switch (limits.rule) {
         case CornerRule::plan_jerk:
             return std::min(planJerkCorner(from, to, limits), to.speed);
-        case CornerRule::junction_deviation:
-            return deviationCorner(from, to, limits);
-        case CornerRule::corner_velocity:
-            return velocityCorner(from, to, limits);
+        case CornerRule::reprap_jerk:
+            return repRapCorner(from, to, limits);
         default:
             return std::min(jerkCorner(from, to, limits), to.speed);
     }

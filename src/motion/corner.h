@@ -1,16 +1,19 @@
-// The speed limit at the corner between two segments of motion, by the rules of the firmwares.
+// The speed limit at the corner between two segments of motion, by the rules of jerk.
 //
 // Sources: Marlin 1.1's classic jerk and 1.0's jerk of the plan vector (planner.cpp; PrusaSlicer's GCodeProcessor and
-// CuraEngine's TimeEstimateCalculator are the same rules, with the same treatment of standstill); S. K. Jeon,
-// "Improving Grbl's cornering algorithm" (2011) for junction deviation, v^2 = a d sin(t/2) / (1 - sin(t/2)), with
-// Marlin 2's bounds; klipper3d.org/Kinematics.html for d = scv^2 (sqrt 2 - 1) / a, the centripetal bound and the
-// extruder's.
+// CuraEngine's TimeEstimateCalculator are the same rules, with the same treatment of standstill); RepRapFirmware 3.5.3,
+// DDA.cpp (InitStandardMove, MatchSpeeds). Klipper's and Marlin 2's corners belong to their queues:
+// klipper_look_ahead.h, marlin_block.h.
 #pragma once
 
 #include "gcode/machine/motion.h"
 #include "motion/segment.h"
 
 namespace stratum::motion {
+
+/// mm/s by which the speed of an axis jumps. An axis that reverses stops and starts: the larger of both counts, not
+/// their sum.
+double axisJump(double before, double after);
 
 /// mm/s with which a segment may begin or end at standstill.
 double restSpeed(const Segment& segment, const gcode::MachineLimits& limits);

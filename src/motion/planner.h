@@ -1,21 +1,12 @@
 // A firmware's motion planner: computes the speed at every moment from the moves of a program.
-//
-// Look-ahead is exact: a corner speed is final when no later move can change it, that is, when it is the corner's limit
-// even if the machine had to stop right after the last known move. Only programs that decelerate over more than
-// kMostPending consecutive segments are planned with a stop after so many, as in real firmware with its 16 to 1000
-// segments.
-// Sources: as of corner.h; for the passes, any of those firmwares; klipper3d.org/Kinematics.html ("look-ahead",
-// "smoothed look-ahead") for minimum_cruise_ratio.
 #pragma once
 
 #include "gcode/machine/motion.h"
-#include "motion/corner.h"
+#include "motion/look_ahead.h"
 #include "motion/segment.h"
 #include "motion/trapezoid.h"
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
+#include <memory>
 
 namespace stratum::motion {
 
@@ -39,14 +30,13 @@ public:
     virtual void wait(double start, double seconds) = 0;
 };
 
-class Planner : public gcode::MotionSink {
+class Planner : public gcode::MotionSink, private SettledSink {
 public:
-    static constexpr std::size_t kMostPending = std::size_t{1} << 15;
-
     /// The sink must outlive the planner.
-    explicit Planner(PlanSink& sink) : sink_(sink) {}
+    explicit Planner(PlanSink& sink);
 
-    void limits(const gcode::MachineLimits& limits) override { limits_ = limits; }
+    /// A rule of another firmware stops the machine first.
+    void limits(const gcode::MachineLimits& limits) override;
     void move(const gcode::Move& move) override;
     void wait(double seconds) override;
     /// End of the program: plans the remaining segments. Called once.
@@ -57,34 +47,11 @@ public:
     gcode::CornerRule rule() const { return limits_.rule; }
 
 private:
-    // Speeds squared, mm^2/s^2.
-    struct Pending {
-        Segment segment;
-        double entry_most = 0;   // limit of the corner and of acceleration since the last stop
-        double smooth_most = 0;  // the same for Klipper's smoothed look-ahead
-        double gain = 0;         // 2 a d
-        double smooth_gain = 0;
-        double entry = 0;
-        double smooth_entry = 0;
-        double peak_most = 0;
-    };
-
-    void add(const Segment& segment);
-    // Computes entry speeds for an end at these speeds; returns how many segments at the front are final.
-    std::size_t lookBack(double exit_squared);
-    void smoothPeaks(std::size_t count);
-    void settle(std::size_t count, double exit_squared);
+    void settled(const Segment& segment, const Trapezoid& speed) override;
 
     PlanSink& sink_;
     gcode::MachineLimits limits_;
-    std::vector<Pending> pending_;
-    std::size_t first_ = 0;  // the first pending one; those before are final
-    std::size_t next_look_ = 0;
-    std::vector<std::size_t> braking_;
-    bool at_rest_ = true;
-    bool smooth_ = false;
-    Segment last_;
-    gcode::MachineLimits last_limits_;
+    std::unique_ptr<LookAhead> look_ahead_;
     double time_ = 0;
 };
 

@@ -1,14 +1,13 @@
 #include "motion/print_times.h"
 
+#include "gcode/option_names.h"
+
 #include <algorithm>
 
 namespace stratum::motion {
 namespace {
 
 using gcode::CornerRule;
-
-constexpr std::array<std::string_view, 6> kRules{
-    "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"};
 
 // Collects the data for the sums while the toolpath is being read.
 class Recorder : public PlanSink {
@@ -47,6 +46,14 @@ private:
     PlanSink* also_;
 };
 
+class TimedPlanner : public Planner {
+public:
+    using Planner::Planner;
+    void origin(const gcode::LimitOrigins& origins) override { limits = origins; }
+
+    gcode::LimitOrigins limits;
+};
+
 void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
     times.layers.assign(toolpath.layer_count + std::size_t{1}, 0.0);
     double before = 0;
@@ -66,12 +73,12 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
 
 }  // namespace
 
-std::string_view ruleName(CornerRule rule) { return kRules[static_cast<std::size_t>(rule)]; }
+std::string_view ruleName(CornerRule rule) { return gcode::kCornerRules[static_cast<std::size_t>(rule)].first; }
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
                                   PrintTimes& times, PlanSink* also) {
     Recorder recorder(also);
-    Planner planner(recorder);
+    TimedPlanner planner(recorder);
     gcode::ReadOptions read = options;
     read.motion = &planner;
     gcode::Toolpath toolpath = gcode::readToolpath(bytes, name, read);
@@ -83,6 +90,7 @@ gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name,
     times.retraction = recorder.retraction;
     times.waiting = recorder.waiting;
     times.rule = ruleName(planner.rule());
+    times.limits = planner.limits;
     addUp(toolpath, times);
     return toolpath;
 }

@@ -22,6 +22,7 @@ struct PrintTimes {
     std::array<double, gcode::kFeatureCount> features{};  ///< of beads
     std::vector<double> layers;  ///< by layer number; travel before a bead belongs to its layer, the rest to the last
     std::string rule;            ///< a ruleName()
+    gcode::LimitOrigins limits;  ///< those that were planned with, before the program's first command
 };
 
 /// The name of a rule on command lines and in reports; "auto" is automatic.

@@ -2,29 +2,91 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace stratum::motion {
 namespace {
 
-constexpr double kNoMotion = 1e-12;  // mm
-constexpr double kMostPieces = 1e5;
+using gcode::ArcRule;
+using gcode::CornerRule;
 
-// Limits the programmed speed and acceleration to those of the axes.
-void limitAxes(const gcode::MachineLimits& limits, Segment& segment) {
-    for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis) {
-        const double share = std::abs(segment.direction[axis]);
-        if (share * segment.speed > limits.speed[axis]) segment.speed = limits.speed[axis] / share;
-        if (share * segment.acceleration > limits.acceleration[axis])
-            segment.acceleration = limits.acceleration[axis] / share;
+constexpr double kNoMotion = 1e-9;  // mm: Klipper's
+constexpr double kMostChords = 1e5;
+
+ArcRule arcRule(const gcode::MachineLimits& limits) {
+    if (limits.arcs != ArcRule::unknown) return limits.arcs;
+    switch (limits.rule) {
+        case CornerRule::corner_velocity:
+            return ArcRule::klipper;
+        case CornerRule::junction_deviation:
+        case CornerRule::marlin_jerk:
+            return ArcRule::marlin;
+        case CornerRule::reprap_jerk:
+            return ArcRule::reprap;
+        default:
+            return ArcRule::unknown;
     }
 }
 
-double pathLength(const gcode::Move& move) {
+// The number of chords of an arc.
+double chordsOf(const gcode::Move& move, double radius, const gcode::MachineLimits& limits) {
+    const double flat = radius * std::abs(move.sweep);
+    double chords = 0;
+    switch (arcRule(limits)) {
+        case ArcRule::klipper:
+            chords = std::floor(std::hypot(flat, move.delta[2]) / limits.arc_resolution);
+            break;
+        case ArcRule::marlin: {
+            // Marlin 2: a millimetre at most, 72 to a full circle, but not below a tenth of a millimetre.
+            constexpr double kLongest = 1;
+            constexpr double kShortest = 0.1;
+            constexpr double kOfACircle = 72;
+            chords = std::max(std::floor(flat / kLongest),
+                              std::ceil(kOfACircle * std::abs(move.sweep) / (2 * std::numbers::pi) - 1e-6));
+            if (flat > chords * kLongest) chords = std::ceil(flat / kLongest);
+            if (flat < chords * kShortest) chords = std::floor(flat / kShortest);
+            break;
+        }
+        case ArcRule::reprap: {
+            // RepRapFirmware 3: at most 5 um beside the arc, and at most 200 chords a second.
+            const double chord = std::clamp(std::min(std::sqrt(8 * radius * 0.005), move.speed / 200), 0.02, 1.0);
+            chords = std::floor(flat / chord + 0.8);
+            break;
+        }
+        case ArcRule::unknown:
+            chords = std::floor(std::hypot(flat, move.delta[2]));  // of a millimetre
+    }
+    return std::clamp(chords, 1.0, kMostChords);
+}
+
+void cutArc(const gcode::Move& move, const gcode::MachineLimits& limits, Segment segment,
+            const std::function<void(const Segment&)>& take) {
     const auto& d = move.delta;
-    if (move.sweep == 0) return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const double radius =
-        0.5 * (std::hypot(move.center.x, move.center.y) + std::hypot(d[0] - move.center.x, d[1] - move.center.y));
-    return std::hypot(radius * move.sweep, d[2]);
+    const double radius = std::hypot(move.center.x, move.center.y);
+    const double chords = chordsOf(move, radius, limits);
+    segment.radius = radius;
+    double x = 0;
+    double y = 0;
+    for (int i = 1; i <= static_cast<int>(chords); ++i) {
+        // From the begin, as the firmwares do; the last chord ends at the target, also if that is beside the circle.
+        const double angle = move.sweep * i / chords;
+        const bool last = i == static_cast<int>(chords);
+        const double cosine = std::cos(angle);
+        const double sine = std::sin(angle);
+        const double next_x = last ? d[0] : move.center.x * (1 - cosine) + move.center.y * sine;
+        const double next_y = last ? d[1] : move.center.y * (1 - cosine) - move.center.x * sine;
+        const std::array<double, gcode::kMotionAxes> step{next_x - x, next_y - y, d[2] / chords, d[3] / chords};
+        x = next_x;
+        y = next_y;
+        const double path = std::sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
+        segment.travels = path > kNoMotion;
+        segment.length = segment.travels ? path : std::abs(step[3]);
+        if (!(segment.length > kNoMotion)) continue;
+        for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis)
+            segment.direction[axis] = step[axis] / segment.length;
+        segment.arc_rest = radius * std::abs(move.sweep) * (1 - i / chords);
+        take(segment);
+    }
 }
 
 }  // namespace
@@ -37,33 +99,14 @@ void cutMove(const gcode::Move& move, const gcode::MachineLimits& limits,
     segment.line = move.line;
     segment.filament_area = move.filament_area;
     segment.pressure_advance = limits.pressure_advance;
-    segment.curved = move.sweep != 0;
-    const double path = pathLength(move);
+    segment.speed = segment.asked = move.speed;
+    if (move.sweep != 0) return cutArc(move, limits, segment, take);
+    const double path = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     segment.travels = path > kNoMotion;
-    const double length = segment.travels ? path : std::abs(d[3]);
-    if (!(length > kNoMotion)) return;
-    const bool extrudes = d[3] != 0;
-    const double least = extrudes ? limits.least_printing_speed : limits.least_travel_speed;
-    const double speed = std::min(std::max(move.speed, least), segment.travels ? limits.path_speed : move.speed);
-    const double acceleration = !segment.travels ? limits.retracting : extrudes ? limits.printing : limits.travel;
-    const double pieces = move.sweep == 0 ? 1 : std::clamp(std::floor(length / kArcPiece), 1.0, kMostPieces);
-    segment.length = length / pieces;
-    const double chord = move.sweep == 0 ? 0 : std::hypot(move.center.x, move.center.y);
-    const double plan = move.sweep == 0 ? 0 : std::sqrt(std::max(length * length - d[2] * d[2], 0.0)) / length;
-    const double start = chord > 0 ? std::atan2(-move.center.y, -move.center.x) : 0;
-    for (int i = 0; i < static_cast<int>(pieces); ++i) {
-        segment.speed = segment.asked = speed;
-        segment.acceleration = acceleration;
-        segment.direction = {d[0] / length, d[1] / length, d[2] / length, d[3] / length};
-        if (move.sweep != 0) {
-            // The tangent in the middle of the piece, which is its chord's direction.
-            const double angle = start + move.sweep * (i + 0.5) / pieces;
-            segment.direction[0] = std::copysign(plan, move.sweep) * -std::sin(angle);
-            segment.direction[1] = std::copysign(plan, move.sweep) * std::cos(angle);
-        }
-        limitAxes(limits, segment);
-        take(segment);
-    }
+    segment.length = segment.travels ? path : std::abs(d[3]);
+    if (!(segment.length > kNoMotion)) return;
+    for (std::size_t axis = 0; axis < gcode::kMotionAxes; ++axis) segment.direction[axis] = d[axis] / segment.length;
+    take(segment);
 }
 
 }  // namespace stratum::motion

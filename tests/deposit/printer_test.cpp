@@ -52,7 +52,7 @@ TEST(Printer, IdealIsTheDefaultAndTypicalIsNot) {
     EXPECT_GT(options.deposit.sag, 0);
     usePrinter("ideal", options);
     EXPECT_EQ(gcode::describe(options.deposit), gcode::describe(gcode::DepositModel{}));
-    EXPECT_FALSE(options.limits);
+    EXPECT_FALSE(options.printer);
 }
 
 TEST(Printer, ReadsAFile) {
@@ -68,10 +68,10 @@ TEST(Printer, ReadsAFile) {
     EXPECT_EQ(options.deposit.pressure_advance, 0.02);
     EXPECT_EQ(options.deposit.nozzle_diameter, 0.6);
     EXPECT_EQ(options.deposit.sag, 0.05);
-    ASSERT_TRUE(options.limits);
-    EXPECT_EQ(options.limits->jerk[1], 6);
-    EXPECT_EQ(options.limits->printing, 800);
-    EXPECT_EQ(options.limits->travel, gcode::MachineLimits().travel);
+    ASSERT_TRUE(options.printer);
+    EXPECT_EQ(options.printer->limits.jerk[1], 6);
+    EXPECT_EQ(options.printer->limits.printing, 800);
+    EXPECT_EQ(options.printer->limits.travel, gcode::MachineLimits().travel);
 }
 
 TEST(Printer, RefusesWhatNoPrinterIs) {
@@ -88,6 +88,8 @@ TEST(Printer, RefusesWhatNoPrinterIs) {
         {"{\"limits\": {\"jerk_mm_s\": [1, 2]}}", "limits.jerk_mm_s: expected 4 numbers"},
         {"{\"limits\": {\"printing_mm_s2\": 0}}", "limits.printing_mm_s2: expected"},
         {"{\"limits\": {\"speed\": 1}}", "limits.speed: unknown key"},
+        {"{\"limits\": {\"travel_mm_s2\": 1, \"max_accel_mm_s2\": 2}}",
+         "limits.travel_mm_s2: expected each limit once"},
         {"[1]", "expected an object"},
         {"{", "no JSON"},
         {"", "is empty"},

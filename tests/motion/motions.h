@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string_view>
 #include <vector>
 
@@ -45,11 +46,52 @@ inline PlanList planOf(std::string_view program, gcode::CornerRule rule = gcode:
     return keeper.list;
 }
 
+/// Moves, all by the same limits.
+struct Motions {
+    gcode::MachineLimits limits;
+    std::vector<gcode::Move> moves;
+};
+
+inline PlanList planned(const Motions& program) {
+    PlanKeeper keeper;
+    Planner planner(keeper);
+    planner.limits(program.limits);
+    for (const gcode::Move& move : program.moves) planner.move(move);
+    planner.finish();
+    keeper.list.seconds = planner.seconds();
+    return keeper.list;
+}
+
 inline gcode::Move straight(double x, double y, double z, double e, double speed) {
     gcode::Move move;
     move.delta = {x, y, z, e};
     move.speed = speed;
     return move;
+}
+
+/// Short and long moves, sharp and soft corners, lifts and retractions.
+inline Motions randomMotions(gcode::CornerRule rule, unsigned seed, int moves) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Motions program;
+    program.limits.rule = rule;
+    program.limits.printing = program.limits.travel = std::pow(10, 2.5 + unit(random));
+    double angle = 0;
+    for (int i = 0; i < moves; ++i) {
+        const double kind = unit(random);
+        const double speed = std::pow(10, 1.5 + 0.8 * unit(random));
+        if (kind > 0.95) {
+            program.moves.push_back(straight(0, 0, 0, unit(random), speed));
+        } else if (kind > 0.93) {
+            program.moves.push_back(straight(0, 0, 0.2, 0, speed));
+        } else {
+            angle += kind > 0.7 ? 3 * unit(random) : 0.05 * unit(random);
+            const double length = std::pow(10, unit(random) - (kind < -0.5 ? 1 : 0));
+            program.moves.push_back(
+                straight(length * std::cos(angle), length * std::sin(angle), 0, kind > 0.5 ? 0 : 0.04 * length, speed));
+        }
+    }
+    return program;
 }
 
 /// The length that the speeds of a piece add up to: what its three phases cover.

@@ -17,55 +17,54 @@ std::vector<Segment> piecesOf(const gcode::Move& move, const gcode::MachineLimit
     return pieces;
 }
 
-TEST(Segment, AxesHoldSpeedAndAccelerationBack) {
-    gcode::MachineLimits limits;
-    limits.speed = {100, 50, 5, 20};
-    limits.acceleration = {2000, 500, 100, 1000};
-    const auto pieces = piecesOf(straight(3, 4, 0, 0, 500), limits);
-    ASSERT_EQ(pieces.size(), 1U);
-    EXPECT_DOUBLE_EQ(pieces[0].length, 5);
-    EXPECT_DOUBLE_EQ(pieces[0].speed, 50 / 0.8);
-    EXPECT_DOUBLE_EQ(pieces[0].acceleration, 500 / 0.8);
-    EXPECT_DOUBLE_EQ(pieces[0].asked, 500);
+gcode::Move arcOf(double radius, double sweep, double z, double speed) {
+    gcode::Move move;  // counter-clockwise about (0, radius)
+    move.delta = {radius * std::sin(sweep), radius * (1 - std::cos(sweep)), z, 0.5};
+    move.center = {0, radius};
+    move.sweep = sweep;
+    move.speed = speed;
+    return move;
 }
 
-TEST(Segment, TheExtruderHoldsAMoveBack) {
-    gcode::MachineLimits limits;
-    limits.speed[3] = 1;
-    EXPECT_DOUBLE_EQ(piecesOf(straight(10, 0, 0, 1, 100), limits)[0].speed, 10);
-}
-
-TEST(Segment, KindsOfMovesHaveAccelerationsOfTheirOwn) {
-    gcode::MachineLimits limits;
-    limits.printing = 100;
-    limits.travel = 200;
-    limits.retracting = 300;
-    EXPECT_EQ(piecesOf(straight(1, 0, 0, 0.1, 10), limits)[0].acceleration, 100);
-    EXPECT_EQ(piecesOf(straight(1, 0, 0, 0, 10), limits)[0].acceleration, 200);
-    EXPECT_EQ(piecesOf(straight(0, 0, 0, -1, 10), limits)[0].acceleration, 300);
-}
-
-TEST(Segment, ArcsAreCutAlongTheirCircle) {
-    gcode::Move move;  // a quarter of a circle of 10 mm, counter-clockwise about (0, 10), 3 mm up
-    move.delta = {10, 10, 3, 0.5};
-    move.center = {0, 10};
-    move.sweep = std::numbers::pi / 2;
-    move.speed = 40;
-    const auto pieces = piecesOf(move);
-    const double length = std::hypot(5 * std::numbers::pi, 3);
-    ASSERT_EQ(pieces.size(), static_cast<std::size_t>(length));
+TEST(Segment, ArcsAreCutIntoChords) {
+    const auto pieces = piecesOf(arcOf(10, std::numbers::pi / 2, 3, 40));
+    ASSERT_EQ(pieces.size(), static_cast<std::size_t>(std::hypot(5 * std::numbers::pi, 3)));
     std::array<double, 4> sum{};
-    double total = 0;
+    const double angle = std::numbers::pi / 2 / static_cast<double>(pieces.size());
     for (const Segment& piece : pieces) {
-        total += piece.length;
         for (std::size_t axis = 0; axis < 4; ++axis) sum[axis] += piece.direction[axis] * piece.length;
         EXPECT_NEAR(std::hypot(piece.direction[0], piece.direction[1], piece.direction[2]), 1, 1e-12);
+        EXPECT_NEAR(piece.length, std::hypot(20 * std::sin(angle / 2), 3.0 / static_cast<double>(pieces.size())),
+                    1e-12);
+        EXPECT_EQ(piece.radius, 10);
     }
-    EXPECT_NEAR(total, length, 1e-9);
-    EXPECT_NEAR(sum[0], 10, 0.02);  // tangents, not chords
-    EXPECT_NEAR(sum[1], 10, 0.02);
-    EXPECT_NEAR(sum[2], 3, 1e-9);
-    EXPECT_NEAR(sum[3], 0.5, 1e-9);
+    EXPECT_NEAR(sum[0], 10, 1e-12);
+    EXPECT_NEAR(sum[1], 10, 1e-12);
+    EXPECT_NEAR(sum[2], 3, 1e-12);
+    EXPECT_NEAR(sum[3], 0.5, 1e-12);
+    EXPECT_EQ(pieces.back().arc_rest, 0);
+}
+
+TEST(Segment, EachFirmwareHasItsOwnChords) {
+    const auto count = [](gcode::CornerRule rule, const gcode::Move& move, double resolution = 1) {
+        gcode::MachineLimits limits;
+        limits.rule = rule;
+        limits.arc_resolution = resolution;
+        return piecesOf(move, limits).size();
+    };
+    using gcode::CornerRule;
+    const gcode::Move quarter = arcOf(10, std::numbers::pi / 2, 0, 40);  // 15.7 mm
+    EXPECT_EQ(count(CornerRule::corner_velocity, quarter), 15U);
+    EXPECT_EQ(count(CornerRule::corner_velocity, quarter, 0.1), 157U);
+    EXPECT_EQ(count(CornerRule::corner_velocity, quarter, 100), 1U);
+    EXPECT_EQ(count(CornerRule::jerk, quarter), 15U);
+    // Marlin 2: 72 to a circle at least, so 18 to a quarter; no longer than 1 mm; no shorter than 0.1 mm.
+    EXPECT_EQ(count(CornerRule::marlin_jerk, quarter), 18U);
+    EXPECT_EQ(count(CornerRule::junction_deviation, arcOf(20, std::numbers::pi / 2, 0, 40)), 32U);
+    EXPECT_EQ(count(CornerRule::junction_deviation, arcOf(0.5, std::numbers::pi / 2, 0, 40)), 7U);
+    // RepRapFirmware 3: chords of min(sqrt(8 r 0.005), v / 200) = 0.2 mm at 40 mm/s, 0.632 mm at any high speed.
+    EXPECT_EQ(count(CornerRule::reprap_jerk, quarter), 79U);
+    EXPECT_EQ(count(CornerRule::reprap_jerk, arcOf(10, std::numbers::pi / 2, 0, 300)), 25U);
 }
 
 TEST(Segment, NothingGoesNowhere) {

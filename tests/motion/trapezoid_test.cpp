@@ -53,5 +53,30 @@ TEST(Trapezoid, CoversItsLength) {
     }
 }
 
+TEST(Trapezoid, ThroughAPeakBelowTheHighest) {
+    // 1 mm from rest to rest at 1000 mm/s^2 through v^2 = 500: a quarter up, half cruised, a quarter down.
+    const Trapezoid t = throughPeak(1, 1000, 0, 500, 0);
+    EXPECT_NEAR(t.cruising * t.peak, 0.5, 1e-12);
+    EXPECT_NEAR(t.rising, std::sqrt(500) / 1000, 1e-12);
+    EXPECT_NEAR(coveredBy(t), 1, 1e-12);
+}
+
+TEST(Trapezoid, PartsAddUpToTheWhole) {
+    const Trapezoid whole = fastest(10, 100, 4, 400, 25);
+    for (const int count : {1, 2, 7, 100}) {
+        double seconds = 0;
+        double before = whole.entry;
+        for (int i = 0; i < count; ++i) {
+            const Trapezoid part = partOf(whole, 10.0 * i / count, 10.0 * (i + 1) / count);
+            EXPECT_NEAR(part.entry, before, 1e-9);
+            EXPECT_NEAR(coveredBy(part), 10.0 / count, 1e-9);
+            before = part.exit;
+            seconds += part.seconds();
+        }
+        EXPECT_NEAR(before, whole.exit, 1e-9);
+        EXPECT_NEAR(seconds, whole.seconds(), 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace stratum::motion

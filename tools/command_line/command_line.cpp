@@ -142,21 +142,21 @@ int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& b
         return complain(app, slip, kWrongUsage);
     if (const std::string slip = unknownVerb(app, argv[1]); !slip.empty()) return complain(app, slip, kWrongUsage);
     int status = 0;
+    bool parsed = false;
     try {
         app.parse(argc, argv);
-        try {
-            body();
-        } catch (...) {
-            const Failure failure = currentFailure();
-            complain(app, failure.message, failure.status);
-            status = failure.status;
-        }
+        parsed = true;
+        body();
     } catch (const CLI::Success& request) {
         app.exit(request);
     } catch (const CLI::ExtrasError& error) {
         return complain(app, unknownWord(app, error), kWrongUsage);
     } catch (const CLI::ParseError& error) {
         return complain(app, fmt::format("{} (see {} -h)", error.what(), app.get_name()), kWrongUsage);
+    } catch (...) {
+        const Failure failure = currentFailure();
+        // Whatever a check of an option throws is about that option.
+        status = complain(app, failure.message, !parsed && failure.status == kFailed ? kWrongUsage : failure.status);
     }
     // What a full disk has not taken shows here at the latest. (std::cout is CLI11's way to say what it is asked for.)
     std::cout.flush();

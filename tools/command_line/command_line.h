@@ -58,8 +58,8 @@ private:
     int status_;
 };
 
-/// Parses, runs `body` and turns what escapes into a message on stderr and an exit status:
-/// 0 done, 1 failed, 2 wrong usage, 3 bad input. Without any argument: a short usage, and 2.
+/// Parses, runs `body` and turns what escapes, also from checks of options, into a message on stderr and an exit
+/// status: 0 done, 1 failed, 2 wrong usage, 3 bad input. Without any argument: a short usage, and 2.
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body);
 
 /// Limits TBB to --threads for as long as it lives.

@@ -1,5 +1,6 @@
 #include "convert/time_report.h"
 
+#include "convert/limit_report.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <fmt/format.h>
@@ -27,13 +28,10 @@ Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& fa
     for (std::size_t i = 0; i < times.features.size(); ++i)
         if (times.features[i] > 0)
             features[std::string(gcode::featureName(static_cast<gcode::Feature>(i)))] = times.features[i];
-    return {{"planned_s", times.total},
-            {"stated_s", stated > 0 ? Json(stated) : Json(nullptr)},
-            {"rule", times.rule},
-            {"travel_s", times.travel},
-            {"retraction_s", times.retraction},
-            {"waiting_s", times.waiting},
-            {"features_s", features},
+    return {{"planned_s", times.total},   {"stated_s", stated > 0 ? Json(stated) : Json(nullptr)},
+            {"rule", times.rule},         {"limits", describeLimits(times.limits)},
+            {"travel_s", times.travel},   {"retraction_s", times.retraction},
+            {"waiting_s", times.waiting}, {"features_s", features},
             {"layers_s", times.layers}};
 }
 
@@ -50,7 +48,7 @@ std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts&
         if (times.features[i] > 0)
             out += fmt::format("  {:<20}{:>12}\n", gcode::featureName(static_cast<gcode::Feature>(i)),
                                clock(times.features[i]));
-    return out;
+    return out + limitLines(times.limits);
 }
 
 }  // namespace stratum::tools

@@ -10,8 +10,8 @@
 
 namespace stratum::tools {
 
-/// {planned_s, stated_s, rule, ...}; stated_s is the time of the printing alone where the slicer tells it apart, and
-/// null where the file is silent.
+/// {planned_s, stated_s, rule, limits, ...}; stated_s is the time of the printing alone where the slicer tells it
+/// apart, and null where the file is silent.
 nlohmann::ordered_json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& stated);
 
 /// The same as lines of text, each with its line end.

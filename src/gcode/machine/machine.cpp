@@ -20,6 +20,7 @@ constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
 
 Firmware chooseFirmware(const Settings& settings, const ReadOptions& options) {
     if (options.firmware != Firmware::automatic) return options.firmware;
+    if (options.printer && options.printer->firmware != Firmware::automatic) return options.printer->firmware;
     return settings.firmware != Firmware::automatic ? settings.firmware : Firmware::marlin;
 }
 
@@ -67,7 +68,9 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
     Toolpath& toolpath = recorder_.toolpath();
     toolpath.tool_colors = settings.tool_colors;
     toolpath.cut_short = settings.cut_short;
-    toolpath.firmware_reason = options.firmware != Firmware::automatic    ? "as asked for"
+    toolpath.firmware_reason = options.firmware != Firmware::automatic ? "as asked for"
+                               : options.printer && options.printer->firmware != Firmware::automatic
+                                   ? "as " + options.printer->name + " says"
                                : settings.firmware != Firmware::automatic ? settings.firmware_reason
                                                                           : "the file doesn't say otherwise";
     if (!settings.tool_offsets.empty()) useTool(0);

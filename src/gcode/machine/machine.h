@@ -101,6 +101,8 @@ private:
     void setMacroOffset(std::string_view text);
     void saveState(std::string_view text);
     void restoreState(std::string_view text);
+    /// A move that a named command makes, at `speed` mm/s, or at the speed in force.
+    void recordReturn(const Point& target, std::optional<double> speed);
 
     void move(const Command& command, int motion);
     /// Whether the firmware refuses a move with letters that have no number; warns of them in any case.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 
 namespace stratum::gcode {
 namespace {
@@ -19,15 +20,25 @@ std::optional<double> number(std::string_view text, double least, double most) {
     return values.empty() ? std::nullopt : std::optional<double>(values.front());
 }
 
-void take(double& target, std::string_view text, double least, double most) {
-    if (const auto value = number(text, least, most)) target = *value;
+std::optional<double> number(std::string_view text, Limit limit) {
+    const Bounds bounds = boundsOf(limit);
+    return number(text, bounds.least, bounds.most);
 }
+
+// What most of Klipper's sample configurations have; the last two by its formula for a nozzle of 0.4 mm and filament of
+// 1.75 mm: 4 nozzle^2 / section of the filament, times the limit of the path.
+struct KlipperSample {
+    double max_velocity = 300;      // mm/s
+    double max_accel = 3000;        // mm/s^2
+    double max_z_velocity = 5;      // mm/s
+    double max_z_accel = 100;       // mm/s^2
+    double extrude_ratio = 0.2661;  // of the path's limits, for moves of E alone
+};
 
 class LimitsReader {
 public:
-    explicit LimitsReader(const std::optional<MachineLimits>& defaults) : given_(defaults.has_value()) {
-        if (defaults) settings_.limits = *defaults;
-    }
+    LimitsReader(const std::optional<PrinterLimits>& printer, Firmware firmware)
+        : printer_(printer), klipper_(firmware == Firmware::klipper), reprap_(firmware == Firmware::reprap) {}
 
     void comment(std::string_view text) {
         text = trimQuoted(text);
@@ -40,7 +51,7 @@ public:
 
     MachineSettings finish(CornerRule rule) {
         MachineLimits& limits = settings_.limits;
-        if (cura_ && !any_limit_ && !given_) {
+        if (cura_ && !any_limit_ && !printer_) {
             // fdmprinter.def.json, for a machine that says nothing else.
             limits.speed = {500, 500, 500, 500};
             limits.acceleration = {9000, 9000, 100, 10000};
@@ -48,32 +59,108 @@ public:
             limits.printing = limits.retracting = limits.travel = 4000;
         }
         // Legacy Marlin has one acceleration for printing and travel.
-        if (flavor_ == "marlin") limits.travel = limits.printing;
+        if (flavor_ == "marlin") copy(Limit::printing, Limit::travel);
         settings_.most_printing = most_printing_;
         settings_.most_travel = flavor_ == "marlin" ? most_printing_ : most_travel_;
         settings_.feedrate_per_minute = flavor_ == "reprap" || flavor_ == "reprapfirmware";
-        settings_.rule_chosen = rule != CornerRule::automatic;
-        limits.rule = settings_.rule_chosen ? rule : suggestedRule();
+        settings_.rule_chosen = rule != CornerRule::automatic || printersRule() != CornerRule::automatic;
+        limits.rule = rule != CornerRule::automatic ? rule : suggestedRule();
+        if (printer_) usePrinter();
+        if (limits.rule == CornerRule::corner_velocity) assumeKlipper();
+        for (std::size_t n = 0; n < kLimitCount; ++n)
+            settings_.origins[static_cast<Limit>(n)].value = valueOf(limits, static_cast<Limit>(n));
         return settings_;
     }
 
 private:
+    CornerRule printersRule() const { return printer_ ? printer_->limits.rule : CornerRule::automatic; }
+
     CornerRule suggestedRule() const {
-        if (cura_ && !any_limit_ && !given_) return CornerRule::plan_jerk;
+        if (printersRule() != CornerRule::automatic) return printersRule();
+        if (klipper_ || flavor_ == "klipper") return CornerRule::corner_velocity;
+        if (cura_ && !any_limit_ && !printer_) return CornerRule::plan_jerk;
         if (deviation_) return CornerRule::junction_deviation;
-        if (flavor_ == "klipper" && !settings_.states_jerk) return CornerRule::corner_velocity;
         return settings_.states_jerk ? CornerRule::slicer_jerk : CornerRule::jerk;
+    }
+
+    bool isStated(Limit limit) const { return settings_.origins[limit].kind != LimitOrigin::Kind::assumed; }
+
+    static bool isGiven(const LimitOrigin& origin) {
+        return origin.kind == LimitOrigin::Kind::printer || origin.kind == LimitOrigin::Kind::firmware;
+    }
+
+    void copy(Limit from, Limit to) {
+        if (isGiven(settings_.origins[to])) return;
+        valueOf(settings_.limits, to) = valueOf(settings_.limits, from);
+        settings_.origins[to] = settings_.origins[from];
+    }
+
+    void assume(Limit limit, double value) {
+        if (isGiven(settings_.origins[limit])) return;
+        valueOf(settings_.limits, limit) = value;
+        settings_.origins[limit] = {};
+    }
+
+    // The same limit under Klipper's name, of whatever setting is like it; what the user gives stays.
+    void assumeKlipper() {
+        const KlipperSample sample;
+        MachineLimits& limits = settings_.limits;
+        settings_.most_printing = settings_.most_travel = 0;
+        const auto weaker = [&](Limit first) {
+            return valueOf(limits, ofAxis(first, 1)) < valueOf(limits, first) ? ofAxis(first, 1) : first;
+        };
+        if (const Limit speed = weaker(Limit::speed); isStated(speed))
+            copy(speed, Limit::path_speed);
+        else
+            assume(Limit::path_speed, sample.max_velocity);
+        if (const Limit acceleration = weaker(Limit::acceleration); !isStated(Limit::printing)) {
+            if (isStated(acceleration))
+                copy(acceleration, Limit::printing);
+            else
+                assume(Limit::printing, sample.max_accel);
+        }
+        copy(Limit::printing, Limit::travel);
+        if (!isStated(ofAxis(Limit::speed, 2))) assume(ofAxis(Limit::speed, 2), sample.max_z_velocity);
+        if (!isStated(ofAxis(Limit::acceleration, 2))) assume(ofAxis(Limit::acceleration, 2), sample.max_z_accel);
+        if (const Limit speed = ofAxis(Limit::speed, 3); isStated(speed))
+            copy(speed, Limit::extrude_only_speed);
+        else
+            assume(Limit::extrude_only_speed, sample.extrude_ratio * limits.path_speed);
+        if (const Limit acceleration = ofAxis(Limit::acceleration, 3); isStated(acceleration))
+            copy(acceleration, Limit::retracting);
+        else
+            assume(Limit::retracting, sample.extrude_ratio * limits.printing);
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}, std::size_t{3}})
+            limits.speed[axis] = limits.acceleration[axis] = MachineLimits::kNone;
+        limits.least_printing_speed = limits.least_travel_speed = 0;
+        limits.arcs = ArcRule::klipper;
+    }
+
+    void usePrinter() {
+        const PrinterLimits& printer = *printer_;
+        for (std::size_t n = 0; n < kLimitCount; ++n) {
+            const auto limit = static_cast<Limit>(n);
+            if (!isGiven(printer.origins[limit])) continue;
+            valueOf(settings_.limits, limit) = valueOf(printer.limits, limit);
+            settings_.origins[limit] = printer.origins[limit];
+            if (limit == Limit::printing) settings_.most_printing = 0;
+            if (limit == Limit::travel) settings_.most_travel = 0;
+        }
+        if (printer.limits.pressure_advance > 0) settings_.limits.pressure_advance = printer.limits.pressure_advance;
+        if (printer.limits.arcs != ArcRule::unknown) settings_.limits.arcs = printer.limits.arcs;
+        settings_.limits.jerk_policy = printer.limits.jerk_policy;
+        if (printer.firmware != Firmware::automatic) settings_.feedrate_per_minute = reprap_;
     }
 
     void pair(std::string_view key, std::string_view value) {
         if (key == "gcode_flavor") {
             flavor_ = value;
         } else if (key.starts_with("machine_max_")) {
-            limit(key.substr(std::string_view("machine_max_").size()), value);
+            limit(key, key.substr(std::string_view("machine_max_").size()), value);
         } else if (key == "machine_min_extruding_rate") {
-            take(settings_.limits.least_printing_speed, value, 0, kFastestAxis);
+            set(Limit::least_printing_speed, key, value);
         } else if (key == "machine_min_travel_rate") {
-            take(settings_.limits.least_travel_speed, value, 0, kFastestAxis);
+            set(Limit::least_travel_speed, key, value);
         } else if (key == "filament_load_time") {
             settings_.load = numbersOf(value, 0, kLongestWait);
         } else if (key == "filament_unload_time") {
@@ -83,54 +170,60 @@ private:
         } else if (key == "machine_unload_filament_time") {
             if (const auto time = number(value, 0, kLongestWait)) settings_.unload = {*time};
         } else if (key == "machine_tool_change_time") {
-            take(settings_.change, value, 0, kLongestWait);
+            if (const auto time = number(value, 0, kLongestWait)) settings_.change = *time;
         }
     }
 
-    void limit(std::string_view key, std::string_view value) {
-        MachineLimits& limits = settings_.limits;
-        if (key == "acceleration_extruding") {
-            take(limits.printing, value, kWeakestAxis, kStrongestAxis);
-            take(most_printing_, value, kWeakestAxis, kStrongestAxis);
-        } else if (key == "acceleration_retracting") {
-            take(limits.retracting, value, kWeakestAxis, kStrongestAxis);
-        } else if (key == "acceleration_travel") {
-            take(limits.travel, value, kWeakestAxis, kStrongestAxis);
-            take(most_travel_, value, kWeakestAxis, kStrongestAxis);
-        } else if (key == "junction_deviation") {
-            const auto deviation = number(value, 0, kLongestDeviation);
-            deviation_ = deviation.value_or(0) > 0;
-            if (deviation_) limits.junction_deviation = *deviation;
+    void limit(std::string_view key, std::string_view kind, std::string_view value) {
+        if (kind == "acceleration_extruding") {
+            set(Limit::printing, key, value);
+            if (const auto most = number(value, Limit::printing)) most_printing_ = *most;
+        } else if (kind == "acceleration_retracting") {
+            set(Limit::retracting, key, value);
+        } else if (kind == "acceleration_travel") {
+            set(Limit::travel, key, value);
+            if (const auto most = number(value, Limit::travel)) most_travel_ = *most;
+        } else if (kind == "junction_deviation") {
+            deviation_ = number(value, Limit::junction_deviation).has_value();
+            set(Limit::junction_deviation, key, value);
         } else {
-            byAxis(key, value);
+            byAxis(key, kind, value);
         }
         any_limit_ = true;
     }
 
-    void byAxis(std::string_view key, std::string_view value) {
-        MachineLimits& limits = settings_.limits;
+    void byAxis(std::string_view key, std::string_view kind, std::string_view value) {
         for (std::size_t axis = 0; axis < kMotionAxes; ++axis) {
-            if (!key.ends_with(kAxisNames[axis])) continue;
-            const std::string_view kind = key.substr(0, key.size() - 1);
-            if (kind == "feedrate_" || kind == "speed_") {
-                take(limits.speed[axis], value, 1e-3, kFastestAxis);
-            } else if (kind == "acceleration_") {
-                take(limits.acceleration[axis], value, kWeakestAxis, kStrongestAxis);
-            } else if (kind == "jerk_") {
-                take(limits.jerk[axis], value, 0, kFastestAxis);
+            if (!kind.ends_with(kAxisNames[axis])) continue;
+            const std::string_view what = kind.substr(0, kind.size() - 1);
+            if (what == "feedrate_" || what == "speed_") {
+                set(ofAxis(Limit::speed, axis), key, value);
+            } else if (what == "acceleration_") {
+                set(ofAxis(Limit::acceleration, axis), key, value);
+            } else if (what == "jerk_") {
+                set(ofAxis(Limit::jerk, axis), key, value);
                 settings_.states_jerk = true;
             }
         }
     }
 
+    void set(Limit limit, std::string_view key, std::string_view text) {
+        const auto value = number(text, limit);
+        if (!value) return;
+        valueOf(settings_.limits, limit) = *value;
+        settings_.origins[limit] = {.kind = LimitOrigin::Kind::setting, .place = std::string(key)};
+    }
+
     MachineSettings settings_;
+    const std::optional<PrinterLimits>& printer_;
     std::string_view flavor_;
     double most_printing_ = 0;
     double most_travel_ = 0;
     bool deviation_ = false;
     bool any_limit_ = false;
     bool cura_ = false;
-    const bool given_;
+    const bool klipper_;
+    const bool reprap_;
 };
 
 void readComments(std::string_view part, LimitsReader& reader) {
@@ -144,8 +237,8 @@ void readComments(std::string_view part, LimitsReader& reader) {
 }  // namespace
 
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
-                                    const std::optional<MachineLimits>& defaults) {
-    LimitsReader reader(defaults);
+                                    const std::optional<PrinterLimits>& printer, Firmware firmware) {
+    LimitsReader reader(printer, firmware);
     readComments(bytes.substr(0, kReach), reader);
     if (bytes.size() > kReach) {
         std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));

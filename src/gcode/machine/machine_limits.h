@@ -1,9 +1,10 @@
-// The machine's limits and the durations of tool changes, from a file's settings.
+// The machine's limits and the durations of tool changes, from a file's settings and from what the user says of the
+// printer.
 // Sources: the trailers and headers of PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio ("; machine_max_jerk_x =
 // 10,8": normal and silent mode); CuraEngine's defaults of fdmprinter.def.json, for its files state no limits.
 #pragma once
 
-#include "gcode/machine/motion.h"
+#include "gcode/machine/read_options.h"
 
 #include <optional>
 #include <string_view>
@@ -11,16 +12,12 @@
 
 namespace stratum::gcode {
 
-/// Bounds of plausible limits: numbers beyond them are damaged.
-constexpr double kFastestAxis = 1e5;      // mm/s
-constexpr double kStrongestAxis = 1e7;    // mm/s^2
-constexpr double kWeakestAxis = 1e-2;     // mm/s^2
-constexpr double kLongestWait = 1e6;      // s
-constexpr double kLongestDeviation = 10;  // mm, of a junction
-constexpr double kLongestAdvance = 5;     // s, of pressure advance
+constexpr double kLongestWait = 1e6;   // s
+constexpr double kLongestAdvance = 5;  // s, of pressure advance
 
 struct MachineSettings {
     MachineLimits limits;
+    LimitOrigins origins;              ///< of these
     double most_printing = 0;          ///< mm/s^2 that M204 can't exceed; 0: no bound
     double most_travel = 0;            ///< mm/s^2, likewise
     bool feedrate_per_minute = false;  ///< M203 counts mm/min (RepRapFirmware, Sprinter)
@@ -31,9 +28,13 @@ struct MachineSettings {
     double change = 0;                 ///< s, of every change of tool
 };
 
-/// Reads the comments at both ends of a program. A `rule` other than automatic is used unchanged. `defaults`, if given,
-/// hold where the file states nothing.
+/// Reads the comments at both ends of a program. Klipper reads none of a slicer's settings (machine_max_...): by its
+/// rule they are taken for an assumption, each for the limit that is most like it.
+/// @param rule      other than automatic: used unchanged
+/// @param printer   its limits win over the settings
+/// @param firmware  which the program is for; automatic: as the settings say
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
-                                    const std::optional<MachineLimits>& defaults = {});
+                                    const std::optional<PrinterLimits>& printer = {},
+                                    Firmware firmware = Firmware::automatic);
 
 }  // namespace stratum::gcode

@@ -78,6 +78,11 @@ void Machine::executeMacro(const Command& command) {
         useTool(trailingNumber(argument(command.text, "EXTRUDER").value_or("")));
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
+    } else if (moves_ != nullptr && same(name, "SET_RETRACTION")) {
+        moves_->retraction({.length = numberArgument(command.text, "RETRACT_LENGTH"),
+                            .speed = numberArgument(command.text, "RETRACT_SPEED"),
+                            .extra = numberArgument(command.text, "UNRETRACT_EXTRA_LENGTH"),
+                            .recovery_speed = numberArgument(command.text, "UNRETRACT_SPEED")});
     } else if (moves_ != nullptr && same(name, "SET_PRESSURE_ADVANCE")) {
         if (const auto advance = numberArgument(command.text, "ADVANCE"))
             moves_->pressureAdvance("SET_PRESSURE_ADVANCE ADVANCE=", *advance, line_);
@@ -90,7 +95,6 @@ void Machine::executeMacro(const Command& command) {
 void Machine::setVelocityLimit(std::string_view text) {
     moves_->velocityLimit({.velocity = numberArgument(text, "VELOCITY"),
                            .acceleration = numberArgument(text, "ACCEL"),
-                           .to_deceleration = numberArgument(text, "ACCEL_TO_DECEL"),
                            .cruise_ratio = numberArgument(text, "MINIMUM_CRUISE_RATIO"),
                            .corner_velocity = numberArgument(text, "SQUARE_CORNER_VELOCITY")},
                           line_);
@@ -112,8 +116,14 @@ void Machine::setMacroOffset(std::string_view text) {
         // With MOVE the nozzle moves, and the program's coordinate stays; otherwise the nozzle stays.
         target[axis] = moves ? program + frame_.offset()[axis] : frame_.position()[axis];
     }
-    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    recordReturn(target, numberArgument(text, "MOVE_SPEED"));
     frame_.moveTo(target);
+}
+
+void Machine::recordReturn(const Point& target, std::optional<double> speed) {
+    if (moves_ == nullptr) return;
+    moves_->move(frame_.position(), target, std::nullopt, 0, filamentArea(), speed.value_or(feed_ * speed_factor_),
+                 Move::kNoBead, line_);
 }
 
 void Machine::saveState(std::string_view text) {
@@ -144,7 +154,7 @@ void Machine::restoreState(std::string_view text) {
     if (numberArgument(text, "MOVE").value_or(0) == 0) return;
     Point target;
     for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = saved.frame.program(axis) + frame_.offset()[axis];
-    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    recordReturn(target, numberArgument(text, "MOVE_SPEED"));
     frame_.moveTo(target);
 }
 

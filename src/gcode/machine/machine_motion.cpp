@@ -314,6 +314,11 @@ void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, dou
 void Machine::recordTravel(const Command& command, const Point& target, int motion, double drive) {
     std::optional<Arc> arc;
     if ((motion == 2 || motion == 3) && plane_.normal() == 2) arc = arcOf(command, target, motion == 2);
+    if (arc && firmware_ == Firmware::klipper && !command.hasValue('R')) {
+        const auto offset = [&](char letter) { return command.hasValue(letter) ? command.value(letter) * unit_ : 0; };
+        arc->sweep = klipperSweep({frame_.position().x, frame_.position().y}, {target.x, target.y},
+                                  {offset('I'), offset('J')}, motion == 2);
+    }
     recordPath(target, arc, drive, recorder_.toolpath().beads.size());
 }
 

@@ -16,33 +16,47 @@ namespace stratum::gcode {
 /// x, y, z and the extruder.
 constexpr std::size_t kMotionAxes = 4;
 
-/// The rule for the speed at the corner between two moves.
+/// The rule for the speed at the corner between two moves, and with it the planner of a firmware or of a slicer.
 enum class CornerRule : std::uint8_t {
-    automatic,           ///< chosen from the file: readMachineSettings()
-    jerk,                ///< a jump of speed by axis (Marlin 1.1 and legacy)
+    automatic,           ///< chosen from the file and the printer: readMachineSettings()
+    jerk,                ///< a jump of speed by axis (Marlin 1.1 and legacy, Prusa MK3)
     slicer_jerk,         ///< the same as PrusaSlicer, SuperSlicer, Orca and Bambu Studio estimate it
     plan_jerk,           ///< one jump of the speed's vector in the plane (Marlin 1.0, CuraEngine's estimate)
     junction_deviation,  ///< Marlin 2, Grbl
     corner_velocity,     ///< Klipper's square corner velocity
+    marlin_jerk,         ///< a jump of speed by axis as Marlin 2 has it ("classic jerk")
+    reprap_jerk,         ///< RepRapFirmware 3's jump of speed by axis (M566)
 };
 
-/// Limits of the machine, mm, s. Limits of single axes and of the whole move hold together.
+/// The firmware whose way of dividing arcs into straight pieces is known.
+enum class ArcRule : std::uint8_t { unknown, klipper, marlin, reprap };
+
+/// Limits of the machine, mm, s. Limits of single axes and of the whole move hold together. Klipper's names in
+/// parentheses: by its rule x and y have no limit of their own, and `printing` equals `travel`.
 struct MachineLimits {
-    /// By axis; infinite: none. The defaults are PrusaSlicer's for an unknown machine.
+    static constexpr double kNone = std::numeric_limits<double>::infinity();
+    /// By axis; infinite: none. z: max_z_velocity, max_z_accel. The defaults are PrusaSlicer's for an unknown machine.
     std::array<double, kMotionAxes> speed{500, 500, 12, 120};
     std::array<double, kMotionAxes> acceleration{9000, 9000, 500, 10000};
-    std::array<double, kMotionAxes> jerk{10, 10, 0.2, 2.5};       ///< mm/s
-    double printing = 1500;                                       ///< mm/s^2, of moves that extrude
-    double retracting = 1500;                                     ///< mm/s^2, of moves of E alone
-    double travel = 1500;                                         ///< mm/s^2, of all others
-    double path_speed = std::numeric_limits<double>::infinity();  ///< mm/s along the path (Klipper's max_velocity)
-    double least_printing_speed = 0;                              ///< mm/s (M205 S)
-    double least_travel_speed = 0;                                ///< mm/s (M205 T)
-    double junction_deviation = 0.013;                            ///< mm; Marlin's default
-    double corner_velocity = 5;                                   ///< mm/s; Klipper's default
-    double cruise_ratio = 0.5;    ///< Klipper's minimum_cruise_ratio; its older max_accel_to_decel is (1 - this) a
-    double pressure_advance = 0;  ///< s (M900 K, M572 S, SET_PRESSURE_ADVANCE); for flow, not for times
+    std::array<double, kMotionAxes> jerk{10, 10, 0.2, 2.5};  ///< mm/s
+    double printing = 1500;                                  ///< mm/s^2, of moves that extrude (max_accel)
+    double travel = 1500;                                    ///< mm/s^2, of all others (max_accel)
+    /// mm/s^2, of moves of E alone (max_extrude_only_accel: of E; also where it draws back)
+    double retracting = 1500;
+    double path_speed = kNone;          ///< mm/s along the path (max_velocity)
+    double extrude_only_speed = kNone;  ///< mm/s of E in moves of E alone or that draw back (max_extrude_only_velocity)
+    double least_printing_speed = 0;    ///< mm/s (M205 S)
+    double least_travel_speed = 0;      ///< mm/s (M205 T)
+    double junction_deviation = 0.013;  ///< mm; Marlin's default
+    double corner_velocity = 5;         ///< mm/s (square_corner_velocity); Klipper's default
+    double extruder_corner_velocity = 1;  ///< mm/s of E (instantaneous_corner_velocity); Klipper's default
+    double cruise_ratio = 0.5;            ///< minimum_cruise_ratio; Klipper's older max_accel_to_decel is (1 - this) a
+    double arc_resolution = 1;            ///< mm, of the pieces of an arc ([gcode_arcs] resolution)
+    double pressure_advance = 0;          ///< s (M900 K, M572 S, SET_PRESSURE_ADVANCE); for flow, not for times
+    std::array<double, kMotionAxes> steps_per_mm{};  ///< M92; 0: unknown
     CornerRule rule = CornerRule::jerk;
+    ArcRule arcs = ArcRule::unknown;
+    std::uint8_t jerk_policy = 0;  ///< RepRapFirmware's M566 P
 };
 
 /// A move, or one piece of a curve that beads can't represent.
@@ -58,6 +72,8 @@ struct Move {
     std::uint32_t line = 0;                   ///< 1-based line in the source
 };
 
+class LimitOrigins;  // limit_origins.h
+
 /// Receives a program's limits, moves and waits in program order.
 class MotionSink {
 public:
@@ -71,6 +87,8 @@ public:
     virtual void move(const Move& move) = 0;
     /// The machine stops and waits for `seconds` (>= 0): G4, a change of tool, homing (its time is unknown: 0).
     virtual void wait(double seconds) = 0;
+    /// Once, at the end of the program: where the limits are from. Needed for reports only.
+    virtual void origin(const LimitOrigins& origins) { static_cast<void>(origins); }
 };
 
 }  // namespace stratum::gcode

@@ -40,52 +40,61 @@ MotionRecorder::MotionRecorder(MotionSink& sink, MachineSettings settings, Warni
     sink_.limits(limits_);
 }
 
-bool MotionRecorder::take(double& target, std::string_view what, double value, double least, double most,
-                          std::uint32_t line) {
-    if (value >= least && value <= most) {
-        target = value;
+void MotionRecorder::change(Limit limit, double value, std::uint32_t line) {
+    valueOf(limits_, limit) = value;
+    LimitOrigin& origin = settings_.origins[limit];
+    if (origin.changes++ == 0) origin.first_change = line;
+}
+
+bool MotionRecorder::take(Limit limit, std::string_view what, double value, std::uint32_t line) {
+    const Bounds bounds = boundsOf(limit);
+    if (value >= bounds.least && value <= bounds.most) {
+        change(limit, value, line);
         return true;
     }
-    if (value > most && std::isfinite(value)) {
-        warnings_.add(fmt::format("{}{:g} is more than any machine has; {:g} is taken", what, value, most), line);
-        target = most;
+    if (value > bounds.most && std::isfinite(value)) {
+        warnings_.add(fmt::format("{}{:g} is more than any machine has; {:g} is taken", what, value, bounds.most),
+                      line);
+        change(limit, bounds.most, line);
         return true;
     }
     warnings_.add(fmt::format("{}{:g} is no limit that a machine can move by; ignored", what, value), line);
     return false;
 }
 
-void MotionRecorder::byAxis(const Command& command, std::array<double, kMotionAxes>& values, double scale, double least,
-                            double most, std::uint32_t line) {
+void MotionRecorder::byAxis(const Command& command, Limit first, double scale, std::uint32_t line) {
     for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
         if (command.hasValue(kLetters[axis]))
-            take(values[axis], fmt::format("M{} {}", command.code, kLetters[axis]),
-                 command.value(kLetters[axis]) * scale, least, most, line);
+            take(ofAxis(first, axis), fmt::format("M{} {}", command.code, kLetters[axis]),
+                 command.value(kLetters[axis]) * scale, line);
 }
 
 void MotionRecorder::setAcceleration(const Command& command, std::uint32_t line) {
-    const auto bounded = [](double value, double most) { return most > 0 ? std::min(value, most) : value; };
-    const auto read = [&](char letter, double& target, double most) {
-        double value = 0;
-        if (command.hasValue(letter) &&
-            take(value, fmt::format("M204 {}", letter), command.value(letter), kWeakestAxis, kStrongestAxis, line))
-            target = bounded(value, most);
+    const auto read = [&](char letter, Limit limit, double bound) {
+        if (command.hasValue(letter) && take(limit, fmt::format("M204 {}", letter), command.value(letter), line) &&
+            bound > 0)
+            valueOf(limits_, limit) = std::min(valueOf(limits_, limit), bound);
     };
-    if (command.hasValue('S')) {
+    if (isKlipper()) {
+        // It has one acceleration: S, or the lower of P and T, which it refuses alone.
+        const bool both = command.hasValue('P') && command.hasValue('T');
+        if (!command.hasValue('S') && !both)
+            return warnings_.add("M204 without S, or P and T together: Klipper refuses it; ignored", line);
+        const char letter = command.hasValue('S') ? 'S' : command.value('P') < command.value('T') ? 'P' : 'T';
+        read(letter, Limit::printing, 0);
+        limits_.travel = limits_.printing;
+    } else if (command.hasValue('S')) {
         // The older form: printing and travel alike, and T is for retractions.
-        read('S', limits_.printing, settings_.most_printing);
-        read('S', limits_.travel, settings_.most_travel);
-        read('T', limits_.retracting, 0);
+        read('S', Limit::printing, settings_.most_printing);
+        read('S', Limit::travel, settings_.most_travel);
+        read('T', Limit::retracting, 0);
     } else if (command.hasValue('P') || command.hasValue('R') || command.hasValue('T')) {
-        read('P', limits_.printing, settings_.most_printing);
-        read('R', limits_.retracting, 0);
-        read('T', limits_.travel, settings_.most_travel);
+        read('P', Limit::printing, settings_.most_printing);
+        read('R', Limit::retracting, 0);
+        read('T', Limit::travel, settings_.most_travel);
     } else {
-        return warnings_.add("M204 without an acceleration (P, R, T or S); ignored", line);
+        warnings_.add("M204 without an acceleration (P, R, T or S); ignored", line);
     }
-    if (limits_.rule == CornerRule::corner_velocity && !command.hasValue('S') && command.hasValue('P') &&
-        command.hasValue('T'))
-        limits_.printing = limits_.travel = std::min(limits_.printing, limits_.travel);  // Klipper has one
 }
 
 void MotionRecorder::suggest(CornerRule rule) {
@@ -93,21 +102,28 @@ void MotionRecorder::suggest(CornerRule rule) {
 }
 
 void MotionRecorder::setCorners(const Command& command, std::uint32_t line) {
-    byAxis(command, limits_.jerk, 1, 0, kFastestAxis, line);
+    byAxis(command, Limit::jerk, 1, line);
     // One X stands for the plane, as in legacy Marlin.
-    if (command.hasValue('X') && !command.hasValue('Y')) limits_.jerk[1] = limits_.jerk[0];
-    if (command.hasValue('S')) take(limits_.least_printing_speed, "M205 S", command.value('S'), 0, kFastestAxis, line);
-    if (command.hasValue('T')) take(limits_.least_travel_speed, "M205 T", command.value('T'), 0, kFastestAxis, line);
+    if (command.hasValue('X') && !command.hasValue('Y')) change(ofAxis(Limit::jerk, 1), limits_.jerk[0], line);
+    if (command.hasValue('S')) take(Limit::least_printing_speed, "M205 S", command.value('S'), line);
+    if (command.hasValue('T')) take(Limit::least_travel_speed, "M205 T", command.value('T'), line);
     if (!command.hasValue('J')) return;
     // J0 is written for machines with classic jerk.
     if (command.value('J') == 0) return suggest(settings_.limits.rule);
-    if (take(limits_.junction_deviation, "M205 J", command.value('J'), 1e-6, kLongestDeviation, line))
-        suggest(CornerRule::junction_deviation);
+    if (take(Limit::junction_deviation, "M205 J", command.value('J'), line)) suggest(CornerRule::junction_deviation);
 }
 
 void MotionRecorder::setRetraction(const Command& command, Retraction& retraction, double unit) {
     if (command.hasValue('S')) retraction.length = std::clamp(command.value('S') * unit, 0.0, kLongestRetraction);
     if (command.hasValue('F')) retraction.speed = std::max(command.value('F') * unit / 60, 0.0);
+}
+
+void MotionRecorder::retraction(const RetractionChange& change) {
+    if (change.length) retract_.length = std::clamp(*change.length, 0.0, kLongestRetraction);
+    if (change.speed) retract_.speed = std::max(*change.speed, 1.0);
+    if (change.extra) recover_.length = std::clamp(*change.extra, 0.0, kLongestRetraction);
+    if (change.recovery_speed) recover_.speed = std::max(*change.recovery_speed, 1.0);
+    retracted_ = false;
 }
 
 void MotionRecorder::runRetraction(const Retraction& retraction, double sign, std::uint32_t line) {
@@ -123,7 +139,7 @@ void MotionRecorder::runRetraction(const Retraction& retraction, double sign, st
 void MotionRecorder::dwell(const Command& command, std::uint32_t line) {
     double seconds = 0;
     if (command.hasValue('P')) seconds = command.value('P') / 1000;
-    if (command.hasValue('S')) seconds = command.value('S');
+    if (command.hasValue('S') && !isKlipper()) seconds = command.value('S');
     if (!(seconds >= 0)) return warnings_.add("G4 with a time below zero; ignored", line);
     if (seconds > kLongestWait) {
         warnings_.add(fmt::format("G4 of {:g} s; {:g} are taken", seconds, kLongestWait), line);
@@ -151,12 +167,18 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
     }
     if (command.letter != 'M') return;
     const double per_second = settings_.feedrate_per_minute ? 1.0 / 60 : 1;
+    if (isKlipper() && (command.code == 201 || command.code == 203 || command.code == 205 || command.code == 207 ||
+                        command.code == 208 || command.code == 566))
+        return warnings_.add(fmt::format("M{}: Klipper has no such command; ignored", command.code), line);
     switch (command.code) {
+        case 92:
+            byAxis(command, Limit::steps_per_mm, 1 / unit, line);
+            break;
         case 201:
-            byAxis(command, limits_.acceleration, unit, kWeakestAxis, kStrongestAxis, line);
+            byAxis(command, Limit::acceleration, unit, line);
             break;
         case 203:
-            byAxis(command, limits_.speed, unit * per_second, 1e-3, kFastestAxis, line);
+            byAxis(command, Limit::speed, unit * per_second, line);
             break;
         case 204:
             setAcceleration(command, line);
@@ -169,7 +191,8 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
         case 208:
             return setRetraction(command, recover_, unit);
         case 566:
-            byAxis(command, limits_.jerk, 1.0 / 60, 0, kFastestAxis, line);
+            byAxis(command, Limit::jerk, 1.0 / 60, line);
+            if (command.hasValue('P')) limits_.jerk_policy = command.value('P') != 0 ? 1 : 0;
             break;
         case 572:
             if (command.hasValue('S')) pressureAdvance("M572 S", command.value('S'), line);
@@ -185,18 +208,13 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
 }
 
 void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t line) {
-    if (limit.velocity)
-        take(limits_.path_speed, "SET_VELOCITY_LIMIT VELOCITY=", *limit.velocity, 1e-3, kFastestAxis, line);
-    if (limit.acceleration &&
-        take(limits_.printing, "SET_VELOCITY_LIMIT ACCEL=", *limit.acceleration, kWeakestAxis, kStrongestAxis, line))
-        limits_.travel = limits_.printing;
+    if (limit.velocity) take(Limit::path_speed, "SET_VELOCITY_LIMIT VELOCITY=", *limit.velocity, line);
+    if (limit.acceleration && take(Limit::printing, "SET_VELOCITY_LIMIT ACCEL=", *limit.acceleration, line))
+        change(Limit::travel, limits_.printing, line);
     if (limit.corner_velocity)
-        take(limits_.corner_velocity, "SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY=", *limit.corner_velocity, 0,
-             kFastestAxis, line);
+        take(Limit::corner_velocity, "SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY=", *limit.corner_velocity, line);
     if (limit.cruise_ratio)
-        take(limits_.cruise_ratio, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=", *limit.cruise_ratio, 0, 0.99, line);
-    if (limit.to_deceleration && *limit.to_deceleration > 0)
-        limits_.cruise_ratio = std::clamp(1 - *limit.to_deceleration / limits_.printing, 0.0, 0.99);
+        take(Limit::cruise_ratio, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=", *limit.cruise_ratio, line);
     // Only Klipper has this command.
     if (!settings_.states_jerk) suggest(CornerRule::corner_velocity);
     sink_.limits(limits_);
@@ -215,6 +233,8 @@ void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std:
         return warnings_.add(fmt::format("{}{:g} is no pressure advance in seconds (0 to {:g}); ignored", what, seconds,
                                          kLongestAdvance),
                              line);
+    // Klipper stops to switch the smoothing of the extruder on or off.
+    if (isKlipper() && (seconds > 0) != (limits_.pressure_advance > 0)) sink_.wait(0);
     limits_.pressure_advance = seconds;
     sink_.limits(limits_);
 }
@@ -234,6 +254,26 @@ void MotionRecorder::move(const Point& from, const Point& to, const std::optiona
     move.bead = bead;
     move.line = line;
     sink_.move(move);
+}
+
+void MotionRecorder::finish() {
+    settings_.origins.rule = limits_.rule;
+    sink_.origin(settings_.origins);
+    if (!isKlipper()) return;
+    std::string assumed;
+    for (std::size_t n = 0; n < kLimitCount; ++n) {
+        const auto limit = static_cast<Limit>(n);
+        const LimitOrigin& origin = settings_.origins[limit];
+        const bool from_setting = origin.kind == LimitOrigin::Kind::setting;
+        if (!isUsed(limit, limits_.rule) || (origin.kind != LimitOrigin::Kind::assumed && !from_setting)) continue;
+        assumed += fmt::format("{}{} {:g}{}", assumed.empty() ? "" : ", ", limitName(limit, limits_.rule), origin.value,
+                               from_setting ? fmt::format(" ({})", origin.place) : "");
+    }
+    if (!assumed.empty())
+        warnings_.add(fmt::format("Klipper's limits are in its own configuration; assumed for the times: {}; give the "
+                                  "printer's printer.cfg",
+                                  assumed),
+                      1);
 }
 
 }  // namespace stratum::gcode

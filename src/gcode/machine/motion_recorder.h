@@ -1,6 +1,7 @@
 // Converts the commands and moves of the machine simulator into limits, moves and waits for a MotionSink.
 // Sources: marlinfw.org/docs/gcode G004, M201, M203-M205, M207, M208; docs.duet3d.com M566; klipper3d.org/G-Codes.html
-// SET_VELOCITY_LIMIT; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)".
+// SET_VELOCITY_LIMIT; Klipper's klippy/toolhead.py (of August 2026) for what it reads of M204, and that it has no M201,
+// M203, M205 and M566; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)".
 #pragma once
 
 #include "gcode/machine/machine_limits.h"
@@ -17,11 +18,18 @@ namespace stratum::gcode {
 
 /// SET_VELOCITY_LIMIT's arguments.
 struct VelocityLimit {
-    std::optional<double> velocity;         ///< mm/s
-    std::optional<double> acceleration;     ///< mm/s^2
-    std::optional<double> to_deceleration;  ///< mm/s^2
+    std::optional<double> velocity;      ///< mm/s
+    std::optional<double> acceleration;  ///< mm/s^2
     std::optional<double> cruise_ratio;
     std::optional<double> corner_velocity;  ///< mm/s
+};
+
+/// SET_RETRACTION's arguments.
+struct RetractionChange {
+    std::optional<double> length;          ///< mm
+    std::optional<double> speed;           ///< mm/s
+    std::optional<double> extra;           ///< mm, on top when it comes back
+    std::optional<double> recovery_speed;  ///< mm/s
 };
 
 /// Impossible limits (negative, zero, beyond the bounds, no number) are ignored, with a warning.
@@ -33,6 +41,7 @@ public:
     /// A G or M command other than a move. `unit` is mm in a unit of the program.
     void command(const Command& command, double unit, std::uint32_t line);
     void velocityLimit(const VelocityLimit& limit, std::uint32_t line);
+    void retraction(const RetractionChange& change);
     void changeTool(std::size_t from, std::size_t to);
     /// `seconds`: as `what` has it in the file, M900 K or the like.
     void pressureAdvance(std::string_view what, double seconds, std::uint32_t line);
@@ -42,20 +51,25 @@ public:
     void move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament, double filament_area,
               double speed, std::uint32_t bead, std::uint32_t line);
 
+    /// The end of the program: tells the sink where the limits are from, and warns of those that nobody stated.
+    void finish();
+
 private:
     struct Retraction {
         double length = 0;  // mm
         double speed = 0;   // mm/s
     };
 
-    void byAxis(const Command& command, std::array<double, kMotionAxes>& values, double scale, double least,
-                double most, std::uint32_t line);
+    void byAxis(const Command& command, Limit first, double scale, std::uint32_t line);
     void setAcceleration(const Command& command, std::uint32_t line);
     void setCorners(const Command& command, std::uint32_t line);
     void setRetraction(const Command& command, Retraction& retraction, double unit);
     void runRetraction(const Retraction& retraction, double sign, std::uint32_t line);
     void dwell(const Command& command, std::uint32_t line);
-    bool take(double& target, std::string_view what, double value, double least, double most, std::uint32_t line);
+    /// False if the value is impossible.
+    bool take(Limit limit, std::string_view what, double value, std::uint32_t line);
+    void change(Limit limit, double value, std::uint32_t line);
+    bool isKlipper() const { return limits_.rule == CornerRule::corner_velocity; }
     void suggest(CornerRule rule);
 
     MotionSink& sink_;

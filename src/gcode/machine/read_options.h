@@ -1,6 +1,7 @@
 // Options of the reader: values that a file may not state, and callbacks.
 #pragma once
 
+#include "gcode/machine/limit_origins.h"
 #include "gcode/machine/motion.h"
 #include "gcode/toolpath/color.h"
 #include "gcode/toolpath/deposit_model.h"
@@ -8,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::gcode {
@@ -19,6 +22,20 @@ enum class ExtruderMode : std::uint8_t { automatic, absolute, relative };
 /// RepRapFirmware no).
 enum class Firmware : std::uint8_t { automatic, marlin, klipper, reprap };
 
+/// What a user says of the printer. Limits whose origin is `printer` or `firmware` win over the file's settings; the
+/// commands of the program hold as far as the firmware reads them.
+struct PrinterLimits {
+    MachineLimits limits;  ///< rule automatic: as the file has it
+    LimitOrigins origins;
+    Firmware firmware = Firmware::automatic;  ///< automatic: not said
+    std::string name;                         ///< of its file, for messages
+
+    void set(Limit limit, double value, LimitOrigin::Kind kind, std::string place) {
+        valueOf(limits, limit) = value;
+        origins[limit] = {.kind = kind, .place = std::move(place)};
+    }
+};
+
 struct ReadOptions {
     ExtruderMode extruder_mode = ExtruderMode::automatic;
     Firmware firmware = Firmware::automatic;
@@ -29,8 +46,8 @@ struct ReadOptions {
     std::optional<int> plate;            ///< number of a program in a .gcode.3mf; needed only if it has several
     MotionSink* motion = nullptr;        ///< receives all motion; nullptr: motion is not recorded
     CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
-    std::optional<MachineLimits> limits;             ///< for `motion`, of a file that states none
-    DepositModel deposit;                            ///< becomes Toolpath::deposit
+    std::optional<PrinterLimits> printer;
+    DepositModel deposit;  ///< becomes Toolpath::deposit
     /// Called from time to time with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;
 };

@@ -179,7 +179,9 @@ private:
     }
 
     void curaFlavor(std::string_view flavor) {
-        settings.firmware = flavor == "RepRap" ? Firmware::reprap : Firmware::marlin;
+        settings.firmware = flavor == "RepRap"        ? Firmware::reprap
+                            : flavor == "Creality OS" ? Firmware::klipper  // Creality's own of Klipper
+                                                      : Firmware::marlin;
         settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
         // With two of Cura's flavours E is in mm^3, which only the printer's settings state; M200 in the file overrides
         // it. Griffin (Ultimaker 3 and later) is not one of them.

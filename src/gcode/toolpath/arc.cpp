@@ -36,6 +36,16 @@ std::optional<Arc> arcFromOffset(PlanPoint start, PlanPoint end, PlanPoint offse
     return arc;
 }
 
+double klipperSweep(PlanPoint start, PlanPoint end, PlanPoint offset, bool clockwise) {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    // The order of operations decides the sign of the tiny angle.
+    const PlanPoint to{end.x - (start.x + offset.x), end.y - (start.y + offset.y)};
+    double sweep = std::atan2(-offset.x * to.y + offset.y * to.x, -offset.x * to.x - offset.y * to.y);
+    if (sweep < 0) sweep += kTurn;
+    if (clockwise) sweep -= kTurn;
+    return sweep == 0 && start.x == end.x && start.y == end.y ? kTurn : sweep;
+}
+
 std::optional<Arc> arcFromRadius(PlanPoint start, PlanPoint end, double radius, bool clockwise) {
     const PlanPoint chord{end.x - start.x, end.y - start.y};
     const double length = std::hypot(chord.x, chord.y);

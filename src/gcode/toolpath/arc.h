@@ -22,6 +22,11 @@ constexpr double kArcAbsoluteTolerance = 0.1;
 /// nullopt if the radius is zero or the end is off the circle.
 std::optional<Arc> arcFromOffset(PlanPoint start, PlanPoint end, PlanPoint offset, bool clockwise);
 
+/// The sweep, radians, of the arc from `start` to `end` about start + `offset` by Klipper's own arithmetic. An end that
+/// is the start makes a full circle, or nothing where the rounding of the numbers leaves a tiny angle: about half of a
+/// slicer's spiral lifts are straight lines there. (Klipper of August 2026, klippy/extras/gcode_arcs.py)
+double klipperSweep(PlanPoint start, PlanPoint end, PlanPoint offset, bool clockwise);
+
 /// The arc of `radius` (mm) from `start` to `end`: the shorter one if it is positive, the longer one if negative.
 /// nullopt if the points coincide or lie further apart than the diameter.
 std::optional<Arc> arcFromRadius(PlanPoint start, PlanPoint end, double radius, bool clockwise);

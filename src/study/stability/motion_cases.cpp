@@ -83,14 +83,21 @@ void addAccelerations(std::vector<StabilityCase>& cases) {
 
 void addPieces(std::vector<StabilityCase>& cases) {
     // A line in pieces has no corners: the rules must not find some.
-    constexpr std::array<std::pair<CornerRule, const char*>, 5> kRules{
-        {{CornerRule::jerk, "classic jerk"},
-         {CornerRule::slicer_jerk, "the slicers' jerk"},
-         {CornerRule::plan_jerk, "jerk in the plan"},
-         {CornerRule::junction_deviation, "junction deviation"},
-         {CornerRule::corner_velocity, "corner velocity"}}};
-    for (const auto& [rule, words] : kRules)
-        for (const int pieces : {1000, 40000})
+    struct Rule {
+        CornerRule rule;
+        const char* words;
+        int most_pieces;
+    };
+    // Marlin 2 knows 14 pieces: they must be long enough to brake in.
+    constexpr std::array<Rule, 7> kRules{{{CornerRule::jerk, "classic jerk", 40000},
+                                          {CornerRule::slicer_jerk, "the slicers' jerk", 40000},
+                                          {CornerRule::plan_jerk, "jerk in the plan", 40000},
+                                          {CornerRule::junction_deviation, "junction deviation", 1000},
+                                          {CornerRule::corner_velocity, "corner velocity", 40000},
+                                          {CornerRule::marlin_jerk, "Marlin 2's jerk", 1000},
+                                          {CornerRule::reprap_jerk, "RepRapFirmware's jerk", 40000}}};
+    for (const auto& [rule, words, most_pieces] : kRules)
+        for (const int pieces : {most_pieces / 40, most_pieces})
             cases.push_back(
                 motionCase(fmt::format("a line in {} pieces, {}", pieces, words), kOff, pieces * 0x1p-50,
                            "the time of the whole line: eight roundings a piece", [rule = rule, pieces] {

@@ -78,7 +78,7 @@ TEST(MotionRecorder, TakesLimits) {
            log);
     EXPECT_EQ(log.last.path_speed, 300);
     EXPECT_EQ(log.last.travel, 4000);
-    EXPECT_EQ(log.last.cruise_ratio, 0.75);
+    EXPECT_EQ(log.last.cruise_ratio, 0.5);  // Klipper no longer reads ACCEL_TO_DECEL
     EXPECT_EQ(log.last.corner_velocity, 8);
     EXPECT_EQ(log.last.rule, CornerRule::corner_velocity);
 }
@@ -87,12 +87,12 @@ TEST(MotionRecorder, RefusesLimitsThatNoMachineHas) {
     Log log;
     record(
         "M83\nM201 X0 Y-5 Z1000000000000\nM203 X0\nM204\nM204 P0 T-1\nM205 X-1\nM205 J-1\nG4 S-3\nG4 S1e9\n"
-        "SET_VELOCITY_LIMIT ACCEL=0\nG1 X1 E1 F0\nM566 X-60\nG1 X2 E1 F0.0001\n",
+        "M566 X-60\nG1 X1 E1 F0\nSET_VELOCITY_LIMIT ACCEL=0\nM566 X600\nG1 X2 E1 F0.0001\n",
         log);
     const MachineLimits usual;
     EXPECT_EQ(log.last.acceleration[0], usual.acceleration[0]);
     EXPECT_EQ(log.last.acceleration[1], usual.acceleration[1]);
-    EXPECT_EQ(log.last.acceleration[2], kStrongestAxis);
+    EXPECT_EQ(log.last.acceleration[2], boundsOf(Limit::acceleration).most);
     EXPECT_EQ(log.last.speed, usual.speed);
     EXPECT_EQ(log.last.printing, usual.printing);
     EXPECT_EQ(log.last.travel, usual.travel);
@@ -112,8 +112,9 @@ TEST(MotionRecorder, RefusesLimitsThatNoMachineHas) {
     EXPECT_EQ(lineOf("M205 X-1"), 6U);
     EXPECT_EQ(lineOf("M205 J-1"), 7U);
     EXPECT_EQ(lineOf("G4 with a time below zero"), 8U);
-    EXPECT_EQ(lineOf("ACCEL=0"), 10U);
-    EXPECT_EQ(lineOf("M566 X-1"), 12U);
+    EXPECT_EQ(lineOf("M566 X-1"), 10U);
+    EXPECT_EQ(lineOf("ACCEL=0"), 12U);
+    EXPECT_EQ(lineOf("M566: Klipper has no such command"), 13U);
     for (const Move& move : log.moves) EXPECT_GE(move.speed, 0.01);
 }
 
@@ -127,6 +128,65 @@ TEST(MotionRecorder, FirmwareRetractsByWhatTheFileSays) {
     EXPECT_EQ(log.moves[1].delta[3], -2);
     EXPECT_EQ(log.moves[1].speed, 30);
     EXPECT_EQ(log.moves[3].delta[3], 2);
+}
+
+constexpr std::string_view kKlipper = "\n; gcode_flavor = klipper\n";
+
+TEST(MotionRecorder, KlipperWaitsForMillisecondsOnly) {
+    Log log;
+    record("M83\nG1 X1 E1 F600\nG4 S2\nG1 X2 E1\nG4 P1500\nG1 X3 E1" + std::string(kKlipper), log);
+    EXPECT_EQ(log.waits, (std::vector<double>{0, 1.5}));
+}
+
+TEST(MotionRecorder, KlipperRetractsBySetRetraction) {
+    Log log;
+    record(
+        "M83\nM207 S5\nSET_RETRACTION RETRACT_LENGTH=2 RETRACT_SPEED=30 UNRETRACT_EXTRA_LENGTH=0.5 "
+        "UNRETRACT_SPEED=15\nG1 X1 E1 F600\nG10\nG10\nG1 X5\nG11" +
+            std::string(kKlipper),
+        log);
+    ASSERT_EQ(log.moves.size(), 4U);
+    EXPECT_EQ(log.moves[1].delta[3], -2);
+    EXPECT_EQ(log.moves[1].speed, 30);
+    EXPECT_EQ(log.moves[3].delta[3], 2.5);
+    EXPECT_EQ(log.moves[3].speed, 15);
+}
+
+TEST(MotionRecorder, KlippersCommandsMoveAtASpeedOfTheirOwn) {
+    Log log;
+    record(
+        "M83\nG1 X1 E1 F600\nSAVE_GCODE_STATE NAME=a\nG1 X20 F3000\nRESTORE_GCODE_STATE NAME=a MOVE=1 "
+        "MOVE_SPEED=77\nSAVE_GCODE_STATE NAME=b\nG1 X30\nRESTORE_GCODE_STATE NAME=b MOVE=1\n"
+        "SET_GCODE_OFFSET Z=1 MOVE=1 MOVE_SPEED=5" +
+            std::string(kKlipper),
+        log);
+    ASSERT_EQ(log.moves.size(), 6U);
+    EXPECT_EQ(log.moves[2].delta[0], -19);
+    EXPECT_EQ(log.moves[2].speed, 77);
+    EXPECT_EQ(log.moves[4].speed, 10);  // the saved one
+    EXPECT_EQ(log.moves[5].delta[2], 1);
+    EXPECT_EQ(log.moves[5].speed, 5);
+}
+
+TEST(MotionRecorder, KlipperRefusesM204WithOneOfPAndT) {
+    Log log;
+    record("M83\nM204 P500\nM204 T700\nG1 X1 E1 F600" + std::string(kKlipper), log);
+    EXPECT_EQ(log.last.printing, 3000);
+    record("M83\nM204 P500 T700\nG1 X1 E1 F600" + std::string(kKlipper), log);
+    EXPECT_EQ(log.last.printing, 500);
+    EXPECT_EQ(log.last.travel, 500);
+    record("M83\nM204 S90000\nG1 X1 E1 F600\n; machine_max_acceleration_extruding = 1000" + std::string(kKlipper), log);
+    EXPECT_EQ(log.last.printing, 90000);
+}
+
+TEST(MotionRecorder, KlipperStopsToSwitchPressureAdvanceOnAndOff) {
+    Log log;
+    record(
+        "M83\nG1 X1 E1 F600\nSET_PRESSURE_ADVANCE ADVANCE=0.04\nG1 X2 E1\nSET_PRESSURE_ADVANCE ADVANCE=0.05\n"
+        "G1 X3 E1\nSET_PRESSURE_ADVANCE ADVANCE=0" +
+            std::string(kKlipper),
+        log);
+    EXPECT_EQ(log.waits.size(), 2U);
 }
 
 TEST(MotionRecorder, VolumesBecomeFilament) {

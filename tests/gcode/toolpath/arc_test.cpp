@@ -31,6 +31,28 @@ TEST(Arc, FullCircle) {
     expectArc(arcFromOffset({3, 3}, {3, 3}, {0, -2}, kClockwise), 3, 1, -2 * std::numbers::pi);
 }
 
+TEST(Arc, KlippersSweepIsTheUsualOneIfTheEndIsNotTheStart) {
+    EXPECT_NEAR(klipperSweep({1, 0}, {0, 1}, {-1, 0}, kCounterClockwise), std::numbers::pi / 2, 1e-12);
+    EXPECT_NEAR(klipperSweep({1, 0}, {0, 1}, {-1, 0}, kClockwise), -1.5 * std::numbers::pi, 1e-12);
+    EXPECT_EQ(klipperSweep({1, 0}, {1, 0}, {-1, 0}, kCounterClockwise), 2 * std::numbers::pi);
+}
+
+TEST(Arc, AboutHalfOfKlippersFullCirclesAreNothing) {
+    int nothing = 0;
+    int circles = 0;
+    for (int i = 0; i < 1000; ++i) {
+        // Three decimals, as slicers write them.
+        const PlanPoint at{(100000 + 137 * i) / 1000.0, (90000 + 59 * i) / 1000.0};
+        const PlanPoint offset{(700 - i) / 1000.0, (i * 7 % 1000) / 1000.0};
+        const double sweep = klipperSweep(at, at, offset, kCounterClockwise);
+        nothing += std::abs(sweep) < 1e-9 ? 1 : 0;
+        circles += std::abs(sweep - 2 * std::numbers::pi) < 1e-9 ? 1 : 0;
+    }
+    EXPECT_EQ(nothing + circles, 1000);
+    EXPECT_GT(nothing, 350);
+    EXPECT_GT(circles, 350);
+}
+
 TEST(Arc, FromRadiusOfEitherSign) {
     // NIST: a positive radius turns through less than 180 degrees, a negative one through more.
     expectArc(arcFromRadius({1, 0}, {0, 1}, 1, kCounterClockwise), 0, 0, std::numbers::pi / 2);

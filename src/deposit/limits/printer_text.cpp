@@ -1,0 +1,78 @@
+#include "deposit/limits/printer_text.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace stratum::deposit {
+namespace {
+
+constexpr std::size_t kLongestQuote = 60;  // bytes of the file in a message
+
+[[noreturn]] void refuse(gcode::Bounds bounds, std::string_view text, std::string_view place, std::string_view what) {
+    throw InputError(
+        fmt::format("{}: {} is {}; expected a number from {:g} to {:g}", place, what, text, bounds.least, bounds.most));
+}
+
+// On one line.
+std::string quoted(std::string_view text) {
+    std::string line(text.substr(0, kLongestQuote));
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    return line.empty() ? "empty" : fmt::format("'{}'", line);
+}
+
+// "PLACE: PATH WHAT", the path once.
+[[noreturn]] void refuseFile(const std::string& path, const std::string& place, std::string_view what) {
+    throw InputError(place == path ? fmt::format("{}: {}", path, what) : fmt::format("{}: {} {}", place, path, what));
+}
+
+}  // namespace
+
+std::string readPrinterText(const std::string& path, const std::string& place) {
+    std::error_code failed;
+    if (std::filesystem::is_directory(path, failed)) refuseFile(path, place, "is a folder; give the printer's file");
+    std::ifstream stream(path, std::ios::binary);
+    std::string text(kLargestPrinterFile + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad() || (!stream && !stream.eof()))
+        refuseFile(path, place, "can't be read; does it exist, and may you read it?");
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kLargestPrinterFile)
+        refuseFile(
+            path, place,
+            fmt::format("has more than {} bytes, too many for a printer; is it the right file?", kLargestPrinterFile));
+    return text;
+}
+
+std::string readIncludedText(const std::string& path, const std::string& place) {
+    std::error_code failed;
+    if (!std::filesystem::is_regular_file(path, failed))
+        refuseFile(path, place, "is no file that can be read; does it exist?");
+    return readPrinterText(path, place);
+}
+
+double numberIn(std::string_view text, gcode::Bounds bounds, std::string_view place, std::string_view what) {
+    text = trim(text);
+    std::string_view digits = text;
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = fast_float::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() ||
+        !(value >= bounds.least && value <= bounds.most))
+        refuse(bounds, quoted(text), place, what);
+    return value;
+}
+
+void checkLimit(gcode::Limit limit, double value, std::string_view place, std::string_view what) {
+    const gcode::Bounds bounds = gcode::boundsOf(limit);
+    if (!(value >= bounds.least && value <= bounds.most)) refuse(bounds, fmt::format("{:g}", value), place, what);
+}
+
+}  // namespace stratum::deposit
