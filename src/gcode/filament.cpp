@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::gcode {
@@ -25,20 +28,54 @@ std::optional<double> diameterFromVolume(const Footer& footer, const Machine& ma
     return std::nullopt;
 }
 
+// Replaces the assumed diameter: areas and volumes change, lengths don't.
+void setDiameter(double diameter, std::string_view reason, Toolpath& toolpath) {
+    const double ratio = areaOf(diameter) / areaOf(toolpath.filament_diameter);
+    for (Bead& bead : toolpath.beads) bead.width *= static_cast<float>(ratio);
+    toolpath.extruded_mm3 *= ratio;
+    toolpath.filament_diameter = diameter;
+    toolpath.extrusion_rule = fmt::format("mm of filament of {:g} mm ({})", diameter, reason);
+}
+
+// Filament laid before the first layer, in mm. Widths are areas.
+double primeOf(const Toolpath& toolpath, const Machine& machine) {
+    double mm = 0;
+    for (const Bead& bead : toolpath.beads) {
+        const Run& run = toolpath.runOf(bead);
+        if (run.layer == 0)
+            mm += static_cast<double>(bead.width) * beadLength(toolpath, bead) /
+                  areaOf(machine.filamentDiameter(run.tool));
+    }
+    return mm;
+}
+
+// Whether a bead is as wide as its line is meant to be: threads over air and thin fillings are not.
+bool isPlainLine(const Run& run) {
+    switch (run.feature) {
+        case Feature::bridge:
+        case Feature::gap_fill:
+        case Feature::ironing:
+        case Feature::overhang_perimeter:
+        case Feature::support:
+        case Feature::support_interface:
+        case Feature::custom:
+            return false;
+        default:
+            return run.layer > 0 && run.height > 0;
+    }
+}
+
 }  // namespace
 
-void takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpath, WarningLog& warnings) {
+bool takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpath, WarningLog& warnings) {
     toolpath.filament_diameter = machine.filamentDiameter(0);
     toolpath.filament_mm = machine.filamentMm();
     toolpath.extruded_mm3 = machine.extrudedMm3();
     toolpath.extrusion_rule = machine.extrusionRule();
+    toolpath.prime_mm = primeOf(toolpath, machine);
     const std::optional<double> found = diameterFromVolume(footer, machine);
     if (found) {
-        const double ratio = areaOf(*found) / areaOf(toolpath.filament_diameter);
-        for (Bead& bead : toolpath.beads) bead.width *= static_cast<float>(ratio);
-        toolpath.extruded_mm3 *= ratio;
-        toolpath.filament_diameter = *found;
-        toolpath.extrusion_rule = fmt::format("mm of filament of {:g} mm (the volume that the file states)", *found);
+        setDiameter(*found, "the volume that the file states", toolpath);
         warnings.add(fmt::format("the volume that the file states for {:.0f} mm of filament is that of {:g} mm "
                                  "filament, which is taken (--filament-diameter if not)",
                                  toolpath.filament_mm, *found),
@@ -50,6 +87,42 @@ void takeFilament(const Footer& footer, const Machine& machine, Toolpath& toolpa
         lengths.push_back(footer.volume[tool] / areaOf(found.value_or(machine.filamentDiameter(tool))));
     toolpath.footer_mm = std::accumulate(lengths.begin(), lengths.end(), 0.0);
     if (lengths.size() > 1) toolpath.footer_by_tool = std::move(lengths);
+    return found || machine.filamentKnown();
+}
+
+void chooseFilament(std::optional<double> nozzle, Toolpath& toolpath, WarningLog& warnings) {
+    constexpr double kThick = 2.85;       // mm
+    constexpr double kUsualNozzle = 0.4;  // mm, for which the two bounds are
+    constexpr double kWidestThin = 0.21;  // mm, of lines of 2.85 mm filament as if of 1.75 mm
+    constexpr double kNarrowest = 0.33;   // mm, of lines of 1.75 mm filament
+    constexpr std::size_t kEnough = 100;  // lines, for a choice
+    constexpr std::size_t kFewest = 4;    // for a remark
+    std::vector<float> widths;
+    for (const Bead& bead : toolpath.beads) {
+        const Run& run = toolpath.runOf(bead);
+        if (isPlainLine(run)) widths.push_back(bead.width / run.height);
+    }
+    if (widths.size() < kFewest) return;
+    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    const double width = static_cast<double>(*middle);
+    const double scale = nozzle.value_or(kUsualNozzle) / kUsualNozzle;
+    if (!(width > 0) || width >= kNarrowest * scale) return;
+    const double ratio = areaOf(kThick) / areaOf(toolpath.filament_diameter);
+    const std::string lines = fmt::format(
+        "the file doesn't say how thick its filament is; of {:g} mm filament its lines hold {:.2f} of what lines as "
+        "wide "
+        "as a nozzle of {:g} mm do",
+        toolpath.filament_diameter, width / (kUsualNozzle * scale), kUsualNozzle * scale);
+    if (width > kWidestThin * scale || widths.size() < kEnough)
+        return warnings.add(fmt::format("{}; if it is {:g} mm, say so (--filament-diameter {:g}), for {:.2f} of it",
+                                        lines, kThick, kThick, ratio * width / (kUsualNozzle * scale)),
+                            1);
+    const double before = toolpath.filament_diameter;
+    setDiameter(kThick, "the width of its lines", toolpath);
+    warnings.add(fmt::format("{}, of {:g} mm filament {:.2f}, which is taken (--filament-diameter {:g} if not)", lines,
+                             kThick, ratio * width / (kUsualNozzle * scale), before),
+                 1);
 }
 
 void warnOfMixedFilaments(const Machine& machine, const Toolpath& toolpath, WarningLog& warnings) {

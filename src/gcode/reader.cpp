@@ -7,6 +7,7 @@
 #include "gcode/machine/bead_recorder.h"
 #include "gcode/machine/machine.h"
 #include "gcode/machine/motion_recorder.h"
+#include "gcode/slicer/bead_colors.h"
 #include "gcode/slicer/mixed_colors.h"
 #include "gcode/slicer/settings.h"
 #include "gcode/text/lexer.h"
@@ -125,12 +126,16 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     const std::optional<double> nominal = options.layer_height ? options.layer_height : settings.layer_height;
 
     WarningLog warnings;
+    if (!settings.damaged_part.empty())
+        warnings.add(fmt::format("{} is damaged; its settings are left out", settings.damaged_part), 1);
     BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
     Machine machine(settings, options, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
     if (options.motion != nullptr) {
-        motion.emplace(*options.motion,
-                       readMachineSettings(text, options.corner_rule, options.printer, machine.firmware()), warnings);
+        motion.emplace(
+            *options.motion,
+            readMachineSettings(text, options.corner_rule, options.printer, machine.firmware(), settings.slicer_limits),
+            warnings);
         machine.recordMotion(&*motion);
     }
     Lexer lexer(text);
@@ -146,7 +151,9 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     if (motion) motion->finish();
     Toolpath& recorded = recorder.toolpath();
     if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
-    takeFilament(settings.footer, machine, recorded, warnings);
+    const bool filament_known = takeFilament(settings.footer, machine, recorded, warnings);
+    resolveHeights(recorded, recorder.runZ(), nominal, warnings);
+    if (!filament_known) chooseFilament(settings.nozzle_diameter, recorded, warnings);
     resolveSections(recorded, recorder.runZ(), nominal, warnings);
     warnOfMixedFilaments(machine, recorded, warnings);
     warnIfShort(machine.filamentMm(), program, line.number, warnings);
@@ -162,6 +169,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     takeStated(settings.stated, program.facts.stated, toolpath.stated);
     takeColors(program, toolpath);
     takeAskedColors(options, recorder.mixes(), toolpath, warnings);
+    colorUnstated(toolpath);
     toolpath.warnings = warnings.take();
     nameObjects(program, toolpath);
     if (!(toolpath.footer_mm > 0)) toolpath.footer_mm = program.filament_mm.value_or(0);

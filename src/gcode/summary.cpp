@@ -26,15 +26,24 @@ void compare(double measured, double footer, fmt::memory_buffer& out) {
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
     const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
-    fmt::format_to(std::back_inserter(out), "E is {}\nall: ", toolpath.extrusion_rule);
-    compare(toolpath.filament_mm, toolpath.footer_mm, out);
+    // Some slicers count the prime lines of the start program, others don't: the nearer sum is compared.
+    const double part = toolpath.filament_mm - toolpath.prime_mm;
+    const double footer = toolpath.footer_mm;
+    const bool primes = toolpath.prime_mm > 0;
+    const bool part_alone =
+        primes && (!(footer > 0) || std::abs(part - footer) <= std::abs(toolpath.filament_mm - footer));
+    fmt::format_to(std::back_inserter(out), "E is {}\n{}: ", toolpath.extrusion_rule, part_alone ? "part" : "all");
+    compare(part_alone ? part : toolpath.filament_mm, footer, out);
+    if (primes)
+        fmt::format_to(std::back_inserter(out), "prime lines before layer 1: {:.2f} mm{}\n", toolpath.prime_mm,
+                       part_alone ? "" : ", which are in that sum");
     if (tools == 1) return;
     for (std::size_t tool = 0; tool < tools; ++tool) {
         const double measured = at(toolpath.filament_by_tool, tool);
-        const double footer = at(toolpath.footer_by_tool, tool);
-        if (!(measured > 0) && !(footer > 0)) continue;
+        const double of_tool = at(toolpath.footer_by_tool, tool);
+        if (!(measured > 0) && !(of_tool > 0)) continue;
         fmt::format_to(std::back_inserter(out), "T{}: ", tool);
-        compare(measured, footer, out);
+        compare(measured, of_tool, out);
     }
 }
 

@@ -24,8 +24,8 @@ std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath);
 
 /// Statements of the file (time, weight, material, nozzle, printer, layer heights); slicer, container and firmware
-/// rules with their reason; layers, beads, length, volume; filament per tool, read and stated; features; objects;
-/// warnings with count and first line. Ends with a newline.
+/// rules with their reason; layers, beads, length, volume; filament read and stated, prime lines apart, by tool;
+/// features; objects; warnings with count and first line. Ends with a newline.
 std::string summarize(const Toolpath& toolpath);
 
 }  // namespace stratum::gcode

@@ -63,6 +63,7 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
         const gcode::Run& run = toolpath.runOf(toolpath.beads[i]);
         const double seconds = static_cast<double>(timing.seconds);
         times.features[static_cast<std::size_t>(run.feature)] += seconds;
+        if (layer == 0 && run.layer > 0) times.before_model = timing.start;
         layer = run.layer;
         const double end = timing.start + seconds;
         times.layers[layer] += end - before;
@@ -74,6 +75,11 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
 }  // namespace
 
 std::string_view ruleName(CornerRule rule) { return gcode::kCornerRules[static_cast<std::size_t>(rule)].first; }
+
+StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts) {
+    if (facts.model_seconds) return {*facts.model_seconds, times.total - times.before_model};
+    return {facts.seconds.value_or(0), times.total};
+}
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
                                   PrintTimes& times, PlanSink* also) {

@@ -19,11 +19,19 @@ struct PrintTimes {
     double travel = 0;                                    ///< of moves without extrusion
     double retraction = 0;                                ///< of moves of E alone: retracting, priming
     double waiting = 0;                                   ///< G4, changes of tool
+    double before_model = 0;                              ///< until the first bead of layer 1: the start program
     std::array<double, gcode::kFeatureCount> features{};  ///< of beads
     std::vector<double> layers;  ///< by layer number; travel before a bead belongs to its layer, the rest to the last
     std::string rule;            ///< a ruleName()
     gcode::LimitOrigins limits;  ///< those that were planned with, before the program's first command
 };
+
+/// What a file states of its time, and what is planned of the same part of the program.
+struct StatedTime {
+    double stated = 0;   ///< s; 0: the file states none
+    double planned = 0;  ///< s; without the start program if the stated time is the model's alone (BambuStudio)
+};
+StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts);
 
 /// The name of a rule on command lines and in reports; "auto" is automatic.
 std::string_view ruleName(gcode::CornerRule rule);

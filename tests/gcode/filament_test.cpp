@@ -55,6 +55,34 @@ TEST(Filament, TheCorpusGriffinFileCountsLength) {
     EXPECT_DOUBLE_EQ(toolpath.filament_diameter, 1.75);
 }
 
+// A wall of `lines` lines of 10 mm, 0.2 mm high, each of `e` mm of filament.
+std::string wall(int lines, double e) {
+    std::string program = ";Layer height: 0.2\nM83\nG1 Z.2\n";
+    for (int i = 0; i < lines; ++i)
+        program += "G1 X" + std::to_string(10 * ((i + 1) % 2)) + " E" + std::to_string(e) + "\n";
+    return program;
+}
+
+TEST(Filament, TheWidthOfLinesTellsTheirFilament) {
+    constexpr double kThick = 0.4 * 0.2 * 10 / (std::numbers::pi / 4 * 2.85 * 2.85);  // 0.4 mm wide of 2.85 mm
+    constexpr double kThin = 0.4 * 0.2 * 10 / kFilamentArea;
+    const Toolpath thick = readProgram(wall(200, kThick));
+    EXPECT_DOUBLE_EQ(thick.filament_diameter, 2.85);
+    EXPECT_NEAR(beadVolume(thick), 200 * 0.4 * 0.2 * 10, 0.1);
+    EXPECT_EQ(warningCount(thick, "which is taken (--filament-diameter 1.75 if not)"), 1U);
+    EXPECT_NE(thick.extrusion_rule.find("2.85 mm (the width of its lines)"), std::string::npos);
+    const Toolpath thin = readProgram(wall(200, kThin));
+    EXPECT_DOUBLE_EQ(thin.filament_diameter, 1.75);
+    EXPECT_EQ(warningCount(thin, "thick its filament"), 0U);
+    // Between the two, and where there is little to tell by.
+    EXPECT_EQ(warningCount(readProgram(wall(200, 0.65 * kThin)), "if it is 2.85 mm, say so"), 1U);
+    EXPECT_EQ(warningCount(readProgram(wall(6, kThick)), "if it is 2.85 mm, say so"), 1U);
+    EXPECT_EQ(warningCount(readProgram(wall(3, kThick)), "thick its filament"), 0U);
+    // A narrow nozzle lays narrow lines; a diameter that is stated stays.
+    EXPECT_DOUBLE_EQ(readProgram(wall(200, 0.4 * kThin) + "; nozzle_diameter = 0.15\n").filament_diameter, 1.75);
+    EXPECT_DOUBLE_EQ(readProgram(wall(200, kThick) + "; filament_diameter = 1.75\n").filament_diameter, 1.75);
+}
+
 // Two tools that lay 200 mm each, the second with the E that `second` mm of filament need for the same bead.
 std::string twoTools(double second) {
     const double e = 4 * 1.75 * 1.75 / (second * second);

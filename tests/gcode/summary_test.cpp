@@ -39,6 +39,21 @@ TEST(Summary, OneNumberOfAFooterIsTheWholePrints) {
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST(Summary, PrimeLinesAreApart) {
+    const std::string prime = "M83\nG1 Z.2\nG1 X90 E9\n;LAYER_CHANGE\n;HEIGHT:0.2\nG1 X0 E4\n";
+    const auto has = [&prime](const std::string& footer, const std::string& part) {
+        const std::string text = summarize(readProgram(prime + footer));
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    has("", "\npart: 4.00 mm of filament\nprime lines before layer 1: 9.00 mm\n");
+    has("; filament used [mm] = 4\n",
+        "part: 4.00 mm of filament; the file says 4.00 (+0.00 %)\nprime lines before layer 1: 9.00 mm\n");
+    has("; filament used [mm] = 13\n",
+        "all: 13.00 mm of filament; the file says 13.00 (+0.00 %)\nprime lines before layer 1: 9.00 mm, which are in "
+        "that sum\n");
+    EXPECT_EQ(summarize(readProgram("M83\nG1 Z.2\nG1 X9 E4\n")).find("prime"), std::string::npos);
+}
+
 TEST(Summary, Objects) {
     const std::string text = summarize(readProgram("M83\nG1 Z.2\n; printing object a.stl\nG1 X9 E4\n"));
     EXPECT_NE(text.find("  object 1, a.stl: 1 beads, 9.62 mm^3\n"), std::string::npos) << text;

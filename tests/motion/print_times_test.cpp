@@ -47,21 +47,27 @@ struct Stated {
 };
 
 class StatedTime : public testing::TestWithParam<Stated> {};
-INSTANTIATE_TEST_SUITE_P(Corpus, StatedTime,
-                         testing::Values(Stated{"gcode/Printrun-testgeometry.gcode", 4441, 0.002},
-                                         Stated{"gcode/libbgcode-mini_cube_a.gcode", 1926, 0.002},
-                                         Stated{"gcode/libbgcode-mini_cube_b.bgcode", 1926, 0.002},
-                                         Stated{"gcode/preprocess_cancellation-prusaslicer.gcode", 536, 0.006},
-                                         Stated{"gcode/preprocess_cancellation-m486.gcode", 536, 0.006},
-                                         // For Klipper, but the slicer states the time by its own rule.
-                                         Stated{"gcode/preprocess_cancellation-superslicer.gcode", 439, 0.006,
-                                                gcode::CornerRule::slicer_jerk},
-                                         Stated{"gcode/vase_ps25.gcode", 2927, 0.003},
-                                         Stated{"gcode/volumetric_fwretract.gcode", 1184, 0.005},
-                                         Stated{"gcode/spot_1000cc_0.1mm_grid.gcode.gz", 73427, 0.002},
-                                         Stated{"gcode/preprocess_cancellation-cura.gcode", 451, 0.02},
-                                         Stated{"gcode/filaswitch-mc_testmodel1_Cura.gcode", 2656, 0.05}),
-                         [](const auto& chosen) { return fmt::format("n{}", chosen.index); });
+INSTANTIATE_TEST_SUITE_P(
+    Corpus, StatedTime,
+    testing::Values(Stated{"gcode/Printrun-testgeometry.gcode", 4441, 0.002},
+                    Stated{"gcode/libbgcode-mini_cube_a.gcode", 1926, 0.002},
+                    Stated{"gcode/libbgcode-mini_cube_b.bgcode", 1926, 0.002},
+                    Stated{"gcode/preprocess_cancellation-prusaslicer.gcode", 536, 0.006},
+                    Stated{"gcode/preprocess_cancellation-m486.gcode", 536, 0.006},
+                    // For Klipper, but the slicer states the time by its own rule.
+                    Stated{"gcode/preprocess_cancellation-superslicer.gcode", 439, 0.006,
+                           gcode::CornerRule::slicer_jerk},
+                    Stated{"gcode/vase_ps25.gcode", 2927, 0.003},
+                    Stated{"gcode/volumetric_fwretract.gcode", 1184, 0.005},
+                    Stated{"gcode/spot_1000cc_0.1mm_grid.gcode.gz", 73427, 0.002},
+                    Stated{"gcode/preprocess_cancellation-cura.gcode", 451, 0.02},
+                    Stated{"gcode/bgautrea-ender3_cura.gcode.gz", 3328, 0.01},
+                    Stated{"gcode/RRFInstall-cube_huelle.gcode.gz", 812, 0.005},
+                    Stated{"gcode/K1_Series_Klipper-K1C_3DBenchy.gcode.gz", 890, 0.1, gcode::CornerRule::slicer_jerk},
+                    Stated{"cases/22_cura_creality_acceleration.gcode", 36.2, 0.02},
+                    Stated{"cases/28_square_corner_velocity.gcode", 11.9, 0.02, gcode::CornerRule::slicer_jerk},
+                    Stated{"gcode/filaswitch-mc_testmodel1_Cura.gcode", 2656, 0.05}),
+    [](const auto& chosen) { return fmt::format("n{}", chosen.index); });
 
 TEST_P(StatedTime, IsWhatThePlanTakes) {
     STRATUM_NEEDS_CORPUS(path, GetParam().file);
@@ -178,6 +184,36 @@ TEST(PrintTimes, RulesHaveNames) {
     EXPECT_EQ(ruleName(CornerRule::plan_jerk), "plan-jerk");
     EXPECT_EQ(ruleName(CornerRule::junction_deviation), "junction-deviation");
     EXPECT_EQ(ruleName(CornerRule::corner_velocity), "corner-velocity");
+}
+
+// BambuStudio states the model's time apart from that of the start program.
+TEST(PrintTimes, TheStatedTimeOfTheModelIsBesideThePlannedOne) {
+    const Timed print = timed(
+        "; model printing time: 10s; total estimated time: 1m 10s\nM83\nG1 X200 F600\nG1 X0\n; CHANGE_LAYER\n"
+        "; LAYER_HEIGHT: 0.2\nG1 Z.2\nG1 X100 E4 F600\n");
+    const stratum::motion::StatedTime time = statedTime(print.times, print.toolpath.stated);
+    EXPECT_EQ(time.stated, 10);
+    EXPECT_NEAR(time.planned, 10, 0.3);
+    EXPECT_NEAR(print.times.total, 50, 1);
+    gcode::StatedFacts whole;
+    whole.seconds = 70;
+    EXPECT_EQ(statedTime(print.times, whole).stated, 70);
+    EXPECT_EQ(statedTime(print.times, whole).planned, print.times.total);
+}
+
+TEST(PrintTimes, OfTheCaseOfAModelsTime) {
+    STRATUM_NEEDS_CORPUS(path, "cases/25_bambu_model_time.gcode");
+    const Timed print = timedFile(path);
+    EXPECT_NEAR(statedTime(print.times, print.toolpath.stated).planned, 10, 0.5);
+}
+
+// OrcaSlicer's estimate takes the square corner velocity for the jerk in the plane where the file states jerk.
+TEST(PrintTimes, ACornerVelocityBesideStatedJerk) {
+    std::string moves = "SET_VELOCITY_LIMIT ACCEL=5000 SQUARE_CORNER_VELOCITY=5\nM83\nG1 Z.2 F6000\n";
+    for (int i = 0; i < 50; ++i) moves += "G1 X10 E.2\nG1 X0 E.2\n";
+    const std::string jerk = "; machine_max_jerk_x = 500\n; machine_max_jerk_y = 500\n";
+    EXPECT_GT(timed(moves + jerk).times.total,
+              1.1 * timed("G4 P1\n" + moves.substr(moves.find("M83")) + jerk).times.total);
 }
 
 }  // namespace

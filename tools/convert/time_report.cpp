@@ -12,9 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// 0 where the file is silent.
-double secondsOf(const gcode::StatedFacts& stated) { return stated.model_seconds.value_or(stated.seconds.value_or(0)); }
-
 std::string clock(double seconds) {
     const auto whole = std::llround(seconds);
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
@@ -23,23 +20,29 @@ std::string clock(double seconds) {
 }  // namespace
 
 Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
-    const double stated = secondsOf(facts);
+    const motion::StatedTime time = motion::statedTime(times, facts);
     Json features = Json::object();
     for (std::size_t i = 0; i < times.features.size(); ++i)
         if (times.features[i] > 0)
             features[std::string(gcode::featureName(static_cast<gcode::Feature>(i)))] = times.features[i];
-    return {{"planned_s", times.total},   {"stated_s", stated > 0 ? Json(stated) : Json(nullptr)},
-            {"rule", times.rule},         {"limits", describeLimits(times.limits)},
-            {"travel_s", times.travel},   {"retraction_s", times.retraction},
-            {"waiting_s", times.waiting}, {"features_s", features},
+    return {{"planned_s", times.total},
+            {"stated_s", time.stated > 0 ? Json(time.stated) : Json(nullptr)},
+            {"planned_of_stated_s", time.stated > 0 ? Json(time.planned) : Json(nullptr)},
+            {"rule", times.rule},
+            {"limits", describeLimits(times.limits)},
+            {"travel_s", times.travel},
+            {"retraction_s", times.retraction},
+            {"waiting_s", times.waiting},
+            {"features_s", features},
             {"layers_s", times.layers}};
 }
 
 std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
-    const double stated = secondsOf(facts);
+    const auto [stated, planned] = motion::statedTime(times, facts);
     std::string out = fmt::format("time: {} by the rule {}", clock(times.total), times.rule);
+    if (stated > 0 && facts.model_seconds) out += fmt::format(", {} of it for the model", clock(planned));
     if (stated > 0)
-        out += fmt::format("; the file says {} ({:+.2f} %)", clock(stated), 100 * (times.total - stated) / stated);
+        out += fmt::format("; the file says {} ({:+.2f} %)", clock(stated), 100 * (planned - stated) / stated);
     out += fmt::format("\n  travel {}, retraction {}, waiting {}", clock(times.travel), clock(times.retraction),
                        clock(times.waiting));
     if (!times.layers.empty()) out += fmt::format(", before layer 1 {}", clock(times.layers.front()));

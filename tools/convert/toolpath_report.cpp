@@ -87,6 +87,7 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
             {"layers", toolpath.layer_count},
             {"length_mm", length},
             {"filament_mm", toolpath.filament_mm},
+            {"prime_mm", toolpath.prime_mm},
             {"footer_mm", footer},
             {"filament_diameter_mm", toolpath.filament_diameter},
             {"volume_mm3", volume},

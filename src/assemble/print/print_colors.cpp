@@ -32,7 +32,11 @@ PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint3
         }
         const gcode::Rgb& c = *stated.color;
         add(colors, fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]),
-            fmt::format("{}, tool {}", stated.changed ? "a change of colour" : "the file's settings", stated.tool));
+            fmt::format("{}, tool {}",
+                        stated.palette   ? "a palette, for the file states none"
+                        : stated.changed ? "a change of colour"
+                                         : "the file's settings",
+                        stated.tool));
     }
     colors.by_place = colors.stated.size() + (colors.some_unstated ? 1 : 0) > 1 && !colors.stated.empty();
     return colors;

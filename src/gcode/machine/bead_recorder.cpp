@@ -55,11 +55,15 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
 }
 
 void BeadRecorder::changeFilament(std::uint32_t line) {
-    const auto& changes = toolpath_.color_changes;
+    auto& changes = toolpath_.color_changes;
     const bool named = !changes.empty() && changes.back().first_bead == toolpath_.beads.size();
-    if (!named && !toolpath_.empty())
-        warnings_.add("M600 changes the filament, and the file doesn't say to which colour; the colour before is kept",
-                      line);
+    if (named || toolpath_.empty()) return;
+    changes.push_back({.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
+                       .tool = next_.tool,
+                       .color = {},
+                       .stated = false});
+    warnings_.add("M600 changes the filament, and the file doesn't say to which colour; one of a palette stands for it",
+                  line);
 }
 
 void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {

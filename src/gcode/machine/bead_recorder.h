@@ -30,7 +30,7 @@ public:
     void stopObject() { next_.object = 0; }
     /// Renames the current object; if another object has that name, it becomes the current one.
     void renameObject(std::string_view name, std::uint32_t line);
-    /// M600: a manual change of filament. Warns if no tag has stated the new color.
+    /// M600: a manual change of filament. Warns if no tag has stated the new color, which is then left open.
     void changeFilament(std::uint32_t line);
     /// A tool lays another mix of filaments from here on.
     void changeMix(ToolMix mix, std::uint32_t line);

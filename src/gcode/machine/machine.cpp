@@ -364,15 +364,26 @@ void Machine::labelObject(const Command& command) {
     std::string_view text = trim(command.text);
     const auto at = text.find_first_of("Aa");
     const bool named = at != std::string_view::npos && (at == 0 || text.substr(0, at).find_first_of("PUCT") > at);
+    // PrusaSlicer from 2.8 on names all objects at the start, and calls them by their numbers alone later.
     if (command.hasValue('S') && !(named && at == 0)) {
         const double number = command.value('S');
-        if (number < 0 || number > 65535) return recorder_.stopObject();
-        recorder_.startObject(fmt::format("object {}", static_cast<int>(number)), line_);
+        object_number_ = number < 0 || number > 65535 ? -1 : static_cast<int>(number);
+        if (object_number_ < 0) return recorder_.stopObject();
+        const auto known = object_names_.find(object_number_);
+        recorder_.startObject(known != object_names_.end() ? known->second : fmt::format("object {}", object_number_),
+                              line_);
     }
     if (!named) return;
     text = trim(text.substr(at + 1));
     if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-    if (!text.empty()) recorder_.renameObject(text, line_);
+    if (text.empty()) return;
+    // Copies of one model that bear one name stay apart.
+    std::string name(text);
+    const auto same = [&](const auto& one) { return one.first != object_number_ && one.second == name; };
+    if (object_number_ >= 0 && std::any_of(object_names_.begin(), object_names_.end(), same))
+        name += fmt::format(" {}", object_number_);
+    recorder_.renameObject(name, line_);
+    if (object_number_ >= 0) object_names_.insert_or_assign(object_number_, std::move(name));
 }
 
 bool Machine::filamentKnown() const {

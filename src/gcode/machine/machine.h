@@ -173,8 +173,10 @@ private:
     std::map<std::string, Saved, std::less<>> saved_;
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;
-    MotionRecorder* moves_ = nullptr;  // nullptr: motion is not recorded
-    double drive_per_extrusion_ = 0;   // of the current move: movement of E over extrusion at the nozzle
+    int object_number_ = -1;                   // of the current object by M486; -1: none
+    std::map<int, std::string> object_names_;  // by number, as M486 A has named them
+    MotionRecorder* moves_ = nullptr;          // nullptr: motion is not recorded
+    double drive_per_extrusion_ = 0;           // of the current move: movement of E over extrusion at the nozzle
 
     MoveCounts counts_;
     double filament_mm_ = 0;

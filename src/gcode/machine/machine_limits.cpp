@@ -37,27 +37,21 @@ struct KlipperSample {
 
 class LimitsReader {
 public:
-    LimitsReader(const std::optional<PrinterLimits>& printer, Firmware firmware)
-        : printer_(printer), klipper_(firmware == Firmware::klipper), reprap_(firmware == Firmware::reprap) {}
+    LimitsReader(const std::optional<PrinterLimits>& printer, Firmware firmware, const SlicerLimits& slicer)
+        : printer_(printer),
+          slicer_(slicer),
+          klipper_(firmware == Firmware::klipper),
+          reprap_(firmware == Firmware::reprap) {}
 
     void comment(std::string_view text) {
         text = trimQuoted(text);
         const auto setting = keyAndValue(text);
-        if (setting && setting->first.find(' ') == std::string_view::npos)
-            pair(setting->first, setting->second);
-        else if (text.starts_with("Generated with Cura"))
-            cura_ = true;
+        if (setting && setting->first.find(' ') == std::string_view::npos) pair(setting->first, setting->second);
     }
 
     MachineSettings finish(CornerRule rule) {
         MachineLimits& limits = settings_.limits;
-        if (cura_ && !any_limit_ && !printer_) {
-            // fdmprinter.def.json, for a machine that says nothing else.
-            limits.speed = {500, 500, 500, 500};
-            limits.acceleration = {9000, 9000, 100, 10000};
-            limits.jerk = {20, 20, 0.4, 5};
-            limits.printing = limits.retracting = limits.travel = 4000;
-        }
+        if (isPlannedBySlicer()) takeSlicersLimits();
         // Legacy Marlin has one acceleration for printing and travel.
         if (flavor_ == "marlin") copy(Limit::printing, Limit::travel);
         settings_.most_printing = most_printing_;
@@ -78,7 +72,7 @@ private:
     CornerRule suggestedRule() const {
         if (printersRule() != CornerRule::automatic) return printersRule();
         if (klipper_ || flavor_ == "klipper") return CornerRule::corner_velocity;
-        if (cura_ && !any_limit_ && !printer_) return CornerRule::plan_jerk;
+        if (isPlannedBySlicer()) return slicer_.limits->rule;
         if (deviation_) return CornerRule::junction_deviation;
         return settings_.states_jerk ? CornerRule::slicer_jerk : CornerRule::jerk;
     }
@@ -177,19 +171,18 @@ private:
     void limit(std::string_view key, std::string_view kind, std::string_view value) {
         if (kind == "acceleration_extruding") {
             set(Limit::printing, key, value);
-            if (const auto most = number(value, Limit::printing)) most_printing_ = *most;
+            if (const auto most = number(value, Limit::printing); most && !ignoresSettings()) most_printing_ = *most;
         } else if (kind == "acceleration_retracting") {
             set(Limit::retracting, key, value);
         } else if (kind == "acceleration_travel") {
             set(Limit::travel, key, value);
-            if (const auto most = number(value, Limit::travel)) most_travel_ = *most;
+            if (const auto most = number(value, Limit::travel); most && !ignoresSettings()) most_travel_ = *most;
         } else if (kind == "junction_deviation") {
             deviation_ = number(value, Limit::junction_deviation).has_value();
             set(Limit::junction_deviation, key, value);
         } else {
             byAxis(key, kind, value);
         }
-        any_limit_ = true;
     }
 
     void byAxis(std::string_view key, std::string_view kind, std::string_view value) {
@@ -207,7 +200,24 @@ private:
         }
     }
 
+    bool ignoresSettings() const { return slicer_.ignores_settings && !printer_; }
+
+    bool isPlannedBySlicer() const { return slicer_.limits && !printer_; }
+
+    // Of a machine that the file doesn't name they are an assumption.
+    void takeSlicersLimits() {
+        for (std::size_t n = 0; n < kLimitCount; ++n) {
+            const auto limit = static_cast<Limit>(n);
+            valueOf(settings_.limits, limit) = valueOf(*slicer_.limits, limit);
+            settings_.origins[limit] = {};
+            if (!slicer_.machine.empty())
+                settings_.origins[limit] = {.kind = LimitOrigin::Kind::setting, .place = slicer_.machine};
+        }
+        settings_.states_jerk = true;
+    }
+
     void set(Limit limit, std::string_view key, std::string_view text) {
+        if (ignoresSettings()) return;
         const auto value = number(text, limit);
         if (!value) return;
         valueOf(settings_.limits, limit) = *value;
@@ -220,8 +230,7 @@ private:
     double most_printing_ = 0;
     double most_travel_ = 0;
     bool deviation_ = false;
-    bool any_limit_ = false;
-    bool cura_ = false;
+    const SlicerLimits& slicer_;
     const bool klipper_;
     const bool reprap_;
 };
@@ -237,8 +246,9 @@ void readComments(std::string_view part, LimitsReader& reader) {
 }  // namespace
 
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
-                                    const std::optional<PrinterLimits>& printer, Firmware firmware) {
-    LimitsReader reader(printer, firmware);
+                                    const std::optional<PrinterLimits>& printer, Firmware firmware,
+                                    const SlicerLimits& slicer) {
+    LimitsReader reader(printer, firmware, slicer);
     readComments(bytes.substr(0, kReach), reader);
     if (bytes.size() > kReach) {
         std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));

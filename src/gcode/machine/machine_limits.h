@@ -1,12 +1,13 @@
 // The machine's limits and the durations of tool changes, from a file's settings and from what the user says of the
 // printer.
 // Sources: the trailers and headers of PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio ("; machine_max_jerk_x =
-// 10,8": normal and silent mode); CuraEngine's defaults of fdmprinter.def.json, for its files state no limits.
+// 10,8": normal and silent mode). Cura's files state no limits: slicer/cura_machines.h.
 #pragma once
 
 #include "gcode/machine/read_options.h"
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,13 +29,21 @@ struct MachineSettings {
     double change = 0;                 ///< s, of every change of tool
 };
 
+/// By what a slicer is known to plan its times, whatever the printer's own limits.
+struct SlicerLimits {
+    std::optional<MachineLimits> limits;  ///< with the rule; of its definition of the machine
+    std::string machine;  ///< "definition of creality_ender3": where they are from; empty: no machine is named
+    bool ignores_settings = false;  ///< the machine_max_ lines that it writes don't count
+};
+
 /// Reads the comments at both ends of a program. Klipper reads none of a slicer's settings (machine_max_...): by its
 /// rule they are taken for an assumption, each for the limit that is most like it.
 /// @param rule      other than automatic: used unchanged
 /// @param printer   its limits win over the settings
 /// @param firmware  which the program is for; automatic: as the settings say
+/// @param slicer    holds only where no printer is given
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
                                     const std::optional<PrinterLimits>& printer = {},
-                                    Firmware firmware = Firmware::automatic);
+                                    Firmware firmware = Firmware::automatic, const SlicerLimits& slicer = {});
 
 }  // namespace stratum::gcode

@@ -211,8 +211,13 @@ void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t lin
     if (limit.velocity) take(Limit::path_speed, "SET_VELOCITY_LIMIT VELOCITY=", *limit.velocity, line);
     if (limit.acceleration && take(Limit::printing, "SET_VELOCITY_LIMIT ACCEL=", *limit.acceleration, line))
         change(Limit::travel, limits_.printing, line);
-    if (limit.corner_velocity)
-        take(Limit::corner_velocity, "SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY=", *limit.corner_velocity, line);
+    if (limit.corner_velocity &&
+        take(Limit::corner_velocity, "SET_VELOCITY_LIMIT SQUARE_CORNER_VELOCITY=", *limit.corner_velocity, line) &&
+        settings_.states_jerk) {
+        // OrcaSlicer's estimate takes it for the jerk in the plane.
+        change(ofAxis(Limit::jerk, 0), limits_.corner_velocity, line);
+        change(ofAxis(Limit::jerk, 1), limits_.corner_velocity, line);
+    }
     if (limit.cruise_ratio)
         take(Limit::cruise_ratio, "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=", *limit.cruise_ratio, line);
     // Only Klipper has this command.

@@ -1,4 +1,5 @@
-// The color of a bead's filament: that of the tool, as the file states it, until a manual change of filament.
+// The color of a bead's filament: that of the tool, as the file states it, until a manual change of filament. Where a
+// print has several filaments, those without a stated color have one of a palette.
 //
 // Sources: PrusaSlicer, OrcaSlicer and BambuStudio ("; filament_colour =", ";COLOR_CHANGE,T0,#RRGGBB").
 #pragma once
@@ -18,7 +19,12 @@ struct StatedColor {
     std::optional<Rgb> color;  ///< sRGB; nullopt if the file states none
     std::uint8_t tool = 0;
     bool changed = false;  ///< by a manual change of filament; else the tool's color in the settings
+    bool palette = false;  ///< the file states none: one of kCategoryColors, so that tools can be told apart
 };
+
+/// Gives tools that print, and changes of filament, a color of kCategoryColors if the file states none for them and
+/// there are several: tool n has the one that --color-by tool shows. One filament without a color stays without.
+void colorUnstated(Toolpath& toolpath);
 
 /// That of `toolpath.beads[bead]`.
 StatedColor statedColorOf(const Toolpath& toolpath, std::size_t bead);

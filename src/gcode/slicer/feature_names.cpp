@@ -39,6 +39,12 @@ constexpr std::array kFeatureTypes{
     Name{"unknown", Feature::unknown},
     Name{"travel", Feature::unknown},
     Name{"milling", Feature::unknown},
+    // Mosaic's Canvas, fiberslice
+    Name{"wall outer", Feature::external_perimeter},
+    Name{"wall inner", Feature::perimeter},
+    Name{"infill", Feature::infill},
+    Name{"bridging", Feature::bridge},
+    Name{"brim/skirt", Feature::skirt},
     // Cura
     Name{"wall-outer", Feature::external_perimeter},
     Name{"wall-inner", Feature::perimeter},

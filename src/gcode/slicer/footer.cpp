@@ -43,6 +43,8 @@ void setAt(std::vector<double>& list, std::size_t tool, std::string_view text) {
 }  // namespace
 
 bool readFooter(std::string_view text, Footer& footer) {
+    // Slic3r states grams by the same words.
+    if (text.starts_with("filament used =") && text.ends_with('g')) return true;
     if (takePrefix(text, "filament used [mm] =") || takePrefix(text, "filament used =") ||
         takePrefix(text, "Filament length:") || takePrefix(text, "--- filament used:")) {
         setLengths(text, 1, footer);

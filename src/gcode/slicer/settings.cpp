@@ -1,5 +1,7 @@
 #include "gcode/slicer/settings.h"
 
+#include "gcode/slicer/cura_machines.h"
+#include "gcode/slicer/cura_profile.h"
 #include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
 #include "gcode/text/setting_text.h"
@@ -71,9 +73,17 @@ std::string_view upTo(std::string_view text, std::string_view stop) {
     return trimQuoted(text.substr(0, text.find(stop)));
 }
 
+// Whether the program is by PrusaSlicer before 2.4, which heeded machine limits for gcode_flavor marlin alone.
+bool isOldPrusaSlicer(std::string_view slicer) {
+    if (!takePrefix(slicer, "PrusaSlicer 2.")) return false;
+    const auto minor = std::min(slicer.find_first_not_of("0123456789"), slicer.size());
+    return minor == 1 && slicer[0] < '4';
+}
+
 class SettingsReader {
 public:
     void comment(std::string_view text) {
+        if (cura_.comment(text)) return;
         text = trimQuoted(text);
         stated_.comment(text);
         if (readFooter(text, settings.footer)) return;
@@ -96,14 +106,10 @@ public:
     }
 
     Settings finish() {
-        // The filament's color is preferred; the extruder's is used in the slicer's own views only.
-        std::vector<std::optional<Rgb>>& tools = settings.tool_colors;
-        tools = std::move(filament_colors_);
-        tools.resize(std::max(tools.size(), extruder_colors_.size()));
-        for (std::size_t tool = 0; tool < extruder_colors_.size(); ++tool)
-            if (!tools[tool]) tools[tool] = extruder_colors_[tool];
-        while (!tools.empty() && !tools.back()) tools.pop_back();
         settings.stated = stated_.finish();
+        takeColors();
+        takeProfile();
+        settings.slicer_limits.ignores_settings = flavor_ != "marlin" && isOldPrusaSlicer(settings.slicer);
         return std::move(settings);
     }
 
@@ -111,11 +117,71 @@ public:
 
 private:
     StatedReader stated_;
+    CuraProfile cura_;
     std::vector<std::optional<Rgb>> filament_colors_;
     std::vector<std::optional<Rgb>> extruder_colors_;
+    bool config_block_ = false;  // of OrcaSlicer, BambuStudio and their kin
+    std::string flavor_;         // gcode_flavor
+
+    void takeColors() {
+        // The order of the slicer's own preview. The other list fills empty places.
+        const bool filaments_first = config_block_ || settings.slicer.find("Orca") != std::string::npos ||
+                                     settings.slicer.find("Bambu") != std::string::npos;
+        std::vector<std::optional<Rgb>>& tools = settings.tool_colors;
+        tools = std::move(filaments_first ? filament_colors_ : extruder_colors_);
+        const auto& others = filaments_first ? extruder_colors_ : filament_colors_;
+        tools.resize(std::max(tools.size(), others.size()));
+        for (std::size_t tool = 0; tool < others.size(); ++tool)
+            if (!tools[tool]) tools[tool] = others[tool];
+        while (!tools.empty() && !tools.back()) tools.pop_back();
+    }
+
+    // Cura's profile and its name of the machine. What the program states elsewhere counts more.
+    void takeProfile() {
+        if (cura_.isCura15()) name("Cura 15 or before");
+        if (cura_.isDamaged()) settings.damaged_part = "CURA_PROFILE_STRING";
+        std::string machine = settings.stated.printer;
+        const std::vector<CuraSetting> changed = cura_.settings();
+        for (const auto& [extruder, key, value] : changed) {
+            if (key == "machine_name" && !isCuraMachine(machine)) machine = value;
+            if (key == "definition" && !extruder && !isCuraMachine(machine)) machine = value;
+        }
+        MachineLimits limits = curaLimits(machine);
+        std::vector<double> diameters;
+        for (const auto& [extruder, key, value] : changed) {
+            setCuraLimit(key, value, limits);
+            if (key == "layer_height" && !settings.layer_height) settings.layer_height = positiveNumber(value, 100);
+            takeDiameter(extruder, key, value, diameters);
+        }
+        if (settings.filament_diameters.empty() && !diameters.empty()) {
+            // A tool without a diameter of its own has the first one's.
+            std::replace(diameters.begin(), diameters.end(), 0.0, diameters.front());
+            if (diameters.front() > 0) settings.filament_diameters = std::move(diameters);
+        }
+        const auto by = [this](std::string_view slicer) { return settings.slicer.find(slicer) != std::string::npos; };
+        if (!by("Cura") && !by("Creality Print V")) return;
+        settings.slicer_limits.limits = limits;
+        if (isCuraMachine(machine)) settings.slicer_limits.machine = "machine, " + machine;
+    }
+
+    // material_diameter of the print or of an extruder; Cura 15's filament_diameter, filament_diameter2, ...
+    static void takeDiameter(std::optional<std::size_t> extruder, std::string_view key, std::string_view value,
+                             std::vector<double>& diameters) {
+        std::size_t tool = extruder.value_or(0);
+        if (takePrefix(key, "filament_diameter")) {
+            if (key.size() > 1) return;
+            if (!key.empty()) tool = key[0] >= '2' && key[0] <= '9' ? static_cast<std::size_t>(key[0] - '1') : 0;
+        } else if (key != "material_diameter") {
+            return;
+        }
+        const auto diameter = positiveNumber(value, 100);
+        if (!diameter) return;  // Cura 15 writes 0 for a tool that takes the first one's
+        if (diameters.size() <= tool) diameters.resize(tool + 1);
+        diameters[tool] = *diameter;
+    }
 
     void pair(std::string_view key, std::string_view value) {
-        if (key == "filament_diameter") {
+        if (key == "filament_diameter" || key == "fiber_dia_mm") {  // the latter is KISSlicer's
             if (auto list = diameters(value, ","); !list.empty()) settings.filament_diameters = std::move(list);
         } else if (key == "layer_height" || key == "sliceHeight" ||  // Kiri:Moto's
                    key == "layer_thickness_mm") {                    // KISSlicer's
@@ -138,14 +204,22 @@ private:
         } else if (key == "extrusion_width" || key == "line_width") {
             if (value.find('%') == std::string_view::npos) settings.extrusion_width = positiveNumber(value, 100);
         } else if (key == "gcode_flavor") {
+            flavor_ = value;
             settings.firmware = firmwareOfFlavor(value);
             settings.firmware_reason = std::string("the file's gcode_flavor is ").append(value);
         }
     }
 
     void sentence(std::string_view text) {
-        if (takePrefix(text, "generated by ") || takePrefix(text, "Generated by ") ||
-            takePrefix(text, "G-Code generated by ")) {
+        if (text == "CONFIG_BLOCK_START") {
+            config_block_ = true;
+        } else if (text.starts_with("Creality Print GCode Generated")) {
+            name("Creality Print");
+        } else if (takePrefix(text, "Creality Print Version :")) {
+            name("Creality Print");
+            if (settings.slicer == "Creality Print") settings.slicer.append(" ").append(text);
+        } else if (takePrefix(text, "generated by ") || takePrefix(text, "Generated by ") ||
+                   takePrefix(text, "G-Code generated by ")) {
             name(upTo(upTo(text, " on "), " (Build"));
         } else if (takePrefix(text, "Generated with ") || takePrefix(text, "GCode created with ") ||
                    text.starts_with("BambuStudio ") || text.starts_with("KISSlicer") || text.starts_with("CraftWare")) {
@@ -159,8 +233,8 @@ private:
                 settings.slicer.append(" ").append(text);
         } else if (takePrefix(text, "FLAVOR:")) {
             curaFlavor(text);
-        } else if (takePrefix(text, "Layer height:") || takePrefix(text, "layerHeight,") ||
-                   takePrefix(text, "layer_height:")) {
+        } else if (takePrefix(text, "Layer height:") || takePrefix(text, "Layer Height:") ||
+                   takePrefix(text, "layerHeight,") || takePrefix(text, "layer_height:")) {
             if (const auto height = positiveNumber(text, 100)) settings.layer_height = height;
         } else if (takePrefix(text, "Filament Diameter #")) {
             const auto colon = text.find(':');
@@ -169,8 +243,10 @@ private:
             if (diameter) settings.filament_diameters.push_back(*diameter);
         } else if (takePrefix(text, "relativeEdistances,")) {
             settings.relative_e = flag(text);
-        } else if (takePrefix(text, "filamentDiameters,")) {
-            if (auto list = diameters(text, "|"); !list.empty()) settings.filament_diameters = std::move(list);
+        } else if (takePrefix(text, "filamentDiameters,") || takePrefix(text, "filamentDiameter,") ||
+                   takePrefix(text, "Material Diameter:") || takePrefix(text, "filament_diameter:")) {
+            // Simplify3D 4 and 3, Creality Print, BambuStudio's and OrcaSlicer's header
+            if (auto list = diameters(text, "|,"); !list.empty()) settings.filament_diameters = std::move(list);
         }
     }
 
@@ -180,7 +256,7 @@ private:
 
     void curaFlavor(std::string_view flavor) {
         settings.firmware = flavor == "RepRap"        ? Firmware::reprap
-                            : flavor == "Creality OS" ? Firmware::klipper  // Creality's own of Klipper
+                            : flavor == "Creality OS" ? Firmware::klipper  // Klipper of the K1 and its kin
                                                       : Firmware::marlin;
         settings.firmware_reason = std::string("the file's FLAVOR is ").append(flavor);
         // With two of Cura's flavours E is in mm^3, which only the printer's settings state; M200 in the file overrides

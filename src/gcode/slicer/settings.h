@@ -1,9 +1,11 @@
 // Settings in a file's first and last comments: slicer, filament, layer height, mode and unit of E.
 // Sources: the config blocks of PrusaSlicer, SuperSlicer, Slic3r, OrcaSlicer, BambuStudio ("; key = value"), the
-// headers of Cura, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Skeinforge's "(<layerHeight> 0.3 )".
+// headers of Cura, Creality Print, ideaMaker, Simplify3D, Kiri:Moto, KISSlicer and Griffin files, Cura's profiles
+// (cura_profile.h), Skeinforge's "(<layerHeight> 0.3 )". Which color a preview shows: GCodeProcessor.cpp of PrusaSlicer
+// (extruder_colour, filament_colour where that is empty), Plater.cpp of OrcaSlicer and BambuStudio (filament_colour).
 #pragma once
 
-#include "gcode/machine/read_options.h"
+#include "gcode/machine/machine_limits.h"
 #include "gcode/slicer/extrusion_scan.h"
 #include "gcode/slicer/footer.h"
 #include "gcode/toolpath/color.h"
@@ -26,7 +28,7 @@ struct Settings {
     std::optional<bool> relative_e;               ///< E words are increments
     std::optional<bool> volumetric_e;             ///< E words are mm^3
     std::string volumetric_reason;                ///< where the file states it
-    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool: the filament's color, else the extruder's
+    std::vector<std::optional<Rgb>> tool_colors;  ///< by tool, as the slicer's own preview has it
     std::vector<Point> tool_offsets;        ///< mm by tool, which the slicer has subtracted; empty if all are zero
     std::optional<double> nozzle_diameter;  ///< mm, of the first tool
     std::optional<double> extrusion_width;  ///< mm
@@ -35,6 +37,8 @@ struct Settings {
     bool shared_nozzle = false;             ///< several filaments share one nozzle
     Firmware firmware = Firmware::automatic;
     std::string firmware_reason;  ///< the file's statement about it
+    SlicerLimits slicer_limits;   ///< Cura's by the machine's name or a profile; those of old PrusaSlicer
+    std::string damaged_part;     ///< of the settings, in words, that couldn't be read; empty if there is none
     Footer footer;                ///< the filament that the file states
     StatedFacts stated;           ///< other statements about the print
 };

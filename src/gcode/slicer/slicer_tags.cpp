@@ -59,13 +59,13 @@ Tag ofNumberedLayer(std::string_view text) {
 // Simplify3D: "tool H0.200 W0.450".
 Tag ofToolShape(std::string_view text) { return take(text, "H") ? ofHeight(text) : Tag{}; }
 
-// KISSlicer: "'Sparse Infill Path', 0.9 [feed mm/s], 52.5 [head mm/s]".
+// KISSlicer: "'Sparse Infill Path', 0.9 [feed mm/s], 52.5 [head mm/s]"; 1.1.0.5 and before: "'Sparse Infill', ...".
 Tag ofPath(std::string_view text) {
+    if (text.find("[feed mm/s]") == std::string_view::npos) return {};
     text.remove_prefix(1);
-    const auto end = text.find(" Path'");
-    if (end == std::string_view::npos) return {};
-    text = text.substr(0, end);
-    if (text.starts_with("Destring")) return {};
+    text = text.substr(0, text.find('\''));
+    if (text.ends_with(" Path")) text.remove_suffix(5);
+    if (text.starts_with("Destring") || text.starts_with("Wipe")) return {};
     return {.kind = Tag::Kind::feature, .feature = featureOfPath(text).value_or(Feature::unknown), .text = text};
 }
 

@@ -14,17 +14,19 @@ constexpr std::size_t kTrailerReach = std::size_t{1} << 18;  // thumbnails and C
 
 struct Trailer {
     std::string_view slicer;
-    std::array<std::string_view, 3> any_of;  // texts in the file; one of them is enough
+    std::array<std::string_view, 4> any_of;  // texts in the file; one of them is enough; the rest is empty
 };
 
 constexpr std::array kTrailers{
     Trailer{"PrusaSlicer", {"; filament used [", "; prusaslicer_config = end", "; filament used = "}},
     Trailer{"SuperSlicer", {"; filament used [", "; SuperSlicer_config = end", "; filament used = "}},
-    Trailer{"Orca", {"; filament used [", "; CONFIG_BLOCK_END", "; EXECUTABLE_BLOCK_END"}},
+    // Orca for FlashForge has its settings in front
+    Trailer{"Orca", {"; filament used [", "; CONFIG_BLOCK_END", "; EXECUTABLE_BLOCK_END", "\nM73 P100"}},
     Trailer{"BambuStudio", {"; EXECUTABLE_BLOCK_END", "; filament end gcode", "; filament used ["}},
     Trailer{"Flash Studio", {"; EXECUTABLE_BLOCK_END", "; CONFIG_BLOCK_END", "; filament used ["}},
     Trailer{"Slic3r", {"; filament used = ", "; filament used [", "; top_solid_layers = "}},
-    Trailer{"Cura", {";End of Gcode", ";SETTING_3 ", ";End of gcode"}},
+    Trailer{"Cura 15", {";CURA_PROFILE_STRING:"}},
+    Trailer{"Cura", {";End of Gcode", ";SETTING_3 ", ";End of gcode", ";CURA_PROFILE_STRING:"}},
     Trailer{"Simplify3D", {"; Build Summary", ";   Build time: ", ";   Plastic volume: "}},
     Trailer{"ideaMaker", {";Material#1 Used", ";Print Time: ", ";Material#2 Used"}},
     Trailer{"Kiri:Moto", {"; --- filament used", "; --- print time", ";; --- filament used"}},
@@ -67,7 +69,7 @@ std::string findCut(std::string_view bytes, std::string_view slicer) {
     for (const Trailer& trailer : kTrailers) {
         if (slicer.find(trailer.slicer) == std::string_view::npos) continue;
         const bool there = std::any_of(trailer.any_of.begin(), trailer.any_of.end(), [tail](std::string_view text) {
-            const auto at = tail.rfind(text);
+            const auto at = text.empty() ? std::string_view::npos : tail.rfind(text);
             return at != std::string_view::npos && !moves(tail.substr(at));
         });
         if (!there) return fmt::format("what {} writes behind a program is missing", trailer.slicer);

@@ -40,7 +40,7 @@ std::string_view commentOf(std::string_view line) {
 }
 
 bool isLoneSemicolon(std::string_view line) { return trim(line, kWhite) == ";"; }
-bool isBlank(std::string_view line) { return trim(line, kWhite).empty(); }
+bool isBlankLine(std::string_view line) { return trim(line, kWhite).empty(); }
 
 // "thumbnail_QOI" of "thumbnail_QOI begin 16x16 600"; empty if the comment begins no block.
 std::string_view tagOf(std::string_view comment, std::string_view what) {
@@ -106,7 +106,7 @@ private:
             if (before.begin >= least && fits(before.in(text_))) block.begin = before.begin;
         };
         take(isLoneSemicolon);
-        if (!block.spaced) take(isBlank);
+        if (!block.spaced) take(isBlankLine);
         if (block.end < text_.size()) {
             const Line after = lineAt(text_, block.end);
             if (isLoneSemicolon(after.in(text_))) block.end = after.next;

@@ -34,14 +34,18 @@ double widthOf(const Toolpath& toolpath, const Bead& bead, double area, double h
 
 }  // namespace
 
-void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
-                     WarningLog& warnings) {
+void resolveHeights(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
+                    WarningLog& warnings) {
     const bool all_tagged =
         std::all_of(toolpath.runs.begin(), toolpath.runs.end(), [](const Run& run) { return run.height > 0; });
-    if (!all_tagged) {
-        const std::vector<double> heights = findHeights(toolpath, run_z, nominal_height, warnings);
-        for (std::size_t k = 0; k < heights.size(); ++k) toolpath.runs[k].height = static_cast<float>(heights[k]);
-    }
+    if (all_tagged) return;
+    const std::vector<double> heights = findHeights(toolpath, run_z, nominal_height, warnings);
+    for (std::size_t k = 0; k < heights.size(); ++k) toolpath.runs[k].height = static_cast<float>(heights[k]);
+}
+
+void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
+                     WarningLog& warnings) {
+    resolveHeights(toolpath, run_z, nominal_height, warnings);
     for (Bead& bead : toolpath.beads) {
         const double height = static_cast<double>(toolpath.runOf(bead).height);
         bead.width = static_cast<float>(widthOf(toolpath, bead, static_cast<double>(bead.width), height, warnings));

@@ -12,6 +12,10 @@
 
 namespace stratum::gcode {
 
+/// Finds the heights of runs that no tag has set. Those that are set stay.
+void resolveHeights(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
+                    WarningLog& warnings);
+
 /// `toolpath.beads[i].width` holds the section's area in mm^2 and becomes the width in mm. `toolpath.runs[k].height` is
 /// the tagged height, or 0 if findHeights() must find it; `run_z` and `nominal_height` are its parameters. Warns of the
 /// last layer if the program is truncated.

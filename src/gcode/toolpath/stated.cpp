@@ -146,11 +146,16 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
         facts_.model_seconds = parseDuration(value);
     } else if (key == "total filament weight [g]" || key == "Plastic weight") {
         if (const auto grams = sum(value)) facts_.grams = grams;
-    } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer") {
+    } else if (key == "machine_type" || key == "TARGET_MACHINE.NAME" || key == "Target" || key == "Printer" ||
+               key == "Machine Name") {
         if (!value.empty()) facts_.printer = value;
+    } else if (key == "Material Type") {
+        setMaterial(0, value);
+    } else if (key == "ExtruderParams[0] Nozzle Diameter") {
+        setNozzle(0, value);
     } else if (key == "right_extruder_material" || key == "left_extruder_material") {
         setMaterial(key.starts_with("left") ? 1 : 0, value);
-    } else if (key == "layer_height" || key == "Layer height") {
+    } else if (key == "layer_height" || key == "Layer height" || key == "Layer Height") {
         if (const auto height = positiveNumber(value, 100)) facts_.layer_height = height;
     } else if (const auto train = takeTool(key, "EXTRUDER_TRAIN.")) {
         if (key == ".NOZZLE.DIAMETER") setNozzle(*train, value);

@@ -6,7 +6,7 @@
 // filamentDensities, filamentPricesPerKg); ideaMaker
 // ("Print Time:"); KISSlicer ("Estimated Build Time: 332.83 minutes"); Kiri:Moto ("--- print time: 806s ---");
 // FlashPrint ("machine_type:", "right_extruder_material:") and the header of its .gx; Snapmaker Luban
-// ("estimated_time(s):", "Extruder 0 Material:").
+// ("estimated_time(s):", "Extruder 0 Material:"); Creality Print ("Machine Name:", "Material Type:").
 #pragma once
 
 #include <optional>

@@ -88,6 +88,7 @@ struct ColorChange {
     std::uint32_t first_bead = 0;  ///< index into Toolpath::beads; may be one past the last
     std::uint8_t tool = 0;
     Rgb color{};
+    bool stated = true;  ///< by the file; else the color is one of kCategoryColors
 };
 
 /// Time and speeds of a bead, as the motion planner computes them (src/motion).
@@ -124,17 +125,19 @@ struct Toolpath {
     std::uint32_t layer_count = 0;
     /// By tool, from the file's settings; empty for a tool without one; may be short. Use bead_colors.h.
     std::vector<std::optional<Rgb>> tool_colors;
-    std::vector<ColorChange> color_changes;  ///< in print order
-    std::vector<BeadTiming> timing;          ///< by bead; empty unless its motion was planned
-    std::vector<BeadFlow> flow;              ///< by bead; empty unless it was simulated
-    std::vector<double> filament_by_tool;    ///< mm as the file counts it, by T number; may be short
-    std::vector<double> footer_by_tool;      ///< mm of each tool as the file states it; empty if it doesn't
-    double footer_mm = 0;                    ///< mm of all tools as the file states it; 0 if it doesn't
+    std::vector<std::uint8_t> palette_tools;  ///< those of kCategoryColors, for want of a statement: colorUnstated()
+    std::vector<ColorChange> color_changes;   ///< in print order
+    std::vector<BeadTiming> timing;           ///< by bead; empty unless its motion was planned
+    std::vector<BeadFlow> flow;               ///< by bead; empty unless it was simulated
+    std::vector<double> filament_by_tool;     ///< mm as the file counts it, by T number; may be short
+    std::vector<double> footer_by_tool;       ///< mm of each tool as the file states it; empty if it doesn't
+    double footer_mm = 0;                     ///< mm of all tools as the file states it; 0 if it doesn't
     StatedFacts stated;           ///< the file's statements of time, weight, material, nozzle, printer, layers
     std::string extrusion_rule;   ///< unit of E and its source: "mm of filament of 1.75 mm (assumed)"
     std::string firmware_reason;  ///< why that rule set was chosen
     std::string cut_short;        ///< why the program seems truncated; empty if it doesn't
     double filament_mm = 0;       ///< positive E of the beads as the file counts it, in mm of filament
+    double prime_mm = 0;          ///< the part of it that is laid before the first layer: prime lines (layer 0)
     double extruded_mm3 = 0;      ///< the same as volume, times the flow factor (M221): the expected sum of all beads
 
     const Run& runOf(const Bead& bead) const { return runs[bead.run]; }

@@ -1,5 +1,6 @@
 #include "shade/scene/material.h"
 
+#include "base/category_colors.h"
 #include "base/error.h"
 #include "shade/palette/filament_color.h"
 
@@ -118,12 +119,7 @@ ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::sha
     for (const auto& brdf : brdfs) materials_.push_back({brdf, reflectanceFactor(*brdf), brdf->variesByPlace()});
 }
 
-Color categoryColor(std::size_t n) {
-    // After Okabe and Ito's set for all kinds of color vision, with three more.
-    constexpr std::array<std::uint32_t, 10> kColors = {0xe69f00, 0x0072b2, 0x009e73, 0xd55e00, 0xcc79a7,
-                                                       0x56b4e9, 0xf0e442, 0x7a4a2a, 0x8a8a8a, 0x2f2f4f};
-    return fromSrgb(kColors[n % kColors.size()]);
-}
+Color categoryColor(std::size_t n) { return fromSrgb(kCategoryColors[n % kCategoryColors.size()]); }
 
 Color rampColor(double t) {
     constexpr std::array<std::uint32_t, 6> kStops = {0x2a1a5e, 0x2b5a92, 0x1f8f8c, 0x4fb562, 0xb5cf3f, 0xf7e65a};

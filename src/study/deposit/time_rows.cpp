@@ -44,8 +44,9 @@ Row timesOfPrint(const std::string& path) {
     // CuraEngine without Cura, which would fill it in, states the same time for all prints.
     constexpr double kNoTime = 6666;
     const bool filled = !(print.toolpath.slicer.starts_with("Cura") && facts.seconds == kNoTime);
-    const double stated = filled ? facts.model_seconds.value_or(facts.seconds.value_or(0)) : 0;
-    const double planned = print.times->total;
+    const motion::StatedTime time = motion::statedTime(*print.times, facts);
+    const double stated = filled ? time.stated : 0;
+    const double planned = time.planned;
     return {print.toolpath.slicer,
             print.times->rule,
             stated > 0 ? fmt::format("{:.1f}", stated) : "",

@@ -280,5 +280,18 @@ TEST(Machine, NamesOfFirmwares) {
     EXPECT_EQ(firmwareName(Firmware::automatic), "automatic");
 }
 
+// PrusaSlicer from 2.8 on names all objects first; Marlin's and RepRapFirmware's numbers alone are names as well.
+TEST(Machine, ObjectsAreCalledByTheNumberThatTheirNameWasGiven) {
+    const Toolpath toolpath = readProgram(
+        "M83\nG1 Z.2\nM486 S0\nM486 Alid\nM486 S-1\nM486 S3\nM486 Alid\nM486 S-1\nM486 S3\nG1 X10 E1\nM486 S0\nG1 X20 "
+        "E1\nM486 S7\nG1 X30 E1\nM486 S-1\nG1 X40 E1\n");
+    ASSERT_EQ(toolpath.beads.size(), 4U);
+    const auto object = [&](std::size_t bead) { return toolpath.objects[toolpath.runOf(toolpath.beads[bead]).object]; };
+    EXPECT_EQ(object(0), "lid 3");  // two copies of one name stay apart
+    EXPECT_EQ(object(1), "lid");
+    EXPECT_EQ(object(2), "object 7");
+    EXPECT_EQ(object(3), "");
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -222,8 +222,6 @@ TEST(MachineSettings, AreReadFromTrailers) {
     EXPECT_EQ(readMachineSettings("; machine_max_speed_x = 350,160\n", CornerRule::automatic).limits.speed[0], 350);
     EXPECT_EQ(readMachineSettings("; machine_max_junction_deviation = 0.02\n", CornerRule::automatic).limits.rule,
               CornerRule::junction_deviation);
-    EXPECT_EQ(readMachineSettings(";Generated with Cura_SteamEngine 4.13.0\n", CornerRule::automatic).limits.rule,
-              CornerRule::plan_jerk);
     EXPECT_EQ(readMachineSettings("; gcode_flavor = klipper\n", CornerRule::automatic).limits.rule,
               CornerRule::corner_velocity);
     EXPECT_EQ(readMachineSettings("; gcode_flavor = klipper\n", CornerRule::jerk).limits.rule, CornerRule::jerk);

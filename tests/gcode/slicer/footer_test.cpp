@@ -17,6 +17,7 @@ Footer footerOf(std::string_view comment) {
 
 TEST(Footer, OfSeveralSlicers) {
     EXPECT_EQ(footerOf("filament used = 290.4mm (0.7cm3)").length, (List{290.4}));
+    EXPECT_TRUE(footerOf("filament used = 22.6g").length.empty());  // Slic3r's grams, by the same words
     EXPECT_EQ(footerOf("filament used [mm] = 1.5, 2").length, (List{1.5, 2}));
     EXPECT_EQ(footerOf("Filament used: 0.5m, 0m").length, (List{500, 0}));
     EXPECT_EQ(footerOf("Filament length: 2706.2 mm (2.71 m)").length, (List{2706.2}));

@@ -74,7 +74,7 @@ TEST(MixedColors, ToolsOfAProgram) {
     EXPECT_EQ(warningCount(toolpath, "mixes"), 0U);
     // Without them there is nothing to mix, and that is said once.
     const Toolpath bare = readProgram(program);
-    EXPECT_EQ(colorOf(bare, 2), std::nullopt);
+    EXPECT_TRUE(statedColorOf(bare, 2).palette);
     EXPECT_EQ(warningCount(bare, "mixes filaments"), 1U);
     // One filament's colour is missing.
     EXPECT_EQ(warningCount(readProgram(program, withColors({kYellow})), "more filaments than have a colour"), 1U);
