@@ -3,6 +3,7 @@
 #include "choices.h"
 
 #include "deposit/printer.h"
+#include "gcode/machine/belt.h"
 #include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
 
@@ -154,6 +155,14 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
     app.add_option("--layer-height", options.read.layer_height, "Where neither tags nor Z moves tell")
         ->check(CLI::Range(0.001, 50.0))
         ->type_name("MM")
+        ->group(reading);
+    app.add_option("--belt", options.read.belt_angle,
+                   "Of a belt printer: the angle between gantry and belt, e.g. 45; layers are level then")
+        ->check(CLI::Range(gcode::kFlattestBelt, gcode::kSteepestBelt))
+        ->type_name("DEGREES")
+        ->group(reading);
+    app.add_flag("--planar", options.read.planar,
+                 "Reads programs that turn the part or the nozzle (axes A, B, C) by X, Y and Z alone")
         ->group(reading);
     app.add_option("--e-mode", options.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
         ->transform(namesOf(gcode::kExtruderModes))

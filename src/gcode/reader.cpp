@@ -5,12 +5,14 @@
 #include "gcode/container/sniff.h"
 #include "gcode/filament.h"
 #include "gcode/machine/bead_recorder.h"
+#include "gcode/machine/belt.h"
 #include "gcode/machine/machine.h"
 #include "gcode/machine/motion_recorder.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/slicer/mixed_colors.h"
 #include "gcode/slicer/settings.h"
 #include "gcode/text/lexer.h"
+#include "gcode/text/trade.h"
 #include "gcode/toolpath/sections.h"
 #include "gcode/toolpath/warning_log.h"
 
@@ -36,9 +38,16 @@ void checkOptions(const ReadOptions& options) {
                                      firmwareName(options.printer->firmware), firmwareName(options.firmware)));
     if (options.layer_height && !(*options.layer_height >= 0.001 && *options.layer_height <= 100))
         throw UsageError(fmt::format("layer height {} mm: expected 0.001 to 100, e.g. 0.2", *options.layer_height));
+    if (options.belt_angle && !(*options.belt_angle >= kFlattestBelt && *options.belt_angle <= kSteepestBelt))
+        throw UsageError(
+            fmt::format("belt angle {} degrees: expected {} to {}, the angle between gantry and belt, e.g. "
+                        "45",
+                        *options.belt_angle, kFlattestBelt, kSteepestBelt));
 }
 
-[[noreturn]] void refuseWithoutBeads(const MoveCounts& counts, std::string_view name) {
+[[noreturn]] void refuseWithoutBeads(const MoveCounts& counts, std::string_view text, std::string_view name) {
+    if (const std::string trade = describeTrade(text); !trade.empty())
+        throw InputError(fmt::format("{}: no extruding move: this is {}", name, trade));
     if (counts.commands == 0)
         throw InputError(fmt::format("{}: no G-code command in it; give the slicer's .gcode file", name));
     throw InputError(
@@ -109,6 +118,16 @@ void nameObjects(const Program& program, Toolpath& toolpath) {
     }
 }
 
+void warnOfBelt(const ReadOptions& options, std::string_view printer, WarningLog& warnings) {
+    if (options.belt_angle) return;
+    for (const std::string_view name : {"CR-30", "CR30", "BLACKBELT", "BlackBelt", "Blackbelt"})
+        if (printer.find(name) != std::string_view::npos)
+            return warnings.add(fmt::format("{} prints on a belt, which Z moves: without the angle of its gantry "
+                                            "(--belt 45) the print is skewed",
+                                            name),
+                                1);
+}
+
 }  // namespace
 
 Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadOptions& options) {
@@ -119,8 +138,8 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     if (options.progress) unpacking = [&options](double fraction) { options.progress(kUnpackingShare * fraction); };
     const Program program = openContainer(bytes, name, options.plate, {}, unpacking);
     const double before = program.unpacked.size() > 0 ? kUnpackingShare : 0;
-    const std::string_view text = program.text;
-    refuseOtherFormats(text, name);
+    const std::string_view text = withoutZeroTail(program.text);
+    refuseOtherFormats(text.empty() ? program.text : text, name);
     Settings settings = readSettings(text);
     if (!program.cut_short.empty()) settings.cut_short = program.cut_short;
     const std::optional<double> nominal = options.layer_height ? options.layer_height : settings.layer_height;
@@ -128,6 +147,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
     WarningLog warnings;
     if (!settings.damaged_part.empty())
         warnings.add(fmt::format("{} is damaged; its settings are left out", settings.damaged_part), 1);
+    warnOfBelt(options, settings.stated.printer, warnings);
     BeadRecorder recorder(nominal.value_or(0.2), text.size() / kBytesPerBead, warnings);
     Machine machine(settings, options, name, recorder, warnings);
     std::optional<MotionRecorder> motion;
@@ -148,9 +168,10 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
             options.progress(before + (1 - before) * static_cast<double>(reported) / static_cast<double>(text.size()));
         }
     }
+    recorder.finish();
     if (motion) motion->finish();
     Toolpath& recorded = recorder.toolpath();
-    if (recorded.empty()) refuseWithoutBeads(machine.counts(), name);
+    if (recorded.empty()) refuseWithoutBeads(machine.counts(), text, name);
     const bool filament_known = takeFilament(settings.footer, machine, recorded, warnings);
     resolveHeights(recorded, recorder.runZ(), nominal, warnings);
     if (!filament_known) chooseFilament(settings.nozzle_diameter, recorded, warnings);

@@ -34,7 +34,7 @@ Reads one G-code program: a path, or bytes; plain text or any container (gzip, .
 timed: plan the motion of the machine, for Toolpath.timing and Toolpath.times; takes about twice as long.
 progress: called with the fraction done, 0..1.
 The options are those of the tools: plate, filament_diameter (mm, one or by tool), filament_colors (one or
-by tool, as --color), layer_height (mm), e_mode, firmware,
+by tool, as --color), layer_height (mm), belt (degrees), planar, e_mode, firmware,
 planner, printer, beads, section, flow_lag (s), pressure_advance (s), sag.
 
 Raises InputError for what is no G-code, UsageError for options out of range.)";

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <system_error>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -39,6 +41,29 @@ std::string listPlates(const std::vector<ZipPlate>& plates) {
     std::string list;
     for (std::size_t i = 0; i < plates.size(); ++i) list += fmt::format("{}{}", i == 0 ? "" : ", ", plates[i].number);
     return list;
+}
+
+// What a zip with that entry is, if it isn't a print that can be read.
+std::string_view foreignKind(std::string_view entry) {
+    constexpr std::array kKinds{
+        std::pair{
+            "Metadata/project_settings.config",
+            "is a project of BambuStudio or OrcaSlicer that was saved without its G-code; open it there, slice it, "
+            "and export the sliced plate"},
+        std::pair{"Metadata/Slic3r_PE.config",
+                  "is a project of PrusaSlicer, without G-code; open it there, slice it, and export the G-code"},
+        std::pair{"Cura/version.ini",
+                  "is a project of Cura, without G-code; open it there, slice it, and save to disk"},
+        std::pair{"print.jsontoolpath",
+                  "is a .makerbot file, whose moves are JSON of MakerBot's own; export .gcode or .x3g's source from a "
+                  "slicer instead"},
+        std::pair{"prusaslicer.ini", "is a picture stack of a resin printer; this program reads what a nozzle lays"},
+        std::pair{"AndroidManifest.xml", "is an Android app, not a print"},
+        std::pair{"word/document.xml", "is a Word document, not a print"},
+    };
+    for (const auto& [name, what] : kKinds)
+        if (entry == name) return what;
+    return {};
 }
 
 }  // namespace
@@ -80,6 +105,7 @@ ZipContents listZip(zip_t* archive, std::string_view name) {
         if (entry == "3D/_rels/model.gcode.rels") contents.relations = index;
         if (entry.starts_with("Materials/")) contents.materials.emplace_back(entry, index);
         if (entry == "3D/3dmodel.model") contents.model = true;
+        if (contents.foreign.empty()) contents.foreign = foreignKind(entry);
         if (const int number = plateNumber(entry); number > 0) contents.plates.push_back({number, index});
     }
     std::sort(contents.plates.begin(), contents.plates.end(),

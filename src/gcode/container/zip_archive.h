@@ -37,7 +37,8 @@ struct ZipContents {
     std::optional<zip_uint64_t> slice_info;  ///< of a 3mf
     std::optional<zip_uint64_t> relations;   ///< of a ufp's model
     std::vector<std::pair<std::string, zip_uint64_t>> materials;
-    bool model = false;  ///< an unsliced 3MF project
+    bool model = false;             ///< an unsliced 3MF model
+    std::string_view foreign = {};  ///< what else it is, and what to do; empty if nothing tells
     zip_int64_t entries = 0;
 };
 

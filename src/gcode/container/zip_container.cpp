@@ -54,6 +54,8 @@ Program openZip(std::string_view bytes, std::string_view name, std::optional<int
         program.format = "ufp";
         index = *contents.ufp_model;
         program.facts = readMaterials(archive.get(), contents, name);
+    } else if (!contents.foreign.empty()) {
+        throw InputError(fmt::format("{}: {}", name, contents.foreign));
     } else if (contents.model) {
         throw InputError(fmt::format("{}: is a 3MF model without G-code; slice it and export the sliced plate", name));
     } else {

@@ -14,6 +14,7 @@ namespace stratum::gcode {
 namespace {
 
 constexpr double kSameZ = 1e-6;  // mm; rounding of relative moves, far below the precision of files
+constexpr std::size_t kMostPrimeBeads = 100;
 
 }  // namespace
 
@@ -25,8 +26,12 @@ BeadRecorder::BeadRecorder(double nominal_height, std::size_t expected_beads, Wa
 void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
     switch (tag.kind) {
         case Tag::Kind::none:
+        case Tag::Kind::filament_loaded:
+        case Tag::Kind::units_set:
             break;
         case Tag::Kind::feature:
+            if (!features_) startPart();
+            features_ = true;
             next_.feature = tag.feature;
             if (tag.feature == Feature::unknown && !featureOfType(tag.text))
                 warnings_.add(fmt::format("unknown feature name \"{}\"", tag.text.substr(0, 60)), line);
@@ -69,21 +74,54 @@ void BeadRecorder::changeFilament(std::uint32_t line) {
 void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {
     const auto here = static_cast<std::uint32_t>(toolpath_.beads.size());
     // Machines set up many tools before they print, and gradients mix anew for every layer.
-    std::erase_if(mixes_, [&](const MixChange& one) { return one.first_bead == here && one.tool == mix.tool; });
+    const auto first = std::find_if(mixes_.rbegin(), mixes_.rend(), [here](const MixChange& one) {
+                           return one.first_bead != here;
+                       }).base();
+    mixes_.erase(std::remove_if(first, mixes_.end(), [&](const MixChange& one) { return one.tool == mix.tool; }),
+                 mixes_.end());
     mixes_.push_back({here, mix.tool, std::move(mix.shares), line});
+}
+
+void BeadRecorder::restartLayers() {
+    for (Run& run : toolpath_.runs) run.layer = 0;
+    next_.layer = 0;
+}
+
+void BeadRecorder::startPart() {
+    if (layer_marks_ || part_started_) return;
+    part_started_ = true;
+    if (toolpath_.beads.size() <= kMostPrimeBeads) restartLayers();
 }
 
 void BeadRecorder::markLayer(const Tag& mark) {
     if (!layer_marks_) {
         // The file has marks, so the beads counted by z so far came before the first layer.
         layer_marks_ = true;
-        for (Run& run : toolpath_.runs) run.layer = 0;
-        next_.layer = 0;
+        restartLayers();
     }
-    // One layer, marked once by each process that prints in it.
-    if (!(mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ)) ++next_.layer;
-    mark_z_ = mark.z;
+    // One layer, marked once by each process that prints in it, or once by the slicer and once by who asked for it.
+    const bool same_z = mark.z && mark_z_ && std::abs(*mark.z - *mark_z_) < kSameZ;
+    const bool again = !mark_.empty() && mark.text != mark_ && toolpath_.beads.size() == beads_before_mark_;
     if (mark.height > 0) tag({.kind = Tag::Kind::height, .height = mark.height}, 0);
+    if (again) return;
+    if (!same_z) ++next_.layer;
+    mark_ = mark.text;
+    mark_z_ = mark.z;
+    beads_before_mark_ = toolpath_.beads.size();
+}
+
+void BeadRecorder::finish() {
+    auto& runs = toolpath_.runs;
+    if (!layer_marks_ || std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.layer > 0; })) return;
+    layer_marks_ = false;
+    next_.layer = 0;
+    std::size_t done = 0;
+    for (const Bead& bead : toolpath_.beads) {
+        const Point from{bead.x0, bead.y0, bead.z0};
+        const Point to{bead.x1, bead.y1, bead.z1};
+        countLayer(from, to, std::abs(to.z - from.z) > kSameZ);
+        for (; done <= bead.run; ++done) runs[done].layer = next_.layer;
+    }
 }
 
 void BeadRecorder::startObject(std::string_view name, std::uint32_t line) {

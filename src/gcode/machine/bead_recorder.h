@@ -24,6 +24,11 @@ public:
     BeadRecorder(double nominal_height, std::size_t expected_beads, WarningLog& warnings);
 
     void tag(const Tag& tag, std::uint32_t line);
+    /// The start program ends here: in files without layer marks, what was laid before is no part of the print.
+    void startPart();
+    /// To be called behind the program. A print that has marks of layers, but none before the last bead, is counted by
+    /// z after all.
+    void finish();
     void setTool(std::uint8_t tool) { next_.tool = tool; }
     void setSpeed(double speed) { next_.speed = static_cast<float>(speed); }
     void startObject(std::string_view name, std::uint32_t line);
@@ -49,6 +54,7 @@ public:
 
 private:
     void markLayer(const Tag& tag);
+    void restartLayers();
     void countLayer(const Point& from, const Point& to, bool sloped);
 
     Toolpath toolpath_;
@@ -57,7 +63,11 @@ private:
     Run next_;
     double nominal_height_;
     bool layer_marks_ = false;
-    std::optional<double> mark_z_;  // of the last layer mark, if it states z
+    bool part_started_ = false;
+    bool features_ = false;         // some tag has named one
+    std::string_view mark_;         // the words of the last layer mark
+    std::optional<double> mark_z_;  // its z, if it states one
+    std::size_t beads_before_mark_ = 0;
     double first_z_ = 0;
     double layer_z_ = 0;
     std::unordered_map<std::string, std::uint16_t> object_index_;

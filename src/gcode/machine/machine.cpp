@@ -17,6 +17,8 @@ namespace stratum::gcode {
 namespace {
 
 constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'};
+// Numbers from here on are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
+constexpr int kNoTool = 255;
 
 Firmware chooseFirmware(const Settings& settings, const ReadOptions& options) {
     if (options.firmware != Firmware::automatic) return options.firmware;
@@ -59,8 +61,13 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
       nominal_height_(options.layer_height.value_or(settings.layer_height.value_or(0))),
       // RepRapFirmware starts in G54, Marlin in the machine's own coordinates.
       frame_(firmware_ == Firmware::reprap ? 1 : 0),
-      volumetric_(settings.volumetric_e.value_or(false)) {
+      volumetric_(settings.volumetric_e.value_or(false)),
+      planar_(options.planar),
+      simulates_flow_(options.deposit.flow_lag.has_value()),
+      extra_axes_(settings.extrusion.drive != ExtrusionScan::Drive::axes_ab),
+      carriages_(warnings) {
     flow_.fill(1);
+    if (options.belt_angle) belt_.emplace(*options.belt_angle);
     if (options.extruder_mode != ExtruderMode::automatic) {
         e_absolute_ = options.extruder_mode == ExtruderMode::absolute;
         e_mode_known_ = true;
@@ -84,20 +91,28 @@ void Machine::run(const Line& line) {
     if (!line.comment.empty()) {
         const Tag tag = parseTag(line.comment);
         if (tag.kind == Tag::Kind::object_start) objects_by_comment_ = true;
+        if (tag.kind == Tag::Kind::filament_loaded) loaded();
+        if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
         if (tag.kind != Tag::Kind::none) recorder_.tag(tag, line_);
     }
     std::optional<std::size_t> workspace;
     for (std::size_t i = 0; i < line.count; ++i) {
         const Command& command = line.commands[i];
         const bool moves = command.kind == Command::Kind::words || command.letter == 'G';
-        if (line.unreadable && moves) warn("characters that are no G-code words; they are ignored");
+        if (line.unreadable && moves) warnUnreadable(line);
         // G53 before another command holds for that command only.
         if (command.letter == 'G' && command.code == 53 && i + 1 < line.count) workspace = frame_.workspace();
         execute(command);
     }
     if (workspace) frame_.select(*workspace);
     if (line.deleted) warn("a line that begins with '/' (block delete) is left out");
-    if (line.unreadable && line.count == 0) warn("characters that are no G-code words; they are ignored");
+    if (line.unreadable && line.count == 0) warnUnreadable(line);
+}
+
+void Machine::warnUnreadable(const Line& line) {
+    warn(line.decimal_comma ? "decimal commas: printers read X10,5 as X10, and so it is read here; slice with a "
+                              "language that writes points, or replace the commas by points"
+                            : "characters that are no G-code words; they are ignored");
 }
 
 void Machine::execute(const Command& command) {
@@ -165,6 +180,10 @@ void Machine::executeG(const Command& command) {
             return setAbsolute(command);
         case 92:
             return setPosition(command);
+        case 93:
+        case 94:
+            inverse_time_ = command.code == 93;
+            return;
         default:
             if (!isHarmless('G', command.code)) warn(fmt::format("unknown command G{}, ignored", command.code));
     }
@@ -182,6 +201,11 @@ void Machine::executeM(const Command& command) {
         case 102:
         case 103:
             motor_on_ = command.code == 101;
+            return;
+        case 108:
+        case 135:
+            // MakerBot's machines and FlashForge's. Elsewhere these have no T.
+            if (command.hasValue('T')) useNumberedTool(command.value('T'));
             return;
         case 163:
         case 164:
@@ -201,17 +225,28 @@ void Machine::executeM(const Command& command) {
             return labelObject(command);
         case 600:
             return recorder_.changeFilament(line_);
+        case 605:
+            carriages_.setMode(command, frame_.position().x, unit_, line_);
+            if (carriages_.copies() && simulates_flow_)
+                warn("the flow of one nozzle is simulated (--flow-lag): the copy that M605 prints is left out");
+            return;
+        case 1020:  // Bambu's machines with two nozzles
+            if (command.hasValue('S')) useNumberedTool(command.value('S'));
+            return;
         default:
             if (!isHarmless('M', command.code)) warn(fmt::format("unknown command M{}, ignored", command.code));
     }
 }
 
 void Machine::selectTool(const Command& command) {
-    // Numbers of 255 and above are requests to the firmware, not tools (PrusaSlicer and Bambu machines).
-    if (command.code < 0 || command.code >= 255) return;
     constexpr int kToolChange = 2;  // the slot that RepRapFirmware fills itself
-    if (firmware_ == Firmware::reprap) stored_.insert_or_assign(kToolChange, Stored{frame_.position(), e_});
-    useTool(static_cast<std::size_t>(command.code));
+    if (firmware_ == Firmware::reprap && command.code >= 0 && command.code < kNoTool)
+        stored_.insert_or_assign(kToolChange, Stored{frame_.position(), e_});
+    useNumberedTool(command.code);
+}
+
+void Machine::useNumberedTool(double number) {
+    if (number >= 0 && number < kNoTool) useTool(static_cast<std::size_t>(number));
 }
 
 void Machine::useTool(std::size_t tool) {
@@ -259,10 +294,11 @@ void Machine::setPosition(const Command& command) {
     if (command.subcode == 2) return frame_.suspendG92Offsets();
     if (command.subcode == 3) return frame_.resumeG92Offsets();
     if (command.subcode != 0) return;
+    if (extra_axes_.has(command)) extra_axes_.setPosition(command, unit_);
     const char letter = extruderAxis(command);
     useExtruderOf(letter);
     const bool extruder = letter != 0;
-    const bool bare = !hasAxis(command) && !extruder;
+    const bool bare = !hasAxis(command) && !extruder && !extra_axes_.has(command);
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (bare || (command.has(kAxes[axis]) && !command.isExpression(kAxes[axis])))
             frame_.setG92Position(axis, coordinateOf(command, kAxes[axis]));
@@ -286,18 +322,19 @@ void Machine::setAbsolute(const Command& command) {
     if (absolute && m83_ && settings_.extrusion.relative_after_g90) {
         e_absolute_ = false;
         return warn(
-            "by Marlin's rules G90 makes E absolute again after M83, but E keeps falling back as only increments "
-            "do; it stays relative (M82 in the file if not)");
+            "by Marlin's rules G90 makes E absolute again after M83, but E keeps falling back or stays the same, "
+            "as only increments do; it stays relative (M82 in the file if not)");
     }
     e_absolute_ = absolute;
     e_follows_axes_ = true;
 }
 
 void Machine::remarkForeign(const Command& command) {
-    // FlashPrint states the print's box as Q603; O, S, D and H are a CNC program's number, spindle and tool.
+    // FlashPrint states the print's box as Q603; Prusa's XL parks tools with P0; WEEDO's pictures are W220 to W222; O,
+    // S, D and H are a CNC program's number, spindle and tool.
     const std::string_view name = command.name;
-    if (name == "Q603" || name.empty() || std::string_view("OSDHosdh").find(name.front()) != std::string_view::npos)
-        return;
+    const std::string_view known = "OSDHWosdhw";
+    if (name == "Q603" || name == "P0" || name.empty() || known.find(name.front()) != std::string_view::npos) return;
     warn(fmt::format("unknown command {}, ignored", name.substr(0, 60)));
 }
 

@@ -8,6 +8,9 @@
 #pragma once
 
 #include "gcode/machine/bead_recorder.h"
+#include "gcode/machine/belt.h"
+#include "gcode/machine/carriages.h"
+#include "gcode/machine/extra_axes.h"
 #include "gcode/machine/mixer.h"
 #include "gcode/machine/motion_recorder.h"
 #include "gcode/machine/read_options.h"
@@ -82,13 +85,17 @@ private:
     void executeM(const Command& command);
     void executeMacro(const Command& command);
     void selectTool(const Command& command);
+    void useNumberedTool(double number);
     void useTool(std::size_t tool);
+    /// All filament that was drawn back is at the nozzle again.
+    void loaded();
     void setOffsets(const Command& command);
     void storePosition(const Command& command);
     void returnToPosition(const Command& command);
     void setPosition(const Command& command);
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
+    void warnUnreadable(const Line& line);
     void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);
     void setSpeedFactor(const Command& command);
@@ -115,6 +122,18 @@ private:
     void runBezier(const Command& command, const Point& target, double extrusion);
     std::optional<Arc> arcOf(const Command& command, const Point& target, bool clockwise);
     void deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion);
+    /// Adds filament (mm, as the file counts it) to the sums of a tool.
+    void count(std::size_t tool, double filament);
+    void lay(const Point& from, const Point& to, std::optional<Arc> arc, double length, double volume);
+    void layCopy(const Point& target, const std::optional<Arc>& arc, double length, double volume, double filament);
+    /// Whether that extrusion makes a thread of that length in the air.
+    bool isThread(double extrusion, double length) const;
+    /// A thread that goes straight up.
+    void runStrut(const Point& target, double extrusion, double drive);
+    /// The part of a movement of E that is not needed to take back what was drawn back.
+    double freshOf(double drive) const;
+    void moveExtraAxes(const Command& command);
+    void checkExtraAxes();
     double switchedExtrusion(double length);
     void recordTravel(const Command& command, const Point& target, int motion, double drive);
     void recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before);
@@ -159,6 +178,7 @@ private:
     bool e_absolute_ = true;
     bool e_mode_known_ = false;    // from M82, M83, an option, or an assumption
     bool e_follows_axes_ = false;  // the mode was set by G90 or G91 (Marlin's rule)
+    bool inverse_time_ = false;    // F is 1 / minutes of the move (G93)
     bool m83_ = false;             // the last of M82 and M83 was M83
     bool volumetric_ = false;
     bool motor_on_ = false;  // between M101 and M103, in files without E
@@ -170,6 +190,11 @@ private:
     std::array<double, 256> flow_;
     std::array<double, 256> drawn_back_{};  // mm of filament, by tool
     std::array<bool, 256> unloaded_{};
+    const bool planar_;
+    const bool simulates_flow_;
+    std::optional<Belt> belt_;
+    ExtraAxes extra_axes_;
+    Carriages carriages_;
     std::map<std::string, Saved, std::less<>> saved_;
     std::map<int, Stored> stored_;  // by slot
     bool objects_by_comment_ = false;

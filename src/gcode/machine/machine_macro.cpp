@@ -76,6 +76,12 @@ void Machine::executeMacro(const Command& command) {
     } else if (same(name, "ACTIVATE_EXTRUDER")) {
         // "extruder" is the first, "extruder1" the second.
         useTool(trailingNumber(argument(command.text, "EXTRUDER").value_or("")));
+    } else if (same(name, "SELECT_TOOL") || same(name, "MMU_CHANGE_TOOL")) {
+        // klipper-toolchanger, Happy Hare
+        const auto tool = numberArgument(command.text, "T");
+        useNumberedTool(tool ? *tool : numberArgument(command.text, "TOOL").value_or(-1));
+    } else if (same(name, "SET_DUAL_CARRIAGE")) {
+        carriages_.setMode(argument(command.text, "MODE").value_or(""), line_);
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
     } else if (moves_ != nullptr && same(name, "SET_RETRACTION")) {

@@ -17,6 +17,8 @@ constexpr int kMostTurns = 100;  // Marlin's bound on P
 // Filament retracted further than this, in mm, is unloaded: the longest retractions of Bowden printers are 16 mm,
 // unloading takes 50 and more.
 constexpr double kUnloaded = 25;
+constexpr double kThinnestThread = 0.05;  // mm of diameter, of one that goes straight up; less is rounding
+constexpr double kThickestThread = 1.5;   // more is a purge
 constexpr double kSwitchedHeight = 0.25;  // mm, typical of printers with switched extruders (M101, M103)
 constexpr double kSwitchedAspect = 1.6;   // their usual width over height (Skeinforge's default)
 
@@ -69,19 +71,27 @@ double Machine::takeExtrusion(const Command& command) {
 }
 
 void Machine::assumeExtruderMode() {
-    // No M82 or M83 before the first extrusion: it may be in a start macro of the printer. The mode follows from the
-    // slicer's settings, or from the numbers. On MakerBot's machines A and B are always absolute.
+    // No M82 or M83 before the first extrusion. If one follows, this is a start program on a machine that was just
+    // switched on, with absolute E, unless the numbers tell otherwise. If none does, it may be in a start macro of the
+    // printer: the mode follows from the slicer's settings, or from the numbers. On MakerBot's machines A and B are
+    // always absolute.
     e_mode_known_ = true;
-    if (settings_.relative_e) {
+    const ExtrusionScan& scan = settings_.extrusion;
+    if (scan.mode_follows && !e_follows_axes_) {
+        e_absolute_ = !scan.repeats;
+        if (scan.repeats)
+            warn(
+                "the first M82 or M83 comes late, and E before it does not rise from move to move, as only "
+                "increments do; it is taken as relative there (--e-mode absolute if not)");
+    } else if (settings_.relative_e) {
         e_absolute_ = !*settings_.relative_e;
-    } else if (settings_.extrusion.drive == ExtrusionScan::Drive::axes_ab) {
+    } else if (scan.drive == ExtrusionScan::Drive::axes_ab) {
         e_absolute_ = true;
-    } else if (settings_.extrusion.falls_back) {
+    } else if (scan.falls_back) {
         e_absolute_ = false;
         warn(
-            "neither M82 nor M83 before the first extrusion, and E keeps falling back as only increments do; E is "
-            "taken "
-            "as relative (--e-mode absolute if not)");
+            "neither M82 nor M83 before the first extrusion, and E keeps falling back or stays the same, as only "
+            "increments do; E is taken as relative (--e-mode absolute if not)");
     } else if (!e_follows_axes_) {
         warn("neither M82 nor M83 before the first extrusion; E is taken as absolute (--e-mode relative if not)");
     }
@@ -111,16 +121,20 @@ void Machine::move(const Command& command, int motion) {
         feed_ = 0;
         recorder_.setSpeed(0);
     }
-    if (command.hasValue('F') && command.value('F') > 0) {
-        feed_ = command.value('F') * unit_ / 60;
-        recorder_.setSpeed(feed_ * speed_factor_);
-    }
+    if (extra_axes_.has(command)) moveExtraAxes(command);
     const Point& at = frame_.position();
     Point target{takeAxis(command, 'X', 0), takeAxis(command, 'Y', 1), takeAxis(command, 'Z', 2)};
     if (const Point* stored = restorePoint(command, motion)) target = targetFrom(*stored, command);
+    if (command.hasValue('F') && command.value('F') > 0) {
+        // Under G93, F is one over the minutes that the move takes.
+        feed_ = command.value('F') * (inverse_time_ ? distance(at, target) : unit_) / 60;
+        recorder_.setSpeed(feed_ * speed_factor_);
+    }
     const double drive = takeExtrusion(command);
     const bool in_place = target.x == at.x && target.y == at.y && motion < 2;
+    const double strut = in_place && drive > 0 && target.z > at.z ? freshOf(drive) : 0;
     double extrusion = drive != 0 ? extrudedOf(drive, in_place) : 0;
+    if (strut > 0 && isThread(strut, target.z - at.z)) return runStrut(target, strut, drive);
     const bool switched = motor_on_ && motion > 0 && settings_.extrusion.drive == ExtrusionScan::Drive::switched;
     if (extrusion > 0 || switched) {
         drive_per_extrusion_ = extrusion > 0 ? drive / extrusion : 0;
@@ -304,10 +318,62 @@ double Machine::extrudedOf(double drive, bool in_place) {
     return drive * (1 - fetched / mm);
 }
 
+double Machine::freshOf(double drive) const {
+    const double mm = volumetric_ ? drive / filamentArea() : drive;
+    const double drawn_back = drawn_back_[settings_.shared_nozzle ? 0 : tool_];
+    return mm > drawn_back ? drive * (1 - drawn_back / mm) : 0;
+}
+
+void Machine::loaded() {
+    const std::size_t nozzle = settings_.shared_nozzle ? 0 : tool_;
+    drawn_back_[nozzle] = 0;
+    unloaded_[nozzle] = false;
+}
+
+bool Machine::isThread(double extrusion, double length) const {
+    const double area = (volumetric_ ? extrusion : extrusion * filamentArea()) / length;
+    return area >= sectionArea(kThinnestThread, 1) && area <= sectionArea(kThickestThread, 10);
+}
+
+void Machine::runStrut(const Point& target, double extrusion, double drive) {
+    const std::size_t beads_before = recorder_.toolpath().beads.size();
+    drive_per_extrusion_ = drive / extrusion;
+    deposit(target, std::nullopt, target.z - frame_.position().z, extrusion);
+    if (moves_ != nullptr) recordPath(target, std::nullopt, drive, beads_before);
+    frame_.moveTo(target);
+}
+
+void Machine::moveExtraAxes(const Command& command) {
+    const double rise = extra_axes_.move(command, absolute_, unit_);
+    if (rise == 0) return;
+    Point target = frame_.position();
+    target.z -= rise;
+    if (rise > 0 || !(target.z <= kMaxCoordinate))
+        return warn("W would move the bed into the nozzle, or further than any printer has room; it is not followed");
+    warn("W lowers the bed, as on ORNL's machines: the print goes on above");
+    if (moves_ != nullptr) recordPath(target, std::nullopt, 0, recorder_.toolpath().beads.size());
+    frame_.lowerBed(-rise);
+}
+
+void Machine::checkExtraAxes() {
+    extra_axes_.freeze();
+    if (!extra_axes_.anyAway()) return;
+    const std::string turned = extra_axes_.away("ABC");
+    const std::string what = fmt::format("{} turn{} the part or the nozzle", turned, turned.size() == 1 ? "s" : "");
+    if (!turned.empty() && !planar_)
+        refuse(
+            fmt::format("{}: what lies where X, Y and Z say is not the print (--planar reads it all the same)", what));
+    if (!turned.empty()) warn(fmt::format("{}, which is not followed: what is read is not the print", what));
+    if (const std::string beside = extra_axes_.away("UV"); !beside.empty())
+        warn(fmt::format("{} not followed: beads lie where X, Y and Z say",
+                         beside + (beside.size() == 1 ? " is" : " are")));
+}
+
 void Machine::recordPath(const Point& target, const std::optional<Arc>& arc, double drive, std::size_t beads_before) {
     const double filament = (volumetric_ ? drive / filamentArea() : drive) * flow_[tool_];
     const std::size_t beads = recorder_.toolpath().beads.size();
-    const auto bead = beads > beads_before ? static_cast<std::uint32_t>(beads - 1) : Move::kNoBead;
+    // A copy, if there is one, comes behind the bead.
+    const auto bead = beads > beads_before ? static_cast<std::uint32_t>(beads_before) : Move::kNoBead;
     moves_->move(frame_.position(), target, arc, filament, filamentArea(), feed_ * speed_factor_, bead, line_);
 }
 
@@ -336,16 +402,44 @@ double Machine::switchedExtrusion(double length) {
 void Machine::deposit(const Point& target, const std::optional<Arc>& arc, double length, double extrusion) {
     const double volume = volumetric_ ? extrusion : extrusion * filamentArea();
     const double filament = volumetric_ ? extrusion / filamentArea() : extrusion;
-    filament_mm_ += filament;
-    std::vector<double>& by_tool = recorder_.toolpath().filament_by_tool;
-    if (by_tool.size() <= tool_) by_tool.resize(tool_ + 1);
-    by_tool[tool_] += filament;
+    count(tool_, filament);
     ++counts_.beads;
     frame_.freezePrintSpace();
+    checkExtraAxes();
     const double flow = flow_[tool_];
     if (!(flow > 0)) return;
     extruded_mm3_ += volume * flow;
-    recorder_.add(frame_.position(), target, arc, length, volume * flow, line_);
+    lay(frame_.position(), target, arc, length, volume * flow);
+    if (carriages_.copies() && !simulates_flow_) layCopy(target, arc, length, volume * flow, filament);
+}
+
+void Machine::lay(const Point& from, const Point& to, std::optional<Arc> arc, double length, double volume) {
+    if (!belt_) return recorder_.add(from, to, arc, length, volume, line_);
+    const Point start = belt_->place(from);
+    const Point end = belt_->place(to);
+    if (arc) arc = belt_->place(*arc, from.z);
+    recorder_.add(start, end, arc, arc ? length : distance(start, end), volume, line_);
+}
+
+void Machine::count(std::size_t tool, double filament) {
+    filament_mm_ += filament;
+    std::vector<double>& by_tool = recorder_.toolpath().filament_by_tool;
+    if (by_tool.size() <= tool) by_tool.resize(tool + 1);
+    by_tool[tool] += filament;
+}
+
+void Machine::layCopy(const Point& target, const std::optional<Arc>& arc, double length, double volume,
+                      double filament) {
+    const std::size_t other = tool_ == 0 ? 1 : 0;
+    count(other, filament);
+    extruded_mm3_ += volume;
+    Point from = frame_.position();
+    Point to = target;
+    from.x = carriages_.copyOf(from.x);
+    to.x = carriages_.copyOf(to.x);
+    recorder_.setTool(static_cast<std::uint8_t>(other));
+    lay(from, to, arc ? std::optional(carriages_.copyOf(*arc)) : std::nullopt, length, volume);
+    recorder_.setTool(static_cast<std::uint8_t>(tool_));
 }
 
 }  // namespace stratum::gcode

@@ -3,7 +3,8 @@
 #include "base/category_colors.h"
 
 #include <algorithm>
-#include <utility>
+#include <array>
+#include <set>
 
 namespace stratum::gcode {
 
@@ -14,6 +15,47 @@ Rgb paletteColor(std::size_t n) {
     return {static_cast<std::uint8_t>(color >> 16U), static_cast<std::uint8_t>(color >> 8U),
             static_cast<std::uint8_t>(color)};
 }
+
+// The first change of filament behind a bead.
+auto changesUpTo(const Toolpath& toolpath, std::size_t bead) {
+    const auto& changes = toolpath.color_changes;
+    return std::upper_bound(changes.begin(), changes.end(), bead,
+                            [](std::size_t b, const ColorChange& c) { return b < c.first_bead; });
+}
+
+StatedColor colorOfTool(const Toolpath& toolpath, std::uint8_t tool) {
+    const std::vector<std::uint8_t>& palette = toolpath.palette_tools;
+    StatedColor stated{std::nullopt, tool, false, std::find(palette.begin(), palette.end(), tool) != palette.end()};
+    if (tool < toolpath.tool_colors.size()) stated.color = toolpath.tool_colors[tool];
+    return stated;
+}
+
+// Sweeps over the beads in print order, so that every change is looked at once. A bead before the last one starts anew.
+class Sweep {
+public:
+    explicit Sweep(const Toolpath& toolpath) : toolpath_(toolpath) {}
+
+    const StatedColor& at(std::uint32_t bead) {
+        const auto& changes = toolpath_.color_changes;
+        if (bead < last_) {
+            done_ = 0;
+            by_tool_ = {};
+        }
+        last_ = bead;
+        for (; done_ < changes.size() && changes[done_].first_bead <= bead; ++done_)
+            by_tool_[changes[done_].tool] =
+                StatedColor{changes[done_].color, changes[done_].tool, true, !changes[done_].stated};
+        const std::uint8_t tool = toolpath_.runOf(toolpath_.beads[bead]).tool;
+        if (!by_tool_[tool]) by_tool_[tool] = colorOfTool(toolpath_, tool);
+        return *by_tool_[tool];
+    }
+
+private:
+    const Toolpath& toolpath_;
+    std::array<std::optional<StatedColor>, 256> by_tool_{};
+    std::size_t done_ = 0;
+    std::uint32_t last_ = 0;
+};
 
 }  // namespace
 
@@ -37,30 +79,20 @@ void colorUnstated(Toolpath& toolpath) {
 
 StatedColor statedColorOf(const Toolpath& toolpath, std::size_t bead) {
     const std::uint8_t tool = toolpath.runOf(toolpath.beads[bead]).tool;
-    const std::vector<std::uint8_t>& palette = toolpath.palette_tools;
-    StatedColor stated{std::nullopt, tool, false, std::find(palette.begin(), palette.end(), tool) != palette.end()};
-    if (tool < toolpath.tool_colors.size()) stated.color = toolpath.tool_colors[tool];
-    for (const ColorChange& change : toolpath.color_changes) {
-        if (change.first_bead > bead) break;
-        if (change.tool == tool) stated = {change.color, tool, true, !change.stated};
-    }
-    return stated;
+    const auto begin = toolpath.color_changes.begin();
+    for (auto change = changesUpTo(toolpath, bead); change != begin;)
+        if ((--change)->tool == tool) return {change->color, tool, true, !change->stated};
+    return colorOfTool(toolpath, tool);
 }
 
 std::vector<StatedColor> statedColors(const Toolpath& toolpath, std::span<const std::uint32_t> selection) {
     std::vector<StatedColor> colors;
-    const auto& changes = toolpath.color_changes;
-    std::optional<std::pair<std::uint32_t, std::ptrdiff_t>> last;
+    std::set<std::optional<Rgb>> known;
+    Sweep sweep(toolpath);
     for (const std::uint32_t bead : selection) {
-        // Within a run only a change of filament makes a difference.
-        const auto done = std::upper_bound(changes.begin(), changes.end(), bead,
-                                           [](std::uint32_t b, const ColorChange& c) { return b < c.first_bead; });
-        const std::pair here(toolpath.beads[bead].run, done - changes.begin());
-        if (std::exchange(last, here) == here) continue;
-        const StatedColor stated = statedColorOf(toolpath, bead);
-        if (std::none_of(colors.begin(), colors.end(),
-                         [&stated](const StatedColor& known) { return known.color == stated.color; }))
-            colors.push_back(stated);
+        const StatedColor& stated = sweep.at(bead);
+        if (!colors.empty() && colors.back().color == stated.color) continue;
+        if (known.insert(stated.color).second) colors.push_back(stated);
     }
     return colors;
 }

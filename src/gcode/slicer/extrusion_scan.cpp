@@ -4,14 +4,50 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 namespace stratum::gcode {
 namespace {
 
 constexpr std::size_t kEnoughMoves = 400;
-constexpr std::size_t kFewestMoves = 12;
-// Absolute E decreases only in wipes; of relative values about half are smaller than the one before.
-constexpr std::size_t kFallsInMoves = 4;
+constexpr std::size_t kFewestPairs = 11;
+// Absolute E decreases only in wipes. Of increments that differ, about half are smaller than the one before.
+constexpr std::size_t kFallsInChanges = 4;
+// Absolute E rises wherever plastic is laid. Numbers that hardly ever rise are equal increments.
+constexpr std::size_t kPairsInRises = 16;
+
+// How E changes between moves in the plane.
+class Changes {
+public:
+    void add(bool plan, double e) {
+        if (plan) {
+            ++moves_;
+            if (last_) {
+                ++pairs_;
+                if (e > *last_) ++rises_;
+                if (e < *last_) ++falls_;
+            }
+        }
+        last_ = e;
+    }
+    // E was set, or moves are left out.
+    void restart() { last_.reset(); }
+
+    bool enough() const { return moves_ >= kEnoughMoves; }
+    bool areIncrements() const {
+        return pairs_ >= kFewestPairs &&
+               (falls_ * kFallsInChanges > rises_ + falls_ || rises_ * kPairsInRises <= pairs_);
+    }
+    // Some number is not above the one before.
+    bool repeat() const { return rises_ < pairs_; }
+
+private:
+    std::size_t moves_ = 0;
+    std::size_t pairs_ = 0;  // of moves that follow each other
+    std::size_t rises_ = 0;
+    std::size_t falls_ = 0;
+    std::optional<double> last_;
+};
 
 class Scanner {
 public:
@@ -20,7 +56,7 @@ public:
         if (command.kind == Command::Kind::numbered) {
             if (command.letter == 'M') return miscellaneous(command.code);
             motion_ = command.letter == 'G' && command.code <= 3;
-            if (command.letter == 'G' && command.code == 92 && command.has('E')) last_ = 0;
+            if (command.letter == 'G' && command.code == 92 && command.has('E')) changes_.restart();
             if (!motion_) return true;
         } else if (command.kind == Command::Kind::extended || !motion_) {
             return true;
@@ -33,121 +69,108 @@ public:
 
     ExtrusionScan result() const {
         using Drive = ExtrusionScan::Drive;
-        if (e_) return {.falls_back = moves_ >= kFewestMoves && falls_ * kFallsInMoves > moves_};
-        return {.drive = ab_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
+        if (!e_) return {.drive = ab_ ? Drive::axes_ab : switch_ ? Drive::switched : Drive::e_word};
+        return {.falls_back = changes_.areIncrements(), .mode_follows = mode_follows_, .repeats = changes_.repeat()};
     }
 
 private:
     bool miscellaneous(int code) {
-        if (code == 82 || code == 83) mode_ = true;
         if (code == 101) switch_ = true;
+        if (code == 82 || code == 83) {
+            mode_ = true;
+            mode_follows_ = e_;
+        }
         return !(mode_ && e_);
     }
 
     bool extrusion(bool plan, double value) {
         e_ = true;
         if (mode_) return false;
-        if (!plan) {
-            last_ = value;
-            return true;
-        }
-        if (value < last_) ++falls_;
-        last_ = value;
-        return ++moves_ < kEnoughMoves;
+        changes_.add(plan, value);
+        return !changes_.enough();
     }
 
     bool motion_ = false;
     bool mode_ = false;
+    bool mode_follows_ = false;
     bool switch_ = false;
     bool ab_ = false;
     bool e_ = false;
-    double last_ = 0;
-    std::size_t moves_ = 0;
-    std::size_t falls_ = 0;
+    Changes changes_;
 };
 
-// The start of the line that `at` is in.
-std::size_t lineStart(std::string_view bytes, std::size_t at) {
-    const auto end = bytes.substr(0, at).find_last_of("\r\n");
-    return end == std::string_view::npos ? 0 : end + 1;
-}
+// Finds lines that may have a command. All calls together search every byte once.
+class LineFinder {
+public:
+    // `command`: a letter and two digits.
+    LineFinder(std::string_view bytes, std::string_view command) : bytes_(bytes), command_(command), next_(search(0)) {}
 
-// Whether the line at `start` has that command, not only its letters in a comment.
-bool hasCommand(std::string_view bytes, std::size_t start, char letter, std::int32_t code) {
-    Lexer lexer(bytes.substr(start));
+    // The first such line at or behind `from`, which is the start of a line; npos if there is none.
+    std::size_t from(std::size_t from) {
+        if (next_ < from) next_ = search(from);
+        return next_;
+    }
+
+private:
+    std::size_t search(std::size_t from) const {
+        const void* const hit = ::memmem(bytes_.data() + from, bytes_.size() - from, command_.data(), command_.size());
+        if (hit == nullptr) return std::string_view::npos;
+        const auto skipped = static_cast<std::size_t>(static_cast<const char*>(hit) - bytes_.data()) - from;
+        const auto end = bytes_.substr(from, skipped).find_last_of("\r\n");
+        return end == std::string_view::npos ? from : from + end + 1;
+    }
+
+    std::string_view bytes_;
+    std::string_view command_;
+    std::size_t next_;
+};
+
+// Adds the moves in `bytes` until something sets E's mode anew, or there are enough.
+void countChanges(std::string_view bytes, Changes& changes) {
+    changes.restart();
+    Lexer lexer(bytes);
     Line line;
-    if (!lexer.next(line)) return false;
-    for (std::size_t i = 0; i < line.count; ++i) {
-        const Command& command = line.commands[i];
-        if (command.letter == letter && command.code == code && command.subcode == 0) return true;
-    }
-    return false;
-}
-
-// The first command of that text at or behind `from`; npos if there is none.
-std::size_t findCommand(std::string_view bytes, std::string_view text, std::size_t from) {
-    const std::int32_t code = (text[1] - '0') * 10 + (text[2] - '0');
-    while (from < bytes.size()) {
-        const void* const hit = ::memmem(bytes.data() + from, bytes.size() - from, text.data(), text.size());
-        if (hit == nullptr) break;
-        const auto at = static_cast<std::size_t>(static_cast<const char*>(hit) - bytes.data());
-        if (hasCommand(bytes, lineStart(bytes, at), text[0], code)) return at;
-        from = at + text.size();
-    }
-    return std::string_view::npos;
-}
-
-// Counts moves with E, and those where E decreases, after the positions where the mode is unclear.
-struct Falls {
-    std::size_t moves = 0;
-    std::size_t falls = 0;
-
-    // From `bytes` until something sets E's mode anew, or there is enough.
-    void count(std::string_view bytes) {
-        Lexer lexer(bytes);
-        Line line;
-        double last = 0;
-        while (moves < kEnoughMoves && lexer.next(line)) {
-            for (std::size_t i = 0; i < line.count; ++i) {
-                const Command& command = line.commands[i];
-                const bool set = command.letter == 'M' && (command.code == 82 || command.code == 83);
-                if (set ||
-                    (command.letter == 'G' && command.subcode == 0 && (command.code == 90 || command.code == 91)))
-                    return;
-                if (command.letter == 'G' && command.code == 92 && command.has('E')) last = 0;
-                const bool motion =
-                    command.kind == Command::Kind::words || (command.letter == 'G' && command.code <= 3);
-                if (!motion || !command.hasValue('E')) continue;
-                if (command.has('X') || command.has('Y')) {
-                    ++moves;
-                    if (command.value('E') < last) ++falls;
-                }
-                last = command.value('E');
-            }
+    while (!changes.enough() && lexer.next(line)) {
+        for (std::size_t i = 0; i < line.count; ++i) {
+            const Command& command = line.commands[i];
+            const bool set = command.letter == 'M' && (command.code == 82 || command.code == 83);
+            if (set || (command.letter == 'G' && command.subcode == 0 && (command.code == 90 || command.code == 91)))
+                return;
+            if (command.letter == 'G' && command.code == 92 && command.has('E')) changes.restart();
+            const bool motion = command.kind == Command::Kind::words || (command.letter == 'G' && command.code <= 3);
+            if (motion && command.hasValue('E')) changes.add(command.has('X') || command.has('Y'), command.value('E'));
         }
     }
-};
+}
 
 }  // namespace
 
 bool fallsBackAfterG90(std::string_view bytes) {
     constexpr auto kNone = std::string_view::npos;
-    Falls found;
-    std::size_t m83 = findCommand(bytes, "M83", 0);
-    std::size_t m82 = m83 == kNone ? kNone : findCommand(bytes, "M82", m83);
-    while (m83 != kNone && found.moves < kEnoughMoves) {
-        const std::size_t g90 = findCommand(bytes, "G90", m83);
-        if (g90 == kNone) break;
-        if (m82 < g90) {  // M82 came between: the next M83 counts
-            m83 = findCommand(bytes, "M83", m82);
-            m82 = m83 == kNone ? kNone : findCommand(bytes, "M82", m83);
-            continue;
+    LineFinder m83(bytes, "M83");
+    if (m83.from(0) == kNone) return false;
+    LineFinder m82(bytes, "M82");
+    LineFinder g90(bytes, "G90");
+    Changes changes;
+    bool relative = false;  // as a slicer sees it, for which G90 changes nothing
+    std::size_t at = 0;
+    while (!changes.enough()) {
+        at = relative ? std::min(m82.from(at), g90.from(at)) : m83.from(at);
+        if (at == kNone) break;
+        Lexer lexer(bytes.substr(at));
+        Line line;
+        bool undone = false;
+        lexer.next(line);
+        for (std::size_t i = 0; i < line.count; ++i) {
+            const Command& command = line.commands[i];
+            if (command.subcode != 0) continue;
+            if (command.letter == 'M' && (command.code == 82 || command.code == 83)) relative = command.code == 83;
+            undone = relative && (undone || (command.letter == 'G' && command.code == 90));
         }
-        const auto line_end = std::min(bytes.find('\n', g90), bytes.size());
-        found.count(bytes.substr(line_end));
-        m83 = line_end;  // the slicer still assumes this mode
+        at += lexer.offset();
+        if (undone) countChanges(bytes.substr(at), changes);
     }
-    return found.moves >= kFewestMoves && found.falls * kFallsInMoves > found.moves;
+    return changes.areIncrements();
 }
 
 ExtrusionScan scanExtrusion(std::string_view bytes) {

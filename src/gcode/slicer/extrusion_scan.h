@@ -19,8 +19,12 @@ struct ExtrusionScan {
         switched,  ///< on between M101 and M103
     };
     Drive drive = Drive::e_word;
-    /// The numbers show that E is relative: without M82, M83 or G92, E repeatedly decreases between moves.
+    /// The numbers show that E is relative: without M82, M83 or G92, E repeatedly decreases, or stays, between moves.
     bool falls_back = false;
+    /// M82 or M83 comes, but E moves before it: until then the machine is as it was switched on.
+    bool mode_follows = false;
+    /// Some E of the moves that were read is not above the one before.
+    bool repeats = false;
     /// The same after a G90 that follows M83, which by Marlin's rules makes E absolute again.
     bool relative_after_g90 = false;
 };

@@ -36,13 +36,24 @@ Tag ofSegment(std::string_view text) {
     return {.kind = Tag::Kind::feature, .feature = featureOfSegment(text).value_or(Feature::unknown), .text = text};
 }
 
-Tag layerChange(double height = 0) { return {.kind = Tag::Kind::layer_change, .height = height}; }
+// `mark`: the words that announce it.
+Tag layerChange(std::string_view mark, double height = 0) {
+    return {.kind = Tag::Kind::layer_change, .height = height, .text = mark};
+}
+
+// KISSlicer and Canvas: "BEGIN_LAYER_OBJECT z=0.2000 z_thickness=0.2000".
+Tag ofBegunLayer(std::string_view text) {
+    Tag tag = layerChange("BEGIN_LAYER_");
+    const auto z = text.find(" z=");
+    if (z != std::string_view::npos) tag.z = positive(text.substr(z + 3), kMaxCoordinate);
+    return tag;
+}
 
 // Kiri:Moto: ";; --- layer 3 (0.200 @ 0.85) ---", height and z in the parentheses.
 Tag ofKiriLayer(std::string_view text) {
     const auto open = text.find('(');
     if (open == std::string_view::npos || text.find('@') == std::string_view::npos) return {};
-    return layerChange(positive(text.substr(open + 1), kMostHeight));
+    return layerChange("--- layer", positive(text.substr(open + 1), kMostHeight));
 }
 
 // Simplify3D: "layer 3, Z = 0.600". "layer end" and prose are not. With several processes a layer is announced by each.
@@ -51,7 +62,7 @@ Tag ofNumberedLayer(std::string_view text) {
     if (digits == 0 || digits == std::string_view::npos) return {};
     text.remove_prefix(digits);
     if (!take(text, ", Z =")) return {};
-    Tag tag = layerChange();
+    Tag tag = layerChange("layer");
     tag.z = positive(text, kMaxCoordinate);
     return tag;
 }
@@ -71,7 +82,7 @@ Tag ofPath(std::string_view text) {
 
 // Skeinforge: "<layer> 0.36 ", the number being the middle of the layer; IceSL: "<layer 3>".
 Tag ofMarkup(std::string_view text) {
-    if (text.starts_with("<layer>") || text.starts_with("<layer ")) return layerChange();
+    if (text.starts_with("<layer>") || text.starts_with("<layer ")) return layerChange("<layer");
     if (text.starts_with("<edge>") || text.starts_with("<perimeter>") || text.starts_with("<perimeterPath>"))
         return {.kind = Tag::Kind::feature, .feature = Feature::external_perimeter};
     if (text.starts_with("<loop>")) return {.kind = Tag::Kind::feature, .feature = Feature::perimeter};
@@ -111,7 +122,7 @@ Tag parseTag(std::string_view comment) {
         case '\'':
             return ofPath(text);
         case 'B':
-            if (take(text, "BEGIN_LAYER_")) return layerChange();
+            if (take(text, "BEGIN_LAYER_")) return ofBegunLayer(text);
             break;
         case 'P':  // ideaMaker
             if (take(text, "PRINTING:"))
@@ -131,12 +142,13 @@ Tag parseTag(std::string_view comment) {
             if (take(text, "HEIGHT:")) return ofHeight(text);
             break;
         case 'L':
-            if (take(text, "LAYER_CHANGE")) return layerChange();
+            if (take(text, "LAYER_CHANGE")) return layerChange("LAYER_CHANGE");
             if (take(text, "LAYER_HEIGHT:")) return ofHeight(text);
-            if (take(text, "LAYER:")) return layerChange();
+            if (take(text, "LAYER:")) return layerChange("LAYER:");
             break;
         case 'C':
-            if (take(text, "CHANGE_LAYER")) return layerChange();
+            if (take(text, "CHANGE_LAYER")) return layerChange("CHANGE_LAYER");
+            if (text.starts_with("CP TOOLCHANGE WIPE")) return {.kind = Tag::Kind::filament_loaded};
             if (take(text, "COLOR_CHANGE,")) return ofColorChange(text);
             break;
         case 'M':
@@ -157,6 +169,7 @@ Tag parseTag(std::string_view comment) {
         case 's':
             if (take(text, "start printing object, ")) return ofObject(text);
             if (take(text, "segType:")) return ofSegment(text);
+            if (text.starts_with("set units to ")) return {.kind = Tag::Kind::units_set};
             if (take(text, "stop printing object")) return {.kind = Tag::Kind::object_stop};
             break;
         default:

@@ -14,12 +14,23 @@ namespace stratum::gcode {
 
 /// One comment's meaning. Views point into the comment.
 struct Tag {
-    enum class Kind : std::uint8_t { none, feature, height, layer_change, object_start, object_stop, color_change };
+    enum class Kind : std::uint8_t {
+        none,
+        feature,
+        height,
+        layer_change,
+        object_start,
+        object_stop,
+        color_change,
+        filament_loaded,  ///< behind a change of tool: what was drawn back is at the nozzle again
+        units_set,        ///< the first line of the slicer's own behind the start program
+    };
     Kind kind = Kind::none;
     Feature feature = Feature::unknown;  ///< of Kind::feature; unknown if the name in `text` is unknown
     double height = 0;                   ///< mm, of Kind::height; of a layer change that names its height, else 0
     std::optional<double> z{};           ///< mm, of a layer change that names its z
-    std::string_view text{};             ///< the feature's or object's name as written; a new color as "#RRGGBB"
+    std::string_view text{};             ///< the feature's or object's name as written; a new color as "#RRGGBB";
+                                         ///< the words that mark a layer, which tell slicers' marks from each other
     int tool = -1;                       ///< of a color change; -1 is the current tool
 };
 

@@ -9,15 +9,15 @@
 namespace stratum::gcode {
 namespace {
 
-bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+bool isWhite(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 char upper(char c) { return static_cast<char>(c & ~0x20); }
 
 // Commands whose argument is text, a file name or other commands, so that "M117 G1 X5" moves nothing (Marlin's
-// parser.cpp; M98: docs.duet3d.com; M810-M819 keep their commands for later; M1002 and M1006: Bambu's flags by name and
-// its tunes, "C37 D10 M60").
+// parser.cpp; M98: docs.duet3d.com; M810-M819 keep their commands for later; G9111: Anycubic's macro, "bedTemp=60";
+// M1002 and M1006: Bambu's flags by name and its tunes, "C37 D10 M60").
 bool takesText(char letter, std::int32_t code) {
-    if (letter != 'M') return false;
+    if (letter != 'M') return code == 9111;
     if (code >= 810 && code <= 819) return true;
     switch (code) {
         case 0:
@@ -53,7 +53,7 @@ bool takesText(char letter, std::int32_t code) {
 bool goesOn(char letter) { return std::string_view("XYZEFIJKRABCUVW").find(letter) != std::string_view::npos; }
 
 const char* skipBlanks(const char* p, const char* end) {
-    while (p != end && isBlank(*p)) ++p;
+    while (p != end && isWhite(*p)) ++p;
     return p;
 }
 
@@ -88,7 +88,7 @@ public:
         }
         while (p_ != end_) {
             const char c = *p_;
-            if (isBlank(c)) {
+            if (isWhite(c)) {
                 ++p_;
             } else if (isLetter(c)) {
                 word();
@@ -97,7 +97,7 @@ public:
                 line_.comment = view(p_ + 1, end_);
                 return;
             } else if (c == '(') {
-                const char* const close = find(p_, end_, ')');
+                const char* const close = closing();
                 if (line_.comment.empty()) line_.comment = view(p_ + 1, close);
                 p_ = close == end_ ? end_ : close + 1;
             } else if (c == '"') {  // the text value of the parameter before it
@@ -108,6 +108,7 @@ public:
                 p_ = skipBlanks(p_, end_);
                 takeInteger(p_, end_);
             } else {
+                line_.decimal_comma |= isDecimalComma();
                 line_.unreadable = true;
                 ++p_;
             }
@@ -116,6 +117,30 @@ public:
     }
 
 private:
+    // The parenthesis that closes the one at p_, which may hold others; the first one if they are not balanced.
+    const char* closing() {
+        const char* const first = find(p_, end_, ')');
+        if (unbalanced_ || find(p_ + 1, first, '(') == first) return first;
+        int depth = 0;
+        for (const char* p = p_; p != end_; ++p) {
+            if (*p == '(') ++depth;
+            if (*p == ')' && --depth == 0) return p;
+        }
+        unbalanced_ = true;  // once a line: time stays linear
+        return first;
+    }
+
+    // "X10,5": a comma between the digits of a word of a command.
+    bool isDecimalComma() const {
+        return *p_ == ',' && command_ && p_ + 1 != end_ && isDigit(p_[1]) && isDigit(p_[-1]);
+    }
+
+    // WEEDO's printers get their pictures in rows of hexadecimal digits: "W220 140d0c...", between W221 and W222.
+    bool isPicture() const {
+        return line_.count == 0 && end_ - p_ >= 4 && p_[1] == '2' && p_[2] == '2' && isDigit(p_[3]) &&
+               (end_ - p_ == 4 || isWhite(p_[4]) || p_[4] == ';');
+    }
+
     void skipLineNumber() {
         if (upper(*p_) != 'N') return;
         const char* q = skipBlanks(p_ + 1, end_);
@@ -135,13 +160,14 @@ private:
         }
         if (line_.count == 0 && next != end_ && (isLetter(*next) || *next == '_')) {
             // Tx and Tc are Prusa's "ask for a tool", not macros.
-            if (letter == 'T' && (next + 1 == end_ || isBlank(next[1]) || next[1] == ';')) return tool(next);
+            if (letter == 'T' && (next + 1 == end_ || isWhite(next[1]) || next[1] == ';')) return tool(next);
             return extended();
         }
         next = skipBlanks(next, end_);
         const bool number = next != end_ && isDigit(*next);
         if ((letter == 'G' || letter == 'M') && number) return numbered(letter, next);
         if (letter == 'T' && line_.count == 0) return tool(next);
+        if (letter == 'W' && isPicture()) return picture();
         if (!command_) {
             open();
             if (!goesOn(letter)) foreign();
@@ -161,8 +187,14 @@ private:
 
     void foreign() {
         command_->kind = Command::Kind::foreign;
-        const char* const word_end = std::find_if(p_, end_, [](char c) { return isBlank(c) || c == ';' || c == '('; });
+        const char* const word_end = std::find_if(p_, end_, [](char c) { return isWhite(c) || c == ';' || c == '('; });
         command_->name = view(p_, word_end);
+    }
+
+    void picture() {
+        open();
+        foreign();
+        p_ = find(p_, end_, ';');
     }
 
     // Behind the brace that closes the one at `p`, or the end.
@@ -211,7 +243,7 @@ private:
         if (digits != end_ && isDigit(*digits)) {
             command.code = takeInteger(digits, end_);
         } else {  // T-1, T?, Tx: no tool by number
-            while (digits != end_ && !isBlank(*digits) && *digits != ';') ++digits;
+            while (digits != end_ && !isWhite(*digits) && *digits != ';') ++digits;
         }
         p_ = text_ = digits;
     }
@@ -236,6 +268,7 @@ private:
     const char* end_;
     const char* text_ = nullptr;
     bool named_ = false;          // it is M486, whose A begins a name
+    bool unbalanced_ = false;     // of parentheses
     Command* command_ = nullptr;  // the one being filled
     Line& line_;
 };
@@ -283,6 +316,7 @@ bool Lexer::next(Line& line) {
     line.count = 0;
     line.comment = {};
     line.unreadable = false;
+    line.decimal_comma = false;
     line.deleted = false;
     LineLexer(takeLine(), line).run();
     return true;

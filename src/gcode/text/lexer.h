@@ -1,7 +1,8 @@
 // Bytes -> lines -> commands with their parameters: the grammar only, not the meaning of commands.
 //
 // Handled here: N words and *checksums, ';' and '(...)' comments, lower case, missing spaces, tabs, LF, CR, CRLF and
-// any mixture of them, a byte order mark, bytes that are not text, several commands in a line (RepRapFirmware, CNC),
+// any mixture of them, a byte order mark, bytes that are not text, parentheses in parentheses (Skeinforge), rows of
+// pictures (WEEDO's W220), several commands in a line (RepRapFirmware, CNC),
 // commands whose argument is free text (M117 ...) or ends with a name (M486 A...), Klipper's extended commands
 // (SET_THING A=1), RepRapFirmware's expressions in braces, and lines that begin with '/'.
 #pragma once
@@ -32,6 +33,13 @@ struct Command {
     bool has(char parameter) const { return ((present_ >> index(parameter)) & 1U) != 0; }
     /// Without a number, but with an expression of RepRapFirmware ("F{60*var.speed}"), which is not evaluated.
     bool isExpression(char parameter) const { return ((expression_ >> index(parameter)) & 1U) != 0; }
+    /// Some parameter of those in maskOf().
+    bool hasAny(std::uint32_t mask) const { return (present_ & mask) != 0; }
+    static std::uint32_t maskOf(std::string_view letters) {
+        std::uint32_t mask = 0;
+        for (const char letter : letters) mask |= 1U << index(letter);
+        return mask;
+    }
     bool hasValue(char parameter) const { return ((valued_ >> index(parameter)) & 1U) != 0; }
     /// The parameter's number. Only meaningful if hasValue().
     double value(char parameter) const { return values_[index(parameter)]; }
@@ -65,8 +73,9 @@ struct Line {
     std::array<Command, kMaxCommands> commands;
     std::string_view
         comment;  ///< without its ';' or parentheses, untrimmed; if there are several, that with ';' or the first
-    bool unreadable = false;  ///< parts of it are neither words nor comments
-    bool deleted = false;     ///< begins with one '/' (block delete, NIST RS274/NGC 3.3.1): its commands are skipped
+    bool unreadable = false;     ///< parts of it are neither words nor comments
+    bool decimal_comma = false;  ///< among them a comma between digits
+    bool deleted = false;        ///< begins with one '/' (block delete, NIST RS274/NGC 3.3.1): its commands are skipped
 };
 
 /// Splits bytes into lines. Allocates nothing; the bytes must outlive it.

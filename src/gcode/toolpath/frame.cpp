@@ -78,6 +78,11 @@ void Frame::restoreOffsets(const Frame& earlier) {
     home_offset_ = earlier.home_offset_;
 }
 
+void Frame::lowerBed(double by) {
+    position_.z += by;
+    offset_.z += by;
+}
+
 void Frame::setToolOffset(const Point& offset) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         position_[axis] += offset[axis] - tool_offset_[axis];

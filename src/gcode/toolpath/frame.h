@@ -58,6 +58,9 @@ public:
     /// Offset of the current tool's nozzle from the program's coordinates (for slicers that subtract it from them).
     void setToolOffset(const Point& offset);
 
+    /// The bed sinks by that much (mm) below the nozzle: both the nozzle and the program's frame rise above the print.
+    void lowerBed(double by);
+
     /// Restores the offsets of `earlier` (SAVE_GCODE_STATE, RESTORE_GCODE_STATE); the nozzle doesn't move.
     void restoreOffsets(const Frame& earlier);
 

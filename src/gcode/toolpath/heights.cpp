@@ -20,13 +20,18 @@ constexpr double kSpiralShare = 0.25;    // share of a run's length that must ha
 constexpr double kLevelShare = 0.3;
 constexpr double kBedShare = 0.1;
 
-// z levels of level beads in micrometres, ascending. Prime lines (layer 0) are no levels of the part.
-std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z) {
+// A thread that goes up rather than along.
+bool isStrut(const Bead& bead) { return bead.z1 - bead.z0 > std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0); }
+
+// z levels of level beads in micrometres, ascending. Prime lines (layer 0) are no levels of the part. A strut holds
+// what is laid on its top: its level is `nominal` mm below that.
+std::vector<std::int64_t> levelsOf(const Toolpath& toolpath, std::span<const double> run_z, double nominal) {
     std::vector<std::int64_t> levels;
     for (const Bead& bead : toolpath.beads) {
         const Run& run = toolpath.runOf(bead);
-        if (run.layer == 0 || std::isnan(run_z[bead.run])) continue;
-        const std::int64_t z = std::llround(bead.z1 * 1000);
+        const bool sloped = std::isnan(run_z[bead.run]);
+        if (run.layer == 0 || (sloped && !isStrut(bead))) continue;
+        const std::int64_t z = std::llround((sloped ? bead.z1 - nominal : +bead.z1) * 1000);
         if (levels.empty() || levels.back() != z) levels.push_back(z);
     }
     std::sort(levels.begin(), levels.end());
@@ -123,12 +128,16 @@ void roundByFeature(const Toolpath& toolpath, std::vector<double>& heights) {
 // In files without a layer height the layers of a spiral were counted with a guessed height.
 void recountSpiral(Toolpath& toolpath, std::span<const double> run_z, const std::vector<double>& heights) {
     std::vector<double> top(toolpath.runs.size());
-    for (const Bead& bead : toolpath.beads) top[bead.run] = std::max(bead.z0, bead.z1);
+    std::vector<bool> strut(toolpath.runs.size());
+    for (const Bead& bead : toolpath.beads) {
+        top[bead.run] = std::max(bead.z0, bead.z1);
+        if (isStrut(bead)) strut[bead.run] = true;
+    }
     double layer = 0;
     double before = 0;
     for (std::size_t k = 0; k < toolpath.runs.size(); ++k) {
         Run& run = toolpath.runs[k];
-        if (run.layer == 0) continue;
+        if (run.layer == 0 || strut[k]) continue;
         if (!std::isnan(run_z[k])) {
             layer = std::max(layer, static_cast<double>(run.layer));
         } else if (before > 0 && heights[k] > 0) {
@@ -159,7 +168,7 @@ private:
 std::vector<double> findHeights(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal,
                                 WarningLog& warnings) {
     const std::size_t count = toolpath.runs.size();
-    const std::vector<std::int64_t> levels = levelsOf(toolpath, run_z);
+    const std::vector<std::int64_t> levels = levelsOf(toolpath, run_z, nominal.value_or(kFallbackHeight));
     std::vector<double> heights(count);
     for (std::size_t k = 0; k < count; ++k) {
         const Run& run = toolpath.runs[k];

@@ -1,6 +1,7 @@
 #include "gcode/toolpath/sections.h"
 
 #include "gcode/toolpath/heights.h"
+#include "gcode/toolpath/ramps.h"
 
 #include <fmt/format.h>
 
@@ -46,6 +47,7 @@ void resolveHeights(Toolpath& toolpath, std::span<const double> run_z, std::opti
 void resolveSections(Toolpath& toolpath, std::span<const double> run_z, std::optional<double> nominal_height,
                      WarningLog& warnings) {
     resolveHeights(toolpath, run_z, nominal_height, warnings);
+    splitRamps(toolpath);
     for (Bead& bead : toolpath.beads) {
         const double height = static_cast<double>(toolpath.runOf(bead).height);
         bead.width = static_cast<float>(widthOf(toolpath, bead, static_cast<double>(bead.width), height, warnings));

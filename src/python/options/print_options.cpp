@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "deposit/printer.h"
 #include "deposit/sag.h"
+#include "gcode/machine/belt.h"
 #include "gcode/machine/machine_limits.h"
 #include "gcode/option_names.h"
 
@@ -31,6 +32,8 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
                                                       options.function() + "(): filament_colors")
                                    .colors;
     if (const auto height = options.number("layer_height", 0.001, 50)) read.layer_height = *height;
+    if (const auto angle = options.number("belt", gcode::kFlattestBelt, gcode::kSteepestBelt)) read.belt_angle = *angle;
+    assign(read.planar, options.flag("planar"));
     assign(read.extruder_mode, options.choice("e_mode", gcode::kExtruderModes));
     assign(read.firmware, options.choice("firmware", gcode::kFirmwares));
     assign(read.corner_rule, options.choice("planner", gcode::kCornerRules));

@@ -46,5 +46,33 @@ TEST(Sniff, LetsTextPass) {
         EXPECT_NO_THROW(refuseOtherFormats(text, "a")) << text;
 }
 
+TEST(Sniff, OtherPeoplesFiles) {
+    const SniffCase cases[] = {
+        {std::string(5, '\0'), "only zero bytes"},
+        {"version https://git-lfs.github.com/spec/v1\noid", "git lfs pull"},
+        {"<!DOCTYPE html>", "web page"},
+        {"\x89PNG\r\n", "PNG"},
+        {"ISO-10303-21;", "STEP"},
+        {"IN;SP1;PU0,0;", "plotter"},
+        {"3DPFNKG13WTW", "XYZprinting"},
+        {"\x95\0\x20\x01SFX\0\x88\0"s, ".x3g"},
+        {"{\"a\": 1}", "JSON"},
+    };
+    for (const SniffCase& c : cases) {
+        try {
+            refuseOtherFormats(c.bytes, "a.gcode");
+            ADD_FAILURE() << c.message;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(c.message), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(Sniff, ZeroBytesAtTheEndAreNoMatter) {
+    EXPECT_EQ(withoutZeroTail("G1 X1\n\0\0\x1a\0"s), "G1 X1\n");
+    EXPECT_EQ(withoutZeroTail("G1"), "G1");
+    EXPECT_EQ(withoutZeroTail("\0\0"s), "");
+}
+
 }  // namespace
 }  // namespace stratum::gcode

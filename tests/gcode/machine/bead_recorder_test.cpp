@@ -97,5 +97,40 @@ TEST(BeadRecorder, Slic3rNamesAMoveBehindIt) {
     EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).feature, Feature::infill);
 }
 
+TEST(BeadRecorder, TwoMarksOfOneLayerCountOnce) {
+    // The slicer's own, and one that its user asked for.
+    const Toolpath toolpath =
+        readProgram("M83\n;LAYER_CHANGE\n;LAYER:0\nG1 Z.2\nG1 X9 E1\n;LAYER_CHANGE\n;LAYER:1\nG1 Z.4\nG1 X0 E1\n");
+    EXPECT_EQ(layersOf(toolpath), (Layers{1, 2}));
+    // Empty layers are layers.
+    EXPECT_EQ(layersOf(readProgram("M83\n;LAYER:0\n;LAYER:1\nG1 Z.2\nG1 X9 E1\n")), (Layers{2}));
+    EXPECT_EQ(layersOf(readProgram("M83\n; BEGIN_LAYER_OBJECT z=0.3 z_thickness=0.3\nG1 Z.3\nG1 X9 E1\n; layer 1, Z = "
+                                   "0.3\nG1 X0 E1\n; BEGIN_LAYER_OBJECT z=0.6\nG1 Z.6\nG1 X9 E1\n")),
+              (Layers{1, 1, 2}));
+}
+
+TEST(BeadRecorder, TheStartProgramIsNoLayer) {
+    EXPECT_EQ(layersOf(readProgram("M83\nG1 Z.3\nG1 X9 E9\nG21 ; set units to millimeters\nG1 Z.2\nG1 X0 E1\nG1 "
+                                   "Z.4\nG1 X9 E1\n")),
+              (Layers{0, 1, 2}));
+    EXPECT_EQ(layersOf(readProgram("M83\nG1 Z.3\nG1 X9 E9\nG1 Z.2\nG1 X0 E1 ; perimeter\nG1 Z.4\nG1 X9 E1 ; "
+                                   "perimeter\n")),
+              (Layers{0, 1, 2}));
+    EXPECT_EQ(layersOf(readProgram("M83\nG21\nG1 Z.3\nG1 X9 E9\nG1 Z.6\nG1 X0 E1\n")), (Layers{1, 2}));
+}
+
+TEST(BeadRecorder, AMarkBehindAllThatIsPrintedIsNone) {
+    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG1 X9 E1\nG1 Z.4\nG1 X0 E1\n;LAYER:0\nM84\n");
+    EXPECT_EQ(layersOf(toolpath), (Layers{1, 2}));
+    EXPECT_EQ(toolpath.layer_count, 2U);
+}
+
+TEST(BeadRecorder, ManyMixesTakeTimeInProportion) {
+    std::string program = "M83\nG1 Z.2\n";
+    for (int i = 0; i < 160000; ++i)
+        program += "M165 A" + std::to_string(i % 7) + " B1\nG1 X" + std::to_string(i % 2) + " E.1\n";
+    EXPECT_EQ(readProgram(program).beads.size(), 159999U);  // the first one moves nothing
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -293,5 +293,43 @@ TEST(Machine, ObjectsAreCalledByTheNumberThatTheirNameWasGiven) {
     EXPECT_EQ(object(3), "");
 }
 
+TEST(Machine, ChangesOfToolByOtherNames) {
+    for (const auto* change : {"M108 T1", "M135 T1", "M1020 S1", "SELECT_TOOL T=1", "MMU_CHANGE_TOOL TOOL=1"}) {
+        const Toolpath toolpath = readProgram(std::string("M83\nG1 Z.2\nG1 X9 E1\n") + change + "\nG1 X0 E1\n");
+        EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).tool, 1) << change;
+        EXPECT_TRUE(toolpath.warnings.empty()) << change;
+    }
+    for (const auto* other : {"M108", "M108 S5", "M135 S2", "M1020 S255", "M108 T-1", "SELECT_TOOL"}) {
+        const Toolpath toolpath = readProgram(std::string("M83\nG1 Z.2\nG1 X9 E1\n") + other + "\nG1 X0 E1\n");
+        EXPECT_EQ(toolpath.runOf(toolpath.beads[1]).tool, 0) << other;
+    }
+}
+
+TEST(Machine, ALoadedFilamentIsAtTheNozzle) {
+    // 90 mm were drawn back, and 50 mm bring the next filament: the slicer says that it is there.
+    const Toolpath toolpath =
+        readProgram("M83\nG1 Z.2\nG1 X9 E1\nG1 E-90\nT1\nG1 E50\n; CP TOOLCHANGE WIPE\nG1 X60 E3\nG1 X0 E3\n");
+    EXPECT_NEAR(toolpath.filament_mm, 7, 1e-9);
+}
+
+TEST(Machine, StrutsAndPrimes) {
+    const auto beads = [](std::string_view moves) {
+        return readProgram("M83\n; layer_height = 0.2\nG1 Z.2\nG1 X9 E1\n" + std::string(moves)).beads.size();
+    };
+    EXPECT_EQ(beads("G1 Z3 E.1\n"), 2U);
+    EXPECT_EQ(beads("G1 E-2\nG1 Z.4 E2\nG1 X0 E1\n"), 2U);   // takes back what was drawn back
+    EXPECT_EQ(beads("G1 E-2\nG1 Z4 E2.2\nG1 X0 E1\n"), 3U);  // and lays a thread of the rest
+    EXPECT_EQ(beads("G1 Z.1 E1\n"), 1U);                     // downwards there is no room
+    EXPECT_EQ(beads("G1 Z1 E9\n"), 1U);                      // a blob
+    const Toolpath toolpath = readProgram("M83\n; layer_height = 0.2\nG1 Z.2\nG1 X9 E1\nG1 E-1\nG1 Z5.2 E1.3\n");
+    EXPECT_NEAR(volumeOf(toolpath, toolpath.beads.back()), 0.3 * kFilamentArea, 1e-5);
+}
+
+TEST(Machine, InverseTime) {
+    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG93\nG1 X10 F6 E1\nG94\nG1 X0 F1200 E1\n");
+    EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[0]).speed), 1, 1e-6);  // 10 mm in a sixth of a minute
+    EXPECT_NEAR(static_cast<double>(toolpath.runOf(toolpath.beads[1]).speed), 20, 1e-6);
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -77,5 +77,45 @@ TEST(ExtrusionScan, AFileWithoutSettingsThatCountsOnMarlin1) {
     EXPECT_EQ(warningCount(whole, "G90 makes E absolute again"), 0U);
 }
 
+TEST(ExtrusionScan, EqualNumbersAreIncrements) {
+    std::string equal;
+    for (int i = 0; i < 20; ++i) equal += "G1 X" + std::to_string(i) + " E.7\n";
+    EXPECT_TRUE(scanExtrusion(equal).falls_back);
+    EXPECT_TRUE(fallsBackAfterG90("M83\nG90\n" + equal));
+    // Absolute E that is repeated on every travel move.
+    std::string repeated;
+    for (int i = 0; i < 40; ++i) repeated += "G1 X" + std::to_string(i) + " E" + std::to_string(i / 4) + "\n";
+    EXPECT_FALSE(scanExtrusion(repeated).falls_back);
+    EXPECT_FALSE(fallsBackAfterG90("M83\nG90\n" + repeated));
+}
+
+TEST(ExtrusionScan, BeforeALateMode) {
+    const ExtrusionScan rising = scanExtrusion("G92 E0\nG1 X1 E5\nG1 X9 E9\nM83\n" + moves(20, true));
+    EXPECT_TRUE(rising.mode_follows);
+    EXPECT_FALSE(rising.repeats);
+    EXPECT_TRUE(scanExtrusion("G1 X1 E5\nG1 X9 E5\nM82\n").repeats);
+    EXPECT_FALSE(scanExtrusion(moves(20, true)).mode_follows);
+    // A machine that was just switched on counts absolutely, whatever the slicer's settings say of the rest.
+    const std::string program =
+        "G92 E0\nG1 X1 Z.2 E2\nG1 X9 E5\nG92 E0\nM83\nG1 X20 E1\n; use_relative_e_distances = 1\n";
+    EXPECT_NEAR(readProgram(program).filament_mm, 6, 1e-9);
+    const Toolpath repeats = readProgram("G1 X1 Z.2 E5\nG1 X9 E5\nM83\nG1 X20 E1\n");
+    EXPECT_NEAR(repeats.filament_mm, 11, 1e-9);
+    EXPECT_EQ(warningCount(repeats, "the first M82 or M83 comes late"), 1U);
+}
+
+TEST(ExtrusionScan, TimeGrowsWithTheText) {
+    // Each of these took minutes when the text was searched anew for every pair or every hit.
+    std::string pairs;
+    for (int i = 0; i < 100000; ++i) pairs += "M83\nM82\nG1 X1 F" + std::to_string(i) + "\n";
+    EXPECT_FALSE(fallsBackAfterG90(pairs + std::string(4 << 20, '\n') + "G90\n"));
+    std::string comment = ";";
+    for (int i = 0; i < 1000000; ++i) comment += "M83";
+    EXPECT_FALSE(fallsBackAfterG90(comment + "\nG90\n" + moves(20, true)));
+    std::string line = "G1 X1 ";
+    for (int i = 0; i < 300000; ++i) line += "M83M82";
+    EXPECT_FALSE(fallsBackAfterG90(line + "\nG90\n" + moves(20, true)));
+}
+
 }  // namespace
 }  // namespace stratum::gcode

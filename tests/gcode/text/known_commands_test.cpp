@@ -24,5 +24,14 @@ TEST(KnownCommands, NamedOnes) {
         EXPECT_FALSE(isHarmlessMacro(name)) << name;
 }
 
+TEST(KnownCommands, OfSingleMakers) {
+    for (const int code : {38, 39, 65, 130, 150, 161, 162, 280, 383, 392, 425, 2814, 9111})
+        EXPECT_TRUE(isHarmless('G', code)) << code;
+    for (const int code : {108, 132, 137, 322, 650, 729, 863, 1020, 1704, 6211, 7219, 8213, 9140, 9201, 10086, 12001})
+        EXPECT_TRUE(isHarmless('M', code)) << code;
+    for (const auto* name : {"END_PRINT", "set_tmc_current", "SET_GCODE_VARIABLE", "PAUSE"})
+        EXPECT_TRUE(isHarmlessMacro(name)) << name;
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -153,5 +153,34 @@ TEST(Lexer, ALineOfAMegabyte) {
     EXPECT_EQ(lines[1], "<G1 X1>");
 }
 
+TEST(Lexer, ParenthesesInParentheses) {
+    EXPECT_EQ(lex("G1 (a (b) c) X1 (d)"), (std::vector<std::string>{"<G1 X1>|a (b) c"}));
+    EXPECT_EQ(lex("G1 (a (b) X1"), (std::vector<std::string>{"<G1 X1>|a (b"}));  // not balanced: as RS274 has it
+    EXPECT_EQ(lex("G1 X1 (a"), (std::vector<std::string>{"<G1 X1>|a"}));
+    const std::string many(1 << 20, '(');
+    EXPECT_EQ(lex(many + ")G1").size(), 1U);  // in linear time
+}
+
+TEST(Lexer, DecimalCommas) {
+    Lexer lexer("G1 X1,5 Y2\nG1 X1, Y2\nG1 X1.5");
+    Line line;
+    for (const bool comma : {true, false, false}) {
+        ASSERT_TRUE(lexer.next(line));
+        EXPECT_EQ(line.decimal_comma, comma) << line.number;
+    }
+}
+
+TEST(Lexer, RowsOfAPictureAreNoWords) {
+    Lexer lexer("W220 0e1f E5 X2\nW221\nW-5 X1");
+    Line line;
+    ASSERT_TRUE(lexer.next(line));
+    EXPECT_EQ(line.commands[0].kind, Command::Kind::foreign);
+    EXPECT_FALSE(line.commands[0].has('E'));
+    ASSERT_TRUE(lexer.next(line));
+    EXPECT_EQ(line.commands[0].kind, Command::Kind::foreign);
+    ASSERT_TRUE(lexer.next(line));
+    EXPECT_EQ(line.commands[0].kind, Command::Kind::words);
+}
+
 }  // namespace
 }  // namespace stratum::gcode

@@ -1,0 +1,36 @@
+#include "gcode/text/trade.h"
+
+#include "gcode/program.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace stratum::gcode {
+namespace {
+
+TEST(Trade, SaysWhatProgramsWithoutFilamentAre) {
+    struct Case {
+        const char* program;
+        const char* what;
+    };
+    const Case cases[] = {
+        {"G21\nM4 S0\nG0 X5\nG1 X10 S400 F1000\nM5\n", "laser"},
+        {"; LightBurn 1.4\nG0 X5\nG1 X9\n", "laser"},
+        {"G21\nT1 M6\nM3 S12000\nG0 Z5\nG1 Z-1 F100\nG1 X10\nM5\n", "mill or router"},
+        {"G90\nG43 H1\nG81 X1 Y1 Z-2 R2 F80\n", "mill or router"},
+        {"M280 P0 S40\nG1 X9\nM280 P0 S90\n", "pen plotter"},
+        {"G20\nM03 ;(Torch mode on)\nG1 X5\nM05\n", "another cutting machine"},
+        {"M3 S30 ; pen down\nG1 X9\n", "pen plotter"},
+        {"M104 S{first_layer_temperature[0]}\nG28\n", "line 1 has {first_layer_temperature[0]}"},
+        {"G28\n;{comment}\nM140 S[first_layer_bed_temperature]\n", "line 3 has [first_layer_bed_temperature]"},
+    };
+    for (const Case& c : cases) {
+        EXPECT_NE(describeTrade(c.program).find(c.what), std::string::npos) << c.program << describeTrade(c.program);
+        EXPECT_NE(inputErrorOf(c.program).find(c.what), std::string::npos) << c.program;
+    }
+    for (const auto* program : {"G28\nG1 X10\n", "", "no program", "{\n}\n"}) EXPECT_EQ(describeTrade(program), "");
+}
+
+}  // namespace
+}  // namespace stratum::gcode
