@@ -6,7 +6,7 @@
 // three, and CPU seconds of one thread are counted, so that other work on the machine disturbs all alike. The text is
 // mapped and warm. Prints a row of docs/benchmarks.md for each.
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "gcode/container/container.h"
 #include "gcode/reader.h"
 
@@ -59,7 +59,7 @@ class TextFile {
 public:
     explicit TextFile(const std::filesystem::path& source)
         : path_(std::filesystem::temp_directory_path() / fmt::format("gcode_read_{}.gcode", getpid())) {
-        const MappedFile file(source);
+        const InputFile file(source);
         const gcode::Program program = gcode::openContainer(file.bytes(), source.string());
         std::ofstream(path_, std::ios::binary)
             .write(program.text.data(), static_cast<std::streamsize>(program.text.size()));
@@ -110,7 +110,7 @@ double median(std::vector<double> values) {
 
 void run(const std::filesystem::path& source, int rounds) {
     const TextFile text_file(source);
-    const MappedFile file(text_file.path());
+    const InputFile file(text_file.path());
     const std::string_view text = file.bytes();
     unsigned touched = 0;
     for (const char c : text) touched += static_cast<unsigned char>(c);

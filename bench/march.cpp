@@ -6,7 +6,7 @@
 #include "march_peer.h"
 #include "march_rays.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/parallel_for.h"
 #include "gcode/reader.h"
 #include "march/brick/brick_intersector.h"
@@ -130,7 +130,7 @@ void run(const Options& o) {
     }
     if (wanted("mesh")) peers.push_back(bench::embreeMesh(*grid));
     if (!o.gcode.empty()) {
-        const MappedFile file(o.gcode);
+        const InputFile file(o.gcode);
         const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), o.gcode);
         for (const double split : {0.0, 16.0, 8.0})
             if (wanted("beads")) peers.push_back(bench::embreeBeads(toolpath, split));

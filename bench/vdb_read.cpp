@@ -2,7 +2,7 @@
 //
 // Both read the same file in turns, in one process and from warm pages, so that what disturbs the machine disturbs
 // both.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "march/file/level_set_file.h"
 #include "march/file/vdb_check.h"
 #include "study/cost/times.h"
@@ -26,7 +26,7 @@ double median(std::vector<double> values) {
 }
 
 openvdb::FloatGrid::Ptr readByOpenVdb(const std::string& path, const std::string& name) {
-    const MappedFile mapped(path);
+    const InputFile mapped(path);
     march::checkVdb(mapped.bytes(), march::VdbDepth::leaves, name, path);
     openvdb::io::File file(path);
     file.open(/*delayLoad=*/false);

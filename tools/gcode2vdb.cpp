@@ -90,9 +90,10 @@ void addShardOptions(CLI::App& app, tools::ConvertCommand& o) {
     const char* machines = "Several machines";
     auto* shard =
         app.add_option("--shard", o.shard.text,
-                       "The share I of N, I from 0, of a level set; slurm takes both from a task of its array. "
+                       "The share I of N, I from 0, of a level set; slurm takes both from a task of its array, "
+                       "slurm/N its number. "
                        "vdbmerge puts the parts, OUT.IofN.vdb, together")
-            ->type_name("I/N|slurm")
+            ->type_name("I/N|slurm|slurm/N")
             ->group(machines);
     app.add_flag("--resume", o.shard.resume, "Skips a part that is there and says that it is of this scene and shard")
         ->needs(shard)

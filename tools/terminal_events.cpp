@@ -1,5 +1,6 @@
 #include "terminal_events.h"
 
+#include "command_line.h"
 #include "progress.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ assemble::ReadEvents terminalEvents(bool quiet, const std::string& tool) {
     assemble::ReadEvents events;
     events.warning = [quiet, tool](const assemble::Warning& warning) {
         if (!quiet || warning.kind == assemble::Warning::Kind::narrow_band)
-            fmt::print(stderr, "{}: {}\n", tool, warning.text);
+            tellError(fmt::format("{}: {}\n", tool, warning.text));
     };
     if (!showsProgress(quiet)) return events;
     struct Line {

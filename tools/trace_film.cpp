@@ -11,6 +11,7 @@
 #include "animate/moving_scene.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
+#include "gcode/container/input_bytes.h"
 #include "shade/film/picture.h"
 #include "shade/parts/shard.h"
 
@@ -48,7 +49,8 @@ void refuseOthers(const TraceCommand& o) {
     };
     if (!o.output.empty()) refuse("-o", "names a picture; the film is named by --film alone");
     if (o.each || o.inputs.size() > 1) refuse("several inputs", "make several films; call vdbtrace for each");
-    if (o.inputs.front() == "-") refuse("standard input", "is read once, and a film must know it again; name a file");
+    if (gcode::isStream(o.inputs.front()))
+        refuse(o.inputs.front(), "is a stream, which is read once, and a film must know it again; name a file");
     if (o.prints.series > 1) refuse("--progress-series", "makes pictures; write --grow filament, or --grow time");
     if (!o.render.aovs.empty()) refuse("--aov", "is for .exr pictures");
     if (!o.render.checkpoint.empty())

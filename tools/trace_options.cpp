@@ -7,8 +7,10 @@
 #include "assemble/print/tool_colors.h"
 #include "assemble/scene_file.h"
 #include "assemble/shape/file_facts.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "gcode/container/input_bytes.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/palette/color_name.h"
 
@@ -42,11 +44,13 @@ std::optional<glm::dvec3> parseVector(const std::string& text, const char* optio
     return glm::dvec3(v[0], v[1], v[2]);
 }
 
+constexpr std::size_t kSceneHead = 4096;  // a brace is found there, if the file is a scene
+
 // Of several inputs, one that can't be read is told of when its turn comes.
 bool isScene(const fs::path& path, bool alone) {
-    if (path == "-") return false;
+    if (gcode::isStream(path)) return false;
     try {
-        return assemble::isSceneFile(MappedFile(path).bytes());
+        return assemble::isSceneFile(InputFile(path).first(kSceneHead));
     } catch (const InputError&) {
         if (alone) throw;
         return false;
@@ -285,10 +289,11 @@ void addLightOptions(CLI::App& app, TraceCommand& o) {
 void addShardOptions(CLI::App& app, TraceCommand& o) {
     const char* machines = "Several machines";
     auto* shard =
-        app.add_option("--shard", o.shard.text,
-                       "The share I of N, I from 0, of a picture or a series; slurm takes both from a task of its "
-                       "array. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
-            ->type_name("I/N|slurm")
+        app.add_option(
+               "--shard", o.shard.text,
+               "The share I of N, I from 0, of a picture or a series; slurm takes both from a task of its array, "
+               "slurm/N its number. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
+            ->type_name("I/N|slurm|slurm/N")
             ->group(machines);
     app.add_option("--shard-by", o.shard.by,
                    "tiles: a piece of each picture, samples: some of the samples of all its pixels, or frames: whole "
@@ -363,7 +368,7 @@ void readScene(TraceCommand& o, int argc, char** argv) {
     // With objects only its name is used.
     over.inputs = {file.objects.empty() ? file.print : path.string()};
     over.objects = file.objects;
-    over.scene_text = sha256Hex(MappedFile(path).bytes());
+    over.scene_text = sha256Hex(InputFile(path).bytes());
     over.notes = file.notes;
     if (over.grid.empty()) over.grid = file.grid;
     if (!over.objects.empty() && !over.grid.empty())

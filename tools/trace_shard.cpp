@@ -4,8 +4,9 @@
 #include "trace_frame.h"
 
 #include "base/atomic_file.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "gcode/container/input_bytes.h"
 #include "shade/parts/frame_record.h"
 #include "shade/parts/shard.h"
 
@@ -40,8 +41,10 @@ void refuse(const TraceCommand& o, bool pieces) {
     if (isStandardOutput(o.output))
         throw UsageError("--shard: a part can't go to standard output, nor be resumed there; name a file by -o");
     for (const std::string& input : o.inputs)
-        if (input == "-")
-            throw UsageError("--shard: every shard reads the input anew, and standard input is read once; name a file");
+        if (gcode::isStream(input))
+            throw UsageError(fmt::format(
+                "--shard: every shard reads the input anew, and {} is a stream, which is read once; name a file",
+                input));
 }
 
 /// Content of files by their names, each read once. What is no file is a preset, whose name is among the options.

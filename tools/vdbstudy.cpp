@@ -170,16 +170,18 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
                                &o.deposit.timed, &o.polygons.scenes})
         for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
-    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", ".html", "_volume.csv", "_roughness.csv",
-                               "_corner.csv", "_time.csv", "_cost.csv"})
-        files.writes((o.study.folder / (verb.app->get_name() + ending)).string(), "-o");
+    const std::string name = (o.study.folder / verb.app->get_name()).string();
+    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv",
+                               "_time.csv", "_cost.csv"})
+        files.appends(name + ending, "-o");
+    files.writes(name + ".html", "-o");
     files.writes(o.common.stats, "--stats");
     tools::makeFolder(o.study.folder);
     tools::ProgressBar bar(verb.app->get_name(), o.common.quiet);
     o.study.progress = bar.callback();
     const study::StudyReport report = verb.work();
     for (const std::string& finding : report.findings)
-        if (!o.common.quiet) fmt::print(stderr, "vdbstudy: {}\n", finding);
+        if (!o.common.quiet) tools::tellError(fmt::format("vdbstudy: {}\n", finding));
     const double seconds = watch.lap();
     tools::say(o.common,
                fmt::format("{}: {} rows ({} from an earlier run), {} findings, {:.1f} s", verb.app->get_name(),

@@ -6,7 +6,8 @@
 #include "assemble/scene_file.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "gcode/container/input_bytes.h"
 #include "serve/server.h"
 #include "view/file_watch.h"
 #include "view/viewer.h"
@@ -83,10 +84,11 @@ std::vector<std::string> givenWords(const CLI::App& app) {
     return words;
 }
 
-bool isScene(const std::string& path) { return assemble::isSceneFile(MappedFile(path).bytes()); }
+bool isScene(const std::string& path) { return assemble::isSceneFile(InputFile(path).first(4096)); }
 
 view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const std::vector<std::string>& words) {
-    if (path == "-") throw UsageError("-: standard input can't be read anew when it has changed; name a file");
+    if (gcode::isStream(path))
+        throw UsageError(fmt::format("{}: a stream can't be read anew when it has changed; name a file", path));
     view::GivenInput given;
     given.path = path;
     assemble::TracingOptions& tracing = given.options.tracing;
@@ -128,7 +130,7 @@ void openBrowser(const std::string& url) {
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     pid_t process = 0;
     if (posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ) != 0)
-        fmt::print(stderr, "vdbview: xdg-open could not be started; open the URL yourself\n");
+        tools::tellError("vdbview: xdg-open could not be started; open the URL yourself\n");
     posix_spawn_file_actions_destroy(&actions);
 }
 
@@ -136,10 +138,24 @@ void run(const CLI::App& app, const ViewCommand& o) {
     const tools::ThreadLimit limit(o.common.threads);
     const std::vector<std::string> words = givenWords(app);
     std::vector<view::GivenInput> inputs;
-    for (const std::string& path : o.inputs) inputs.push_back(givenInput(o, path, words));
+    for (const std::string& path : o.inputs) {
+        try {
+            inputs.push_back(givenInput(o, path, words));
+        } catch (const InputError& error) {
+            // Of several inputs a bad one is shown when it has been written anew.
+            if (o.inputs.size() == 1) throw;
+            tools::tellError(fmt::format("vdbview: {}\n", error.what()));
+            inputs.emplace_back();
+            inputs.back().path = path;
+            inputs.back().objects.emplace_back();
+            inputs.back().objects.front().vdb = path;
+            inputs.back().words = words;
+            inputs.back().options.tracing.prints = o.prints;
+        }
+    }
     auto viewer = std::make_unique<view::Viewer>(std::move(inputs), [&o](const std::string& text) {
         if (o.common.quiet) return;
-        fmt::print(stderr, "vdbview: {}\n", text);
+        tools::tellError(fmt::format("vdbview: {}\n", text));
     });
     serve::ServerOptions options;
     options.address = o.listen;
@@ -148,7 +164,7 @@ void run(const CLI::App& app, const ViewCommand& o) {
     serve::Server server(options, view::pageFiles(), *viewer);
     fmt::print("{}\n", server.url());
     std::fflush(stdout);
-    if (!o.common.quiet) fmt::print(stderr, "vdbview: ctrl-C ends it\n");
+    if (!o.common.quiet) tools::tellError("vdbview: ctrl-C ends it\n");
     if (o.open) openBrowser(server.url());
     view::FileWatch watch(viewer->files());
     if (watch.descriptor() >= 0) server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });

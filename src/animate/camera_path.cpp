@@ -1,8 +1,8 @@
 #include "animate/camera_path.h"
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/json_section.h"
-#include "base/mapped_file.h"
 
 #include <fmt/format.h>
 
@@ -67,7 +67,7 @@ MonotoneCubic fovOf(const std::vector<CameraKey>& keys, double usual) {
 }  // namespace
 
 std::vector<CameraKey> readCameraKeys(const std::filesystem::path& path) {
-    const MappedFile bytes(path);
+    const InputFile bytes(path);
     const std::string file = path.string();
     Json json;
     try {

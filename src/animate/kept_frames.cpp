@@ -2,7 +2,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "base/own_file.h"
 #include "shade/film/png_reader.h"
 #include "shade/film/png_writer.h"
 
@@ -49,7 +50,7 @@ bool KeptFrames::has(std::size_t frame) const {
 std::optional<std::vector<std::uint8_t>> KeptFrames::read(std::size_t frame) const {
     if (!has(frame)) return std::nullopt;
     try {
-        const MappedFile file(pathOf(frame));
+        const InputFile file(pathOf(frame));
         auto pixels = shade::decodePng(file.bytes());
         if (pixels && pixels->width == width_ && pixels->height == height_) return std::move(pixels->rgb);
     } catch (const InputError&) {
@@ -64,7 +65,9 @@ void KeptFrames::keep(std::size_t frame, const std::vector<std::uint8_t>& rgb) c
     if (error)
         throw OutputError(fmt::format("{}: can't be made ({}); finished frames are kept there until the film is whole",
                                       folder_.string(), error.message()));
-    AtomicFile(pathOf(frame)).write([&](const fs::path& to) { shade::writePng(to, width_, height_, rgb, {}); });
+    AtomicFile(pathOf(frame)).write([&](const fs::path& to) {
+        shade::writePng(to, width_, height_, rgb, {{"Software", kProgramMark}});
+    });
 }
 
 void KeptFrames::remove() const {

@@ -2,8 +2,8 @@
 
 #include "assemble/object_file.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/json_section.h"
-#include "base/mapped_file.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/camera/camera_pose.h"
 
@@ -68,13 +68,13 @@ void readCamera(JsonSection section, shade::CameraOptions& camera, std::vector<s
 }
 
 // The text of a scene; `name` is used in messages.
-Json parseScene(const MappedFile& mapped, const std::string& name) {
+Json parseScene(const InputFile& input, const std::string& name) {
     constexpr std::size_t kMost = std::size_t{1} << 24;
-    if (mapped.bytes().size() > kMost)
-        throw InputError(fmt::format("{}: has {} bytes; a scene has at most {}", name, mapped.bytes().size(), kMost));
+    if (input.bytes().size() > kMost)
+        throw InputError(fmt::format("{}: has {} bytes; a scene has at most {}", name, input.bytes().size(), kMost));
     try {
         // Comments are allowed: people explain their scenes.
-        return Json::parse(mapped.bytes(), nullptr, true, true);
+        return Json::parse(input.bytes(), nullptr, true, true);
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: {}", name, error.what()));
     }
@@ -171,9 +171,9 @@ bool isSceneFile(std::string_view text) {
 }
 
 SceneFile readSceneFile(const std::filesystem::path& path) {
-    const MappedFile mapped(path);
+    const InputFile input(path);
     const std::string name = path.string();
-    const Json json = parseScene(mapped, name);
+    const Json json = parseScene(input, name);
     const std::filesystem::path folder = path.parent_path();
     SceneFile file;
     JsonSection top(json, "", name);

@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
+#include "base/own_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,6 +15,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -94,6 +97,32 @@ bool isStream(const std::filesystem::path& destination) {
             !std::filesystem::is_directory(status));
 }
 
+// The file that a symbolic link names, which need not be there.
+std::filesystem::path targetOf(const std::filesystem::path& destination) {
+    constexpr int kMostLinks = 40;  // as many as Linux follows
+    std::filesystem::path path = destination;
+    for (int n = 0; n < kMostLinks; ++n) {
+        std::error_code error;
+        if (!std::filesystem::is_symlink(path, error)) return path;
+        const std::filesystem::path link = std::filesystem::read_symlink(path, error);
+        if (error) break;
+        path = link.is_absolute() ? link : path.parent_path() / link;
+    }
+    throw OutputError(
+        fmt::format("{}: is a symbolic link that leads nowhere; give another name", destination.string()));
+}
+
+struct Allowed {
+    std::mutex mutex;
+    bool guarded = false;
+    std::multiset<std::string> files;
+};
+
+Allowed& allowedFiles() {
+    static Allowed allowed;
+    return allowed;
+}
+
 std::string nameOf(const std::filesystem::path& destination) {
     return isStandardOutput(destination) ? "standard output" : destination.string();
 }
@@ -105,20 +134,61 @@ bool isStandardOutput(const std::filesystem::path& destination) {
     return text == "-" || (text.starts_with("-.") && text.find('/') == std::string::npos);
 }
 
+void Replacement::guard(bool on) {
+    const std::scoped_lock lock(allowedFiles().mutex);
+    allowedFiles().guarded = on;
+}
+
+Replacement::Replacement(const std::filesystem::path& destination, bool allowed)
+    : destination_(allowed ? destination.string() : std::string()) {
+    if (destination_.empty()) return;
+    const std::scoped_lock lock(allowedFiles().mutex);
+    allowedFiles().files.insert(destination_);
+}
+
+Replacement::~Replacement() {
+    if (destination_.empty()) return;
+    const std::scoped_lock lock(allowedFiles().mutex);
+    allowedFiles().files.extract(destination_);
+}
+
+void Replacement::check(const std::filesystem::path& destination) {
+    std::error_code missing;
+    if (isStream(destination) || !std::filesystem::is_regular_file(destination, missing) ||
+        std::filesystem::file_size(destination, missing) == 0)
+        return;
+    {
+        const std::scoped_lock lock(allowedFiles().mutex);
+        if (!allowedFiles().guarded || allowedFiles().files.contains(destination.string())) return;
+    }
+    if (!isOwnFile(destination))
+        throw UsageError(fmt::format(
+            "{}: is there already, and was not written by this program; give another name, or replace it by "
+            "--force (in Python: overwrite=True)",
+            destination.string()));
+}
+
+void AtomicFile::probe(const std::filesystem::path& destination) {
+    if (isStream(destination)) return;
+    const AtomicFile file(destination);
+}
+
 AtomicFile::AtomicFile(std::filesystem::path destination, Making making) : destination_(std::move(destination)) {
     if (isStream(destination_)) {
         openStream();
         return;
     }
-    const std::filesystem::path folder = folderOf(destination_);
+    target_ = targetOf(destination_);
+    const std::filesystem::path folder = folderOf(target_);
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
         throw OutputError(
             fmt::format("{}: the folder {} does not exist; make it first", destination_.string(), folder.string()));
-    if (std::filesystem::is_directory(destination_, ignored))
+    if (std::filesystem::is_directory(target_, ignored))
         throw OutputError(fmt::format("{}: is a folder; give the name of a file", destination_.string()));
-    sweep(destination_);
-    part_ = folder / fmt::format(".{}.{}.part", destination_.filename().string(), ::getpid());
+    Replacement::check(destination_);
+    sweep(target_);
+    part_ = folder / fmt::format(".{}.{}.part", target_.filename().string(), ::getpid());
     if (making == Making::named || !openUnnamed()) openNamed();
 }
 
@@ -163,7 +233,7 @@ void AtomicFile::pour() {
 
 // The mode of both is what a plain open would have given: the umask applies.
 bool AtomicFile::openUnnamed() {
-    fd_ = ::open(folderOf(destination_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    fd_ = ::open(folderOf(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
     if (fd_ < 0) return false;
     temporary_ = fmt::format("/proc/self/fd/{}", fd_);
     // Without /proc it would have no name to be opened or linked by.
@@ -217,7 +287,7 @@ void AtomicFile::commit() {
     }
     if ((temporary_ != part_ &&
          ::linkat(AT_FDCWD, temporary_.c_str(), AT_FDCWD, part_.c_str(), AT_SYMLINK_FOLLOW) != 0) ||
-        std::rename(part_.c_str(), destination_.c_str()) != 0) {
+        std::rename(part_.c_str(), target_.c_str()) != 0) {
         if (errno == ENOENT)
             throw OutputError(fmt::format("{}: its folder vanished while it was written; make it again and start anew",
                                           destination_.string()));

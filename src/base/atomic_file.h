@@ -3,12 +3,32 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 namespace stratum {
 
 /// Whether a destination means standard output: "-", or "-.ENDING" where the ending selects the format. A file of such
 /// a name is given as ./-.
 bool isStandardOutput(const std::filesystem::path& destination);
+
+/// Which files that are there already may be replaced. Libraries replace any; tools and the Python module guard files
+/// that this program did not write: those with its mark (isOwnFile()) and empty ones alone are replaced without asking.
+class Replacement {
+public:
+    /// Whether to guard them from now on. Off at first, and again by --force.
+    static void guard(bool on);
+    /// This file may be replaced for as long as the object lives.
+    explicit Replacement(const std::filesystem::path& destination, bool allowed = true);
+    ~Replacement();
+    Replacement(const Replacement&) = delete;
+    Replacement& operator=(const Replacement&) = delete;
+
+    /// Throws UsageError if the file is there and may not be replaced.
+    static void check(const std::filesystem::path& destination);
+
+private:
+    std::string destination_;  // empty: nothing is allowed
+};
 
 /// One output file being written. Write to `temporary()`, then `commit()`. Without a commit (an exception, a signal
 /// that the tool handles) no new file is left and an old file at the destination stays.
@@ -17,6 +37,9 @@ bool isStandardOutput(const std::filesystem::path& destination);
 /// a killed process or a power failure leaves nothing behind. Otherwise, e.g. on NFS, it is in the same folder as
 /// ".NAME.PROCESS.part"; a file left by a killed process is removed by the next one with the same destination. A lock
 /// (flock) distinguishes it from the file of a running process.
+///
+/// A symbolic link stays, and the file that it names is replaced. A file is only replaced if
+/// Replacement allows it.
 ///
 /// Streams can't be renamed over: standard output, and a destination that is not a regular file (a pipe, a device).
 /// They get the bytes with the commit, from a file in the folder for temporary files.
@@ -27,11 +50,15 @@ public:
         named,    ///< always a named temporary file
     };
 
-    /// Throws OutputError if the directory is missing or can't be written to: before the work, not after it.
+    /// Throws OutputError if the directory is missing or can't be written to: before the work, not after it; UsageError
+    /// if the file is there and may not be replaced.
     explicit AtomicFile(std::filesystem::path destination, Making making = Making::unnamed);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// Throws as the constructor does, and leaves nothing open: a pipe's reader would take that for the end.
+    static void probe(const std::filesystem::path& destination);
 
     /// Path to write to; valid in this process only.
     const std::filesystem::path& temporary() const { return temporary_; }
@@ -55,6 +82,7 @@ private:
     void close();
 
     std::filesystem::path destination_;
+    std::filesystem::path target_;     // what it names, if it is a link
     std::filesystem::path part_;       // its name beside the destination
     std::filesystem::path temporary_;  // part_, or a name that is valid in this process only
     int fd_ = -1;                      // holds the lock

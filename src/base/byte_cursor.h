@@ -16,9 +16,12 @@ public:
     explicit ByteCursor(std::string_view bytes) : bytes_(bytes) {}
 
     std::uint64_t offset() const { return offset_; }
+    /// Called before bytes are given: for formats that are read where the cursor goes.
+    void load(std::size_t /*offset*/, std::size_t /*count*/) const {}
     bool done() const { return offset_ == bytes_.size(); }
     std::string_view take(std::uint64_t count) {
         if (count > bytes_.size() - offset_) static_cast<const Format&>(*this).endsEarly();
+        static_cast<const Format&>(*this).load(offset_, static_cast<std::size_t>(count));
         const std::string_view taken = bytes_.substr(offset_, static_cast<std::size_t>(count));
         offset_ += static_cast<std::size_t>(count);
         return taken;

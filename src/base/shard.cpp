@@ -27,7 +27,8 @@ Shard parseShard(std::string_view text) {
     const auto index = numberOf(text.substr(0, slash));
     const auto count = slash == std::string_view::npos ? std::nullopt : numberOf(text.substr(slash + 1));
     if (!index || !count)
-        throw UsageError(fmt::format("--shard {}: expected I/N, e.g. 0/8 for the first of eight, or slurm", text));
+        throw UsageError(fmt::format(
+            "--shard {}: expected I/N, e.g. 0/8 for the first of eight, slurm, or slurm/N in an array", text));
     if (*count < 1 || *count > kMostShards)
         throw UsageError(fmt::format("--shard {}: N must be from 1 to {}", text, kMostShards));
     if (*index < 0 || *index >= *count)
@@ -46,8 +47,8 @@ Shard shardOf(const SlurmArray& array) {
     const auto most = numberOf(array.most);
     if (*id < *least || *id - *least >= *count || (most && *most - *least + 1 != *count))
         throw UsageError(fmt::format(
-            "--shard slurm: the array of {} tasks from {} has gaps; use --array=0-{}, and scontrol requeue to repeat "
-            "one task",
+            "--shard slurm: the array of {} tasks from {} has gaps; for some of N shards give --shard slurm/N, for all "
+            "use --array=0-{}",
             *count, *least, std::max(*count - 1, 0)));
     return parseShard(fmt::format("{}/{}", *id - *least, *count));
 }

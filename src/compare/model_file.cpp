@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "compare/reader_process.h"
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -11,7 +12,11 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <numeric>
+#include <string>
+#include <string_view>
 #include <tuple>
 
 namespace stratum::compare {
@@ -47,23 +52,16 @@ void append(const aiMesh& part, const std::string& name, TriangleMesh& mesh) {
     }
     for (unsigned n = 0; n < part.mNumFaces; ++n) {
         const aiFace& face = part.mFaces[n];
+        for (unsigned corner = 0; corner < face.mNumIndices; ++corner)
+            if (face.mIndices[corner] >= part.mNumVertices)
+                throw InputError(
+                    fmt::format("{}: face {} has a corner that is no point; export the model again", name, n + 1));
         if (face.mNumIndices == 3)
             mesh.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
     }
 }
 
-}  // namespace
-
-bool isModelPath(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
-    return extension == ".stl" || extension == ".3mf" || extension == ".obj";
-}
-
-TriangleMesh readModel(const std::filesystem::path& path) {
-    const std::string name = path.string();
-    if (!isModelPath(path))
-        throw InputError(fmt::format("{}: is no model by its name; expected .stl, .3mf or .obj", name));
-    if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such file", name));
+TriangleMesh readByAssimp(const std::string& name) {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const aiScene* scene =
@@ -79,6 +77,51 @@ TriangleMesh readModel(const std::filesystem::path& path) {
     TriangleMesh mesh;
     for (unsigned n = 0; n < scene->mNumMeshes; ++n) append(*scene->mMeshes[n], name, mesh);
     mergeEqualPoints(mesh);
+    return mesh;
+}
+
+// The number of points, the points, the triangles.
+std::string packed(const TriangleMesh& mesh) {
+    const std::uint64_t points = mesh.points.size();
+    std::string bytes;
+    const auto append = [&bytes](const void* data, std::size_t size) {
+        bytes.append(static_cast<const char*>(data), size);
+    };
+    append(&points, sizeof points);
+    append(mesh.points.data(), mesh.points.size() * sizeof mesh.points[0]);
+    append(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+    return bytes;
+}
+
+TriangleMesh unpacked(std::string_view bytes) {
+    std::uint64_t points = 0;
+    std::memcpy(&points, bytes.data(), sizeof points);
+    bytes.remove_prefix(sizeof points);
+    TriangleMesh mesh;
+    const auto take = [&bytes](auto& to, std::size_t count) {
+        to.resize(count);
+        if (count > 0) std::memcpy(static_cast<void*>(to.data()), bytes.data(), count * sizeof to[0]);
+        bytes.remove_prefix(count * sizeof to[0]);
+    };
+    take(mesh.points, points);
+    take(mesh.triangles, bytes.size() / sizeof(Triangle));
+    return mesh;
+}
+
+}  // namespace
+
+bool isModelPath(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().string());
+    return extension == ".stl" || extension == ".3mf" || extension == ".obj";
+}
+
+TriangleMesh readModel(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    if (!isModelPath(path))
+        throw InputError(fmt::format("{}: is no model by its name; expected .stl, .3mf or .obj", name));
+    if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such file", name));
+    // Assimp 5.2 asserts what damaged files do not hold.
+    TriangleMesh mesh = unpacked(readInProcess(name, [&name] { return packed(readByAssimp(name)); }));
     if (mesh.triangles.empty())
         throw InputError(
             fmt::format("{}: has no triangles; expected a solid model, exported as STL, 3MF or OBJ", name));

@@ -1,7 +1,7 @@
 #include "export/level_set_output.h"
 
 #include "base/checksum.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "export/parts/checksum.h"
 
 #include <openvdb/io/io.h>
@@ -83,7 +83,7 @@ WrittenGrid LevelSetOutput::finish() {
 // That of a part is a checksum of all that stands before its leaves.
 std::string LevelSetOutput::identity(std::string_view listed) const {
     if (!part_) return identityOf(*grid_, listed);
-    const MappedFile written(output_.temporary());
+    const InputFile written(output_.temporary());
     return identityOfPart(written.bytes().substr(places_.head, places_.leaves - places_.head));
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/own_file.h"
 #include "export/mesh/usd_mesh_file.h"
 
 #include <fmt/format.h>
@@ -55,10 +56,11 @@ void writeUsda(const openvdb::GridPtrVec& grids, const std::filesystem::path& vd
     const auto high = box.max();
     const bool bound = options.materials.size() == 1;
     std::string text = fmt::format(
-        "#usda 1.0\n(\n    defaultPrim = \"print\"\n    metersPerUnit = {}\n    upAxis = \"{}\"\n)\n\n"
+        "#usda 1.0\n(\n    defaultPrim = \"print\"\n    doc = \"by {}\"\n    metersPerUnit = {}\n    upAxis = "
+        "\"{}\"\n)\n\n"
         "def Volume \"print\" (\n{}    kind = \"component\"\n)\n{{\n"
         "    float3[] extent = [({}, {}, {}), ({}, {}, {})]\n",
-        options.meters_per_unit, options.up_y ? "Y" : "Z",
+        kProgramMark, options.meters_per_unit, options.up_y ? "Y" : "Z",
         bound ? "    prepend apiSchemas = [\"MaterialBindingAPI\"]\n" : "", low[0], low[1], low[2], high[0], high[1],
         high[2]);
     if (bound)

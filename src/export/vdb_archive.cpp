@@ -1,7 +1,7 @@
 #include "export/vdb_archive.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 
 #include <fmt/format.h>
 #include <openvdb/io/DelayedLoadMetadata.h>

@@ -6,6 +6,7 @@
 #include "python/options/print_options.h"
 #include "python/point_loop.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "march/file/level_set_file.h"
 
@@ -14,6 +15,7 @@
 #include <openvdb/tools/Interpolation.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,7 +47,8 @@ memory_budget, half_width (voxels); layers, features, objects, tools.)";
 constexpr const char* kWrite = R"(write_vdb(toolpath, path, *, progress=None, **options) -> None
 
 Writes the file that gcode2vdb writes with these options, leaf by leaf while they are made if nothing needs the grid.
-Options of voxelize(), and precision ("float", "half"), compression ("blosc", "zip", "none").
+Options of voxelize(), and precision ("float", "half"), compression ("blosc", "zip", "none"), overwrite (False): whether
+a file that this program did not write may be replaced; else UsageError.
 
 Raises OutputError; an old file of that name then stays.)";
 
@@ -125,8 +128,10 @@ void writeVdb(const ToolpathObject& print, const py::object& path, const py::obj
     Keywords keywords("write_vdb", given);
     exporter::LevelSetChoices choices = levelSetChoicesOf(keywords);
     const exporter::FileOptions file = fileOptionsOf(keywords);
+    const bool overwrite = keywords.flag("overwrite").value_or(false);
     keywords.finish();
     const std::string to = pathOf(path);
+    const Replacement may(to, overwrite);
     runLong(progress, [&](const Report& report) {
         writePrint(print, exporter::LevelSetPlan(*print.toolpath, std::move(choices)), to, file, report);
     });
@@ -148,8 +153,10 @@ LevelSetObject readLevelSet(const py::object& path, const std::string& grid,
 void writeLevelSet(const LevelSetObject& self, const py::object& path, const py::kwargs& given) {
     Keywords keywords("LevelSet.write", given);
     const exporter::FileOptions file = fileOptionsOf(keywords);
+    const bool overwrite = keywords.flag("overwrite").value_or(false);
     keywords.finish();
     const std::string to = pathOf(path);
+    const Replacement may(to, overwrite);
     // The writer notes the precision in the grids: in copies that share the trees.
     openvdb::GridPtrVec grids;
     for (const openvdb::GridBase::Ptr& grid : self.grids) grids.push_back(grid->copyGrid());
@@ -261,9 +268,10 @@ py::array lookUp(const march::AttributeSource& source, Kind kind, const py::obje
     const auto count = static_cast<py::ssize_t>(points.size());
     if (kind == Kind::color) return arrayOf(std::move(values), {count, 3});
     if (kind == Kind::number) return arrayOf(std::move(values), {count});
+    constexpr float kMost = 2147483520.0F;  // the largest float that fits
     std::vector<std::int32_t> integers(values.size());
     for (std::size_t n = 0; n < values.size(); ++n)
-        integers[n] = std::isnan(values[n]) ? -1 : static_cast<std::int32_t>(values[n]);
+        integers[n] = std::isnan(values[n]) ? -1 : static_cast<std::int32_t>(std::clamp(values[n], -kMost, kMost));
     return arrayOf(std::move(integers), {count});
 }
 
@@ -276,7 +284,8 @@ void bindLevelSet(py::module_& module) {
                     "read(path, grid='', attributes=()): a .vdb; grid '' is \"surface\", or the only level set.",
                     "path"_a, "grid"_a = "", "attributes"_a = std::vector<std::string>())
         .def("write", &writeLevelSet,
-             "write(path, *, precision='float', compression='blosc'): a .vdb of all grids. Raises OutputError.",
+             "write(path, *, precision='float', compression='blosc', overwrite=False): a .vdb of all grids. overwrite: "
+             "files that this program did not write are replaced, too. Raises OutputError.",
              "path"_a)
         .def("dense", &denseOf,
              "dense(box=None) -> Block: the samples in a box (two corners, world space), or "

@@ -6,6 +6,7 @@
 #include "python/toolpath_object.h"
 
 #include "assemble/finished_picture.h"
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "shade/film/picture.h"
 #include "shade/post/denoise.h"
@@ -151,8 +152,9 @@ py::dict layersOf(const py::object& self) {
     return layers;
 }
 
-void writePicture(const PictureObject& self, const py::object& path) {
+void writePicture(const PictureObject& self, const py::object& path, bool overwrite) {
     const std::string to = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+    const Replacement may(to, overwrite);
     runLong(py::none(), [&](const Report&) {
         shade::PictureFile file(to);
         shade::Metadata metadata = self.metadata;
@@ -196,8 +198,10 @@ void bindPicture(py::module_& module) {
             },
             "World space: eye; unit forward and up; fov, vertical, degrees.")
         .def("write", &writePicture,
-             "write(path): .png, .jpg or .webp as srgb, or a linear .exr with its layers. Raises OutputError.",
-             "path"_a)
+             "write(path, *, overwrite=False): .png, .jpg or .webp as srgb, or a linear .exr with its layers. "
+             "overwrite: "
+             "a file that this program did not write is replaced, too. Raises OutputError.",
+             "path"_a, py::kw_only(), "overwrite"_a = false)
         .def("__repr__", [](const PictureObject& self) {
             return fmt::format("<stratum.Picture: {} x {}>", self.film.width(), self.film.height());
         });

@@ -7,7 +7,6 @@
 
 #include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/summary.h"
 #include "gcode/toolpath/warning_log.h"

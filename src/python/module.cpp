@@ -6,6 +6,8 @@
 #include "python/threads.h"
 #include "python/toolpath_object.h"
 
+#include "base/atomic_file.h"
+
 #include <openvdb/openvdb.h>
 #include <pybind11/pybind11.h>
 
@@ -13,6 +15,7 @@ PYBIND11_MODULE(_stratum, module) {
     using namespace stratum::python;
     module.attr("__version__") = STRATUM_VERSION;
     openvdb::initialize();
+    stratum::Replacement::guard(true);
     bindErrors(module);
     bindToolpath(module);
     bindLevelSet(module);

@@ -1,6 +1,7 @@
 #include "study/print.h"
 
-#include "base/mapped_file.h"
+#include "base/checksum.h"
+#include "base/input_file.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/reader.h"
 #include "voxelize/beads/bead_field.h"
@@ -26,6 +27,6 @@ voxelize::Lattice latticeOf(const gcode::Toolpath& toolpath, const std::vector<s
     return voxelize::chooseLattice(toolpath, beads, voxelize::boundsOf(toolpath, beads), request);
 }
 
-std::string shortHash(const std::string& path) { return sha256Hex(MappedFile(path).bytes()).substr(0, 12); }
+std::string shortHash(const std::string& path) { return sha256Hex(InputFile(path).bytes()).substr(0, 12); }
 
 }  // namespace stratum::study

@@ -23,7 +23,7 @@ std::string shown(std::string_view line) {
 
 std::vector<ProgramLine> linesAround(const std::string& path, const voxelize::PrintOptions& options,
                                      std::uint32_t number, std::uint32_t around) {
-    const gcode::InputBytes file(path);
+    const gcode::InputBytes file(path, gcode::InputBytes::Streams::refuse);
     const gcode::Program program = gcode::openContainer(file.bytes(), file.name(), options.read.plate);
     const std::uint32_t first = number > around ? number - around : 1;
     std::vector<ProgramLine> lines;

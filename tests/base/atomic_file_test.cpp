@@ -138,6 +138,76 @@ TEST_P(EachMaking, WritersFailInTheDestinationsName) {
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
+void write(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST_P(EachMaking, ALinkStaysAndItsFileIsReplaced) {
+    const test::ScratchFolder folder;
+    std::filesystem::create_directory(folder / "elsewhere");
+    write(folder / "elsewhere/file", "old");
+    std::filesystem::create_symlink("elsewhere/file", folder / "link");
+    std::filesystem::create_symlink(folder / "link", folder / "second");
+    std::filesystem::create_symlink("elsewhere/new", folder / "dangling");
+    for (const char* name : {"link", "second", "dangling"}) {
+        AtomicFile file(folder / name, GetParam());
+        write(file.temporary(), name);
+        file.commit();
+        EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
+        EXPECT_EQ(slurp(folder / name), name);
+    }
+    EXPECT_EQ(slurp(folder / "elsewhere/file"), "second");
+    EXPECT_EQ(slurp(folder / "elsewhere/new"), "dangling");
+    EXPECT_EQ(filesIn(folder / "elsewhere"), 2U);
+    std::filesystem::create_symlink("round", folder / "round");
+    EXPECT_THROW(AtomicFile(folder / "round", GetParam()), OutputError);
+}
+
+class Guarded : public testing::Test {
+protected:
+    Guarded() { Replacement::guard(true); }
+    ~Guarded() override { Replacement::guard(false); }
+    const test::ScratchFolder folder_;
+};
+
+TEST_F(Guarded, AFileOfSomebodyElseIsNotReplaced) {
+    write(folder_ / "theirs", "solid by hand");
+    write(folder_ / "ours", "binary STL by Stratum 1.0");
+    write(folder_ / "empty", "");
+    std::filesystem::create_symlink("theirs", folder_ / "link");
+    EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
+    EXPECT_THROW(AtomicFile(folder_ / "link"), UsageError);
+    EXPECT_THROW(AtomicFile::probe(folder_ / "theirs"), UsageError);
+    EXPECT_THROW(Replacement::check(folder_ / "theirs"), UsageError);
+    for (const char* name : {"ours", "empty", "new"}) EXPECT_NO_THROW(AtomicFile(folder_ / name)) << name;
+    EXPECT_EQ(slurp(folder_ / "theirs"), "solid by hand");
+    try {
+        AtomicFile(folder_ / "theirs");
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("--force"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(Guarded, UnlessThatIsAllowed) {
+    write(folder_ / "theirs", "solid by hand");
+    {
+        const Replacement no(folder_ / "theirs", false);
+        EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
+        const Replacement may(folder_ / "theirs");
+        EXPECT_NO_THROW(AtomicFile(folder_ / "theirs"));
+    }
+    EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
+    Replacement::guard(false);
+    EXPECT_NO_THROW(AtomicFile(folder_ / "theirs"));
+}
+
+TEST(AtomicFile, AProbeOpensNoPipe) {
+    const test::ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    AtomicFile::probe(folder / "pipe");  // would wait for a reader
+    EXPECT_THROW(AtomicFile::probe(folder / "none/file"), OutputError);
+}
+
 TEST(AtomicFile, RefusesBeforeTheWork) {
     EXPECT_THROW(AtomicFile("/nonexistent/folder/out.vdb"), OutputError);
     const test::ScratchFolder folder;

@@ -164,7 +164,7 @@ check(re.search(r"Total disconnected facets\s*:\s*0\s", found), "admesh: nothing
 convert("part.3mf", *COLORS)
 project = os.path.join(FOLDER, "project.3mf")
 run("prusa-slicer", "--export-3mf", copy, "-o", project)
-refused(2, "would be overwritten", os.path.join(BIN, "gcode2vdb"), PRINT, "-o", project, *COMMON)
+refused(2, "--force", os.path.join(BIN, "gcode2vdb"), PRINT, "-o", project, *COMMON)
 
 # GLB by its own numbers.
 data = open(made["glb"][0], "rb").read()

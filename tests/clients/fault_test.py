@@ -18,7 +18,7 @@ GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 TRIALS = int(os.environ.get("STRATUM_FAULT_TRIALS", "20"))
 TILE = gcode("tile.gcode")
-OLD = b"an older file that somebody needs"
+OLD = b"an older file by Stratum 1.0 that somebody needs"
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 

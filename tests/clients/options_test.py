@@ -80,7 +80,7 @@ does(VDBTRACE, "t.gcode", *SMALL, *COARSE, "--printed", "50%", "-o", "half.png")
 os.link(path("t.gcode"), path("hard.csv"))
 os.symlink("t.gcode", path("soft.csv"))
 refused([VDBTRACE, "t.gcode", "u.gcode", "--stats", "t.gcode", *SMALL], 2, "--stats t.gcode: is an input")
-refused([VDBTRACE, "--stats", "t.gcode", "u.gcode", *SMALL], 2, "--stats t.gcode: is there already, and a print")
+refused([VDBTRACE, "--stats", "t.gcode", "u.gcode", *SMALL], 2, "t.gcode: is there already", "--force")
 refused([GCODE2VDB, "t.gcode", "--dump-toolpath", "./t.gcode"], 2, "--dump-toolpath ./t.gcode", "the input t.gcode")
 for name in ("hard.csv", "soft.csv"):
     refused([GCODE2VDB, "t.gcode", *COARSE, "-o", "n.vdb", "--dump-toolpath", name], 2, f"--dump-toolpath {name}", "the input t.gcode")

@@ -205,6 +205,8 @@ refused(2, ["--resume requires --shard"], VDBTRACE, TILE, *SMALL, "-o", "no.png"
 refused(2, ["SLURM_ARRAY_TASK_ID"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=SLURM)
 GAPS = dict(SLURM, SLURM_ARRAY_TASK_ID="5", SLURM_ARRAY_TASK_MIN="1", SLURM_ARRAY_TASK_MAX="9", SLURM_ARRAY_TASK_COUNT="3")
 refused(2, ["has gaps"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=GAPS)
+does(VDBTRACE, TILE, *SMALL, *NOISY, "-o", "gap.png", "--shard", "slurm/6", env=GAPS)
+check(any(name.startswith("gap.5of6") for name in os.listdir(FOLDER)), "an array with gaps makes some of N shards by slurm/N")
 
 # --- an array of Slurm ------------------------------------------------------------------------------------------------------
 trace("whole.png", *BASE)
@@ -314,7 +316,8 @@ for index, first in ((0, 0), (1, 3)):
 check(kills > 0 and all(same(f"film_00{n}.png", f"again_00{n}.png") for n in range(6)), f"{kills} kills, the same film")
 with open(path("again_004.png"), "wb") as file:
     file.write(b"something else")
-check(does(*SHARDS[1]).stdout.count("skipped") == 2 and same("film_004.png", "again_004.png"), "a changed picture is made again")
+check(call(*SHARDS[1]).returncode == 2, "a picture of somebody else is not made again")
+check(does(*SHARDS[1], "--force").stdout.count("skipped") == 2 and same("film_004.png", "again_004.png"), "  unless it may be")
 check(does(*SHARDS[1], "--seed", "4").stdout.count("skipped") == 0, "another scene is made again")
 
 # --- the level set of a print -----------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "deposit/flow_recorder.h"
 #include "deposit/read_print.h"
@@ -208,7 +208,7 @@ TEST(Flow, ThePrintsOfTheProjectKeepTheirPlastic) {
     for (const char* name :
          {"hull.gcode", "gear.gcode", "bridges.gcode", "two_tone.gcode", "vase.gcode", "knot.gcode"}) {
         const auto path = test::dataDir() / "gcode" / name;
-        const MappedFile file(path);
+        const InputFile file(path);
         for (const double lag : {0.0, 0.03}) {
             const PrintRead print = readPrint(file.bytes(), name, withLag(lag), true);
             expectSound(print);

@@ -1,6 +1,6 @@
 #include "deposit/sag.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "deposit/bead_support.h"
 #include "gcode/reader.h"
@@ -312,7 +312,7 @@ TEST(Sag, OddBeadsDoNoHarm) {
 }
 
 TEST(Sag, BridgesOfARealPrintHang) {
-    const MappedFile file(test::dataDir() / "gcode" / "bridges.gcode");
+    const InputFile file(test::dataDir() / "gcode" / "bridges.gcode");
     gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), "bridges.gcode");
     const gcode::Toolpath before = toolpath;
     const SagReport report = sagBeads(toolpath, 0.02);

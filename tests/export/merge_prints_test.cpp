@@ -1,8 +1,10 @@
 #include "export/parts/merge_prints.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "export/parts/checksum.h"
 #include "export/parts/part_file.h"
+#include "export/vdb_archive.h"
 #include "export/vdb_stream.h"
 #include "scratch_folder.h"
 #include "toolpaths.h"
@@ -11,10 +13,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::exporter {
@@ -70,7 +75,7 @@ protected:
         return paths;
     }
 
-    static std::string bytesOf(const fs::path& path) { return std::string(MappedFile(path).bytes()); }
+    static std::string bytesOf(const fs::path& path) { return std::string(InputFile(path).bytes()); }
 
     fs::path damaged(const fs::path& part, const std::string& name, std::size_t at) {
         std::string bytes = bytesOf(part);
@@ -131,6 +136,31 @@ TEST_F(MergePrintsTest, OfEveryCompression) {
             mergePrint(merged, parts(toolpath, 3, options));
             EXPECT_TRUE(bytesOf(merged) == bytesOf(whole)) << static_cast<int>(compression) << half;
         }
+}
+
+// A part whose list of leaves has lost some: the checksum of its head is that of the new bytes.
+TEST_F(MergePrintsTest, RefusesAListOfOtherLeaves) {
+    const gcode::Toolpath toolpath = print(-10, 20, false);
+    const fs::path part = parts(toolpath, 1).front();
+    const GridPlaces places = readPartFile(part).places;
+    std::string bytes = bytesOf(part);
+    const std::string name = "file_delayed_load";
+    const std::size_t value = bytes.find(name) + name.size() + 4 + std::string("__delayedload").size() + 4;
+    // How many, a length that means plain, a byte a leaf, the same length again, eight bytes a leaf.
+    std::uint32_t leaves = 0;
+    std::memcpy(&leaves, bytes.data() + value, sizeof leaves);
+    ASSERT_GT(leaves, 3U);
+    const std::string kinds = bytes.substr(value + 8, leaves);
+    const std::string sizes = bytes.substr(value + 8 + leaves + 4, std::size_t{8} * leaves);
+    const std::uint32_t fewer = leaves - 3;
+    std::string list(reinterpret_cast<const char*>(&fewer), sizeof fewer);
+    list +=
+        std::string(4, '\0') + kinds.substr(0, fewer) + std::string(4, '\0') + sizes.substr(0, std::size_t{8} * fewer);
+    bytes.replace(value, list.size(), list);
+    const std::string_view head = std::string_view(bytes).substr(places.head, places.leaves - places.head);
+    const std::string header = VdbArchive(0).header(1, identityOfPart(head));
+    bytes.replace(0, header.size(), header);
+    expectRefused({save("list.vdb", bytes)}, {"is damaged", "other leaves"});
 }
 
 TEST_F(MergePrintsTest, PartsAreLevelSetsThatOpenVdbReads) {

@@ -1,7 +1,7 @@
 #include "export/nano_file.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(NanoFile, SameBytesForAnyNumberOfThreads) {
     writeNano({grid}, folder / "many.nvdb", {true});
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     writeNano({grid}, folder / "one.nvdb", {true});
-    EXPECT_EQ(MappedFile(folder / "many.nvdb").bytes(), MappedFile(folder / "one.nvdb").bytes());
+    EXPECT_EQ(InputFile(folder / "many.nvdb").bytes(), InputFile(folder / "one.nvdb").bytes());
 }
 
 TEST(NanoFile, RefusesWhatItCant) {

@@ -1,8 +1,6 @@
 // The parts of two .vdb files that must be the same bytes.
 #pragma once
 
-#include "base/mapped_file.h"
-
 #include <gtest/gtest.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>

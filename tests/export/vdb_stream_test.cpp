@@ -128,7 +128,7 @@ TEST_F(VdbStreamTest, SectionsSettlingAndArcs) {
 
 TEST_F(VdbStreamTest, RealPrintsHaveTheSameBytes) {
     STRATUM_NEEDS_CORPUS(path, "gcode/gcode-preview-benchy_slic3r.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     expectAsOpenVdb(gcode::readToolpath(file.bytes(), "benchy", {}), latticeOf(0.15), {});
 }
 
@@ -140,7 +140,7 @@ TEST_F(VdbStreamTest, SameFileForAnyNumberOfThreads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads[n]);
         const fs::path path = folder_ / "print.vdb";
         stream(toolpath, latticeOf(0.1), {}, {}, path);
-        files[n] = MappedFile(path).bytes();
+        files[n] = InputFile(path).bytes();
     }
     EXPECT_TRUE(files[0] == files[1]);
     EXPECT_TRUE(files[0] == files[2]);

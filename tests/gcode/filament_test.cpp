@@ -1,6 +1,6 @@
 #include "gcode/filament.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 
@@ -36,7 +36,7 @@ TEST(Filament, ADiameterThatIsKnownStays) {
 TEST(Filament, TheCorpusUfpCountsVolume) {
     // Its FLAVOR is Marlin(Volumetric); there is no M200.
     STRATUM_NEEDS_CORPUS(path, "gcode/gcode_metadata-cura_2ext.ufp");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "ufp");
     const double area = std::numbers::pi / 4 * toolpath.filament_diameter * toolpath.filament_diameter;
     EXPECT_NEAR(toolpath.extruded_mm3, 1446.35, 1e-3 * 1446.35);
@@ -49,7 +49,7 @@ TEST(Filament, TheCorpusUfpCountsVolume) {
 
 TEST(Filament, TheCorpusGriffinFileCountsLength) {
     STRATUM_NEEDS_CORPUS(path, "gcode/RepRapFirmware-SD-benchy_pathio.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "pathio");
     EXPECT_NEAR(toolpath.extruded_mm3, 12034, 12);  // its header
     EXPECT_DOUBLE_EQ(toolpath.filament_diameter, 1.75);
@@ -110,7 +110,7 @@ TEST(Filament, EachToolHasItsOwn) {
 TEST(Filament, TheCorpusObjectOfFourToolsIsRemarked) {
     // Cura was told 1.75 mm for the first tool only; the others kept its default.
     STRATUM_NEEDS_CORPUS(path, "gcode/filaswitch-mc_testmodel1_Cura.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "Cura");
     for (const auto* tool : {"T1 lays", "T2 lays", "T3 lays"}) EXPECT_EQ(warningCount(toolpath, tool), 1U) << tool;
 }

@@ -1,6 +1,6 @@
 #include "gcode/reader.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -161,7 +161,7 @@ class Corpus : public testing::TestWithParam<Oracle> {};
 TEST_P(Corpus, FilamentIsWhatTheFooterSays) {
     const Oracle& oracle = GetParam();
     STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + oracle.file);
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), oracle.file);
     EXPECT_NEAR(toolpath.filament_mm, oracle.filament_mm, 1e-3 * oracle.filament_mm);
     EXPECT_NEAR(beadVolume(toolpath), toolpath.extruded_mm3, 1e-5 * toolpath.extruded_mm3);
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 Toolpath readCorpus(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const InputFile file(path);
     return readToolpath(file.bytes(), path.filename().string());
 }
 
@@ -288,7 +288,7 @@ TEST(OwnFiles, AreReadAndAddUp) {
         const std::string name = entry.path().filename().string();
         SCOPED_TRACE(name);
         ++files;
-        const MappedFile file(entry.path());
+        const InputFile file(entry.path());
         const Toolpath toolpath = readToolpath(file.bytes(), name);
         EXPECT_NEAR(beadVolume(toolpath), toolpath.extruded_mm3, 1e-3 * toolpath.extruded_mm3);
         EXPECT_GT(toolpath.layer_count, 1U);

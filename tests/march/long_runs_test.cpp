@@ -2,7 +2,7 @@
 #include "march/brick/brick_intersector.h"
 #include "march/brick/brick_walk.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/parallel_for.h"
 #include "brute_march.h"
 #include "corpus.h"
@@ -55,7 +55,7 @@ openvdb::FloatGrid::Ptr levelSetOf(const gcode::Toolpath& toolpath) {
 class LongRuns : public testing::Test {
 protected:
     static void SetUpTestSuite() {
-        const MappedFile file(test::dataDir() / "gcode" / "hull.gcode");
+        const InputFile file(test::dataDir() / "gcode" / "hull.gcode");
         grid_ = levelSetOf(gcode::readToolpath(file.bytes(), "hull.gcode"));
         intersector_ = makeBrickIntersector(*grid_);
     }
@@ -165,7 +165,7 @@ void expectNoLeak(const openvdb::FloatGrid& grid, const trace::Intersector& inte
 TEST_F(LongRuns, TenMillionRaysFromInsideNeverGetOut) { expectNoLeak(*grid_, *intersector_, full(10000000)); }
 
 TEST_F(LongRuns, AMillionRaysFromInsideATypicalPrintNeverGetOut) {
-    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    const InputFile file(test::dataDir() / "gcode" / "gear.gcode");
     gcode::ReadOptions options;
     deposit::usePrinter("typical", options);
     const gcode::Toolpath toolpath = deposit::readPrint(file.bytes(), "gear.gcode", options, false).toolpath;

@@ -1,6 +1,6 @@
 #include "ondemand/detail_levels.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "march/brick/brick_intersector.h"
@@ -66,7 +66,7 @@ struct Gear {
 
     Gear() {
         openvdb::initialize();
-        const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+        const InputFile file(test::dataDir() / "gcode" / "gear.gcode");
         toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear"));
         selection = voxelize::selectBeads(*toolpath, {});
         bounds = voxelize::boundsOf(*toolpath, selection);

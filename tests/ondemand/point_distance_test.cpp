@@ -1,7 +1,7 @@
 #include "ondemand/point_distance.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "deposit/read_print.h"
 #include "ondemand/print_field.h"
@@ -27,7 +27,7 @@ struct SampledPrint {
 
 SampledPrint sampledPrint(const char* name, const char* layers, int per_layer,
                           const gcode::DepositModel& deposit = {}) {
-    const MappedFile file(test::dataDir() / "gcode" / name);
+    const InputFile file(test::dataDir() / "gcode" / name);
     gcode::ReadOptions options;
     options.deposit = deposit;
     SampledPrint print;

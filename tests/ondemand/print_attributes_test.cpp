@@ -1,7 +1,7 @@
 #include "ondemand/print_attributes.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "voxelize/beads/selection.h"
@@ -23,7 +23,7 @@ TEST(PrintAttribute, SaysWhatTheGridSays) {
     constexpr std::array kAll{Attribute::layer,  Attribute::time,  Attribute::feature, Attribute::tool,
                               Attribute::object, Attribute::width, Attribute::speed,   Attribute::color};
     const auto path = test::dataDir() / "gcode" / "gear.gcode";
-    const MappedFile file(path);
+    const InputFile file(path);
     const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear"));
     const auto selection = voxelize::selectBeads(*toolpath, {});
     const voxelize::Lattice lattice =

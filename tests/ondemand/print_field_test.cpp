@@ -1,6 +1,6 @@
 #include "ondemand/print_field.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/parallel_for.h"
 #include "corpus.h"
 #include "deposit/read_print.h"
@@ -160,7 +160,7 @@ TEST_P(FieldOfPrint, HasTheSamplesOfTheGrid) {
     const Print& print = GetParam();
     const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "corpus file " << print.path << " is not there";
-    const MappedFile file(path);
+    const InputFile file(path);
     gcode::ReadOptions options;
     options.deposit = print.deposit;
     const auto toolpath =
@@ -236,7 +236,7 @@ TEST(PrintField, MakesNoLeavesForSignsThatAreKnown) {
 // Backwards, each brick finds its neighbours laid out.
 TEST(PrintField, MakesNoLeavesOfWhichNeighboursHaveSamples) {
     openvdb::initialize();
-    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    const InputFile file(test::dataDir() / "gcode" / "gear.gcode");
     const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear", {}));
     const auto beads = voxelize::selectBeads(*toolpath, {});
     const voxelize::Lattice lattice =
@@ -269,7 +269,7 @@ void expectOnlyChanges(const gcode::DepositModel& deposit) {
     openvdb::initialize();
     gcode::ReadOptions options;
     options.deposit = deposit;
-    const MappedFile file(test::dataDir() / "gcode" / "gear.gcode");
+    const InputFile file(test::dataDir() / "gcode" / "gear.gcode");
     const auto toolpath = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "gear", options));
     const auto selection = voxelize::selectBeads(*toolpath, {});
     const voxelize::Lattice lattice =

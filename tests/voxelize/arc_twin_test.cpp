@@ -1,6 +1,6 @@
 // One print twice: as its slicer cut it, and with arcs welded from its straight moves. The two level sets may differ by
 // the welder's tolerance, no more.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "voxelize/beads/selection.h"
@@ -58,8 +58,8 @@ Difference compare(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b, dou
 TEST(ArcTwin, LevelSetsDifferByTheWeldersTolerance) {
     STRATUM_NEEDS_CORPUS(lines_path, "gcode/gcode-preview-benchy_slic3r.gcode");
     STRATUM_NEEDS_CORPUS(arcs_path, "gcode/gcode-preview-benchy_arcs.gcode");
-    const MappedFile lines_file(lines_path);
-    const MappedFile arcs_file(arcs_path);
+    const InputFile lines_file(lines_path);
+    const InputFile arcs_file(arcs_path);
     const gcode::Toolpath lines = gcode::readToolpath(lines_file.bytes(), "lines");
     const gcode::Toolpath arcs = gcode::readToolpath(arcs_file.bytes(), "arcs");
     EXPECT_GT(arcs.arcs.size(), 3000U);

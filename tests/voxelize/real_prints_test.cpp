@@ -1,5 +1,5 @@
 // The voxelizer on real prints, against brute force over all their beads.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "print_points.h"
@@ -45,7 +45,7 @@ TEST_P(RealPrint, GridAgreesWithBruteForceAndIsSolidInside) {
     const Print& print = GetParam();
     const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "corpus file " << print.path << " is not there";
-    const MappedFile file(path);
+    const InputFile file(path);
     const gcode::Toolpath whole = gcode::readToolpath(file.bytes(), print.path);
     EXPECT_NEAR(gcode::beadVolume(whole), whole.extruded_mm3, 1e-3 * whole.extruded_mm3);
     Selection selection;

@@ -1,5 +1,5 @@
 // Settled beads on real prints: values against brute force, slopes, and volumes.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "deposit/read_print.h"
 #include "print_points.h"
@@ -31,7 +31,7 @@ protected:
         const SettledFile& print = GetParam();
         const auto path = (print.corpus ? test::corpusDir() / "gcode" : test::dataDir() / "gcode") / print.path;
         if (!std::filesystem::exists(path)) return false;
-        const MappedFile file(path);
+        const InputFile file(path);
         gcode::ReadOptions options;
         options.deposit.beads = gcode::DepositModel::Beads::settled;
         options.deposit.corner_fraction = print.corner_fraction;

@@ -1,5 +1,5 @@
 // One object of four tools, sliced by two slicers: the same box, the same volume.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "voxelize/beads/selection.h"
@@ -22,7 +22,7 @@ struct Sliced {
     Sliced(const std::filesystem::path& path, std::vector<double> filament) {
         gcode::ReadOptions options;
         options.filament_diameters = std::move(filament);
-        const MappedFile file(path);
+        const InputFile file(path);
         toolpath = gcode::readToolpath(file.bytes(), path.filename().string(), options);
         Selection selection;
         parseFeatures("-skirt", selection);

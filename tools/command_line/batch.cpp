@@ -1,5 +1,7 @@
 #include "batch.h"
 
+#include "command_line.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +21,7 @@ bool Batch::attempt(const std::string& input, const std::function<void()>& work)
     } catch (...) {
         const Failure failure = currentFailure();
         // An option that is wrong for all is wrong for the same reason: once is enough.
-        if (failure.message != last_message_) fmt::print(stderr, "{}: {}: {}\n", tool_, input, failure.message);
+        if (failure.message != last_message_) tellError(fmt::format("{}: {}: {}\n", tool_, input, failure.message));
         last_message_ = failure.message;
         worst_ = std::max(worst_, failure.status);
         failed_.push_back(input);

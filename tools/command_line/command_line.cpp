@@ -1,12 +1,15 @@
 #include "command_line.h"
 
 #include "build_facts.h"
+#include "early_failure.h"
 #include "manual.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/own_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
@@ -30,8 +33,15 @@ constexpr int kWrongUsage = 2;
 constexpr int kBadInput = 3;
 
 int complain(const CLI::App& app, std::string_view message, int status) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+    tellError(fmt::format("{}: {}\n", app.get_name(), message));
     return status;
+}
+
+// A file that is opened while standard output or error is closed would get its number, and what is said to people with
+// it. Opened for reading, they fail when they are written to, as closed ones do.
+void openStandardStreams() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        while (::fcntl(descriptor, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) >= 0) continue;
 }
 
 // The app of the subcommand that is asked for, or the one itself.
@@ -89,6 +99,9 @@ void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<s
     app.add_option("--stats", options.stats, "Write a JSON report; - is standard output")
         ->type_name("FILE")
         ->group("General");
+    app.add_flag_callback(
+           "--force", [] { Replacement::guard(false); }, "Replace existing files that this program did not write")
+        ->group("General");
     app.add_flag("--quiet", options.quiet, "Print nothing but errors")->group("General");
     addVersion(app);
     addManual(app, brief);
@@ -133,9 +146,12 @@ Failure currentFailure() {
 }
 
 int runTool(CLI::App& app, int argc, char** argv, const std::function<void()>& body) {
+    mainHasBegun();
+    openStandardStreams();
+    Replacement::guard(true);
     AtomicFile::removeOnSignals();
     if (argc == 1) {
-        fmt::print(stderr, "{}", shortUsage(app));
+        tellError(shortUsage(app));
         return kWrongUsage;
     }
     if (const std::string slip = shortWithEquals(app, argc, argv); !slip.empty())
@@ -181,7 +197,9 @@ std::size_t peakRssBytes() {
 void writeStats(const CommonOptions& options, const nlohmann::ordered_json& report) {
     if (options.stats.empty()) return;
     // File names need not be UTF-8; a report must not fail over one.
-    const std::string text = report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    nlohmann::ordered_json marked{{"program", kProgramMark}};
+    marked.update(report);
+    const std::string text = marked.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (options.stats == "-") {
         if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
             throw OutputError("--stats -: standard output could not be written; is the disk full?");
@@ -193,6 +211,11 @@ void writeStats(const CommonOptions& options, const nlohmann::ordered_json& repo
     stream.close();
     if (!stream) throw writeError(options.stats);
     file.commit();
+}
+
+void tellError(std::string_view text) {
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+    static_cast<void>(std::fflush(stderr));
 }
 
 void say(const CommonOptions& options, std::string_view line) {

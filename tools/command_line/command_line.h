@@ -20,7 +20,7 @@ class global_control;
 
 namespace stratum::tools {
 
-/// --threads, --stats, --quiet, --version.
+/// --threads, --stats, --force, --quiet, --version.
 struct CommonOptions {
     int threads = 0;    ///< 0: as many as the machine has
     std::string stats;  ///< file for the JSON report, "-" is standard output, empty is none
@@ -81,6 +81,9 @@ std::size_t peakRssBytes();
 
 /// Writes the report where --stats says; does nothing if it says nothing. Throws OutputError.
 void writeStats(const CommonOptions& options, const nlohmann::ordered_json& report);
+
+/// Writes to stderr. Does nothing where that is closed or full: then nobody listens.
+void tellError(std::string_view text);
 
 /// A line of the summary for people: to stdout, or to stderr if stdout carries the report or the output; nothing if
 /// quiet.

@@ -1,6 +1,7 @@
 #include "output_names.h"
 
 #include "base/error.h"
+#include "gcode/container/input_bytes.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,9 @@ namespace stratum::tools {
 namespace fs = std::filesystem;
 
 std::string stemOf(const std::string& input) {
-    if (input == "-") throw UsageError("standard input has no name to call the output by; give -o FILE");
+    if (gcode::isStream(input))
+        throw UsageError(
+            fmt::format("{} has no name to call the output by; give -o FILE", input == "-" ? "standard input" : input));
     fs::path name = fs::path(input).filename();
     if (name.extension() == ".gz" || name.extension() == ".3mf") name = name.stem();
     return name.stem().string();

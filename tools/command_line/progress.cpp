@@ -1,5 +1,7 @@
 #include "progress.h"
 
+#include "command_line.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,7 +15,7 @@ namespace {
 using std::chrono::steady_clock;
 
 void clearLine() {
-    fmt::print(stderr, "\r\033[K");
+    tellError("\r\033[K");
     std::fflush(stderr);
 }
 
@@ -46,10 +48,10 @@ void ProgressBar::draw(double fraction) const {
     const int filled = std::clamp(static_cast<int>(fraction * kWidth), 0, kWidth);
     std::string bar;
     for (int i = 0; i < kWidth; ++i) bar += i < filled ? "━" : "─";
-    fmt::print(stderr, "\r\033[K{:<12} {} {:3.0f} %", label_, bar, fraction * 100);
+    tellError(fmt::format("\r\033[K{:<12} {} {:3.0f} %", label_, bar, fraction * 100));
     if (fraction > 0.01) {
         const double seconds = secondsSince(start_);
-        fmt::print(stderr, "  {:.0f} s left", seconds / fraction - seconds);
+        tellError(fmt::format("  {:.0f} s left", seconds / fraction - seconds));
     }
     std::fflush(stderr);
 }
@@ -61,7 +63,7 @@ std::function<void(double)> ProgressBar::callback() {
 
 ProgressNote::ProgressNote(std::string label, bool quiet) : label_(std::move(label)) {
     if (showsProgress(quiet)) {
-        fmt::print(stderr, "\r\033[K{}", label_);
+        tellError(fmt::format("\r\033[K{}", label_));
         std::fflush(stderr);
         clock_ = std::thread([this] { run(steady_clock::now()); });
     }
@@ -81,7 +83,7 @@ ProgressNote::~ProgressNote() {
 void ProgressNote::run(steady_clock::time_point start) {
     std::unique_lock lock(mutex_);
     while (!over_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; })) {
-        fmt::print(stderr, "\r\033[K{:<12} {:.0f} s", label_, secondsSince(start));
+        tellError(fmt::format("\r\033[K{:<12} {:.0f} s", label_, secondsSince(start)));
         std::fflush(stderr);
     }
 }

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "gcode/container/input_bytes.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -31,35 +32,26 @@ std::string identityOf(const std::string& path) {
     return failed ? path : whole.string();
 }
 
-// Only --thumbnail writes such files.
-bool namesPrint(const std::string& path) {
-    constexpr std::array<std::string_view, 8> kEndings = {".gcode",  ".gco", ".g",   ".gx",
-                                                          ".bgcode", ".3mf", ".ufp", ".nc"};
-    return std::any_of(kEndings.begin(), kEndings.end(), [&path](std::string_view end) { return path.ends_with(end); });
-}
-
 }  // namespace
 
 void RunFiles::reads(const std::string& path) {
-    if (path.empty() || path == "-") return;
+    if (path.empty() || gcode::isStream(path)) return;
     const std::string identity = identityOf(path);
     if (!identity.empty()) uses_.try_emplace(identity, Use{path, "", true});
 }
 
-void RunFiles::writes(const std::string& path, std::string_view option, Kind kind) {
+void RunFiles::writes(const std::string& path, std::string_view option) {
+    appends(path, option);
+    if (!path.empty()) Replacement::check(path);
+}
+
+void RunFiles::appends(const std::string& path, std::string_view option) {
     if (path.empty()) return;
     const bool standard = isStandardOutput(path);
     const std::string identity = standard ? "-" : identityOf(path);
     if (identity.empty()) return;
     const auto [found, fresh] = uses_.try_emplace(identity, Use{path, std::string(option), false});
-    if (fresh) {
-        // "--stats a.gcode b.gcode" means two prints, and takes the first for the report's name.
-        if (kind == Kind::other && !standard && namesPrint(path) && fs::exists(path))
-            throw UsageError(fmt::format(
-                "{} {}: is there already, and a print by its name; it would be overwritten, give another name", option,
-                path));
-        return;
-    }
+    if (fresh) return;
     const Use& before = found->second;
     const std::string what = option.empty() ? path : fmt::format("{} {}", option, path);
     if (before.read)

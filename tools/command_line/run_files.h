@@ -15,13 +15,12 @@ public:
     /// reader to complain of.
     void reads(const std::string& path);
 
-    enum class Kind { other, print, ours };
-
     /// @param option  that named it, for messages; "" if the name was made up
-    /// @param kind    of what is written: only a print may replace a file that is a print by its name, and what an
-    ///                earlier run wrote may be replaced
-    /// Throws UsageError if the file is read or was written before. "" is no file.
-    void writes(const std::string& path, std::string_view option, Kind kind = Kind::other);
+    /// Throws UsageError if the file is read or written by this run already, or may not be replaced (Replacement). ""
+    /// is no file.
+    void writes(const std::string& path, std::string_view option);
+    /// The same for a table that gets more lines: an old one stays.
+    void appends(const std::string& path, std::string_view option);
 
 private:
     struct Use {

@@ -1,6 +1,7 @@
 #include "shard_option.h"
 
-#include "base/mapped_file.h"
+#include "base/checksum.h"
+#include "base/input_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,15 +23,19 @@ std::string environment(const char* name) {
 }  // namespace
 
 Shard givenShard(const std::string& text) {
-    if (text != "slurm") return parseShard(text);
+    constexpr std::string_view kSlurm = "slurm";
+    const std::string_view count = std::string_view(text).substr(std::min(kSlurm.size(), text.size()));
+    if (!text.starts_with(kSlurm) || (!count.empty() && count.front() != '/')) return parseShard(text);
+    if (!count.empty()) return parseShard(environment("SLURM_ARRAY_TASK_ID") + std::string(count));
     return shardOf({environment("SLURM_ARRAY_TASK_ID"), environment("SLURM_ARRAY_TASK_MIN"),
                     environment("SLURM_ARRAY_TASK_MAX"), environment("SLURM_ARRAY_TASK_COUNT")});
 }
 
 std::string saidOf(const CLI::App& app) {
     // Where the output goes, what is reported, on how many threads and machines changes nothing of it.
-    constexpr std::array<std::string_view, 11> kOther = {"output", "film",  "checkpoint", "threads", "stats",  "quiet",
-                                                         "IN",     "shard", "shard-by",   "resume",  "summary"};
+    constexpr std::array<std::string_view, 12> kOther = {"output",   "film",   "checkpoint", "threads",
+                                                         "stats",    "quiet",  "IN",         "shard",
+                                                         "shard-by", "resume", "summary",    "force"};
     std::string said;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_single_name();
@@ -43,7 +48,7 @@ std::string saidOf(const CLI::App& app) {
 std::string contentHash(const std::string& path) {
     std::error_code missing;
     if (!std::filesystem::is_regular_file(path, missing)) return {};
-    return sha256Hex(MappedFile(path, Access::sequential).bytes());
+    return sha256Hex(InputFile(path).bytes());
 }
 
 }  // namespace stratum::tools

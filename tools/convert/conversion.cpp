@@ -9,8 +9,8 @@
 #include "print_options.h"
 
 #include "base/atomic_file.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "deposit/read_print.h"
 #include "export/mesh_file.h"
 #include "export/nano_file.h"
@@ -98,7 +98,7 @@ bool Conversion::streams() const {
 }
 
 void Conversion::warn(const std::string& text) const {
-    if (!o_.common.quiet) fmt::print(stderr, "gcode2vdb: {}\n", text);
+    if (!o_.common.quiet) tellError(fmt::format("gcode2vdb: {}\n", text));
 }
 
 void Conversion::read() {
@@ -181,7 +181,7 @@ fs::path usdaOf(fs::path vdb) { return vdb.replace_extension(".usda"); }
 Json convert(const ConvertCommand& command, const std::string& input, const fs::path& output, RunFiles& files_of_run,
              int threads) {
     // Unwritable places are found before the work, not after it.
-    if (command.writesGrid()) const AtomicFile probe(output);
+    if (command.writesGrid()) AtomicFile::probe(output);
     std::optional<exporter::PartOfPrint> part;
     if (command.shard.shard) part = partOf(command, input);
     if (part && command.shard.resume && exporter::isPartOfPrint(output, part->version, part->scene, part->shard)) {

@@ -3,7 +3,7 @@
 #include "convert/elements_output.h"
 #include "convert/mesh_output.h"
 
-#include "base/mapped_file.h"
+#include "base/checksum.h"
 #include "export/mesh_file.h"
 #include "export/nano_file.h"
 #include "export/usd_file.h"

@@ -10,6 +10,7 @@
 
 #include <span>
 #include <string>
+#include <system_error>
 
 namespace stratum::tools {
 
@@ -25,7 +26,8 @@ void Conversion::check(const ConversionJob& job, GridNumbers& numbers) {
 }
 
 void Conversion::tellOutput(const voxelize::Voxelizer& voxelizer, const ConversionJob& job, const GridNumbers& grid) {
-    const auto bytes = isStandardOutput(job.path) ? 0 : fs::file_size(job.path);
+    std::error_code stream;
+    const auto bytes = fs::is_regular_file(job.path, stream) ? fs::file_size(job.path) : 0;
     const exporter::GridStatistics& counted = grid.counted.statistics;
     files_.push_back({{"path", job.path.string()},
                       {"snapshot", job.label},

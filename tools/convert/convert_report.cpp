@@ -46,7 +46,7 @@ void checkReport(const ConvertReport& report, std::size_t inputs, const std::str
         if (!report::isReportPath(path))
             throw UsageError(fmt::format("--report {}: the name must end in .json, .md or .html", path));
         files.writes(path, "--report");
-        const AtomicFile probe(path);
+        AtomicFile::probe(path);
     }
 }
 

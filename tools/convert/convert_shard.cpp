@@ -3,9 +3,10 @@
 #include "shard_option.h"
 
 #include "base/atomic_file.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "export/mesh_file.h"
+#include "gcode/container/input_bytes.h"
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
@@ -25,7 +26,8 @@ void refuseWhole(const ConvertCommand& o, const std::vector<fs::path>& outputs) 
         if (isStandardOutput(output)) refuse("a part", "can't go to standard output; name a file by -o");
     }
     for (const std::string& input : o.inputs)
-        if (input == "-") refuse("standard input", "is read once, and every shard reads the input anew; name a file");
+        if (gcode::isStream(input))
+            refuse(input, "is a stream, which is read once, and every shard reads the input anew; name a file");
     const char* one = "leave it out, or make it without --shard";
     if (!voxelize::parseGrids(o.grids).empty())
         refuse("--grids", fmt::format("makes grids beside the level set, of the whole print; {}", one));

@@ -2,7 +2,6 @@
 
 #include "progress.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/human_text.h"
 #include "base/text.h"
@@ -98,7 +97,7 @@ Json writeElements(const ConvertCommand& o, const gcode::Toolpath& toolpath, std
             fmt::format("  the largest of {} pieces; {} elements of the others are left out (--all-pieces keeps them)",
                         pieces.count, pieces.removed));
     return {{"path", output.string()},
-            {"bytes", isStandardOutput(output) ? 0 : fs::file_size(output)},
+            {"bytes", fs::is_regular_file(output) ? fs::file_size(output) : 0},
             {"elements", mesh.corners.size()},
             {"nodes", mesh.nodes.size()},
             {"edge_mm", elements.edge},

@@ -44,8 +44,7 @@ void checkMeshGrids(const ConvertCommand& o, const std::filesystem::path& output
 
 void noteOutput(const ConvertCommand& o, const std::filesystem::path& output, std::string_view option,
                 RunFiles& files) {
-    const bool ours = output.extension() == ".3mf" && exporter::isOwn3mf(output);
-    files.writes(output.string(), option, ours ? RunFiles::Kind::ours : RunFiles::Kind::other);
+    files.writes(output.string(), option);
     if (o.color.empty() && voxelize::parseGrids(o.grids).empty()) return;
     if (const auto companion = exporter::meshCompanion(output)) files.writes(companion->string(), option);
 }

@@ -70,8 +70,9 @@ std::vector<fs::path> outputsOf(const ConvertCommand& o) {
         throw UsageError("--thumbnail: name the new file with -o, or replace the input with --in-place");
     std::vector<fs::path> outputs;
     for (const std::string& input : o.inputs) {
-        if (o.thumbnail.in_place && input == "-")
-            throw UsageError("--in-place: standard input can't be replaced; name the new file with -o");
+        if (o.thumbnail.in_place && gcode::isStream(input))
+            throw UsageError(fmt::format("--in-place: {} can't be replaced; name the new file with -o",
+                                         input == "-" ? "standard input" : input));
         // The file that a link names, not the link.
         std::error_code missing;
         const fs::path itself = o.thumbnail.in_place ? fs::canonical(input, missing) : fs::path();
@@ -93,7 +94,8 @@ Json writeOne(const ConvertCommand& o, const std::string& input, const fs::path&
               const std::vector<gcode::ThumbnailSize>& asked, int threads) {
     Stopwatch total;
     Stopwatch watch;
-    { const AtomicFile probe(output); }  // an unwritable place is found before the work
+    const Replacement may(output, o.thumbnail.in_place);
+    AtomicFile::probe(output);  // an unwritable place is found before the work
     const gcode::InputBytes file(input);
     const gcode::ThumbnailFile holder(file.bytes(), file.name(), asked, o.print.read.plate);
     const std::vector<gcode::ThumbnailSize> sizes = holder.pictures();
@@ -107,7 +109,7 @@ Json writeOne(const ConvertCommand& o, const std::string& input, const fs::path&
     const auto toolpath = std::make_shared<const gcode::Toolpath>(std::move(print.toolpath));
     if (!o.common.quiet)
         for (const gcode::Warning& warning : toolpath->warnings)
-            fmt::print(stderr, "gcode2vdb: {}\n", gcode::describe(warning, file.name()));
+            tellError(fmt::format("gcode2vdb: {}\n", gcode::describe(warning, file.name())));
     const double parse = watch.lap();
     const std::vector<gcode::Thumbnail> pictures = assemble::makeThumbnails(toolpath, file.name(), sizes, options);
     const double render = watch.lap();
@@ -168,7 +170,7 @@ void writeThumbnails(ConvertCommand& o) {
     RunFiles files;
     for (const std::string& input : o.inputs) files.reads(input);
     if (!o.thumbnail.in_place)
-        for (const fs::path& output : outputs) files.writes(output.string(), "-o", RunFiles::Kind::print);
+        for (const fs::path& output : outputs) files.writes(output.string(), "-o");
     files.writes(o.common.stats, "--stats");
     o.common.output_on_stdout = isStandardOutput(outputs.front());
 

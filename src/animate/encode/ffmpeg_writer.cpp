@@ -1,9 +1,11 @@
 #include "animate/encode/ffmpeg_writer.h"
 
 #include "base/error.h"
+#include "base/own_file.h"
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <initializer_list>
 #include <utility>
 
@@ -46,12 +48,24 @@ std::vector<std::string> argumentsOf(FilmKind kind, const FilmFormat& format, co
             append(words,
                    {"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"});
     }
+    words.emplace_back("-metadata");
+    words.push_back(fmt::format("comment=by {}", kProgramMark));
     if (format.threads > 0) {
         words.emplace_back("-threads");
         words.push_back(std::to_string(format.threads));
     }
     words.push_back(output);
     return words;
+}
+
+// ffmpeg gives a GIF no comment: a block before the last byte.
+void markGif(const std::filesystem::path& path) {
+    const std::string text = fmt::format("by {}", kProgramMark);
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(-1, std::ios::end);
+    file << "\x21\xfe" << static_cast<char>(text.size()) << text << '\0' << ';';
+    file.close();
+    if (!file) throw writeError(path.string());
 }
 
 std::filesystem::path ffmpegFor(const std::filesystem::path& film) {
@@ -89,6 +103,7 @@ void FfmpegWriter::add(const std::vector<std::uint8_t>& rgb) {
 void FfmpegWriter::finish() {
     const std::string how = ffmpeg_->finish();
     if (!how.empty()) fail(how);
+    if (filmKindOf(file_.destination()) == FilmKind::gif) markGif(file_.temporary());
     file_.commit();
 }
 

@@ -2,8 +2,8 @@
 
 #include "assemble/print/kept_prints.h"
 #include "assemble/shape/file_facts.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "base/stopwatch.h"
 #include "base/vdb_magic.h"
 #include "deposit/read_print.h"
@@ -154,7 +154,8 @@ ReadProgram readProgram(const std::string& path, const PrintRequest& request, co
         if (const ReadProgram* known = request.kept->program(path, timed, hash)) return *known;
     ReadProgram program;
     {
-        const gcode::InputBytes file(path);
+        using Streams = gcode::InputBytes::Streams;
+        const gcode::InputBytes file(path, request.kept != nullptr ? Streams::refuse : Streams::read);
         program.bytes = file.bytes().size();
         program.name = file.name();
         if (hash) program.content = sha256Hex(file.bytes());

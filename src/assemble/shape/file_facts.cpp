@@ -1,29 +1,23 @@
 #include "assemble/shape/file_facts.h"
 
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/vdb_magic.h"
+#include "gcode/container/input_bytes.h"
 #include "march/file/grid_axes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
 namespace stratum::assemble {
 namespace fs = std::filesystem;
 
 bool isVdbFile(const std::string& path) {
-    if (path == "-") return false;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError(fmt::format("{}: can't be opened; check the name and the permissions", path));
-    std::array<char, kVdbMagic.size()> magic{};
-    file.read(magic.data(), magic.size());
-    if (file.gcount() == 0) throw InputError(fmt::format("{}: is empty (0 bytes)", path));
-    return std::string_view(magic.data(), magic.size()) == kVdbMagic;
+    return !gcode::isStream(path) && InputFile(path).first(kVdbMagic.size()) == kVdbMagic;
 }
 
 std::string unitOf(const openvdb::FloatGrid& grid) {
@@ -61,9 +55,11 @@ std::string identityOf(const std::string& path) {
     std::error_code missing;
     if (!fs::is_regular_file(path, missing)) return {};
     const auto changed = fs::last_write_time(path, missing).time_since_epoch().count();
-    const MappedFile file(path);
+    const InputFile file(path);
     constexpr std::size_t kEnd = std::size_t{1} << 16;
-    const std::string_view bytes = file.bytes();
+    file.load(0, std::min(file.size(), kEnd));
+    file.load(file.size() - std::min(file.size(), kEnd), std::min(file.size(), kEnd));
+    const std::string_view bytes = file.unread();
     return fmt::format("{} {} {} {}", bytes.size(), changed, sha256Hex(bytes.substr(0, kEnd)),
                        sha256Hex(bytes.substr(bytes.size() - std::min(bytes.size(), kEnd))));
 }

@@ -2,6 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/own_file.h"
 
 #include <fmt/format.h>
 #include <zip.h>
@@ -234,25 +235,15 @@ Source pack(ModelSource& model, const std::filesystem::path& path) {
     add("[Content_Types].xml", kContentTypes);
     add("_rels/.rels", kRelationships);
     addEntry(archive.get(), kModel, zip_source_function(archive.get(), answer, &model), path);
+    // Where it can be read without unpacking: see isOwnFile().
+    const std::string mark = fmt::format("by {}", kProgramMark);
+    (void)zip_set_archive_comment(archive.get(), mark.data(), static_cast<zip_uint16_t>(mark.size()));
     if (zip_close(archive.get()) != 0) fail(path, zip_strerror(archive.get()));
     (void)archive.release();
     return packed;
 }
 
 }  // namespace
-
-bool isOwn3mf(const std::filesystem::path& path) {
-    int failed = 0;
-    const Archive archive(zip_open(path.c_str(), ZIP_RDONLY, &failed));
-    if (!archive) return false;
-    zip_file_t* model = zip_fopen(archive.get(), kModel, 0);
-    if (model == nullptr) return false;
-    std::string head(512, '\0');
-    const zip_int64_t count = zip_fread(model, head.data(), head.size());
-    zip_fclose(model);
-    head.resize(static_cast<std::size_t>(std::max<zip_int64_t>(count, 0)));
-    return head.find("<metadata name=\"Application\">Stratum ") != std::string::npos;
-}
 
 void write3mf(const SurfaceMesh& mesh, const std::filesystem::path& path, const MeshSpace& space) {
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();

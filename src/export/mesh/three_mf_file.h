@@ -16,7 +16,4 @@ namespace stratum::exporter {
 /// the specification allows; OutputError.
 void write3mf(const SurfaceMesh& mesh, const std::filesystem::path& path, const MeshSpace& space);
 
-/// Whether the file is one that write3mf() wrote: it may be replaced, unlike a slicer's project of that name.
-bool isOwn3mf(const std::filesystem::path& path);
-
 }  // namespace stratum::exporter

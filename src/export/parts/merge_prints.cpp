@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -33,7 +34,6 @@ std::string differenceOf(const PartFile& one, const PartFile& other) {
     if (static_cast<const openvdb::MetaMap&>(*one.grid) != static_cast<const openvdb::MetaMap&>(*other.grid) ||
         one.grid->transform() != other.grid->transform() || one.grid->background() != other.grid->background() ||
         one.format.compression != other.format.compression ||
-        one.part.print.lower_nodes != other.part.print.lower_nodes ||
         one.part.print.upper_nodes != other.part.print.upper_nodes)
         return "of another print of the same scene";
     return {};
@@ -42,7 +42,7 @@ std::string differenceOf(const PartFile& one, const PartFile& other) {
 // What all parts together have at most. Throws InputError if they leave blocks out, or share them.
 voxelize::NodeBounds boundsOf(const std::vector<PartFile>& parts) {
     voxelize::NodeBounds print = parts.front().part.print;
-    print.leaves = 0;
+    print.leaves = print.lower_nodes = 0;
     std::size_t next = 0;  // block
     std::vector<std::string> problems;
     for (const PartFile& file : parts) {
@@ -53,7 +53,9 @@ voxelize::NodeBounds boundsOf(const std::vector<PartFile>& parts) {
                             file.path.string(), file.part.blocks.first, next));
         next = file.part.blocks.end;
         print.leaves += file.part.print.leaves;
+        print.lower_nodes += file.part.print.lower_nodes;
     }
+    print.upper_nodes = std::min(print.upper_nodes, print.lower_nodes);
     if (!problems.empty()) refuseParts(std::move(problems));
     return print;
 }
@@ -96,7 +98,8 @@ MergedPrint mergePrint(const std::filesystem::path& path, const std::vector<std:
             throw;
         } catch (const InputError& error) {
             problems.emplace_back(error.what());
-        } catch (const openvdb::Exception& error) {
+        } catch (const std::exception& error) {
+            // OpenVDB throws its own kinds, and those of the standard library for impossible counts.
             problems.push_back(damageOf(part.path, error.what()));
         }
     }

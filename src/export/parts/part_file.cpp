@@ -3,7 +3,7 @@
 #include "base/byte_cursor.h"
 #include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/vdb_magic.h"
 #include "export/parts/checksum.h"
 #include "export/parts/view_stream.h"
@@ -25,15 +25,23 @@ using openvdb::GridBase;
 class HeadCursor : public ByteCursor<HeadCursor> {
 public:
     using ByteCursor::ByteCursor;
+    explicit HeadCursor(const InputFile& input) : ByteCursor(input.unread()), input_(&input) {}
+    void load(std::size_t offset, std::size_t count) const {
+        if (input_ != nullptr) input_->load(offset, count);
+    }
     [[noreturn]] void endsEarly() const { throw std::runtime_error("it ends early"); }
     std::string_view text() { return take(read<std::uint32_t>()); }
+
+private:
+    const InputFile* input_ = nullptr;
 };
 
 // Where the head and the leaves of its only grid are, before anything else is believed.
-GridPlaces placesIn(std::string_view bytes) {
+GridPlaces placesIn(const InputFile& input) {
+    const std::string_view bytes = input.unread();
     GridPlaces places;
     places.head = VdbArchive(0).header(1, {}).size();
-    HeadCursor cursor(bytes);
+    HeadCursor cursor(input);
     cursor.take(places.head);
     for (int text = 0; text < 3; ++text) cursor.text();  // name, type, parent
     (void)cursor.read<std::int64_t>();
@@ -41,14 +49,35 @@ GridPlaces placesIn(std::string_view bytes) {
     places.end = cursor.read<std::uint64_t>();
     if (places.leaves < cursor.offset() || places.leaves > places.end || places.end != bytes.size())
         throw std::runtime_error("it is cut short");
+    input.load(0, places.leaves);
     const std::string_view head = bytes.substr(places.head, places.leaves - places.head);
     if (bytes.substr(0, places.head) != VdbArchive(0).header(1, identityOfPart(head)))
         throw std::runtime_error("the checksum of its head is wrong");
     return places;
 }
 
-bool saysPart(std::string_view bytes) {
-    return bytes.starts_with(kVdbMagic) && bytes.find("shard_scene") != std::string_view::npos;
+bool saysPart(const InputFile& input) {
+    constexpr std::string_view kWord = "shard_scene";
+    // It is in the head; more and more is read until it is found.
+    for (std::size_t seen = 1 << 18;; seen *= 4) {
+        const std::string_view bytes = input.first(seen);
+        if (!bytes.starts_with(kVdbMagic)) return false;
+        if (bytes.find(kWord) != std::string_view::npos) return true;
+        if (bytes.size() == input.size()) return false;
+    }
+}
+
+// How many leaves the list has: OpenVDB does not say it, and reads behind its end.
+std::size_t listedIn(std::string_view head, std::uint64_t metadata) {
+    HeadCursor cursor(head);
+    cursor.take(metadata);
+    for (auto rest = cursor.read<std::uint32_t>(); rest > 0; --rest) {
+        const std::string_view name = cursor.text();
+        cursor.text();  // its type
+        const std::string_view value = cursor.text();
+        if (name == GridBase::META_FILE_DELAYED_LOAD && !value.empty()) return HeadCursor(value).read<std::uint32_t>();
+    }
+    return 0;
 }
 
 void readGrid(std::string_view bytes, PartFile& file) {
@@ -59,6 +88,7 @@ void readGrid(std::string_view bytes, PartFile& file) {
     (void)descriptor.read(stream);
     stream.read(reinterpret_cast<char*>(&file.format.compression), sizeof file.format.compression);
     file.format.half = descriptor.saveFloatAsHalf();
+    file.listed = listedIn(bytes.substr(0, file.places.leaves), static_cast<std::uint64_t>(stream.tellg()));
     openvdb::MetaMap metadata;
     metadata.readMeta(stream);
     const auto transform = openvdb::math::Transform::createLinearTransform();
@@ -94,15 +124,15 @@ std::string damageOf(const std::filesystem::path& path, std::string_view why) {
 
 PartFile readPartFile(const std::filesystem::path& path) {
     openvdb::initialize();
-    const MappedFile mapped(path);
-    if (!saysPart(mapped.bytes()))
+    const InputFile input(path);
+    if (!saysPart(input))
         throw InputError(
             fmt::format("{}: is no part of a print; name those that gcode2vdb --shard wrote", path.string()));
     try {
         PartFile file;
         file.path = path;
-        file.places = placesIn(mapped.bytes());
-        readGrid(mapped.bytes(), file);
+        file.places = placesIn(input);
+        readGrid(input.unread(), file);
         return file;
     } catch (const std::exception& error) {
         throw InputError(damageOf(path, error.what()));
@@ -110,8 +140,10 @@ PartFile readPartFile(const std::filesystem::path& path) {
 }
 
 std::vector<LowerNode> nodesOf(const PartFile& file) {
-    const MappedFile mapped(file.path);
-    ViewStream stream(mapped.bytes().substr(0, file.places.leaves));
+    const InputFile input(file.path);
+    if (input.size() < file.places.leaves) throw InputError(damageOf(file.path, "it is cut short"));
+    input.load(0, file.places.leaves);
+    ViewStream stream(input.unread().substr(0, file.places.leaves));
     stream.seekg(static_cast<std::streamoff>(file.places.topology));
     openvdb::io::setCurrentVersion(stream);
     openvdb::io::setDataCompression(stream, file.format.compression);
@@ -119,6 +151,7 @@ std::vector<LowerNode> nodesOf(const PartFile& file) {
     tree.readTopology(stream, file.format.half);
     std::vector<LowerNode> nodes;
     std::vector<LeafMask> masks;
+    std::size_t leaves = 0;
     for (auto upper = tree.root().cbeginChildOn(); upper; ++upper)
         for (auto lower = upper->cbeginChildOn(); lower; ++lower) {
             LowerNode& node = nodes.emplace_back();
@@ -132,7 +165,9 @@ std::vector<LowerNode> nodesOf(const PartFile& file) {
             if (nodes.size() > file.part.signs.size())
                 throw InputError(damageOf(file.path, "it has more nodes than signs"));
             node.ends = file.part.signs[nodes.size() - 1];
+            leaves += masks.size();
         }
+    if (leaves != file.listed) throw InputError(damageOf(file.path, "its list is of other leaves"));
     return nodes;
 }
 
@@ -147,8 +182,8 @@ bool isPartOfPrint(const std::filesystem::path& path, const std::string& version
     try {
         const PartFile file = readPartFile(path);
         if (file.part.version != version || file.part.scene != scene || file.part.shard != shard) return false;
-        const MappedFile mapped(path, Access::sequential);
-        return checksumOf(mapped.bytes().substr(file.places.leaves)) == file.part.checksum;
+        const InputFile input(path);
+        return checksumOf(input.bytes().substr(file.places.leaves)) == file.part.checksum;
     } catch (const InputError&) {
         return false;  // missing or damaged: it is made again
     }

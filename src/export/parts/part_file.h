@@ -24,13 +24,14 @@ struct PartFile {
     LeafFormat format;
     GridStatistics statistics;
     openvdb::io::DelayedLoadMetadata::Ptr list;  ///< empty if there are no leaves
+    std::size_t listed = 0;                      ///< leaves in the list
     GridPlaces places;
 };
 
 /// Reads a part and checks all of it but its leaves. Throws InputError for other files and damaged ones.
 PartFile readPartFile(const std::filesystem::path& path);
 
-/// Its lower nodes, in their order.
+/// Its lower nodes, in their order. Throws InputError unless the list has as many leaves as they.
 std::vector<LowerNode> nodesOf(const PartFile& file);
 
 /// What its list says of a leaf.

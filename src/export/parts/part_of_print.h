@@ -19,7 +19,8 @@ struct PartOfPrint {
     std::string version;          ///< "shard_version": of the program
     std::string scene;            ///< "shard_scene": hash of the input files and of the options that matter
     voxelize::BlockRange blocks;  ///< "shard_first_block", "shard_end_block"
-    /// "shard_leaves", "shard_print_lower_nodes", ..: its leaves, whose sum is that of the print, and the print's nodes
+    /// "shard_leaves", "shard_lower_nodes", "shard_print_upper_nodes": its leaves and lower nodes, whose sums are those
+    /// of the print, and the upper nodes of the print
     voxelize::NodeBounds print;
     std::vector<EndSigns> signs;  ///< "shard_signs": of its lower nodes, a digit each
     std::uint32_t checksum = 0;   ///< "shard_checksum": of the bytes of its leaves

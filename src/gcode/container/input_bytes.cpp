@@ -2,13 +2,35 @@
 
 #include "base/error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace stratum::gcode {
+namespace {
+
+struct Descriptor {
+    explicit Descriptor(const std::string& path) : fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+    ~Descriptor() {
+        if (fd >= 0) ::close(fd);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    const int fd;
+};
+
+}  // namespace
+
+bool isStream(const std::string& path) {
+    if (path == "-") return true;
+    std::error_code ignored;
+    return std::filesystem::is_fifo(path, ignored);
+}
 
 ByteBuffer readAll(int descriptor, std::string_view name, std::size_t most) {
     constexpr std::size_t kChunk = std::size_t{1} << 20;
@@ -28,11 +50,18 @@ ByteBuffer readAll(int descriptor, std::string_view name, std::size_t most) {
     return buffer;
 }
 
-InputBytes::InputBytes(const std::string& path, std::size_t most) : name_(path == "-" ? "standard input" : path) {
-    if (path == "-")
+InputBytes::InputBytes(const std::string& path, Streams streams, std::size_t most)
+    : name_(path == "-" ? "standard input" : path) {
+    if (streams == Streams::refuse) {
+        file_.emplace(path);
+    } else if (path == "-") {
         buffer_ = readAll(STDIN_FILENO, name_, most);
-    else
-        file_.emplace(path, Access::sequential);
+    } else if (isStream(path)) {
+        const Descriptor stream(path);
+        buffer_ = readAll(stream.fd, name_, most);
+    } else {
+        file_.emplace(path);
+    }
 }
 
 }  // namespace stratum::gcode

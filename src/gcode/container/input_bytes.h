@@ -1,21 +1,28 @@
-// The bytes of an input file or of standard input.
+// The bytes of an input file, a pipe or standard input.
 #pragma once
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "gcode/container/byte_buffer.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace stratum::gcode {
 
-/// A file, mapped, or all of standard input for "-". Movable, not copyable.
+/// Whether a path can be read only once: "-", standard input, or a pipe such as the shell's <(zcat FILE).
+bool isStream(const std::string& path);
+
+/// A file, or all of a stream. Movable, not copyable.
 class InputBytes {
 public:
-    /// Throws InputError if there is nothing to read, or more than `most` bytes come from standard input.
-    explicit InputBytes(const std::string& path, std::size_t most = std::size_t{4} << 30);
+    /// Whether to wait for the bytes of a stream, or refuse it: where the input is read anew when it has changed.
+    enum class Streams : std::uint8_t { read, refuse };
+    /// Throws InputError if there is nothing to read, or more than `most` bytes come from a stream.
+    explicit InputBytes(const std::string& path, Streams streams = Streams::read,
+                        std::size_t most = std::size_t{4} << 30);
 
     std::string_view bytes() const { return file_ ? file_->bytes() : buffer_.view(); }
     /// For messages: the path, or "standard input".
@@ -23,7 +30,7 @@ public:
 
 private:
     std::string name_;
-    std::optional<MappedFile> file_;
+    std::optional<InputFile> file_;
     ByteBuffer buffer_;
 };
 

@@ -1,7 +1,7 @@
 #include "march/attribute/attribute_grid.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "march/file/vdb_check.h"
 #include "march/file/whole_grid.h"
 
@@ -93,15 +93,15 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
                                               const openvdb::FloatGrid& surface) {
     openvdb::GridBase::Ptr grid;
     std::string seen;
-    const MappedFile mapped(path);
-    checkVdb(mapped.bytes(), VdbDepth::heads, "", path.string());
+    const InputFile input(path);
+    checkVdb(input, VdbDepth::heads, "", path.string());
     try {
         openvdb::io::File file(path.string());
         file.open(/*delayLoad=*/false);
         for (auto it = file.beginName(); it != file.endName(); ++it) seen += (seen.empty() ? "" : ", ") + it.gridName();
         if (file.hasGrid(name)) {
             grid = file.readGridMetadata(name);
-            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(file, name, *grid, mapped.bytes());
+            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(file, name, *grid, input);
         }
     } catch (const InputError&) {
         throw;

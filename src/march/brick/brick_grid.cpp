@@ -1,6 +1,7 @@
 #include "march/brick/brick_grid.h"
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel_for.h"
 #include "march/brick/leaf_cache.h"
 #include "march/brick/neighbor_signs.h"
@@ -359,13 +360,15 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     double cells = 1;
     for (const int macro : macros) cells *= macro;
     // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
-    // much less.
-    const double most = std::min(2147483648.0, 16777216.0 + 4096.0 * static_cast<double>(leaves));
+    // much less. Where the table is large, half of the free memory is for it and, while bricks are laid out, its copy.
+    constexpr double kFew = 4194304.0;
+    double most = std::min(2147483648.0, kFew + 1024.0 * static_cast<double>(leaves));
+    if (cells > kFew) most = std::min(most, static_cast<double>(availableMemory()) / (4 * sizeof(MacroCell)));
     constexpr std::size_t kMostBricks = 0xff000000;  // slots have 32 bits, and some are left over
     constexpr int kLongest = (1 << 19) - 1;          // macro cells: leaf coordinates are kept in 21 bits an axis
     if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves > kMostBricks)
         throw InputError(fmt::format(
-            "the level set spans {} x {} x {} voxels with {} leaves, too many to lay out for rays; split it "
+            "the level set spans {} x {} x {} voxels with {} leaves, too far apart to lay them out for rays; split it "
             "or use --march vdb",
             std::int64_t{macros[0]} * kMacroEdge, std::int64_t{macros[1]} * kMacroEdge,
             std::int64_t{macros[2]} * kMacroEdge, leaves));

@@ -56,11 +56,11 @@ private:
     std::vector<std::string_view> masks_;  // of the leaves below each lower node
 };
 
-std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path, const std::string& name,
+std::shared_ptr<const LeafFile> LeafFile::open(InputFile input, const std::string& name,
                                                const openvdb::MetaMap& metadata) {
-    const std::shared_ptr<LeafFile> file(new LeafFile(path));
+    const std::shared_ptr<LeafFile> file(new LeafFile(std::move(input)));
     try {
-        VdbCursor heads_cursor(file->file_.bytes(), file->where_);
+        VdbCursor heads_cursor(file->file_, file->where_);
         const VdbHeads heads = walkVdbHeads(heads_cursor);
         const auto grid = std::find_if(heads.grids.begin(), heads.grids.end(), [&name](const VdbGrid& g) {
             return openvdb::io::GridDescriptor::stripSuffix(g.name) == name;
@@ -75,10 +75,10 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
         VdbCursor cursor = file->cursorAt(grid->tree);
         const auto first = static_cast<std::uint64_t>(grid->leaves);
         const auto end = static_cast<std::uint64_t>(grid->end);
-        if (end > file->file_.bytes().size() || first > end) cursor.fail("places of other leaves");
+        if (end > file->file_.size() || first > end) cursor.fail("places of other leaves");
         // Each leaf has two masks in the file: a damaged list can't ask for more memory than that.
         file->leaves_.reserve(static_cast<std::size_t>(
-            std::min<std::uint64_t>(grid->listed.value_or(0), file->file_.bytes().size() / (2 * kLeafMaskBytes))));
+            std::min<std::uint64_t>(grid->listed.value_or(0), file->file_.size() / (2 * kLeafMaskBytes))));
         TreeReader reader(*file, cursor);
         walkVdbTree(cursor, file->format_, reader);
         if (cursor.offset() != first) cursor.fail("places of other leaves");
@@ -88,13 +88,13 @@ std::shared_ptr<const LeafFile> LeafFile::open(const std::filesystem::path& path
     } catch (const std::exception& error) {
         // OpenVDB throws its own kinds, and std::bad_alloc for the absurd counts of a damaged file.
         throw InputError(
-            fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", path.string(), error.what()));
+            fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", file->where_, error.what()));
     }
     return file;
 }
 
 VdbCursor LeafFile::cursorAt(std::uint64_t offset) const {
-    VdbCursor cursor(file_.bytes(), where_, &name_);
+    VdbCursor cursor(file_, where_, &name_);
     cursor.moveTo(static_cast<std::int64_t>(offset));
     return cursor;
 }

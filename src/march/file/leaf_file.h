@@ -4,7 +4,7 @@
 // the upper levels of the tree alone (a thousandth of the file) and finds the leaves by arithmetic.
 #pragma once
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "march/file/leaf_source.h"
 #include "march/file/vdb_walker.h"
 #include "trace/intersector.h"
@@ -17,6 +17,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace stratum::march {
@@ -25,7 +26,7 @@ class LeafFile final : public LeafSource {
 public:
     /// Opens the grid of that name, which must be the only one of the name; its samples are floats, its metadata was
     /// read before. Returns null for an instance of another grid. Throws InputError for a missing or damaged file.
-    static std::shared_ptr<const LeafFile> open(const std::filesystem::path& path, const std::string& name,
+    static std::shared_ptr<const LeafFile> open(InputFile input, const std::string& name,
                                                 const openvdb::MetaMap& metadata);
 
     /// Metadata, transform, background, and no voxels.
@@ -49,13 +50,13 @@ private:
     };
     class TreeReader;
 
-    explicit LeafFile(const std::filesystem::path& path) : file_(path), where_(path.string()) {}
+    explicit LeafFile(InputFile input) : file_(std::move(input)), where_(file_.path().string()) {}
     VdbCursor cursorAt(std::uint64_t offset) const;
     void placeLeaves(std::uint64_t first, std::uint64_t end, const VdbGrid& grid,
                      const std::vector<std::string_view>& masks);
     std::string_view activeOf(const Leaf& leaf) const;
 
-    MappedFile file_;
+    InputFile file_;
     openvdb::FloatGrid::Ptr head_;
     std::string where_, name_;  // for messages
     VdbValueFormat format_{sizeof(float)};

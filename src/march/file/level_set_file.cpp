@@ -1,7 +1,7 @@
 #include "march/file/level_set_file.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "march/file/grid_axes.h"
 #include "march/file/vdb_check.h"
 #include "march/file/whole_grid.h"
@@ -16,6 +16,7 @@
 #include <set>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace stratum::march {
@@ -73,20 +74,20 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     return {wanted, head};
 }
 
-// Calls `read` with the opened file, the selected grid, whose tree has not been checked, and the file's bytes.
+// Calls `read` with the opened file, the selected grid, whose tree has not been checked, and the file.
 template <typename Read>
 auto withGrid(const std::filesystem::path& path, const std::string& name, const Read& read) {
     const std::string where = path.string();
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored))
         throw InputError(fmt::format("{}: is not a file; check the name", where));
-    const MappedFile mapped(path);
-    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
+    InputFile input(path);
+    checkVdb(input, VdbDepth::heads, "", where);
     try {
         openvdb::io::File file(where);
         // Without OpenVDB's delayed loading, which copies the file and builds the whole tree nevertheless.
         file.open(/*delayLoad=*/false);
-        return read(file, chooseGrid(file, name), mapped.bytes());
+        return read(file, chooseGrid(file, name), input);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -98,17 +99,17 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
 }  // namespace
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice, std::string_view bytes) {
-        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(file, choice.name, *choice.head, bytes));
+    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice, const InputFile& input) {
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(file, choice.name, *choice.head, input));
     });
     requireTraceable(*grid, path.string());
     return grid;
 }
 
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice, std::string_view bytes) {
-        checkVdb(bytes, VdbDepth::nodes, choice.name, path.string());
-        return LeafFile::open(path, choice.name, *choice.head);
+    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice, InputFile& input) {
+        checkVdb(input, VdbDepth::nodes, choice.name, path.string());
+        return LeafFile::open(std::move(input), choice.name, *choice.head);
     });
     if (file) requireTraceable(file->head(), file->leafCount(), path.string());
     return file;
@@ -116,8 +117,8 @@ std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, 
 
 bool hasGrid(const std::filesystem::path& path, const std::string& name) {
     const std::string where = path.string();
-    const MappedFile mapped(path);
-    checkVdb(mapped.bytes(), VdbDepth::heads, "", where);
+    const InputFile input(path);
+    checkVdb(input, VdbDepth::heads, "", where);
     try {
         openvdb::io::File file(where);
         file.open(/*delayLoad=*/false);

@@ -42,7 +42,7 @@ private:
 
 }  // namespace
 
-void checkVdb(std::string_view bytes, VdbDepth depth, const std::string& name, const std::string& where) {
+void checkVdb(const VdbBytes& bytes, VdbDepth depth, const std::string& name, const std::string& where) {
     VdbCursor cursor(bytes, where);
     const std::vector<VdbGrid> grids = walkVdbHeads(cursor).grids;
     if (depth == VdbDepth::heads) return;

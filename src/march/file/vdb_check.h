@@ -1,9 +1,10 @@
 // Whether a .vdb is as long as it says, part by part, before OpenVDB believes it.
 #pragma once
 
+#include "march/file/vdb_walker.h"
+
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 namespace stratum::march {
 
@@ -20,6 +21,6 @@ enum class VdbDepth : std::uint8_t {
 /// of it is in the file and fits together. What is packed is not unpacked: of zlib and Blosc it checks the sizes alone.
 /// @param name  of the grid whose tree is about to be read, and with it, if it is an instance, its parent's. Trees of
 ///              other values than float, int32 and Vec3f are not looked at: don't read them.
-void checkVdb(std::string_view bytes, VdbDepth depth, const std::string& name, const std::string& where);
+void checkVdb(const VdbBytes& bytes, VdbDepth depth, const std::string& name, const std::string& where);
 
 }  // namespace stratum::march

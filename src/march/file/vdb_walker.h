@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/byte_cursor.h"
+#include "base/input_file.h"
 
 #include <openvdb/openvdb.h>
 
@@ -20,16 +21,28 @@
 
 namespace stratum::march {
 
+/// The bytes of a .vdb: in memory, or of a file that is read where a cursor goes. The file must outlive it.
+struct VdbBytes {
+    VdbBytes(std::string_view all) : bytes(all) {}                          // NOLINT(google-explicit-constructor)
+    VdbBytes(const InputFile& from) : bytes(from.unread()), file(&from) {}  // NOLINT(google-explicit-constructor)
+
+    std::string_view bytes;
+    const InputFile* file = nullptr;
+};
+
 class VdbCursor : public ByteCursor<VdbCursor> {
 public:
     /// @param where  how messages begin
     /// @param grid  if given, messages say that this grid is damaged instead of the reason
-    VdbCursor(std::string_view bytes, const std::string& where, const std::string* grid = nullptr)
-        : ByteCursor(bytes), where_(where), grid_(grid) {}
+    VdbCursor(const VdbBytes& bytes, const std::string& where, const std::string* grid = nullptr)
+        : ByteCursor(bytes.bytes), file_(bytes.file), where_(where), grid_(grid) {}
 
     /// Throws InputError.
     [[noreturn]] void fail(std::string_view why) const;
     [[noreturn]] void endsEarly() const { fail("it ends early"); }
+    void load(std::size_t offset, std::size_t count) const {
+        if (file_ != nullptr) file_->load(offset, count);
+    }
     void moveTo(std::int64_t offset);
     std::string text() { return std::string(take(read<std::uint32_t>())); }
     /// The bytes from `first` to here.
@@ -39,6 +52,7 @@ public:
     const std::string& where() const { return where_; }
 
 private:
+    const InputFile* file_;
     const std::string& where_;
     const std::string* grid_;
 };

@@ -90,7 +90,7 @@ struct UpperLevels final : VdbTreeVisitor {
 template <typename Grid>
 class WholeGrid {
 public:
-    WholeGrid(const openvdb::GridBase& head, const VdbGrid& in_file, std::string_view bytes, const std::string& where)
+    WholeGrid(const openvdb::GridBase& head, const VdbGrid& in_file, const VdbBytes& bytes, const std::string& where)
         : grid_(openvdb::gridPtrCast<Grid>(head.copyGridWithNewTree())),
           in_file_(in_file),
           format_(*valueFormatOf(in_file)),
@@ -206,7 +206,7 @@ private:
     typename Grid::Ptr grid_;
     const VdbGrid& in_file_;
     VdbValueFormat format_;
-    std::string_view bytes_;
+    VdbBytes bytes_;
     const std::string& where_;
     UpperLevels levels_;
     Value background_{};
@@ -218,7 +218,7 @@ private:
 };
 
 template <typename Grid>
-openvdb::GridBase::Ptr readAs(const openvdb::GridBase& head, const VdbGrid& in_file, std::string_view bytes,
+openvdb::GridBase::Ptr readAs(const openvdb::GridBase& head, const VdbGrid& in_file, const VdbBytes& bytes,
                               const std::string& where) {
     if (!head.isType<Grid>() || in_file.type != Grid::gridType()) return nullptr;
     return WholeGrid<Grid>(head, in_file, bytes, where).read();
@@ -227,7 +227,7 @@ openvdb::GridBase::Ptr readAs(const openvdb::GridBase& head, const VdbGrid& in_f
 }  // namespace
 
 openvdb::GridBase::Ptr readWholeGrid(openvdb::io::File& file, const std::string& name, const openvdb::GridBase& head,
-                                     std::string_view bytes) {
+                                     const VdbBytes& bytes) {
     const std::string where = file.filename();
     VdbCursor cursor(bytes, where);
     const VdbHeads heads = walkVdbHeads(cursor);

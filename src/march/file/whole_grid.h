@@ -1,10 +1,11 @@
 // Reads a whole grid of a .vdb on all threads.
 #pragma once
 
+#include "march/file/vdb_walker.h"
+
 #include <openvdb/openvdb.h>
 
 #include <string>
-#include <string_view>
 
 namespace stratum::march {
 
@@ -19,6 +20,6 @@ namespace stratum::march {
 /// @param head  what file.readGridMetadata(name) gave
 /// @param bytes  of the file
 openvdb::GridBase::Ptr readWholeGrid(openvdb::io::File& file, const std::string& name, const openvdb::GridBase& head,
-                                     std::string_view bytes);
+                                     const VdbBytes& bytes);
 
 }  // namespace stratum::march

@@ -13,6 +13,9 @@
 namespace stratum::shade {
 namespace {
 
+// 1/sr: a mirror that an instrument sees as a thousandth of a degree has less.
+constexpr float kMostReading = 1e12f;
+
 void checkAscending(const std::vector<double>& angles, double low, double high, std::string_view what,
                     std::string_view name) {
     for (std::size_t i = 0; i < angles.size(); ++i) {
@@ -42,7 +45,15 @@ std::vector<double> trapezoid(const std::vector<double>& nodes) {
 
 }  // namespace
 
-void BrdfScan::check(std::string_view name) const {
+void BrdfScan::append(const std::vector<double>& first, const std::vector<double>& second,
+                      const std::vector<double>& third, std::string_view name, Color (*color)(double, double, double)) {
+    if (first.size() != second.size() || first.size() != third.size())
+        throw InputError(fmt::format("{}: {}, {} and {} readings for three channels; all need the same angles", name,
+                                     first.size(), second.size(), third.size()));
+    for (std::size_t n = 0; n < first.size(); ++n) values.push_back(color(first[n], second[n], third[n]));
+}
+
+void BrdfScan::checkAngles(std::string_view name) const {
     if (incidences.empty() || azimuths.empty() || polars.size() < 2)
         throw InputError(fmt::format("{}: {} incidences x {} azimuths x {} polar angles are too few for a BRDF", name,
                                      incidences.size(), azimuths.size(), polars.size()));
@@ -52,12 +63,21 @@ void BrdfScan::check(std::string_view name) const {
     checkAscending(incidences, 0.0, 89.0 / kDegrees, "angle of incidence", name);
     checkAscending(azimuths, 0.0, 2.0 * std::numbers::pi, "azimuth", name);
     checkAscending(polars, 0.0, 0.5 * std::numbers::pi, "polar angle", name);
+}
+
+void BrdfScan::check(std::string_view name) const {
+    checkAngles(name);
+    if (values.size() != incidences.size() * azimuths.size() * polars.size())
+        throw InputError(
+            fmt::format("{}: has {} readings for {} incidences x {} azimuths x {} polar angles; state the angles once, "
+                        "before the readings",
+                        name, values.size(), incidences.size(), azimuths.size(), polars.size()));
     bool black = true;
     for (std::size_t n = 0; n < values.size(); ++n) {
-        if (!isFinite(values[n]))
+        if (!isFinite(values[n]) || maxComponent(glm::abs(values[n])) > kMostReading)
             throw InputError(fmt::format(
                 "{}: the value at incidence {:g}, azimuth {:g}, polar angle {:g} degrees is no "
-                "number",
+                "number in 1/sr",
                 name, incidences[n / polars.size() / azimuths.size()] * kDegrees,
                 azimuths[n / polars.size() % azimuths.size()] * kDegrees, polars[n % polars.size()] * kDegrees));
         black = black && !(maxComponent(values[n]) > 0.0f);

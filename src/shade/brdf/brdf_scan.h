@@ -28,8 +28,13 @@ struct BrdfScan {
     std::size_t index(std::size_t incidence, std::size_t azimuth, std::size_t polar) const {
         return (incidence * azimuths.size() + azimuth) * polars.size() + polar;
     }
-    /// Throws InputError that names the file unless there are enough angles in order, not more than kMostIncidences,
-    /// and all values are numbers.
+    /// Appends readings of three channels. Throws InputError that names the file unless they are as many.
+    /// @param color  of one reading of each
+    void append(const std::vector<double>& first, const std::vector<double>& second, const std::vector<double>& third,
+                std::string_view name, Color (*color)(double, double, double));
+    /// Throws InputError that names the file unless there are enough angles in order, not more than kMostIncidences.
+    void checkAngles(std::string_view name) const;
+    /// The same, and that there is one value for each of their combinations, all of them numbers.
     void check(std::string_view name) const;
 };
 

@@ -73,8 +73,7 @@ std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const 
     if (!std::isfinite(placement.rotation)) throw UsageError("--env-rotation: must be a number of degrees");
     if (std::error_code error;
         !isEnvironmentPreset(text) && !text.empty() && std::filesystem::exists(std::filesystem::path(text), error))
-        return std::make_shared<MapEnvironment>(readLightMap(text), placement.rotation,
-                                                static_cast<float>(std::exp2(placement.exposure)));
+        return std::make_shared<MapEnvironment>(readLightMap(text, placement.exposure), placement.rotation, 1.0f);
     const std::string name = nameOf(text);
     if (!isEnvironmentPreset(text))
         throw UsageError(

@@ -1,11 +1,15 @@
 #include "shade/environment/light_map.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "shade/environment/hdr_reader.h"
 #include "shade/film/exr_reader.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace stratum::shade {
 namespace {
@@ -17,8 +21,8 @@ LightMap fromExr(const std::filesystem::path& path) {
 
 }  // namespace
 
-LightMap readLightMap(const std::filesystem::path& path) {
-    const MappedFile file(path);
+LightMap readLightMap(const std::filesystem::path& path, double stops) {
+    const InputFile file(path);
     const std::string name = path.string();
     LightMap map;
     if (isHdr(file.bytes()))
@@ -31,15 +35,26 @@ LightMap readLightMap(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: has {} x {} texels; a map of all directions is twice as wide as high", name,
                                      map.width, map.height));
     bool black = true;
+    const auto scale = static_cast<float>(std::exp2(stops));
     for (std::size_t i = 0; i < map.texels.size(); ++i) {
-        const Color& c = map.texels[i];
+        Color& c = map.texels[i];
         if (!isFinite(c) || std::min({c.r, c.g, c.b}) < 0.0f)
             throw InputError(fmt::format("{}: texel {}, {} is ({}, {}, {}); radiance must be a number and not negative",
                                          name, i % static_cast<std::size_t>(map.width),
                                          i / static_cast<std::size_t>(map.width), c.r, c.g, c.b));
+        c *= scale;
+        if (!(maxComponent(c) <= kBrightestTexel))
+            throw InputError(
+                fmt::format("{}: texel {}, {} has the radiance {:g}, at {:g} stops; at most {:g} can be used. Lower "
+                            "--env-exposure, "
+                            "or scale the map",
+                            name, i % static_cast<std::size_t>(map.width), i / static_cast<std::size_t>(map.width),
+                            maxComponent(c), stops, kBrightestTexel));
         black = black && !(maxComponent(c) > 0.0f);
     }
-    if (black) throw InputError(fmt::format("{}: is black all over and gives no light", name));
+    if (black)
+        throw InputError(fmt::format("{}: is black all over{} and gives no light", name,
+                                     stops != 0.0 ? fmt::format(" at {:g} stops", stops) : ""));
     return map;
 }
 

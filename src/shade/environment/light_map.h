@@ -24,8 +24,14 @@ struct LightMap {
 /// The largest map that is read: 2^27 texels, 1.6 GB. 16384 x 8192 is the largest that people publish.
 inline constexpr std::size_t kMostMapTexels = std::size_t{1} << 27;
 
+/// The brightest texel of a map, scaled: sums of radiances, their squares and products with BRDFs stay far from the
+/// largest float. The sun is a thousand times darker in W/(m^2 sr) nm and in cd/m^2.
+inline constexpr float kBrightestTexel = 1e12f;
+
 /// Reads a .hdr or .exr map, recognized by content. Throws InputError: missing, of another kind, damaged, too large,
-/// not twice as wide as high, with texels that are negative or no number, or black all over.
-LightMap readLightMap(const std::filesystem::path& path);
+/// not twice as wide as high, with texels that are negative, no number or, scaled, above kBrightestTexel, or black all
+/// over.
+/// @param stops  all texels are scaled by 2^stops
+LightMap readLightMap(const std::filesystem::path& path, double stops = 0.0);
 
 }  // namespace stratum::shade

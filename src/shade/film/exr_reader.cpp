@@ -1,7 +1,8 @@
 #include "shade/film/exr_reader.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "shade/film/exr_bytes.h"
 #include "shade/film/exr_header.h"
 
 #include <ImfChannelList.h>
@@ -31,8 +32,9 @@ std::map<std::string, std::string> attributesOf(const Imf::Header& header) {
     return result;
 }
 
-ExrImage read(const std::filesystem::path& path, std::size_t most) {
-    Imf::InputFile file(path.c_str(), 1);
+ExrImage read(std::string_view bytes, const std::filesystem::path& path, std::size_t most) {
+    ExrBytes stream(bytes, path.string());
+    Imf::InputFile file(stream, 1);
     const Imath::Box2i window = file.header().dataWindow();
     const auto width = static_cast<std::int64_t>(window.max.x) - window.min.x + 1;
     const auto height = static_cast<std::int64_t>(window.max.y) - window.min.y + 1;
@@ -69,9 +71,10 @@ ExrImage read(const std::filesystem::path& path, std::size_t most) {
 bool isExr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 
 ExrImage readExr(const std::filesystem::path& path, std::size_t most) {
-    checkExrHeader(MappedFile(path).bytes(), most, path.string());
+    const InputFile input(path);
+    checkExrHeader(input.bytes(), most, path.string());
     try {
-        return read(path, most);
+        return read(input.bytes(), path, most);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {

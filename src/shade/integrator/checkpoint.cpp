@@ -3,7 +3,7 @@
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ Checkpoint::Checkpoint(std::filesystem::path path, std::string identity)
 
 bool Checkpoint::read(RenderState& state) const {
     if (!std::filesystem::exists(path_)) return false;
-    const MappedFile file(path_);
+    const InputFile file(path_);
     std::string_view bytes = file.bytes();
     const auto refuse = [&](const char* why) {
         throw InputError(

@@ -1,6 +1,14 @@
 #include "shade/integrator/geometry_integrators.h"
 
+#include <algorithm>
+
 namespace stratum::shade {
+namespace {
+
+// Files state labels as they like; larger numbers do not fit into integers.
+constexpr float kMostLabel = 1e9f;
+
+}  // namespace
 
 Pixel NormalIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
     if (first == nullptr) return {};
@@ -30,7 +38,7 @@ Pixel MaskIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceCo
 Pixel LabelIntegrator::seen(const trace::Ray&, const SurfacePoint* first, TraceContext&) const {
     if (first == nullptr || first->bed) return {};
     const float value = first->labels[static_cast<std::size_t>(label_)];
-    return {value >= 0.0f ? categoryColor(static_cast<std::size_t>(value)) : Color(0.0f), 1.0f};
+    return {value >= 0.0f ? categoryColor(static_cast<std::size_t>(std::min(value, kMostLabel))) : Color(0.0f), 1.0f};
 }
 
 }  // namespace stratum::shade

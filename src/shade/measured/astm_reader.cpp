@@ -17,7 +17,8 @@ namespace stratum::shade {
 namespace {
 
 constexpr std::size_t kMostReadings = std::size_t{1} << 23;
-constexpr double kSame = 1e-5;  // radians: angles closer than this are one
+constexpr double kMostAngle = 3600;  // degrees
+constexpr double kSame = 1e-5;       // radians: angles closer than this are one
 
 struct Channels {
     std::size_t count = 0;
@@ -77,6 +78,9 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
             text.fail(fmt::format("{} numbers; VARS names {}", rows.back().size(), 4 + channels.count));
         if (rows.size() > kMostReadings) text.fail(fmt::format("more than {} readings", kMostReadings));
         for (std::size_t n = 0; n < 4; ++n)
+            if (!(std::abs(rows.back()[n]) <= kMostAngle))
+                text.fail(fmt::format("{:g} is no angle in radians or degrees", rows.back()[n]));
+        for (std::size_t n = 0; n < 4; ++n)
             degrees = degrees || std::abs(rows.back()[n]) > 2.0 * std::numbers::pi + 1e-3;
     }
     if (rows.empty()) text.fail("no readings");
@@ -109,6 +113,8 @@ BrdfScan readAstm(std::string_view bytes, std::string_view name) {
     for (const auto& i : incidences) scan.incidences.push_back(i.second);
     for (const auto& a : azimuths) scan.azimuths.push_back(a.second);
     for (const auto& p : polars) scan.polars.push_back(p.second);
+    // Readings at the pole alone would make a grid of the square of their number.
+    scan.checkAngles(name);
     for (const auto& i : incidences) {
         for (const auto& a : azimuths) {
             for (const auto& p : polars) {

@@ -3,6 +3,7 @@
 #include "base/angles.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/own_file.h"
 #include "shade/measured/scan_text.h"
 
 #include <ImfChannelList.h>
@@ -214,6 +215,7 @@ void writeBrdfExr(const std::filesystem::path& path, const BrdfScan& scan) {
     header.insert("thetaI", Imf::StringAttribute(fmt::format("{}", fmt::join(degrees, ","))));
     header.insert("sampling", Imf::StringAttribute("nodes"));
     header.insert("meaning", Imf::StringAttribute("detector"));
+    header.insert("software", Imf::StringAttribute(kProgramMark));
     header.insert("comment", Imf::StringAttribute(fmt::format("{}", fmt::join(scan.notes, "; "))));
     Imf::FrameBuffer buffer;
     constexpr std::array<const char*, 3> kNames = {"R", "G", "B"};

@@ -2,7 +2,7 @@
 
 #include "base/angles.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "shade/measured/astm_reader.h"
 #include "shade/measured/brdf_exr.h"
 #include "shade/measured/merl_file.h"
@@ -73,7 +73,7 @@ std::shared_ptr<const TableBrdf> fromScan(const BrdfScan& raw, const std::string
 }  // namespace
 
 MeasuredMaterial readMeasuredMaterial(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const InputFile file(path);
     const std::string name = path.string();
     std::string_view bytes = file.bytes();
     if (isExr(bytes)) return {"EXR texture", readBrdfExr(path)};

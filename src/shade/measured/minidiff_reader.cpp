@@ -126,7 +126,7 @@ BrdfScan readMiniDiff(std::string_view bytes, std::string_view name) {
         const std::vector<double>& r = blocks.at(wavelengths[choice.red])->readings;
         const std::vector<double>& g = blocks.at(wavelengths[choice.green])->readings;
         const std::vector<double>& b = blocks.at(wavelengths[choice.blue])->readings;
-        for (std::size_t n = 0; n < r.size(); ++n) scan.values.emplace_back(r[n], g[n], b[n]);
+        scan.append(r, g, b, name, [](double x, double y, double z) { return Color(glm::dvec3(x, y, z)); });
     }
     scan.check(name);
     if (file.skipped > 0)

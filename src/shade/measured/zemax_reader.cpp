@@ -98,8 +98,10 @@ BrdfScan readZemax(std::string_view bytes, std::string_view name) {
     for (const double a : file.azimuths) about.azimuths.push_back(a * kRadians);
     for (const double r : file.radials) about.polars.push_back(r * kRadians);
     const std::array<std::vector<double>, 3>& c = file.channels;
-    for (std::size_t n = 0; n < c[0].size(); ++n)
-        about.values.push_back(file.xyz ? fromXyz(c[0][n], c[1][n], c[2][n]) : Color(static_cast<float>(c[0][n])));
+    if (file.xyz)
+        about.append(c[0], c[1], c[2], name, &fromXyz);
+    else
+        for (const double value : c[0]) about.values.emplace_back(static_cast<float>(value));
     // Radials run to 180 degrees: from a grazing mirror direction across the hemisphere.
     BrdfScan checked = about;
     for (double& p : checked.polars) p *= 0.5;

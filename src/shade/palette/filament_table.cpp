@@ -1,7 +1,7 @@
 #include "shade/palette/filament_table.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "base/text.h"
 #include "shade/data_folder.h"
 
@@ -122,7 +122,7 @@ std::vector<Filament> parseFilaments(std::string_view text, std::string_view fil
 const std::vector<Filament>& filaments() {
     static const std::vector<Filament> table = [] {
         const std::filesystem::path path = dataFolder() / "filaments" / "colors.tsv";
-        return parseFilaments(MappedFile(path).bytes(), path.string());
+        return parseFilaments(InputFile(path).bytes(), path.string());
     }();
     return table;
 }

@@ -1,8 +1,10 @@
 #include "shade/parts/frame_record.h"
 
 #include "base/atomic_file.h"
+#include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
+#include "base/own_file.h"
 
 #include <fstream>
 #include <utility>
@@ -12,6 +14,7 @@ namespace stratum::shade {
 FrameRecord::FrameRecord(std::filesystem::path path) : path_(std::move(path)) {
     std::ifstream in(path_);
     for (std::string line; std::getline(in, line);) {
+        if (line.starts_with('#')) continue;  // whose file it is
         const std::size_t first = line.find(' ');
         const std::size_t second = first == std::string::npos ? first : line.find(' ', first + 1);
         if (second == std::string::npos) continue;
@@ -23,16 +26,17 @@ bool FrameRecord::has(const std::filesystem::path& picture, const std::string& s
     const auto found = entries_.find(picture.filename().string());
     if (found == entries_.end() || found->second.scene != scene) return false;
     try {
-        return sha256Hex(MappedFile(picture).bytes()) == found->second.bytes;
+        return sha256Hex(InputFile(picture).bytes()) == found->second.bytes;
     } catch (const InputError&) {
         return false;  // it was removed
     }
 }
 
 void FrameRecord::add(const std::filesystem::path& picture, const std::string& scene) {
-    entries_[picture.filename().string()] = {scene, sha256Hex(MappedFile(picture).bytes())};
+    entries_[picture.filename().string()] = {scene, sha256Hex(InputFile(picture).bytes())};
     AtomicFile(path_).write([this](const std::filesystem::path& to) {
         std::ofstream out(to, std::ios::binary);
+        out << "# by " << kProgramMark << '\n';
         for (const auto& [name, entry] : entries_) out << entry.scene << ' ' << entry.bytes << ' ' << name << '\n';
         out.close();
         if (!out) throw writeError(to.string());

@@ -2,8 +2,9 @@
 
 #include "base/checksum.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "shade/film/exr_buffer.h"
+#include "shade/film/exr_bytes.h"
 #include "shade/film/exr_header.h"
 #include "shade/film/exr_reader.h"
 #include "shade/parts/part_sums.h"
@@ -225,12 +226,13 @@ std::vector<Aov> aovsOf(const Part& part) {
 }
 
 Part readPart(const std::filesystem::path& path) {
-    const MappedFile mapped(path);
-    if (!isExr(mapped.bytes()))
+    const InputFile input(path);
+    if (!isExr(input.bytes()))
         throw InputError(fmt::format("{}: is no OpenEXR; name the parts that vdbtrace --shard wrote", path.string()));
-    checkExrHeader(mapped.bytes(), kMostPixels, path.string());
+    checkExrHeader(input.bytes(), kMostPixels, path.string());
     try {
-        const Imf::InputFile file(path.c_str(), 1);
+        ExrBytes stream(input.bytes(), path.string());
+        const Imf::InputFile file(stream, 1);
         Metadata metadata;
         for (auto i = file.header().begin(); i != file.header().end(); ++i)
             if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&i.attribute()))

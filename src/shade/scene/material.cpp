@@ -22,8 +22,9 @@ namespace {
 
 constexpr double kMostCategories = 32;
 constexpr std::size_t kRampSteps = 256;
-constexpr float kBrightest = 0.95f;  // no filament reflects everything
-const Color kNeutral(0.18f);         // of values that are no numbers
+constexpr float kMostNumber = 2147483520.0f;  // the largest that fits into an int
+constexpr float kBrightest = 0.95f;           // no filament reflects everything
+const Color kNeutral(0.18f);                  // of values that are no numbers
 
 /// Similar to the usual colors of slicers.
 struct FeatureColor {
@@ -155,7 +156,7 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
         }
         brdfs.push_back(base);
         return {attribute, brdfs, [place](const glm::vec3& v) {
-                    const auto found = place.find(static_cast<int>(v.x));
+                    const auto found = place.find(static_cast<int>(std::clamp(v.x, -kMostNumber, kMostNumber)));
                     return found == place.end() ? std::size_t{0} : found->second;
                 }};
     }

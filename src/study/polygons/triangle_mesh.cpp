@@ -1,7 +1,7 @@
 #include "study/polygons/triangle_mesh.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -100,7 +100,7 @@ TriangleMesh cylinderMesh(const glm::dvec3& center, double radius, double half_h
 TriangleMesh sceneMesh(const std::filesystem::path& scene, int sphere_rings, int cylinder_points) {
     TriangleMesh mesh;
     try {
-        const auto json = nlohmann::json::parse(MappedFile(scene).bytes(), nullptr, true, true);
+        const auto json = nlohmann::json::parse(InputFile(scene).bytes(), nullptr, true, true);
         std::uint32_t object = 0;
         for (const auto& entry : json.at("objects")) {
             const auto found = entry.at("sdf").begin();

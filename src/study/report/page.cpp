@@ -2,7 +2,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -105,7 +105,7 @@ void Page::plot(const Plot& plot) { body_ += "<div class='plot'>" + report::draw
 void Page::picture(const std::filesystem::path& file, std::string_view caption) {
     body_ += fmt::format(
         "<figure><img alt='{0}' src='data:image/{2};base64,{1}'><figcaption>{0}</figcaption></figure>\n",
-        report::escapeMarkup(caption), base64(MappedFile(file).bytes()), file.extension() == ".jpg" ? "jpeg" : "png");
+        report::escapeMarkup(caption), base64(InputFile(file).bytes()), file.extension() == ".jpg" ? "jpeg" : "png");
 }
 
 std::string Page::html() const {

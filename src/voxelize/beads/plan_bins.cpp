@@ -112,10 +112,10 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     const double bytes = columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) +
                          bound * sizeof(std::uint32_t);
     if (bytes > static_cast<double>(memory_limit))
-        throw UsageError(
-            fmt::format("voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB are free); "
-                        "choose a larger voxel, or let --memory-budget choose one",
-                        lattice.voxel_size, bytes * 1e-9, static_cast<double>(memory_limit) * 1e-9));
+        throw UsageError(fmt::format(
+            "voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB may be used for them); "
+            "choose a larger voxel, or let --memory-budget choose one",
+            lattice.voxel_size, bytes * 1e-9, static_cast<double>(memory_limit) * 1e-9));
     columns_i_ = static_cast<std::size_t>(all.i1 - all.i0) + 1;
     columns_j_ = static_cast<std::size_t>(all.j1 - all.j0) + 1;
     const std::size_t count = columns_i_ * columns_j_;

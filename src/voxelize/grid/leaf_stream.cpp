@@ -138,10 +138,21 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     if (bins.size() == 0) return all;
     const LeafRectangle plan = rectangleOf(bins);
     // Blocks of the share by tile; mostly one.
-    std::map<std::pair<int, int>, std::vector<LeafRange>> own;
+    struct Tile {
+        std::size_t number = 0;
+        std::vector<LeafRange> slabs;
+    };
+    std::map<std::pair<int, int>, Tile> own;
+    std::size_t slabs = 0;
     forEachBlock(plan, heights, [&](std::size_t number, const LeafBlock& block) {
-        if (share.has(number)) own[{block.x, block.y}].push_back(block.heights);
+        if (!share.has(number)) return;
+        Tile& tile = own.try_emplace({block.x, block.y}, Tile{own.size(), {}}).first->second;
+        tile.slabs.push_back(block.heights);
+        ++slabs;
     });
+    const int low = floorDivide(heights.first, kBlockLeaves);
+    const std::size_t high = cellsMet(heights.first, heights.second, kBlockLeaves);
+    std::vector<std::atomic<bool>> lower(own.size() * high);  // nodes with leaves
     all.columns.assign(bins.size(), kNone);
     std::atomic<std::size_t> leaves{0};
     parallelFor(bins.size(), kBoundGrain, [&](std::size_t first, std::size_t last) {
@@ -153,26 +164,27 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
                 own.find({floorDivide(bins.originI(c), kBlockVoxels), floorDivide(bins.originJ(c), kBlockVoxels)});
             if (blocks == own.end()) continue;
             const std::span<const LeafRange> ranges = column.bounds(bins[c]);
-            for (const LeafRange& slab : blocks->second)
-                for (const LeafRange& range : ranges) count += leavesIn(slab, range);
+            for (const LeafRange& slab : blocks->second.slabs)
+                for (const LeafRange& range : ranges) {
+                    const std::size_t leaves_here = leavesIn(slab, range);
+                    if (leaves_here == 0) continue;
+                    count += leaves_here;
+                    const int last = floorDivide(std::min(range.second, slab.second), kBlockLeaves);
+                    for (int k = floorDivide(std::max(range.first, slab.first), kBlockLeaves); k <= last; ++k)
+                        lower[blocks->second.number * high + static_cast<std::size_t>(k - low)].store(
+                            true, std::memory_order_relaxed);
+                }
             all.columns[c] = {ranges.front().first, ranges.back().second};
         }
         leaves.fetch_add(count, std::memory_order_relaxed);
     });
     all.leaves = leaves;
     all.heights = heights;
-    const auto nodes = [&](int edge) {
-        return cellsMet(plan.first_i, plan.last_i, edge) * cellsMet(plan.first_j, plan.last_j, edge) *
-               cellsMet(heights.first, heights.second, edge);
-    };
-    all.print = {all.leaves, nodes(kBlockLeaves), nodes(kSlabLeaves)};
-    all.lower_nodes = all.upper_nodes = 0;
-    for (const auto& [tile, slabs] : own)
-        for (const LeafRange& slab : slabs) {
-            all.lower_nodes += cellsMet(slab.first, slab.second, kBlockLeaves);
-            all.upper_nodes += 1;
-        }
-    all.upper_nodes = std::min(all.upper_nodes, all.print.upper_nodes);
+    all.lower_nodes = static_cast<std::size_t>(std::count(lower.begin(), lower.end(), true));
+    all.print = {all.leaves, all.lower_nodes,
+                 cellsMet(plan.first_i, plan.last_i, kSlabLeaves) * cellsMet(plan.first_j, plan.last_j, kSlabLeaves) *
+                     cellsMet(heights.first, heights.second, kSlabLeaves)};
+    all.upper_nodes = std::min({slabs, all.print.upper_nodes, all.lower_nodes});
     return all;
 }
 

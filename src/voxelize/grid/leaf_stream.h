@@ -24,9 +24,10 @@ struct NodeBounds {
 struct LeafBounds : NodeBounds {
     LeafRange heights{0, -1};        ///< of all blocks
     std::vector<LeafRange> columns;  ///< of these blocks, by column of the bins; empty ones have first > second
-    NodeBounds print;                ///< its leaves are those of these blocks alone, its nodes those of all
+    NodeBounds print;                ///< leaves and lower nodes of these blocks alone, upper nodes of all
 };
-/// Parallel. `heights`: of all beads. The bounds of leaves of disjoint blocks add up to that of all.
+/// Parallel. `heights`: of all beads. The bounds of leaves and lower nodes of disjoint
+/// blocks add up to those of all.
 LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights,
                        const BlockRange& share = {});
 

@@ -1,7 +1,7 @@
 #include "animate/encode/apng_writer.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "scratch_folder.h"
 #include "shade/film/png_reader.h"
 
@@ -53,7 +53,7 @@ std::string chunk(const std::string& type, const std::string& data) {
 }
 
 Played play(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const InputFile file(path);
     const std::string_view bytes = file.bytes();
     const std::string signature(bytes.substr(0, 8));
     std::string head;
@@ -176,7 +176,7 @@ TEST(ApngWriter, ProgramsWithoutAnimationShowTheFirstFrame) {
     ApngWriter film(folder / "a.png", formatOf(3));
     for (const Picture& frame : frames) film.add(frame);
     film.finish();
-    const MappedFile file(folder / "a.png");
+    const InputFile file(folder / "a.png");
     const auto shown = shade::decodePng(file.bytes());
     ASSERT_TRUE(shown);
     EXPECT_EQ(shown->rgb, frames.front());

@@ -1,6 +1,6 @@
 #include "assemble/thumbnail/print_thumbnails.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "gcode/thumbnail/png_size.h"
@@ -16,7 +16,7 @@ namespace {
 using gcode::ThumbnailCoding;
 
 std::shared_ptr<const gcode::Toolpath> tile() {
-    const MappedFile file(test::dataDir() / "gcode/tile.gcode");
+    const InputFile file(test::dataDir() / "gcode/tile.gcode");
     return std::make_shared<const gcode::Toolpath>(gcode::readToolpath(file.bytes(), "tile.gcode"));
 }
 

@@ -1,6 +1,7 @@
 #include "export/mesh/three_mf_file.h"
 
 #include "base/error.h"
+#include "base/own_file.h"
 #include "export/mesh/two_materials.h"
 #include "scratch_folder.h"
 
@@ -82,13 +83,13 @@ TEST(ThreeMfFile, ManyPiecesGiveTheSameBytesTwice) {
     EXPECT_TRUE(model.ends_with("</build></model>\n"));
 }
 
-TEST(ThreeMfFile, KnowsItsOwn) {
+TEST(ThreeMfFile, SaysWhoseItIs) {
     const test::ScratchFolder folder;
     write3mf(test::twoMaterials(), folder.path() / "part.3mf", {});
-    EXPECT_TRUE(isOwn3mf(folder.path() / "part.3mf"));
-    EXPECT_FALSE(isOwn3mf(folder.path() / "none.3mf"));
+    EXPECT_TRUE(isOwnFile(folder.path() / "part.3mf"));
+    EXPECT_FALSE(isOwnFile(folder.path() / "none.3mf"));
     std::ofstream(folder.path() / "text.3mf") << "no archive, though it says Stratum";
-    EXPECT_FALSE(isOwn3mf(folder.path() / "text.3mf"));
+    EXPECT_FALSE(isOwnFile(folder.path() / "text.3mf"));
 }
 
 TEST(ThreeMfFile, AFailedWriteLeavesNothing) {

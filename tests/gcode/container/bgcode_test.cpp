@@ -1,7 +1,7 @@
 #include "gcode/container/bgcode.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -127,8 +127,8 @@ TEST(Bgcode, ABombIsStopped) {
 TEST(Bgcode, TheCorpusFileIsItsAsciiTwin) {
     STRATUM_NEEDS_CORPUS(binary, "gcode/libbgcode-mini_cube_b.bgcode");
     STRATUM_NEEDS_CORPUS(ascii, "gcode/libbgcode-mini_cube_a.gcode");
-    const MappedFile binary_file(binary);
-    const MappedFile ascii_file(ascii);
+    const InputFile binary_file(binary);
+    const InputFile ascii_file(ascii);
     const Toolpath a = readToolpath(ascii_file.bytes(), "a");
     const Toolpath b = readToolpath(binary_file.bytes(), "b");
     EXPECT_EQ(b.format, "bgcode");

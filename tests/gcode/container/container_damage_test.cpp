@@ -1,7 +1,7 @@
 // Every container cut off or with one bit turned at 1000 places: the same print, a clear error, or a warning that the
 // print is short; never anything else.
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container/bgcode_block.h"
 #include "gcode/container_samples.h"
@@ -137,7 +137,7 @@ TEST(ContainerDamage, Text) {
 
 TEST(ContainerDamage, TheCorpusText) {
     STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-slic3r.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     cutText(file.bytes());
     flipText(std::string(file.bytes()));
 }
@@ -174,7 +174,7 @@ TEST(ContainerDamage, BgcodeWhoseProgressEndsEarly) {
 
 TEST(ContainerDamage, TheCorpusBgcodeCutBetweenBlocks) {
     STRATUM_NEEDS_CORPUS(path, "gcode/libbgcode-mini_cube_b.bgcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     Damage damage(std::string(file.bytes()));
     BlockReader blocks(file.bytes(), "a");
     std::size_t cuts = 0;
@@ -195,7 +195,7 @@ TEST(ContainerDamage, GxHeaderAndEnd) {
 }
 
 void damageCorpusFile(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const InputFile file(path);
     cutAndFlip(std::string(file.bytes()));
 }
 

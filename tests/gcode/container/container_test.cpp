@@ -1,7 +1,7 @@
 #include "gcode/container/container.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -65,7 +65,7 @@ TEST(Container, Limits) {
 
 TEST(Container, TheCorpusGzip) {
     STRATUM_NEEDS_CORPUS(path, "gcode/spot_1000cc_0.1mm_grid.gcode.gz");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "spot");
     EXPECT_EQ(toolpath.format, "gzip");
     EXPECT_NEAR(toolpath.filament_mm, 64723.70, 0.001 * 64723.70);

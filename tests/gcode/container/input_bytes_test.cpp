@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -54,6 +55,21 @@ TEST(InputBytes, AFile) {
     EXPECT_EQ(input.name(), path.string());
     std::filesystem::remove(path);
     EXPECT_THROW(InputBytes("no such file"), InputError);
+}
+
+TEST(InputBytes, ANamedPipe) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() / "stratum_input_bytes.pipe";
+    std::filesystem::remove(path);
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    EXPECT_TRUE(isStream(path.string()));
+    EXPECT_TRUE(isStream("-"));
+    EXPECT_FALSE(isStream("no such file"));
+    EXPECT_THROW(InputBytes(path.string(), InputBytes::Streams::refuse), InputError);
+    std::thread writer([&path] { std::ofstream(path) << "G1 X1\n"; });
+    const InputBytes input(path.string());
+    writer.join();
+    EXPECT_EQ(input.bytes(), "G1 X1\n");
+    std::filesystem::remove(path);
 }
 
 }  // namespace

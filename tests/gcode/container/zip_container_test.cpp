@@ -1,7 +1,7 @@
 #include "gcode/container/zip_container.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -75,7 +75,7 @@ TEST(ZipContainer, ABombIsStopped) {
 
 TEST(ZipContainer, TheCorpusUfp) {
     STRATUM_NEEDS_CORPUS(path, "gcode/gcode_metadata-cura_2ext.ufp");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "ufp");
     EXPECT_EQ(toolpath.format, "ufp");
     EXPECT_GT(toolpath.beads.size(), 5000U);

@@ -1,5 +1,5 @@
 // Reduced cases of real files: what is stated in them is read.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 #include "gcode/slicer/bead_colors.h"
@@ -17,7 +17,7 @@ namespace {
 
 #define STRATUM_READ_CASE(toolpath, name)      \
     STRATUM_NEEDS_CORPUS(path, "cases/" name); \
-    const MappedFile file(path);               \
+    const InputFile file(path);                \
     const Toolpath toolpath = readToolpath(file.bytes(), name)
 
 std::vector<Feature> featuresOf(const Toolpath& toolpath) {
@@ -112,7 +112,7 @@ class CorpusCaseFiles : public testing::TestWithParam<RealFile> {};
 
 TEST_P(CorpusCaseFiles, AreReadRight) {
     STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + GetParam().file);
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "file");
     EXPECT_DOUBLE_EQ(toolpath.filament_diameter, GetParam().diameter);
     EXPECT_EQ(warningCount(toolpath, GetParam().warning), 0U);

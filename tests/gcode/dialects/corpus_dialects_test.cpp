@@ -1,5 +1,5 @@
 // What single files of the corpus teach about their dialect.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 
@@ -14,7 +14,7 @@ namespace {
 TEST(CorpusDialects, KiriMotosRelativeEIsFoundInTheNumbers) {
     // No M82, no M83: the printer's start macro holds it. The footer says 225.03 mm.
     STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-kirimoto.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "kirimoto");
     EXPECT_NEAR(toolpath.filament_mm, 225.03, 1e-3 * 225.03);
     EXPECT_EQ(warningCount(toolpath, "E keeps falling back"), 1U);
@@ -26,7 +26,7 @@ TEST(CorpusDialects, IdeaMakersFooterCountsTheCompensationTwice) {
     // Compensation #1: 94) makes the printer push 94 % of that. The footer, 422.7 mm, is 94 % of 94 % of the E of what
     // the slicer itself lays (all but the start script's purge of 1 mm on the move).
     STRATUM_NEEDS_CORPUS(path, "gcode/preprocess_cancellation-ideamaker.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "ideamaker");
     EXPECT_NEAR(toolpath.filament_mm, 479.4152, 1e-3);
     EXPECT_NEAR(toolpath.extruded_mm3, 0.94 * 479.4152 * kFilamentArea, 0.01);
@@ -37,7 +37,7 @@ TEST(CorpusDialects, IdeaMakersFooterCountsTheCompensationTwice) {
 TEST(CorpusDialects, TheRippleVasesPitchIsMeasured) {
     // No tags, no settings, z on every move: 166.3 turns about its middle from z = 0.29 to 60.04, 0.36 mm each.
     STRATUM_NEEDS_CORPUS(path, "gcode/gcode-preview-ripple_vase.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "ripple_vase");
     EXPECT_NEAR(toolpath.filament_mm, 9535, 1);
     EXPECT_NEAR(toolpath.layer_count, 167, 2);
@@ -52,7 +52,7 @@ class CutShort : public testing::TestWithParam<const char*> {};
 
 TEST_P(CutShort, IsNeverSilent) {
     STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + GetParam());
-    const MappedFile file(path);
+    const InputFile file(path);
     const std::string_view whole = file.bytes();
     const Toolpath expected = readToolpath(whole, "whole");
     EXPECT_EQ(warningCount(expected, "cut short"), 0U);

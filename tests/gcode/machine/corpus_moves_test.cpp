@@ -1,5 +1,5 @@
 // Reduced files of faults that were found in the world's files; the first line of each says what is right.
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 
@@ -11,7 +11,7 @@ namespace stratum::gcode {
 namespace {
 
 Toolpath readCase(const std::filesystem::path& path, const ReadOptions& options = {}) {
-    const MappedFile file(path);
+    const InputFile file(path);
     return readToolpath(file.bytes(), path.filename().string(), options);
 }
 

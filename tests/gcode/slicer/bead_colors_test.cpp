@@ -1,6 +1,6 @@
 #include "gcode/slicer/bead_colors.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 
@@ -113,7 +113,7 @@ class CorpusBeadColors : public testing::TestWithParam<CorpusColors> {};
 
 TEST_P(CorpusBeadColors, AreTheFilamentsStated) {
     STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + GetParam().file);
-    const MappedFile file(path);
+    const InputFile file(path);
     EXPECT_EQ(allColors(readToolpath(file.bytes(), "file")), GetParam().colors);
 }
 

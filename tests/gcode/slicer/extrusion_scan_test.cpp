@@ -1,6 +1,6 @@
 #include "gcode/slicer/extrusion_scan.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 
@@ -61,7 +61,7 @@ TEST(ExtrusionScan, BehindAG90ThatCameAfterM83) {
 TEST(ExtrusionScan, AFileWithoutSettingsThatCountsOnMarlin1) {
     // Simplify3D's M83 comes before its G90; with the comments gone, nothing but the numbers says that it holds.
     STRATUM_NEEDS_CORPUS(path, "gcode/filaswitch-mc_testmodel1_S3D.gcode");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath whole = readToolpath(file.bytes(), "whole");
     std::string bare;
     bool comment = false;

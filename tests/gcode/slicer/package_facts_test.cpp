@@ -1,6 +1,6 @@
 #include "gcode/slicer/package_facts.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -60,7 +60,7 @@ TEST(PackageFacts, TheTextGoesBefore) {
 
 TEST(PackageFacts, AUfpNamesItsMaterials) {
     STRATUM_NEEDS_CORPUS(path, "gcode/gcode_metadata-cura_2ext.ufp");
-    const MappedFile file(path);
+    const InputFile file(path);
     const Toolpath toolpath = readToolpath(file.bytes(), "ufp");
     ASSERT_EQ(toolpath.tool_colors.size(), 2U);
     EXPECT_EQ(toolpath.tool_colors[1], (Rgb{0xbb, 0x1e, 0x10}));  // ultimaker_pla_red

@@ -1,7 +1,7 @@
 #include "gcode/thumbnail/thumbnail_file.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "gcode/container/container.h"
 #include "gcode/container_samples.h"
 #include "gcode/program.h"
@@ -158,7 +158,7 @@ TEST(ThumbnailFile, IsWrittenPieceByPiece) {
     EXPECT_EQ(bytes.size(), 13U);
     EXPECT_EQ(bytes.pieces().size(), 3U);
     writePatched(bytes, folder / "a.gcode");
-    EXPECT_EQ(MappedFile(folder / "a.gcode").bytes(), "head new tail");
+    EXPECT_EQ(InputFile(folder / "a.gcode").bytes(), "head new tail");
     EXPECT_THROW(writePatched(bytes, folder / "none/a.gcode"), OutputError);
 }
 

@@ -1,6 +1,6 @@
 #include "gcode/toolpath/stated.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
 #include "gcode/summary.h"
@@ -102,7 +102,7 @@ class CorpusStated : public testing::TestWithParam<CorpusFacts> {};
 TEST_P(CorpusStated, IsWhatTheFileSays) {
     const CorpusFacts& expected = GetParam();
     STRATUM_NEEDS_CORPUS(path, std::string("gcode/") + expected.file);
-    const MappedFile file(path);
+    const InputFile file(path);
     const StatedFacts stated = readToolpath(file.bytes(), "file").stated;
     EXPECT_EQ(stated.seconds, expected.seconds);
     EXPECT_EQ(stated.grams, expected.grams);

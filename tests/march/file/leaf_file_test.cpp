@@ -132,7 +132,7 @@ TEST_F(LeafFileTest, HalvesAndZip) {
     for (const auto& [written, compression] :
          {std::pair{half, kMask | kBlosc}, std::pair{half, kMask}, std::pair{unclassed, kMask | kZip}}) {
         const fs::path path = write({written}, compression);
-        const auto file = LeafFile::open(path, "surface", *grid);
+        const auto file = LeafFile::open(InputFile(path), "surface", *grid);
         ASSERT_NE(file, nullptr);
         openvdb::io::File whole(path.string());
         whole.open(/*delayLoad=*/false);

@@ -36,7 +36,7 @@ protected:
     static std::string refusal(const std::string& bytes, VdbDepth depth = VdbDepth::leaves,
                                const std::string& name = "surface") {
         try {
-            checkVdb(bytes, depth, name, "a.vdb");
+            checkVdb(std::string_view(bytes), depth, name, "a.vdb");
         } catch (const InputError& error) {
             return error.what();
         }

@@ -59,7 +59,7 @@ TEST_F(VdbWalker, SeesWhatOpenVdbWrites) {
     for (const std::uint32_t compression :
          {0U, unsigned{io::COMPRESS_ACTIVE_MASK}, unsigned{io::COMPRESS_ACTIVE_MASK} | unsigned{io::COMPRESS_BLOSC}}) {
         const std::string bytes = bytesOf({grid, half}, compression);
-        VdbCursor cursor(bytes, where_);
+        VdbCursor cursor(std::string_view(bytes), where_);
         const VdbHeads heads = walkVdbHeads(cursor);
         EXPECT_EQ(heads.format, 224U);
         ASSERT_EQ(heads.grids.size(), 2U);
@@ -91,13 +91,13 @@ TEST_F(VdbWalker, NamesTheDamagedGrid) {
     const std::string bytes(10, '\0');
     const std::string grid = "surface";
     try {
-        VdbCursor(bytes, where_, &grid).take(11);
+        VdbCursor(std::string_view(bytes), where_, &grid).take(11);
         FAIL();
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
                      "a.vdb: is not a readable .vdb file (the grid surface is damaged about byte 0); is it cut short?");
     }
-    EXPECT_THROW(VdbCursor(bytes, where_).moveTo(11), InputError);
+    EXPECT_THROW(VdbCursor(std::string_view(bytes), where_).moveTo(11), InputError);
 }
 
 }  // namespace

@@ -110,13 +110,13 @@ protected:
         const std::string all = bytes();
         io::File file(path_.string());
         file.open(/*delayLoad=*/false);
-        return readWholeGrid(file, name, *file.readGridMetadata(name), all);
+        return readWholeGrid(file, name, *file.readGridMetadata(name), std::string_view(all));
     }
     openvdb::GridBase::Ptr readByOpenVdb(const std::string& name) const {
         const std::string all = bytes();
         io::File file(path_.string());
         file.open(/*delayLoad=*/false);
-        checkVdb(all, VdbDepth::leaves, name, path_.string());
+        checkVdb(std::string_view(all), VdbDepth::leaves, name, path_.string());
         return file.readGrid(name);
     }
     std::string refusal(const std::string& name) const {
@@ -247,7 +247,7 @@ TEST_F(WholeGrid, DoesNotBelieveTheListOfSizes) {
     write({grid}, kActive | kPacked);
     std::string all = bytes();
     const std::string where = "a.vdb";
-    VdbCursor cursor(all, where);
+    VdbCursor cursor(std::string_view(all), where);
     const VdbGrid in_file = walkVdbHeads(cursor).grids.at(0);
     ASSERT_EQ(in_file.listed, 5U);
     // Their number of bytes and of leaves, the masks with their length, the length of the sizes.
@@ -306,7 +306,7 @@ TEST_F(WholeGrid, TellsTheFirstDamage) {
         write({test::rubble(0.1F, false)}, kActive | kPacked, listed);
         std::string bad = bytes();
         const std::string where = path_.string();
-        VdbCursor cursor(bad, where);
+        VdbCursor cursor(std::string_view(bad), where);
         const VdbGrid in_file = walkVdbHeads(cursor).grids.at(0);
         const auto first = static_cast<std::size_t>(in_file.leaves);
         const std::size_t length = static_cast<std::size_t>(in_file.end) - first;
@@ -323,14 +323,14 @@ TEST_F(WholeGrid, RefusesEveryCut) {
     write({test::rubble(0.1F, false)}, kActive | kPacked);
     const std::string good = bytes();
     const std::string where = "a.vdb";
-    VdbCursor cursor(good, where);
+    VdbCursor cursor(std::string_view(good), where);
     const auto tree = static_cast<std::size_t>(walkVdbHeads(cursor).grids.at(0).tree);
     for (int n = 0; n < 40; ++n) {
         const std::size_t cut = tree + (good.size() - tree) * static_cast<std::size_t>(n) / 40;
         io::File file(path_.string());
         file.open(/*delayLoad=*/false);
         const auto head = file.readGridMetadata("surface");
-        EXPECT_THROW(readWholeGrid(file, "surface", *head, good.substr(0, cut)), InputError) << n;
+        EXPECT_THROW(readWholeGrid(file, "surface", *head, std::string_view(good).substr(0, cut)), InputError) << n;
     }
 }
 

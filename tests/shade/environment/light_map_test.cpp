@@ -48,6 +48,22 @@ TEST(LightMap, RefusesWhatGivesNoPicture) {
     EXPECT_THROW(readLightMap(scratch.path() / "none.exr"), InputError);
 }
 
+TEST(LightMap, ScalesAndChecksAfterwards) {
+    const test::ScratchFolder scratch;
+    const auto path = scratch.path() / "map.exr";
+    test::writeExrMap(path, 2, 1, {{1, 2, 3}, {0, 0, 0}});
+    EXPECT_EQ(readLightMap(path, 2.0).texels.front(), Color(4, 8, 12));
+    EXPECT_EQ(readLightMap(path, -1.0).texels.front(), Color(0.5f, 1.0f, 1.5f));
+    EXPECT_THROW(readLightMap(path, 40.0), InputError);
+    for (const float bright : {3e38f, 1e30f, 2e12f}) {
+        test::writeExrMap(path, 2, 1, {{1, 2, 3}, {0, bright, 0}});
+        EXPECT_THROW(readLightMap(path), InputError) << bright;
+    }
+    // Too dark to be told from black.
+    test::writeExrMap(path, 2, 1, {{1e-38f, 0, 0}, {0, 0, 0}});
+    EXPECT_THROW(readLightMap(path, -30.0), InputError);
+}
+
 TEST(LightMap, ReadsRealMaps) {
     STRATUM_NEEDS_CORPUS(hills, "env/golden_gate_hills_1k.hdr");
     STRATUM_NEEDS_CORPUS(studio, "env/studio_small_03_1k.hdr");

@@ -63,5 +63,20 @@ TEST(Astm, RefusesDamage) {
     }
 }
 
+TEST(Astm, ReadingsAtThePoleAloneAreNoGrid) {
+    // Their grid would have the square of their number.
+    std::string text = "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n";
+    for (int n = 0; n < 30000; ++n)
+        text += fmt::format("{:.6f},0,0,0,1,1,1\n0,0,0,{:.6f},1,1,1\n", 1e-4 * n * 0.5, 2e-4 * n);
+    EXPECT_THROW(shade::readAstm(text, "t"), InputError);
+}
+
+TEST(Astm, RefusesAnglesThatAreNone) {
+    for (const char* angle : {"1e300", "-1e9", "4000"})
+        EXPECT_THROW(
+            shade::readAstm(fmt::format("VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n0,0,0,{},1,1,1\n", angle), "t"),
+            InputError);
+}
+
 }  // namespace
 }  // namespace stratum

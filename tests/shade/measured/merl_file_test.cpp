@@ -1,7 +1,7 @@
 #include "shade/measured/merl_file.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "scratch_folder.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ TEST(MerlFile, GoesRound) {
     for (std::size_t n = 0; n < values.size(); ++n)
         values[n] = Color(float(n % 97) * 0.01f, float(n % 31) * 0.1f, float(n % 7));
     shade::writeMerl(scratch / "t.binary", HalfDiffTable(values));
-    const MappedFile file(scratch / "t.binary");
+    const InputFile file(scratch / "t.binary");
     EXPECT_EQ(file.bytes().size(), 12u + 3u * 8u * 90u * 90u * 180u);
     ASSERT_TRUE(shade::isMerl(file.bytes()));
     const auto back = shade::readMerl(file.bytes(), "t");
@@ -31,7 +31,7 @@ TEST(MerlFile, FillsHolesAndRefusesDamage) {
     const test::ScratchFolder scratch;
     std::vector<Color> values(HalfDiffTable::kCells, Color(0.5f));
     shade::writeMerl(scratch / "t.binary", HalfDiffTable(values));
-    std::string bytes(MappedFile(scratch / "t.binary").bytes());
+    std::string bytes(InputFile(scratch / "t.binary").bytes());
     constexpr std::size_t kShell = 90 * 180;
     const auto set = [&](std::size_t cell, double value) {
         std::memcpy(bytes.data() + 12 + cell * sizeof(double), &value, sizeof(value));

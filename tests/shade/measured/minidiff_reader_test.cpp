@@ -49,6 +49,18 @@ TEST(MiniDiff, RefusesDamage) {
           with("AOI 20", "AOI 95"), with("AOI 20", "AOI x"), with("AOI 20", "AOI 0"),
           with("Wavelength 450", "Wavelength 451"), with("Wavelength 450", "Wavelength nan")})
         EXPECT_THROW(readMiniDiff(text, "t"), InputError);
+    // Angles that are stated anew after readings of others: fewer, more, between channels.
+    const std::string few = "ScatterAzimuth 1\n0\n";
+    const std::string many = "ScatterAzimuth 3\n0 90 180\n";
+    for (const std::string& more : {few, many, "ScatterRadial 2\n0 90\n" + few, many + "ScatterRadial 3\n0 45 90\n"}) {
+        std::string text = good;
+        EXPECT_THROW(readMiniDiff(text.insert(text.find("DataEnd"), more), "t"), InputError) << more;
+    }
+    std::string other = good;
+    const std::size_t block = other.rfind("\nAOI");
+    other.replace(block, std::string::npos,
+                  few + "ScatterRadial 2\n0 90\nAOI 60\nSide Front\nWavelength 450\nScatterType BRDF\n1 1\nDataEnd\n");
+    EXPECT_THROW(readMiniDiff(other, "t"), InputError);
     // Only the back side.
     std::string back = good;
     for (std::size_t at = back.find("Front"); at != std::string::npos; at = back.find("Front"))

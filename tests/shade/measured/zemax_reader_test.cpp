@@ -87,5 +87,23 @@ TEST(Zemax, RefusesDamage) {
     EXPECT_THROW(shade::readZemax(with("TIS 0.5", "TOS 0.5"), "t"), InputError);
 }
 
+TEST(Zemax, RefusesAnglesThatAreStatedAnew) {
+    for (const bool xyz : {false, true})
+        for (const char* more : {"ScatterAzimuth 2\n0 180\n", "ScatterRadial 3\n0 90 180\n", "AngleOfIncidence 1\n0\n",
+                                 "AngleOfIncidence 4\n0 10 20 30\n", "ScatterAzimuth 400\n"}) {
+            std::string text = zemaxText(xyz) + more;
+            if (std::string(more).ends_with(" 400\n"))
+                for (int n = 0; n < 400; ++n) text += std::to_string(0.4 * n) + " ";
+            EXPECT_THROW(shade::readZemax(text + "\n", "t"), InputError) << more;
+        }
+}
+
+TEST(Zemax, RefusesChannelsOfOtherSizes) {
+    std::string text = zemaxText(true);
+    const std::size_t second = text.find("DataBegin", text.find("DataBegin") + 1);
+    text.insert(second, "AngleOfIncidence 1\n0\n");
+    EXPECT_THROW(shade::readZemax(text, "t"), InputError);
+}
+
 }  // namespace
 }  // namespace stratum

@@ -1,7 +1,7 @@
 // A picture whose values show where they are, and its parts.
 #pragma once
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "scratch_folder.h"
 #include "shade/parts/part.h"
 
@@ -58,6 +58,6 @@ inline std::filesystem::path writePartOf(const ScratchFolder& folder, const shad
     return path;
 }
 
-inline std::string bytesOf(const std::filesystem::path& path) { return std::string(MappedFile(path).bytes()); }
+inline std::string bytesOf(const std::filesystem::path& path) { return std::string(InputFile(path).bytes()); }
 
 }  // namespace stratum::test

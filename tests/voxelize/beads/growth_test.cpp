@@ -1,6 +1,6 @@
 #include "voxelize/beads/growth.h"
 
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "toolpaths.h"
@@ -51,7 +51,7 @@ TEST(Growth, WithoutTimesBySpeedAndWithoutSpeedsByVolume) {
 }
 
 TEST(Growth, IsThatOfSnapshots) {
-    const MappedFile file(test::dataDir() / "gcode/tile.gcode");
+    const InputFile file(test::dataDir() / "gcode/tile.gcode");
     const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), "tile.gcode", {});
     const Moments all = test::allBeads(toolpath);
     constexpr std::size_t kSteps = 8;

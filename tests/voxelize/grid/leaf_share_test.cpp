@@ -108,8 +108,8 @@ TEST(LeafShare, BoundsOfLeavesAddUp) {
             const LeafBounds own = Voxelizer(toolpath, beads, lattice, options).leafBounds();
             leaves += own.leaves;
             lower_nodes += own.lower_nodes;
-            EXPECT_EQ(own.print.lower_nodes, whole.lower_nodes);
-            EXPECT_EQ(own.print.upper_nodes, whole.upper_nodes);
+            EXPECT_EQ(own.print.lower_nodes, own.lower_nodes);
+            EXPECT_EQ(own.print.upper_nodes, whole.print.upper_nodes);
             EXPECT_EQ(own.heights, whole.heights);
         }
         EXPECT_EQ(leaves, whole.leaves);

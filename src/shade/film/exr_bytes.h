@@ -1,0 +1,37 @@
+// An OpenEXR file in memory, for OpenEXR's readers: the bytes that were checked are those that are read.
+#pragma once
+
+#include <Iex.h>
+#include <ImfIO.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+namespace stratum::shade {
+
+/// Reads bytes that outlive it.
+class ExrBytes final : public Imf::IStream {
+public:
+    ExrBytes(std::string_view bytes, const std::string& name) : IStream(name.c_str()), bytes_(bytes) {}
+
+    bool read(char to[], int count) override {
+        const auto wanted = static_cast<std::size_t>(count);
+        if (count < 0 || wanted > bytes_.size() - at_) throw Iex::InputExc("the file ends early");
+        std::memcpy(to, bytes_.data() + at_, wanted);
+        at_ += wanted;
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t place) override {
+        if (place > bytes_.size()) throw Iex::InputExc("the file ends early");
+        at_ = static_cast<std::size_t>(place);
+    }
+
+private:
+    const std::string_view bytes_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace stratum::shade

@@ -1,0 +1,45 @@
+#include "base/own_file.h"
+
+#include "scratch_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+namespace stratum {
+namespace {
+
+TEST(OwnFile, HasANameAndAVersion) {
+    const test::ScratchFolder folder;
+    const auto own = [&folder](const std::string& bytes) {
+        std::ofstream(folder / "file", std::ios::binary) << bytes;
+        return isOwnFile(folder / "file");
+    };
+    EXPECT_TRUE(own(std::string("comment by ") + kProgramMark));
+    EXPECT_TRUE(own("<p>stratum 0.9.1</p>"));
+    EXPECT_TRUE(own("Software\0vdbtrace 1.2"));
+    EXPECT_TRUE(own("{\"program\": \"gcode2vdb 2.0\"}"));
+    EXPECT_TRUE(own("line,layer,feature,tool,object,x0,y0,z0,x1\n1,2"));
+    EXPECT_FALSE(own("the Stratum of rock"));
+    EXPECT_FALSE(own("written by gcode2vdb "));
+    EXPECT_FALSE(own("solid by hand"));
+    EXPECT_FALSE(own("layer,line\n"));
+    EXPECT_FALSE(isOwnFile(folder / "none"));
+    EXPECT_FALSE(isOwnFile(folder.path()));
+}
+
+TEST(OwnFile, AtItsBeginningOrItsEnd) {
+    const test::ScratchFolder folder;
+    const std::string much(3000000, 'x');
+    const auto own = [&folder](const std::string& bytes) {
+        std::ofstream(folder / "file", std::ios::binary) << bytes;
+        return isOwnFile(folder / "file");
+    };
+    EXPECT_TRUE(own("by Stratum 1.0" + much));
+    EXPECT_TRUE(own(much + "by Stratum 1.0"));
+    EXPECT_FALSE(own(much + "by Stratum 1.0" + much));
+}
+
+}  // namespace
+}  // namespace stratum
