@@ -26,8 +26,8 @@ double median(std::vector<double> values) {
 }
 
 openvdb::FloatGrid::Ptr readByOpenVdb(const std::string& path, const std::string& name) {
-    const InputFile mapped(path);
-    march::checkVdb(mapped.bytes(), march::VdbDepth::leaves, name, path);
+    const InputFile input(path);
+    march::checkVdb(input.bytes(), march::VdbDepth::leaves, name, path);
     openvdb::io::File file(path);
     file.open(/*delayLoad=*/false);
     return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid(name));

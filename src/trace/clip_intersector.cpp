@@ -16,11 +16,12 @@ struct Clipped {
     Ray ray;                 ///< from there on; its t_max stays
     double end = kInfinity;  ///< where it leaves
     int entry = -1;          ///< the plane that it enters through; -1 if it starts before all
+    int exit = -1;           ///< the plane that it leaves through; -1 if it doesn't
     bool empty = false;
 };
 
 Clipped clipped(const std::vector<ClipPlane>& planes, const Ray& ray) {
-    Clipped part{ray, ray.t_max, -1, false};
+    Clipped part{ray, kInfinity, -1, -1, false};
     for (std::size_t n = 0; n < planes.size(); ++n) {
         const double slope = glm::dot(planes[n].normal, ray.direction);
         const double over = glm::dot(planes[n].normal, ray.origin) - planes[n].offset;
@@ -30,21 +31,26 @@ Clipped clipped(const std::vector<ClipPlane>& planes, const Ray& ray) {
         }
         const double t = -over / slope;
         if (slope > 0.0) {
-            part.end = std::min(part.end, t);
+            if (t < part.end) {
+                part.end = t;
+                part.exit = static_cast<int>(n);
+            }
         } else if (t > part.ray.t_min) {
             part.ray.t_min = t;
             part.entry = static_cast<int>(n);
         }
     }
-    part.empty = part.empty || !(part.ray.t_min < part.end);
+    part.empty = part.empty || !(part.ray.t_min < part.end) || part.ray.t_min > ray.t_max;
     return part;
 }
 
-/// A ray that enters through a plane is followed beyond its end, to see from which side it meets the shape next: if
-/// from inside, it has entered through the cut.
+/// Whether the ray may meet a cut. Then it is followed to the shape's next surface, however far: if it meets that from
+/// inside, it is inside of the shape on the way there, and so at the planes that it crossed before.
+bool meetsPlane(const Clipped& part) { return part.entry >= 0 || part.end <= part.ray.t_max; }
+
 Ray sightOf(const Clipped& part) {
     Ray ray = part.ray;
-    ray.t_max = part.entry < 0 ? part.end : kInfinity;
+    if (meetsPlane(part)) ray.t_max = kInfinity;
     return ray;
 }
 
@@ -55,23 +61,21 @@ public:
 
     bool intersect(const Ray& ray, Hit& hit) override {
         const Clipped part = clipped(planes_, ray);
-        if (part.empty) return false;
         Hit found;
-        if (!tracer_->intersect(sightOf(part), found)) return false;
-        return accept(part, found, hit);
+        return !part.empty && tracer_->intersect(sightOf(part), found) && accept(part, found, hit);
     }
 
     bool occluded(const Ray& ray) override {
         const Clipped part = clipped(planes_, ray);
         if (part.empty) return false;
-        if (part.entry < 0) return tracer_->occluded(sightOf(part));
+        if (!meetsPlane(part)) return tracer_->occluded(part.ray);
         Hit found;
         Hit ignored;
         return tracer_->intersect(sightOf(part), found) && accept(part, found, ignored);
     }
 
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
-        gather(rays, false);
+        gather(rays, [](const Clipped&) { return true; });
         tracer_->intersectStream(rays_, found_);
         for (Hit& hit : hits) hit.t = kInfinity;
         for (std::size_t n = 0; n < places_.size(); ++n)
@@ -79,14 +83,17 @@ public:
     }
 
     void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
-        // Those that enter through a plane need to know which side they meet.
         std::fill(blocked.begin(), blocked.end(), std::uint8_t{0});
-        gather(rays, true);
+        gather(rays, [](const Clipped& part) { return !meetsPlane(part); });
         blocked_.resize(rays_.size());
         tracer_->occludedStream(rays_, blocked_);
         for (std::size_t n = 0; n < places_.size(); ++n) blocked[places_[n]] = blocked_[n];
-        for (std::size_t n = 0; n < rays.size(); ++n)
-            if (entering_[n] != 0) blocked[n] = occluded(rays[n]) ? 1 : 0;
+        // These need to know from which side they meet the shape.
+        gather(rays, meetsPlane);
+        tracer_->intersectStream(rays_, found_);
+        Hit ignored;
+        for (std::size_t n = 0; n < places_.size(); ++n)
+            if (std::isfinite(found_[n].t) && accept(parts_[n], found_[n], ignored)) blocked[places_[n]] = 1;
     }
 
     glm::dvec3 shadingNormal(const Hit& hit) override {
@@ -100,30 +107,37 @@ public:
 
 private:
     bool accept(const Clipped& part, const Hit& found, Hit& hit) const {
-        const bool from_inside = part.entry >= 0 && glm::dot(found.normal, part.ray.direction) > 0.0;
-        if (!from_inside && found.t > std::min(part.end, part.ray.t_max)) return false;
-        if (from_inside && part.ray.t_min > part.ray.t_max) return false;
-        hit = found;
-        if (!from_inside) return true;
-        hit.t = part.ray.t_min;
-        hit.position = part.ray.origin + hit.t * part.ray.direction;
-        hit.normal = planes_[static_cast<std::size_t>(part.entry)].normal;
+        const bool from_inside = glm::dot(found.normal, part.ray.direction) > 0.0;
+        if (from_inside && part.entry >= 0) {
+            hit = cutAt(part, part.ray.t_min, part.entry, found);
+            return true;
+        }
+        if (found.t <= std::min(part.end, part.ray.t_max)) {
+            hit = found;
+            return true;
+        }
+        if (!from_inside || part.end > part.ray.t_max) return false;
+        hit = cutAt(part, part.end, part.exit, found);
         return true;
     }
 
-    // The rays that have a part before the planes. `entering` leaves out those that enter through one, and marks them.
-    void gather(std::span<const Ray> rays, bool entering) {
+    Hit cutAt(const Clipped& part, double t, int plane, const Hit& found) const {
+        Hit hit = found;
+        hit.t = t;
+        hit.position = part.ray.origin + t * part.ray.direction;
+        hit.normal = planes_[static_cast<std::size_t>(plane)].normal;
+        return hit;
+    }
+
+    /// The rays that have a part before the planes which is asked for.
+    template <typename Wanted>
+    void gather(std::span<const Ray> rays, const Wanted& wanted) {
         rays_.clear();
         parts_.clear();
         places_.clear();
-        entering_.assign(rays.size(), 0);
         for (std::size_t n = 0; n < rays.size(); ++n) {
             const Clipped part = clipped(planes_, rays[n]);
-            if (part.empty) continue;
-            if (entering && part.entry >= 0) {
-                entering_[n] = 1;
-                continue;
-            }
+            if (part.empty || !wanted(part)) continue;
             rays_.push_back(sightOf(part));
             parts_.push_back(part);
             places_.push_back(n);
@@ -138,7 +152,7 @@ private:
     std::vector<Clipped> parts_;
     std::vector<std::size_t> places_;
     std::vector<Hit> found_;
-    std::vector<std::uint8_t> blocked_, entering_;
+    std::vector<std::uint8_t> blocked_;
 };
 
 class ClipIntersector final : public Intersector {

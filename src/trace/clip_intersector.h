@@ -17,9 +17,8 @@ struct ClipPlane {
 };
 
 /// What of `shape`, which must be closed, lies where dot(normal, p) <= offset for all planes. A cut through its inside
-/// is a flat surface with the plane's normal; it has the attributes of that place. A ray that starts outside of what is
-/// left, or on it, sees it; one that starts within the solid behind a cut does not see that cut. Returns `shape` itself
-/// if there are no planes. Throws UsageError for normals that are zero or not finite.
+/// is a flat surface with the plane's normal, met from outside and from inside; it has the attributes of that place.
+/// Returns `shape` itself if there are no planes. Throws UsageError for normals that are zero or not finite.
 std::shared_ptr<const Intersector> makeClipIntersector(std::shared_ptr<const Intersector> shape,
                                                        std::vector<ClipPlane> planes);
 
