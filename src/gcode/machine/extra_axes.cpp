@@ -1,5 +1,6 @@
 #include "gcode/machine/extra_axes.h"
 
+#include <cmath>
 #include <string_view>
 
 namespace stratum::gcode {
@@ -10,6 +11,18 @@ constexpr std::string_view kTurningOrBeside = "ABCUV";
 std::size_t letterIndex(char letter) { return static_cast<std::size_t>(letter - 'A'); }
 
 }  // namespace
+
+bool ExtraAxes::isMix(const Command& command) {
+    if (!command.hasValue('E') || command.has('I')) return false;
+    double sum = 0;
+    for (const char letter : std::string_view("ABCDH")) {
+        if (!command.hasValue(letter)) continue;
+        if (!(command.value(letter) >= 0 && command.value(letter) <= 1)) return false;
+        sum += command.value(letter);
+    }
+    constexpr double kRounding = 0.02;
+    return std::abs(sum - 1) < kRounding;
+}
 
 double ExtraAxes::move(const Command& command, bool absolute, double unit) {
     double rise = 0;

@@ -19,6 +19,8 @@ public:
     explicit ExtraAxes(bool all) : letters_(Command::maskOf(all ? "ABCUVW" : "CUVW")) {}
 
     bool has(const Command& command) const { return command.hasAny(letters_); }
+    /// Whether the words are shares of filaments (Marlin's DIRECT_MIXING_IN_G1: A, B, C, D, H), not places of axes.
+    static bool isMix(const Command& command);
     /// The words of a move. Returns how far the bed moves towards the nozzle, mm; negative: away from it.
     double move(const Command& command, bool absolute, double unit);
     /// G92: the axes are there.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace stratum::gcode {
 namespace {
@@ -344,6 +345,10 @@ void Machine::runStrut(const Point& target, double extrusion, double drive) {
 }
 
 void Machine::moveExtraAxes(const Command& command) {
+    if (ExtraAxes::isMix(command)) {
+        if (std::optional<ToolMix> mix = mixer_.setAll(command, tool_)) recorder_.changeMix(std::move(*mix), line_);
+        return;
+    }
     const double rise = extra_axes_.move(command, absolute_, unit_);
     if (rise == 0) return;
     Point target = frame_.position();

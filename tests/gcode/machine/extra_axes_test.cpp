@@ -66,5 +66,12 @@ TEST(ExtraAxes, MakerBotsExtrudersAreNoAxes) {
     EXPECT_EQ(warningCount(toolpath, "turn"), 0U);
 }
 
+TEST(ExtraAxes, SharesOfFilamentsAreNoAngles) {
+    const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG1 X9 E1 A.25 B.75\nG1 X0 E1 A.5 B.5\n");
+    EXPECT_EQ(toolpath.beads.size(), 2U);
+    EXPECT_EQ(warningCount(toolpath, "turn"), 0U);
+    EXPECT_EQ(warningCount(toolpath, "mixes filaments"), 1U);
+}
+
 }  // namespace
 }  // namespace stratum::gcode
