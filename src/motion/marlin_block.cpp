@@ -22,6 +22,11 @@ double norm(const std::array<double, kMotionAxes>& v, std::size_t axes) {
     return std::sqrt(sum);
 }
 
+// All four must be known.
+bool countsSteps(const MachineLimits& limits) {
+    return std::all_of(limits.steps_per_mm.begin(), limits.steps_per_mm.end(), [](double steps) { return steps > 0; });
+}
+
 // The largest acceleration along a direction (of any length) within the limits of all axes.
 double accelerationAlong(const std::array<double, kMotionAxes>& direction, double norm, double acceleration,
                          const MachineLimits& limits) {
@@ -85,10 +90,15 @@ Trapezoid MarlinBlock::inSteps(double entry_squared, double exit_squared) const 
 }
 
 bool MarlinBlocks::roundToSteps(const Segment& segment, const MachineLimits& limits, Axes& way, Axes& steps) {
-    if (limits.steps_per_mm[0] == 0) {
+    if (!countsSteps(limits)) {
         for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
             way[axis] = steps[axis] = segment.length * segment.direction[axis];
         return true;
+    }
+    if (limits.steps_per_mm != steps_per_mm_) {  // M92
+        steps_per_mm_ = limits.steps_per_mm;
+        for (std::size_t axis = 0; axis < kMotionAxes; ++axis)
+            at_[axis] = std::llround(target_[axis] * steps_per_mm_[axis]);
     }
     std::array<std::int64_t, kMotionAxes> to{};
     double most = 0;
@@ -108,7 +118,7 @@ std::optional<MarlinBlock> MarlinBlocks::next(const Segment& segment, const Mach
     Axes way{};
     Axes steps{};
     if (!roundToSteps(segment, limits, way, steps)) return std::nullopt;
-    const bool counts = limits.steps_per_mm[0] > 0;
+    const bool counts = countsSteps(limits);
     MarlinBlock block;
     double most_steps = 0;
     double most_path = 0;

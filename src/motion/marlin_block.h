@@ -51,6 +51,7 @@ private:
 
     Axes target_{};                                      // mm since the begin
     std::array<std::int64_t, gcode::kMotionAxes> at_{};  // steps since the begin
+    Axes steps_per_mm_{};                                // in force; 0: not yet known
     // Of the block before.
     Axes unit_before_{};
     Axes velocity_before_{};  // mm/s

@@ -116,6 +116,25 @@ TEST(MarlinBlock, MovesBelowSixStepsWaitForTheNext) {
     EXPECT_NEAR(length, 123.4567, 0.5 / 80);
 }
 
+TEST(MarlinBlock, StepsMayBecomeKnownOrChange) {
+    MachineLimits limits = blockLimits(CornerRule::junction_deviation);
+    MarlinBlocks maker;
+    Segment segment;
+    segment.length = 10;
+    segment.asked = 100;
+    segment.direction = {1, 0, 0, 0};
+    segment.travels = true;
+    for (const double fine : {0.0, 1.0, 10.0, 1.0}) {
+        limits.steps_per_mm = {80 * fine, 80 * fine, 400 * fine, 93 * fine};
+        const auto block = maker.next(segment, limits, true);
+        ASSERT_TRUE(block.has_value());
+        EXPECT_NEAR(block->length, 10, 1e-12);
+        EXPECT_EQ(block->steps, 800 * fine);
+    }
+    limits.steps_per_mm = {80, 0, 0, 0};  // not of all axes: not counted
+    EXPECT_EQ(maker.next(segment, limits, true)->steps, 0);
+}
+
 TEST(MarlinBlock, NoBlockBeginsOrEndsBelow120StepsASecond) {
     MachineLimits limits = blockLimits(CornerRule::junction_deviation);
     for (const double fine : {1.0, 10.0}) {
