@@ -106,10 +106,16 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
         Completion::preset, {"ideal", "typical"})
         ->type_name("PRESET|FILE")
         ->group(plastic);
+    app.add_option("--flow", options.read.flow_percent,
+                   "Extrusion in per cent of what the file says, as a knob on the printer or M221 (default 100)")
+        ->check(CLI::Range(1.0, gcode::kMostFlow))
+        ->type_name("PERCENT")
+        ->group(plastic);
     app.add_option(
            "--beads", options.read.deposit.beads,
            "What overlapping beads do: capsule: nothing, they are united (default); settled: what two neighbours "
-           "both claim fills the groove between them")
+           "both claim fills the groove between them, and what has no room there presses the outlines beside it out; "
+           "grooves: only the first of both")
         ->transform(namesOf(gcode::kBeadModels))
         ->type_name("MODEL")
         ->group(plastic);

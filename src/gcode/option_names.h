@@ -29,7 +29,8 @@ inline constexpr OptionNames<CornerRule, 8> kCornerRules = {{{"auto", CornerRule
                                                              {"marlin-jerk", CornerRule::marlin_jerk},
                                                              {"reprap-jerk", CornerRule::reprap_jerk}}};
 
-inline constexpr OptionNames<DepositModel::Beads, 2> kBeadModels = {
-    {{"capsule", DepositModel::Beads::capsule}, {"settled", DepositModel::Beads::settled}}};
+inline constexpr OptionNames<DepositModel::Beads, 3> kBeadModels = {{{"capsule", DepositModel::Beads::capsule},
+                                                                     {"grooves", DepositModel::Beads::grooves},
+                                                                     {"settled", DepositModel::Beads::settled}}};
 
 }  // namespace stratum::gcode

@@ -55,7 +55,7 @@ private:
 std::vector<float> overfillFor(const PrintField& field, Attribute attribute) {
     if (attribute != Attribute::overfill) return {};
     const auto& layout = field.layout();
-    return voxelize::overfillOfBeads(*layout.toolpath, layout.stack, layout.lattice);
+    return voxelize::overfillOfBeads(*layout.toolpath, layout.stack);
 }
 
 class PrintAttribute final : public march::AttributeSource {

@@ -61,14 +61,21 @@ Json describeDeposit(const gcode::DepositModel& deposit, const voxelize::Deposit
             features[std::string(gcode::featureName(static_cast<gcode::Feature>(f)))] = {
                 {"fed_mm3", share.fed}, {"laid_mm3", share.laid}, {"surplus_mm3", share.surplus()}};
     }
-    return {{"model", gcode::describe(deposit)}, {"fed_mm3", balance.all.fed},           {"laid_mm3", balance.all.laid},
-            {"surface_mm3", surface_mm3},        {"surplus_mm3", balance.all.surplus()}, {"features", features}};
+    return {{"model", gcode::describe(deposit)},
+            {"fed_mm3", balance.all.fed},
+            {"laid_mm3", balance.held()},
+            {"pressed_out_mm3", balance.pressed_out},
+            {"surface_mm3", surface_mm3},
+            {"surplus_mm3", balance.unplaced()},
+            {"features", features}};
 }
 
 std::string depositLines(const voxelize::DepositBalance& balance) {
-    std::string lines =
-        fmt::format("settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} mm^3 ({:.2f} %) have no place\n", balance.all.laid,
-                    balance.all.fed, balance.all.surplus(), 100 * balance.all.surplus() / balance.all.fed);
+    std::string lines = fmt::format(
+        "settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} of them press outlines out; {:.2f} mm^3 ({:.2f} %) have "
+        "no place\n",
+        balance.held(), balance.all.fed, balance.pressed_out, balance.unplaced(),
+        100 * balance.unplaced() / balance.all.fed);
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         const voxelize::DepositShare& share = balance.features[f];
         if (share.fed > 0)

@@ -62,11 +62,15 @@ Machine::Machine(const Settings& settings, const ReadOptions& options, std::stri
       // RepRapFirmware starts in G54, Marlin in the machine's own coordinates.
       frame_(firmware_ == Firmware::reprap ? 1 : 0),
       volumetric_(settings.volumetric_e.value_or(false)),
+      all_flow_(options.flow_percent / 100),
       planar_(options.planar),
       simulates_flow_(options.deposit.flow_lag.has_value()),
       extra_axes_(settings.extrusion.drive != ExtrusionScan::Drive::axes_ab),
       carriages_(warnings) {
-    flow_.fill(1);
+    if (!(all_flow_ > 0 && options.flow_percent <= kMostFlow))
+        throw UsageError(
+            fmt::format("a flow of {:g} %; expected a number above 0, at most {:g}", options.flow_percent, kMostFlow));
+    flow_.fill(all_flow_);
     if (options.belt_angle) belt_.emplace(*options.belt_angle);
     if (options.extruder_mode != ExtruderMode::automatic) {
         e_absolute_ = options.extruder_mode == ExtruderMode::absolute;
@@ -373,12 +377,12 @@ void Machine::setFlow(const Command& command) {
     if (!command.hasValue('S')) return;
     const double percent = command.value('S');
     if (!(percent >= 0 && percent <= kMaxFactor)) refuse(fmt::format("M221 S{} is no flow in per cent", percent));
-    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100);  // one factor for all tools
+    if (firmware_ == Firmware::klipper) return flow_.fill(percent / 100 * all_flow_);  // one factor for all tools
     std::size_t tool = tool_;
     for (const char letter : {'T', 'D'})  // Marlin, RepRapFirmware
         if (command.hasValue(letter) && command.value(letter) >= 0 && command.value(letter) < 255)
             tool = static_cast<std::size_t>(command.value(letter));
-    flow_[tool] = percent / 100;
+    flow_[tool] = percent / 100 * all_flow_;
 }
 
 void Machine::mixFilaments(const Command& command) {

@@ -187,7 +187,8 @@ private:
     double feed_ = 0;
     double speed_factor_ = 1;
     double speed_backup_ = 1;
-    std::array<double, 256> flow_;
+    const double all_flow_;                 // ReadOptions::flow_percent as a factor
+    std::array<double, 256> flow_;          // by tool, with all_flow_
     std::array<double, 256> drawn_back_{};  // mm of filament, by tool
     std::array<bool, 256> unloaded_{};
     const bool planar_;

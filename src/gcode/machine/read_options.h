@@ -22,6 +22,8 @@ enum class ExtruderMode : std::uint8_t { automatic, absolute, relative };
 /// RepRapFirmware no).
 enum class Firmware : std::uint8_t { automatic, marlin, klipper, reprap };
 
+constexpr double kMostFlow = 1000;  ///< per cent
+
 /// What a user says of the printer. Limits whose origin is `printer` or `firmware` win over the file's settings; the
 /// commands of the program hold as far as the firmware reads them.
 struct PrinterLimits {
@@ -50,7 +52,8 @@ struct ReadOptions {
     MotionSink* motion = nullptr;  ///< receives all motion; nullptr: motion is not recorded
     CornerRule corner_rule = CornerRule::automatic;  ///< for `motion`
     std::optional<PrinterLimits> printer;
-    DepositModel deposit;  ///< becomes Toolpath::deposit
+    DepositModel deposit;       ///< becomes Toolpath::deposit
+    double flow_percent = 100;  ///< of all extrusion, besides M221: above 0, at most kMostFlow
     /// Called from time to time with the fraction done, 0..1, from the reading thread. May be empty.
     std::function<void(double)> progress;
 };

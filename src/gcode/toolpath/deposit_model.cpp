@@ -10,7 +10,11 @@ std::string describe(const DepositModel& deposit) {
         section = fmt::format("corners of {:g} mm", *deposit.corner_mm);
     else if (!deposit.stadium())
         section = fmt::format("corners of {:g} % of half the height", 100 * deposit.corner_fraction);
-    std::string text = fmt::format("{}, {}", deposit.settles() ? "settled" : "capsule", section);
+    std::string text = fmt::format("{}, {}",
+                                   deposit.swells()    ? "settled"
+                                   : deposit.settles() ? "grooves"
+                                                       : "capsule",
+                                   section);
     if (deposit.flow_lag) text += fmt::format(", flow lag {:g} s", *deposit.flow_lag);
     if (deposit.flow_lag && deposit.pressure_advance)
         text += fmt::format(", pressure advance {:g} s", *deposit.pressure_advance);

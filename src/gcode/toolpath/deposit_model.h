@@ -12,7 +12,8 @@ namespace stratum::gcode {
 struct DepositModel {
     enum class Beads : std::uint8_t {
         capsule,  ///< the union of the beads
-        settled,  ///< what two neighbours of a layer both claim fills the groove between them; keeps the volume
+        grooves,  ///< what two neighbours of a layer both claim fills the groove between them
+        settled,  ///< the same, and what the groove has no room for presses the outlines beside it out
     };
     Beads beads = Beads::capsule;
     /// Corner radius of the section as a fraction of half its height, 0..1. 1 is a stadium. `corner_mm` takes
@@ -31,7 +32,8 @@ struct DepositModel {
     double cornerRadius(double height) const {
         return std::min(corner_mm.value_or(corner_fraction * 0.5 * height), 0.5 * height);
     }
-    bool settles() const { return beads == Beads::settled; }
+    bool settles() const { return beads != Beads::capsule; }
+    bool swells() const { return beads == Beads::settled; }
     /// For every height.
     bool stadium() const { return !corner_mm && corner_fraction == 1; }
 };

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "voxelize/beads/settling.h"
+#include "voxelize/swell/swell_field.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -116,7 +117,7 @@ SettledSolid::Near SettledSolid::nearTo(std::uint32_t rank, double x, double y) 
 }
 
 // The plan distance of a layer, and the same closed where a groove is within what welds close.
-SettledSolid::Plan SettledSolid::plan(std::size_t number, double x, double y) const {
+SettledSolid::Plan SettledSolid::filled(std::size_t number, double x, double y) const {
     const voxelize::Layer& layer = stack_.layers[number];
     const double radius = layer.radius;
     double d = kFar;
@@ -141,6 +142,16 @@ SettledSolid::Plan SettledSolid::plan(std::size_t number, double x, double y) co
             plan.settled = std::min(plan.settled, level * radius);
             plan.closed = std::min(plan.closed, (level - weld * (1 - level)) * radius);
         }
+    return plan;
+}
+
+// The same with its outlines moved out by what has no place in the grooves.
+SettledSolid::Plan SettledSolid::plan(std::size_t number, double x, double y) const {
+    Plan plan = filled(number, x, y);
+    if (stack_.swell == nullptr) return plan;
+    const double out = stack_.swell->at(toolpath_, stack_, static_cast<std::uint32_t>(number), x, y);
+    plan.settled -= out;
+    plan.closed -= out;
     return plan;
 }
 

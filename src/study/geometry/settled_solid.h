@@ -45,6 +45,7 @@ private:
         double d, nx, ny;
     };
 
+    Plan filled(std::size_t layer, double x, double y) const;
     Plan plan(std::size_t layer, double x, double y) const;
     Near nearTo(std::uint32_t rank, double x, double y) const;
     double welded(const glm::dvec3& p, std::span<const std::pair<std::uint32_t, double>> closed) const;

@@ -3,6 +3,7 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/settling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,7 @@ public:
           half_(half_span),
           per_edge_(1 / edge),
           fills_grooves_(reach == Reach::field && toolpath.deposit.settles()),
+          swell_(toolpath.deposit.swells() ? kMostSwell : 0),
           band_(band),
           // The part in 1e9 makes rounding conservative.
           slack_((band + half_span * std::sqrt(2.0)) * (1 + 1e-9)) {}
@@ -94,7 +96,7 @@ public:
         const double radius = radiusOf(bead, section);
         const double more = fills_grooves_ ? std::max(radius - band_, 0.0) : 0;
         const EndFlats flats = endFlats(toolpath_, bead, section.half_flat);
-        return std::max(flats.start, flats.end) + radius + more + slack_;
+        return std::max(flats.start, flats.end) + radius + more + swell_ + slack_;
     }
 
     /// Columns whose centers lie in the box of the path, enlarged by `limit` on each side.
@@ -175,6 +177,7 @@ private:
     const double edge_, half_;  // mm
     const double per_edge_;
     const bool fills_grooves_;
+    const double swell_;         // mm, by which outlines move out
     const double band_, slack_;  // mm
 };
 

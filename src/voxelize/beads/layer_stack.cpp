@@ -1,6 +1,7 @@
 #include "voxelize/beads/layer_stack.h"
 
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/swell/swell_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,6 +113,7 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
     }
     rankBeads(selection, group_of, groups, toolpath.deposit, stack);
     if (toolpath.deposit.settles()) addSettling(stack);
+    if (toolpath.deposit.swells()) stack.swell = std::make_shared<const SwellField>();
     stack.extents.reserve(stack.direct().size());
     for (const std::uint32_t bead : stack.direct()) {
         const Bounds box = BeadField(toolpath, toolpath.beads[bead]).bounds();

@@ -11,6 +11,8 @@
 
 namespace stratum::voxelize {
 
+class SwellField;
+
 /// Level beads of one center plane and one height, hence of one section but for their width. Their 3-D union is the 2-D
 /// minimum of rho - c, so a layer is one plan field, expanded once per column.
 struct Layer {
@@ -50,6 +52,7 @@ struct LayerStack {
     std::uint32_t first_direct = 0;    ///< rank of the first sloped or round bead: evaluated in 3-D, one by one
     std::vector<Extent> extents;       ///< of the direct beads, from first_direct on
     std::vector<std::shared_ptr<const SettlingCurve>> curves;  ///< one for each shape of section; empty for capsules
+    std::shared_ptr<const SwellField> swell;                   ///< null where plastic that has no place goes nowhere
 
     std::span<const std::uint32_t> direct() const { return std::span(beads).subspan(first_direct); }
     /// Of a direct bead.

@@ -53,9 +53,12 @@ private:
 constexpr double kOpposite = -0.9;
 constexpr double kTurnPenalty = 2;
 
-/// Outside the solid no slope of a settled field is larger, as measured on real prints (at most 2.0, in turns;
-/// above 1.05 at less than one point in 1000). Sphere tracing must divide its steps by it. Between parallel beads the
-/// slope is 1.
+/// The most by which an outline moves out where plastic is left over, mm: see swell_field.h.
+constexpr double kMostSwell = 0.1;
+
+/// Outside the solid no slope of a settled field is larger: at most 2.0 as measured on real prints, in turns (above
+/// 1.05 at less than one point in 1000), and 0.35 of a swell. Sphere tracing must divide its steps by it. Between
+/// parallel beads the slope is 1.
 constexpr double kSettledSlope = 2.5;
 
 }  // namespace stratum::voxelize

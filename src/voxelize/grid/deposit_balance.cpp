@@ -1,6 +1,7 @@
 #include "voxelize/grid/deposit_balance.h"
 
 #include "base/parallel_for.h"
+#include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -29,6 +30,8 @@ struct Sums {
 
     std::array<std::int64_t, gcode::kFeatureCount> by_feature{};
     std::vector<std::int64_t> by_layer;
+    std::int64_t pressed_out = 0;
+    std::vector<double> shares;  // scratch
 };
 
 // mm, of a section at the distance `d` (mm) from its flat.
@@ -37,48 +40,75 @@ double thickness(const Layer& layer, double d) {
     return d < layer.radius ? 2 * (layer.half_side + std::sqrt(layer.radius * layer.radius - d * d)) : 0;
 }
 
-// Calls add(bead, volume) for the parts of one column of a layer.
+// Columns of 0.4 mm, whatever the voxels are.
+Lattice measuringLattice() {
+    Lattice lattice;
+    lattice.voxel_size = 0.05;
+    lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
+    return lattice;
+}
+
+double pointArea(const Lattice& lattice) { return lattice.voxel_size * lattice.voxel_size; }
+
+double thicknessAt(const Layer& layer, const PlanField& sides2, std::size_t c) {
+    return thickness(layer, std::sqrt(static_cast<double>(sides2.v[c])));
+}
+
+// Calls add(bead, volume) for the parts of one column of a layer; returns by how much more it holds swollen.
 template <typename Add>
-void addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double scale, double sample_area,
-              std::vector<double>& shares, const Add& add) {
+double addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double point_area,
+                std::vector<double>& shares, const Add& add) {
     const std::size_t beads = plan.beads.size();
     shares.assign(2 * beads, 0.0);  // own thickness, then the sum of parts
+    double more = 0;
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
+        const double solid = thicknessAt(*plan.layer, *plan.sides2, c);
+        if (plan.swollen != nullptr) more += thicknessAt(*plan.layer, *plan.swollen, c) - solid;
         double sum = 0;
         for (std::size_t n = 0; n < beads; ++n)
-            sum += shares[n] = thickness(*plan.layer, static_cast<double>(plan.beads[n].d.v[c]) / scale);
+            sum += shares[n] = thickness(*plan.layer, static_cast<double>(plan.beads[n].d.v[c]));
         if (!(sum > 0)) continue;
-        const double solid = thickness(*plan.layer, std::sqrt(static_cast<double>(plan.sides2->v[c])) / scale);
         for (std::size_t n = 0; n < beads; ++n) shares[beads + n] += solid * shares[n] / sum;
     }
     for (std::size_t n = 0; n < beads; ++n)
-        if (shares[beads + n] > 0) add(stack.beads[plan.ranks[n]], shares[beads + n] * sample_area);
+        if (shares[beads + n] > 0) add(stack.beads[plan.ranks[n]], shares[beads + n] * point_area);
+    return more * point_area;
+}
+
+// Calls visit(plan) for each layer of each column, on all threads.
+template <typename Visit>
+void forEachPlan(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end, const Visit& visit) {
+    const Lattice lattice = measuringLattice();
+    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
+    tbb::enumerable_thread_specific<LeafColumn> columns(
+        [&] { return LeafColumn(toolpath, stack, lattice, LeafColumn::Points::spread); });
+    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
+        LeafColumn& column = columns.local();
+        for (std::size_t c = first; c != last; ++c) {
+            if (bins[c].empty()) continue;
+            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
+            column.forEachLayer(visit);
+        }
+    });
 }
 
 }  // namespace
 
-DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins,
-                              const Lattice& lattice, const ColumnSource& columns, std::uint32_t end) {
+DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
     const std::size_t layers = toolpath.layer_count + std::size_t{1};
     tbb::enumerable_thread_specific<Sums> threads([layers] { return Sums(layers); });
-    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = columns();
-        Sums& laid = threads.local();
-        std::vector<double> scratch;
-        const double sample_area = lattice.voxel_size * lattice.voxel_size;
-        for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
-            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
-            column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
-                addLayer(stack, plan, column.scale(), sample_area, scratch, [&](std::uint32_t bead, double volume) {
-                    laid.add(toolpath.runOf(toolpath.beads[bead]), volume);
-                });
-            });
-        }
+    const double point_area = pointArea(measuringLattice());
+    forEachPlan(toolpath, stack, end, [&](const LeafColumn::LayerPlan& plan) {
+        Sums& sums = threads.local();
+        const double more = addLayer(stack, plan, point_area, sums.shares, [&](std::uint32_t bead, double volume) {
+            sums.add(toolpath.runOf(toolpath.beads[bead]), volume);
+        });
+        sums.pressed_out += unitsOf(more);
     });
     Sums laid(layers);
     Sums fed(layers);
     for (const Sums& one : threads) {
+        laid.pressed_out += one.pressed_out;
         for (std::size_t f = 0; f < one.by_feature.size(); ++f) laid.by_feature[f] += one.by_feature[f];
         for (std::size_t l = 0; l < layers; ++l) laid.by_layer[l] += one.by_layer[l];
     }
@@ -92,6 +122,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     DepositBalance balance;
     balance.layers.resize(layers);
     const auto mm3 = [](std::int64_t units) { return static_cast<double>(units) * kUnit; };
+    balance.pressed_out = mm3(laid.pressed_out);
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         balance.features[f] = {mm3(fed.by_feature[f]), mm3(laid.by_feature[f])};
         balance.all.fed += balance.features[f].fed;
@@ -101,25 +132,16 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     return balance;
 }
 
-std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice) {
-    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
+std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack) {
     // Sums in integers, as above: those of a bead are met in any order.
     std::vector<std::atomic<std::int64_t>> laid(toolpath.beads.size());
-    tbb::enumerable_thread_specific<LeafColumn> columns([&] { return LeafColumn(toolpath, stack, lattice, 1); });
-    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = columns.local();
-        std::vector<double> scratch;
-        const double sample_area = lattice.voxel_size * lattice.voxel_size;
-        const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
-        for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
-            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
-            column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
-                addLayer(stack, plan, 1, sample_area, scratch, [&](std::uint32_t bead, double volume) {
-                    laid[bead].fetch_add(unitsOf(volume), std::memory_order_relaxed);
-                });
-            });
-        }
+    tbb::enumerable_thread_specific<std::vector<double>> scratch;
+    const double point_area = pointArea(measuringLattice());
+    const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
+    forEachPlan(toolpath, stack, end, [&](const LeafColumn::LayerPlan& plan) {
+        addLayer(stack, plan, point_area, scratch.local(), [&](std::uint32_t bead, double volume) {
+            laid[bead].fetch_add(unitsOf(volume), std::memory_order_relaxed);
+        });
     });
     std::vector<float> shares(toolpath.beads.size(), 0);
     for (std::uint32_t rank = 0; rank < stack.first_direct; ++rank) {

@@ -2,10 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
-#include "voxelize/beads/lattice.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_positions.h"
 
 #include <array>
 #include <cstdint>
@@ -16,26 +13,29 @@ namespace stratum::voxelize {
 /// mm^3.
 struct DepositShare {
     double fed = 0;   ///< section area times length of the beads
-    double laid = 0;  ///< their part of the solid of their layer
-    /// What overlaps and has no place; negative where ends of beads, which are round, lie free.
+    double laid = 0;  ///< their part of what their layer holds with its grooves filled
+    /// What overlaps and has no place there; negative where ends of beads, which are round, lie free.
     double surplus() const { return fed - laid; }
 };
 
 struct DepositBalance {
     DepositShare all;
+    double pressed_out = 0;  ///< mm^3 by which layers hold more where surplus moves their outlines out: swell_field.h
     std::array<DepositShare, gcode::kFeatureCount> features;  ///< by gcode::Feature
     std::vector<DepositShare> layers;                         ///< by Run::layer
+    /// mm^3 of the solid, and what has no place in it.
+    double held() const { return all.laid + pressed_out; }
+    double unplaced() const { return all.fed - held(); }
 };
 
-/// Integrates the thickness of each layer over the lattice's columns, and divides it among the beads that claim a
-/// place, in proportion to their own thickness there. Overlaps of different layers are not counted, and sloped and
-/// round beads count as laid whole. Of the beads before index `end`. Parallel; the result does not depend on the number
-/// of threads.
-DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins,
-                              const Lattice& lattice, const ColumnSource& columns, std::uint32_t end);
+/// Integrates the thickness of each layer, and divides it among the beads that claim a place, in proportion to their
+/// own thickness there. Overlaps of different layers are not counted, and sloped and round beads count as laid whole.
+/// Of the beads before index `end`. From the plan fields themselves, at points of a lattice rule, 400 a mm^2: the same
+/// for every voxel size. Parallel; the result does not depend on the number of threads.
+DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end);
 
-/// By bead of the toolpath: the share of its plastic that has no place, 0..1; 0 for beads that are not in the stack and
-/// for sloped and round ones. As balanceDeposit(), of all beads.
-std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice);
+/// By bead of the toolpath: the share of its plastic that has no place in its layer's grooves, 0..1; 0 for beads that
+/// are not in the stack and for sloped and round ones. As balanceDeposit(), of all beads.
+std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack);
 
 }  // namespace stratum::voxelize

@@ -241,7 +241,7 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     if (wanted.empty()) return grids;
     const bool overfill = std::find(wanted.begin(), wanted.end(), Attribute::overfill) != wanted.end();
     const BeadAttributes values(s.toolpath, wanted,
-                                overfill ? overfillOfBeads(s.toolpath, s.stack, s.lattice) : std::vector<float>());
+                                overfill ? overfillOfBeads(s.toolpath, s.stack) : std::vector<float>());
     ProgressMeter meter(std::max<std::size_t>(s.bins.entryCount(), 1), s.options.progress);
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
     tbb::enumerable_thread_specific<LeafColumn> owning(
@@ -271,7 +271,7 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
 
 DepositBalance Voxelizer::balance() const {
     State& s = *state_;
-    return balanceDeposit(s.toolpath, s.stack, s.bins, s.lattice, s.columnSource(), s.printed);
+    return balanceDeposit(s.toolpath, s.stack, s.printed);
 }
 
 const VoxelizeReport& Voxelizer::report() const { return state_->report; }

@@ -100,8 +100,7 @@ public:
     /// instead of evaluating distances; takes about a third of the time of a build.
     CullForecast forecastCull() const;
 
-    /// How much of the beads printed so far their layers have room for. Takes about as long as the plan fields of a
-    /// build.
+    /// How much of the beads printed so far their layers have room for: balanceDeposit().
     DepositBalance balance() const;
 
     const VoxelizeReport& report() const;

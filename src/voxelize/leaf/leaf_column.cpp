@@ -40,7 +40,27 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
       scale_(scale),
       band_(lattice.background()),
       with_owners_(owners),
-      grid_(static_cast<float>(lattice.voxel_size * scale)) {
+      with_swell_(stack.swell != nullptr),
+      grid_(static_cast<float>(lattice.voxel_size * scale)),
+      half_extent_(0.5 * (kLeafDim - 1) * lattice.voxel_size) {
+    prepare();
+}
+
+LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, Points points)
+    : toolpath_(toolpath),
+      stack_(stack),
+      lattice_(lattice),
+      scale_(1),
+      band_(lattice.background()),
+      with_owners_(false),
+      with_swell_(stack.swell != nullptr && points == Points::spread),
+      grid_(ColumnGrid::spread(static_cast<float>(lattice.voxel_size))),
+      half_extent_(0.5 * (kLeafDim + 1) * lattice.voxel_size) {
+    prepare();
+}
+
+void LeafColumn::prepare() {
+    const LayerStack& stack = stack_;
     for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight());
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
@@ -93,6 +113,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     direct_.clear();
     next_layer_ = first_direct_ = 0;
     free_.insert(free_.end(), window_.begin(), window_.end());
+    swell_placed_ = false;
     window_.clear();
     welds_.clear();
     half_heights_.clear();
@@ -147,7 +168,6 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
     line_ids_.clear();
     taper_ids_.clear();
     arc_ids_.clear();
-    const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
     for (std::uint32_t e = source.first; e < source.last; ++e) {
         const std::uint32_t rank = ranks_[e];
         // Prefetch: the beads of a column are scattered in memory.
@@ -158,14 +178,14 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
         const double half_flat = 0.5 * static_cast<double>(bead.width) - layer.inset;
         if (gcode::widening(toolpath_, bead) != 0) {
             const EndFlats flats = endFlats(toolpath_, bead, half_flat);
-            tapers_.push_back(localTaper(bead, flats, middle_x_, middle_y_, half_extent, scale_));
+            tapers_.push_back(localTaper(bead, flats, middle_x_, middle_y_, half_extent_, scale_));
             if (with_ranks) taper_ids_.push_back(rank);
         } else if (!curved(toolpath_, bead)) {
-            lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent_, scale_));
             if (with_ranks) line_ids_.push_back(rank);
         } else {
             const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
-            arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent, scale_));
+            arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent_, scale_));
             if (with_ranks) arc_ids_.push_back(rank);
         }
     }
@@ -196,8 +216,10 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     // Nothing of the column within the band: neither a surface nor a weld.
     const double reach = (layer.radius + band_) * scale_;
     const bool settles = layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1;
-    const float least =
+    float least =
         settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
+    if (with_swell_ && swell(source.layer, plan.d, plan.sides2))
+        least = *std::min_element(std::begin(plan.sides2.v), std::end(plan.sides2.v));
     if (static_cast<double>(least) >= reach * reach) return;
     free_.pop_back();
     window_.push_back(slot);
@@ -220,7 +242,9 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
         fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
     else
         squaredSides(d_, sides2_);
-    return {&layer, line_ids_, near_, &sides2_};
+    swollen_ = sides2_;
+    const bool swells = with_swell_ && swell(source.layer, d_, swollen_);
+    return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr};
 }
 
 const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
@@ -229,12 +253,15 @@ const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
     minimumOfPaths(d_, nullptr);
     if (layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1)
         settle(*layer.settling, layer.radius, d_, sides2_);
+    else
+        squaredSides(d_, sides2_);
+    if (with_swell_) swell(source.layer, d_, sides2_);
     return d_;
 }
 
 float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
     const GrooveRule rule(curve, radius * scale_);
-    const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size * scale_;
+    const double half_extent = half_extent_ * scale_;
     near_.clear();
     for (const LocalLine& line : lines_)
         if (mayFill(line, rule, half_extent)) planOfLine(grid_, line, near_.emplace_back());

@@ -7,6 +7,7 @@
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_kernels.h"
 #include "voxelize/leaf/settling_kernels.h"
+#include "voxelize/swell/swell_field.h"
 
 #include <openvdb/openvdb.h>
 
@@ -37,6 +38,9 @@ public:
     /// voxel is recorded as well; see owners().
     LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
                bool owners = false);
+    /// For measurements in mm: plan fields at ColumnGrid::spread(), with or without what LayerStack::swell adds.
+    enum class Points : std::uint8_t { spread, spread_without_swell };
+    LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, Points points);
 
     /// Opens the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
     /// toolpath of `end` or more are left out.
@@ -73,7 +77,8 @@ public:
         const Layer* layer = nullptr;
         std::span<const std::uint32_t> ranks;  ///< of the beads
         std::span<const BeadPlan> beads;       ///< in the same order
-        const PlanField* sides2 = nullptr;     ///< squared plan distance beyond the flats, after settling
+        const PlanField* sides2 = nullptr;     ///< squared plan distance beyond the flats, after filling grooves
+        const PlanField* swollen = nullptr;    ///< the same after LayerStack::swell; null where it changes nothing
     };
     /// Calls visit() for each layer of the open column, from the lowest. Only of a column of which no leaf is
     /// evaluated.
@@ -87,6 +92,16 @@ public:
     template <typename Visit>
     void forEachField(Visit visit) {
         for (const ColumnLayer& source : column_layers_) visit(source.layer, fieldOf(source));
+    }
+
+    /// Calls visit(layer, sides2) for each layer of the open column, from the lowest: its index in LayerStack::layers,
+    /// and the squared plan distance beyond its flats. Only of a column of which no leaf is evaluated.
+    template <typename Visit>
+    void forEachSides(Visit visit) {
+        for (const ColumnLayer& source : column_layers_) {
+            fieldOf(source);
+            visit(source.layer, sides2_);
+        }
     }
 
 private:
@@ -111,6 +126,7 @@ private:
         std::uint32_t rank;
     };
 
+    void prepare();
     double sampleZ(int k) const { return lattice_.origin_z + k * lattice_.voxel_size; }
     LeafRange leafRange(double z_min, double z_max) const { return leavesAround(lattice_, z_min, z_max); }
     void mergeRanges();
@@ -126,6 +142,9 @@ private:
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     /// The same for the beads in near_.
     float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const;
+    /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed.
+    bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2);
+    void placeSwell();
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -135,8 +154,9 @@ private:
     const LayerStack& stack_;
     const Lattice& lattice_;
     const double scale_, band_;  // world units a mm; mm
-    const bool with_owners_;
+    const bool with_owners_, with_swell_;
     const ColumnGrid grid_;
+    const double half_extent_;               // mm: the samples' coordinates from the middle of the column
     double thickest_ = 0;                    // mm, the largest half height of a layer
     std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by upper layer
 
@@ -162,6 +182,17 @@ private:
     std::vector<std::uint32_t> line_ids_, taper_ids_, arc_ids_;
     std::vector<BeadPlan> near_;  // beads that may fill a groove; all of the layer in planLayer()
     PlanField d_, sides2_;        // of planLayer()
+    PlanField swollen_;           // likewise
+    // Where the swell of the open column comes from.
+    struct SwellSource {
+        const SwellTile* tile;
+        int first_i, last_i, first_j, last_j;  // nodes of the column that the tile owns
+    };
+    bool swell_placed_ = false;
+    int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0, nodes_j_ = 0;
+    std::vector<SwellSource> swell_sources_;
+    std::vector<float> swell_nodes_;
+    PlanField swell_x_, swell_y_;  // samples from the first node, in node spacings
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

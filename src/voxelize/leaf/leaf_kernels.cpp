@@ -287,6 +287,16 @@ ColumnGrid::ColumnGrid(float voxel) {
     }
 }
 
+ColumnGrid ColumnGrid::spread(float voxel) {
+    ColumnGrid grid(voxel);
+    constexpr std::size_t kGenerator = 19;
+    for (std::size_t c = 0; c < kColumnSamples; ++c) {
+        grid.qx.v[c] = (static_cast<float>(c) - 27.5f) / 8 * voxel;
+        grid.qy.v[c] = (static_cast<float>(c * kGenerator % kColumnSamples) - 27.5f) / 8 * voxel;
+    }
+    return grid;
+}
+
 void minimumOfLines(const ColumnGrid& grid, std::span<const LocalLine> lines, PlanField& d, const std::uint32_t* ids,
                     PlanOwners* owners) {
     HWY_DYNAMIC_DISPATCH(MinimumOfLines)(grid, lines, d, ids, owners);

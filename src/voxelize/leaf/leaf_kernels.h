@@ -41,6 +41,9 @@ struct ColumnGrid {
     PlanField qx, qy;
     /// `voxel` in world units.
     explicit ColumnGrid(float voxel);
+    /// 64 points of a lattice rule instead, spread evenly over the square from the first sample of the column to the
+    /// first of the next: lines in few directions meet two of them at once, so sums over them are near integrals.
+    static ColumnGrid spread(float voxel);
 };
 
 /// d = min(d, rho - half_flat) for each path. `owners`, if not null, gets `ids[n]` where path n is nearer than before.

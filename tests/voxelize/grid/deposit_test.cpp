@@ -139,8 +139,8 @@ protected:
 INSTANTIATE_TEST_SUITE_P(
     Models, Deposit,
     testing::Values(Model{DepositModel::Beads::capsule, 0.5}, Model{DepositModel::Beads::capsule, 0.05},
-                    Model{DepositModel::Beads::settled, 1}, Model{DepositModel::Beads::settled, 0.6},
-                    Model{DepositModel::Beads::settled, 0.1}),
+                    Model{DepositModel::Beads::grooves, 1}, Model{DepositModel::Beads::settled, 0.6},
+                    Model{DepositModel::Beads::grooves, 0.1}),
     [](const auto& model) {
         return std::string(model.param.beads == DepositModel::Beads::capsule ? "Capsule" : "Settled") +
                std::to_string(std::lround(100 * model.param.corner_fraction));
@@ -228,7 +228,7 @@ TEST(DepositModel, SharpCornersAreABox) {
     gcode::Toolpath toolpath;
     test::addBead(toolpath, 0, 0, kHeight, 3, 0, kHeight, kWidth, kHeight);
     toolpath.deposit.corner_fraction = 0;
-    toolpath.deposit.beads = DepositModel::Beads::settled;
+    toolpath.deposit.beads = DepositModel::Beads::grooves;
     const BeadField field(toolpath, toolpath.beads[0]);
     const double width = gcode::sectionArea(kWidth, kHeight) / kHeight;
     EXPECT_NEAR(field.distance(1, width / 2, kHeight / 2), 0, 1e-8);
@@ -246,7 +246,7 @@ TEST(DepositModel, BetweenParallelBeadsTheSlopeIsOne) {
     for (const double spacing : {0.38, 0.4, 0.41, 0.42, 0.44}) {
         gcode::Toolpath toolpath;
         parallelLines(toolpath, spacing, 0);
-        toolpath.deposit.beads = DepositModel::Beads::settled;
+        toolpath.deposit.beads = DepositModel::Beads::grooves;
         const test::SettledField field(toolpath);
         // Across the beads, over the top layer and into its grooves.
         double steepest = 0;
@@ -268,7 +268,7 @@ TEST(DepositBalance, FedIsLaidAndSurplus) {
     for (const double corner : {1.0, 0.5}) {
         gcode::Toolpath toolpath;
         zigzag(toolpath);
-        toolpath.deposit.beads = DepositModel::Beads::settled;
+        toolpath.deposit.beads = DepositModel::Beads::grooves;
         toolpath.deposit.corner_fraction = corner;
         const auto beads = test::allBeads(toolpath);
         const Lattice lattice = latticeOf(toolpath, 0.02);

@@ -1,0 +1,272 @@
+#include "voxelize/swell/tile_sums.h"
+
+#include "voxelize/leaf/leaf_column.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr int kNodes = TileSums::kNodes;
+constexpr int kColumnCells = 2;
+constexpr int kTileColumns = kTileCells / kColumnCells;
+constexpr int kColumnNodes = kColumnCells + 1;
+
+using Layers = std::map<std::uint32_t, TileSums::Layer>;
+// The weights of a column's nodes at its points.
+using Weights = std::array<PlanField, kColumnNodes * kColumnNodes>;
+
+Weights columnWeights(const ColumnGrid& points) {
+    Weights weights{};
+    // From the middle of the samples to that of the square.
+    const double shift = 0.5 * cellLattice().voxel_size;
+    for (int node = 0; node < kColumnNodes * kColumnNodes; ++node)
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const double x = (static_cast<double>(points.qx.v[c]) - shift) / kNodeSpacing + 1;
+            const double y = (static_cast<double>(points.qy.v[c]) - shift) / kNodeSpacing + 1;
+            weights[static_cast<std::size_t>(node)].v[c] =
+                static_cast<float>(std::max(1 - std::abs(x - node % kColumnNodes), 0.0) *
+                                   std::max(1 - std::abs(y - node / kColumnNodes), 0.0));
+        }
+    return weights;
+}
+
+// The volume (mm^3) under the points of a column by node, less that with no swell for a swell > 0.
+class ColumnSums {
+public:
+    ColumnSums()
+        : points_(ColumnGrid::spread(static_cast<float>(cellLattice().voxel_size))), weights_(columnWeights(points_)) {}
+
+    void add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
+        const auto radius = static_cast<float>(layer.radius);
+        const auto straight = static_cast<float>(2 * layer.half_side);
+        float least = std::numeric_limits<float>::max();
+        float most = 0;
+        for (const float side2 : sides2.v) {
+            least = std::min(least, side2);
+            most = std::max(most, side2);
+        }
+        const float reach = radius + static_cast<float>(kMostSwell);
+        if (least >= reach * reach) return;
+        PlanField held;
+        const auto thicknessAt = [&](float swell) {
+            for (std::size_t c = 0; c < kColumnSamples; ++c) {
+                const float side = std::max(std::sqrt(sides2.v[c]) - swell, 0.0F);
+                const float half2 = radius * radius - side * side;
+                held.v[c] = half2 > 0 ? straight + 2 * std::sqrt(half2) : 0;
+            }
+        };
+        thicknessAt(0);
+        addTo(held, -1, first_node, sums.surplus);
+        // Flats all over gain nothing.
+        if (!(most > 0)) return;
+        const PlanField before = held;
+        for (int level = 0; level < TileSums::kLevels; ++level) {
+            thicknessAt(static_cast<float>(kMostSwell * (level + 1) / TileSums::kLevels));
+            for (std::size_t c = 0; c < kColumnSamples; ++c) held.v[c] -= before.v[c];
+            addTo(held, 1, first_node, sums.gain[static_cast<std::size_t>(level)]);
+        }
+    }
+
+    const ColumnGrid& points() const { return points_; }
+
+private:
+    void addTo(const PlanField& held, float sign, int first_node, TileSums::Nodes& nodes) const {
+        constexpr auto kArea =
+            static_cast<float>(kColumnCells * kColumnCells * kNodeSpacing * kNodeSpacing / kColumnSamples);
+        for (int node = 0; node < kColumnNodes * kColumnNodes; ++node) {
+            // Eight sums side by side, which the compiler keeps in registers.
+            float part[8] = {};
+            const float* weight = weights_[static_cast<std::size_t>(node)].v;
+            for (std::size_t c = 0; c < kColumnSamples; c += 8)
+                for (std::size_t lane = 0; lane < 8; ++lane) part[lane] += weight[c + lane] * held.v[c + lane];
+            const float sum = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+            const int place = first_node + node % kColumnNodes + node / kColumnNodes * kNodes;
+            nodes[static_cast<std::size_t>(place)] += sign * kArea * sum;
+        }
+    }
+
+    const ColumnGrid points_;
+    const Weights weights_;
+};
+
+// Lays a bead's volume along its path, evenly over the width of a box of its height.
+class Feeder {
+public:
+    Feeder(const gcode::Toolpath& toolpath, const LayerStack& stack, int x, int y)
+        : toolpath_(toolpath), stack_(stack), first_x_(x * kTileCells), first_y_(y * kTileCells) {}
+
+    void feed(std::uint32_t rank, TileSums::Layer& sums) const {
+        const std::uint32_t index = stack_.beads[rank];
+        const gcode::Bead& bead = toolpath_.beads[index];
+        const double volume = gcode::laidVolume(toolpath_, index);
+        const double height = 2 * stack_.layers[stack_.layer[rank]].halfHeight();
+        const PlanPath path(toolpath_, bead);
+        // A disc at a place is as long as it is wide.
+        const double length =
+            std::max(path.length(), std::min(std::sqrt(volume / height), static_cast<double>(bead.width)));
+        if (!(volume > 0) || !(length > 0)) return;
+        const double at_ends = feedEnds(index, volume, path.length(), sums);
+        const double along = volume - at_ends;
+        const double width = along / (height * length);
+        const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
+        const double part = along / (steps * kAcross);
+        const auto [from, to] = stepsInTile(bead, length, width, steps);
+        for (int n = from; n < to; ++n) {
+            const Place place = placeAt(bead, (n + 0.5) / steps, length);
+            for (int m = 0; m < kAcross; ++m) {
+                const double aside = ((m + 0.5) / kAcross - 0.5) * width;
+                addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums.surplus);
+            }
+        }
+    }
+
+private:
+    static constexpr double kStep = 0.5 * kNodeSpacing;
+    static constexpr int kAcross = 4;
+    struct Place {
+        double x, y, ux, uy;
+    };
+
+    // Where the flow is simulated, the half discs at free ends are part of a bead's volume: lays them there, and
+    // returns their volume.
+    double feedEnds(std::uint32_t index, double volume, double length, TileSums::Layer& sums) const {
+        const gcode::Bead& bead = toolpath_.beads[index];
+        const double discs = volume - gcode::beadVolume(toolpath_, bead);
+        if (toolpath_.flow.empty() || !(length > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
+        const auto meets = [](const gcode::Bead& a, const gcode::Bead& b) {
+            constexpr double kSame = 1e-4;  // mm
+            return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
+        };
+        const bool free_start = index == 0 || !meets(toolpath_.beads[index - 1], bead);
+        const bool free_end = index + 1 == toolpath_.beads.size() || !meets(bead, toolpath_.beads[index + 1]);
+        const int ends = (free_start ? 1 : 0) + (free_end ? 1 : 0);
+        if (ends == 0) return 0;
+        const double width = static_cast<double>(bead.width);
+        const double past = 2 * width / (3 * std::numbers::pi);  // the centroid of a half disc
+        for (const bool at_end : {false, true}) {
+            if (!(at_end ? free_end : free_start)) continue;
+            const Place place = placeAt(bead, at_end ? 1 : 0, length);
+            const double sign = at_end ? past : -past;
+            for (int m = 0; m < kAcross; ++m) {
+                const double aside = ((m + 0.5) / kAcross - 0.5) * 0.8 * width;
+                addPoint(place.x + sign * place.ux - aside * place.uy, place.y + sign * place.uy + aside * place.ux,
+                         discs / (ends * kAcross), sums.surplus);
+            }
+        }
+        return discs;
+    }
+
+    Place placeAt(const gcode::Bead& bead, double t, double length) const {
+        const double dx = double{bead.x1} - double{bead.x0};
+        const double dy = double{bead.y1} - double{bead.y0};
+        if (bead.arc < 0) {
+            const double chord = std::hypot(dx, dy);
+            if (!(chord > 0)) return {bead.x0 + (t - 0.5) * length, bead.y0, 1, 0};
+            return {bead.x0 + t * dx, bead.y0 + t * dy, dx / chord, dy / chord};
+        }
+        const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+        const double from_x = bead.x0 - arc.center_x;
+        const double from_y = bead.y0 - arc.center_y;
+        const double radius = std::max(std::hypot(from_x, from_y), 1e-9);
+        const double cosine = std::cos(t * arc.sweep);
+        const double sine = std::sin(t * arc.sweep);
+        const double vx = cosine * from_x - sine * from_y;
+        const double vy = sine * from_x + cosine * from_y;
+        return {arc.center_x + vx, arc.center_y + vy, -vy / radius, vx / radius};
+    }
+
+    // Steps of a straight bead that may lay something in the tile; all of an arc.
+    std::pair<int, int> stepsInTile(const gcode::Bead& bead, double length, double width, int steps) const {
+        if (bead.arc >= 0) return {0, steps};
+        double low = 0;
+        double high = 1;
+        const double more = width + length / steps;
+        const auto clip = [&](double from, double to, int first) {
+            const double least = first * kNodeSpacing - more;
+            const double most = (first + kTileCells) * kNodeSpacing + more;
+            if (std::abs(to - from) < more) return;
+            const double a = (least - from) / (to - from);
+            const double b = (most - from) / (to - from);
+            low = std::max(low, std::min(a, b));
+            high = std::min(high, std::max(a, b));
+        };
+        clip(bead.x0, bead.x1, first_x_);
+        clip(bead.y0, bead.y1, first_y_);
+        if (low >= high) return {0, 0};
+        return {std::max(static_cast<int>(std::floor(low * steps)) - 1, 0),
+                std::min(static_cast<int>(std::ceil(high * steps)) + 1, steps)};
+    }
+
+    // Each point lies in one cell of one tile.
+    void addPoint(double x, double y, double volume, TileSums::Nodes& nodes) const {
+        const double in_x = x / kNodeSpacing - first_x_;
+        const double in_y = y / kNodeSpacing - first_y_;
+        if (!(in_x >= 0 && in_x < kTileCells && in_y >= 0 && in_y < kTileCells)) return;
+        const int i = static_cast<int>(in_x);
+        const int j = static_cast<int>(in_y);
+        const double fx = in_x - i;
+        const double fy = in_y - j;
+        const auto at = static_cast<std::size_t>(j * kNodes + i);
+        nodes[at] += static_cast<float>(volume * (1 - fx) * (1 - fy));
+        nodes[at + 1] += static_cast<float>(volume * fx * (1 - fy));
+        nodes[at + kNodes] += static_cast<float>(volume * (1 - fx) * fy);
+        nodes[at + kNodes + 1] += static_cast<float>(volume * fx * fy);
+    }
+
+    const gcode::Toolpath& toolpath_;
+    const LayerStack& stack_;
+    const int first_x_, first_y_;  // nodes
+};
+
+}  // namespace
+
+Lattice cellLattice() {
+    Lattice lattice;
+    lattice.voxel_size = kColumnCells * kNodeSpacing / kLeafDim;
+    lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
+    return lattice;
+}
+
+TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins, int x, int y) {
+    static const ColumnSums kSums;
+    const Lattice lattice = cellLattice();
+    LeafColumn column(toolpath, stack, lattice, LeafColumn::Points::spread_without_swell);
+    Layers layers;
+    std::vector<std::uint32_t> ranks;
+    const int first_i = bins.originI(0) / kLeafDim;
+    const int first_j = bins.originJ(0) / kLeafDim;
+    for (int cj = 0; cj < kTileColumns; ++cj)
+        for (int ci = 0; ci < kTileColumns; ++ci) {
+            const int i = x * kTileColumns + ci - first_i;
+            const int j = y * kTileColumns + cj - first_j;
+            if (i < 0 || j < 0 || i >= static_cast<int>(bins.columnsI()) || j >= static_cast<int>(bins.columnsJ()))
+                continue;
+            const std::size_t bin = static_cast<std::size_t>(j) * bins.columnsI() + static_cast<std::size_t>(i);
+            if (bins[bin].empty()) continue;
+            ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
+            column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
+            const int first_node = kColumnCells * (cj * kNodes + ci);
+            column.forEachSides([&](std::uint32_t layer, const PlanField& sides2) {
+                kSums.add(stack.layers[layer], sides2, first_node, layers[layer]);
+            });
+        }
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    const Feeder feeder(toolpath, stack, x, y);
+    for (const std::uint32_t rank : ranks)
+        if (rank < stack.first_direct) feeder.feed(rank, layers[stack.layer[rank]]);
+    TileSums tile;
+    for (auto& [layer, sums] : layers) {
+        tile.layers.push_back(layer);
+        tile.sums.push_back(sums);
+    }
+    return tile;
+}
+
+}  // namespace stratum::voxelize

@@ -1,0 +1,70 @@
+#include "voxelize/swell/tile_sums.h"
+
+#include "toolpaths.h"
+#include "voxelize/beads/layer_stack.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr double kWidth = 0.45;
+constexpr double kHeight = 0.2;
+
+struct Totals {
+    double surplus = 0, gain = 0;
+};
+Totals totalsOf(gcode::Toolpath& toolpath) {
+    toolpath.deposit.beads = gcode::DepositModel::Beads::settled;
+    const LayerStack stack = stackLayers(toolpath, test::allBeads(toolpath));
+    const PlanBins bins(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
+    Totals totals;
+    for (int y = -4; y <= 4; ++y)
+        for (int x = -4; x <= 4; ++x) {
+            const TileSums tile = sumTile(toolpath, stack, bins, x, y);
+            for (const TileSums::Layer& layer : tile.sums) {
+                for (const float value : layer.surplus) totals.surplus += static_cast<double>(value);
+                for (const float value : layer.gain.back()) totals.gain += static_cast<double>(value);
+            }
+        }
+    return totals;
+}
+
+// The half discs at both ends of a bead, together: the solid of revolution of its section.
+double endsOf(double half_flat, double radius) {
+    return std::numbers::pi * (half_flat * half_flat * 2 * radius + std::numbers::pi * half_flat * radius * radius +
+                               4 * radius * radius * radius / 3);
+}
+
+TEST(TileSums, ALoneLineLacksNothingButItsEnds) {
+    for (const double angle : {0.0, 0.3, std::numbers::pi / 4, std::numbers::pi / 2}) {
+        gcode::Toolpath toolpath;
+        test::addBead(toolpath, -7.1, 0.13, kHeight, -7.1 + 14 * std::cos(angle), 0.13 + 14 * std::sin(angle), kHeight,
+                      kWidth, kHeight);
+        const Totals totals = totalsOf(toolpath);
+        const double radius = kHeight / 2;
+        const double fed = gcode::beadVolume(toolpath);
+        EXPECT_NEAR(totals.surplus, -endsOf(kWidth / 2 - radius, radius), 4e-3 * fed) << angle;
+        // All around it a strip kMostSwell wide is filled up.
+        const double around = 2 * 14 * kMostSwell * kHeight;
+        EXPECT_NEAR(totals.gain, around, 0.1 * around) << angle;
+    }
+}
+
+TEST(TileSums, LinesThatCrossHaveTheSurplusOfTheirCrossing) {
+    gcode::Toolpath toolpath;
+    test::addBead(toolpath, -6, 0.1, kHeight, 6, 0.1, kHeight, kWidth, kHeight);
+    const double one = totalsOf(toolpath).surplus;
+    test::addBead(toolpath, 0.2, -6, kHeight, 0.2, 6, kHeight, kWidth, kHeight);
+    const double crossing = totalsOf(toolpath).surplus - 2 * one;
+    // The flats at least, and at most the rectangle of both widths.
+    EXPECT_GT(crossing, std::pow(kWidth - kHeight, 2) * kHeight);
+    EXPECT_LT(crossing, kWidth * kWidth * kHeight);
+}
+
+}  // namespace
+}  // namespace stratum::voxelize
