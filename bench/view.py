@@ -100,7 +100,7 @@ def until(page, kind, seconds=300):
 def measure(folder, path, seconds, page):
     begin = time.time()
     process, url = start(folder, path)
-    page.get(url)
+    page.get(url + "?stream")
     until(page, "moving")
     shown = page.execute_script("return performance.timeOrigin + window.vdbviewLog[0].at") / 1000 - begin
     until(page, "final")

@@ -21,8 +21,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -40,7 +44,7 @@ struct ViewCommand {
     tools::CommonOptions common;
     std::vector<std::string> inputs, hosts;
     assemble::PrintRequest prints;
-    std::string brick_cache, listen = "127.0.0.1";
+    std::string brick_cache, listen = "127.0.0.1", token_file;
     std::uint16_t port = 0;
     bool open = false;
 };
@@ -59,9 +63,17 @@ void addOptions(CLI::App& app, ViewCommand& o) {
                    "the connection is not encrypted")
         ->type_name("ADDRESS")
         ->group(server);
-    app.add_option("--host", o.hosts, "A further name that the page is called by, e.g. behind a proxy; may be repeated")
+    app.add_option(
+           "--token-file", o.token_file,
+           "Takes the URL's token from this file, which is made if it is not there: with --port, pages that are "
+           "open find the next server, too")
+        ->type_name("FILE")
+        ->group(server);
+    app.add_option("--host", o.hosts,
+                   "A further name that the page is called by, e.g. behind a proxy, with its port unless that is the "
+                   "usual one; may be repeated")
         ->allow_extra_args(false)
-        ->type_name("NAME")
+        ->type_name("NAME[:PORT]")
         ->group(server);
     app.add_option("--brick-cache", o.brick_cache, "No more than this of samples at once, of each print, e.g. 200MB")
         ->type_name("SIZE")
@@ -120,9 +132,54 @@ view::GivenInput givenInput(const ViewCommand& o, const std::string& path, const
     return given;
 }
 
-void openBrowser(const std::string& url) {
+/// A page that leads to the URL, for this user alone: arguments of processes can be read by all.
+class LeadingPage {
+public:
+    explicit LeadingPage(const std::string& url) {
+        const char* own = std::getenv("XDG_RUNTIME_DIR");
+        path_ = (own != nullptr && *own != 0 ? std::string(own) : std::filesystem::temp_directory_path().string()) +
+                "/vdbview-XXXXXX.html";
+        const int file = mkstemps(path_.data(), 5);  // for its owner alone
+        if (file < 0) throw OutputError(path_ + ": can't be written; open the URL yourself");
+        const std::string text =
+            fmt::format("<!doctype html><meta http-equiv=\"refresh\" content=\"0; url={0}\">\n", url);
+        const bool whole = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+        close(file);
+        if (!whole) throw OutputError(path_ + ": can't be written; open the URL yourself");
+    }
+    ~LeadingPage() { unlink(path_.c_str()); }
+    LeadingPage(const LeadingPage&) = delete;
+    LeadingPage& operator=(const LeadingPage&) = delete;
+    const std::string& path() const { return path_; }
+
+private:
+    std::string path_;
+};
+
+/// The token in a file, or a new one written there for this user alone.
+std::string tokenOf(const std::string& path) {
+    if (path.empty()) return {};
+    constexpr std::size_t kLength = 32;
+    if (std::filesystem::exists(path)) {
+        std::string token;
+        std::ifstream(path) >> token;
+        if (token.size() < kLength || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+            throw InputError(path +
+                             ": holds no token of at least 32 hexadecimal digits; remove it, and a new one is made");
+        return token;
+    }
+    const std::string token = serve::randomToken();
+    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (file < 0) throw OutputError(path + ": can't be written");
+    const bool whole = write(file, (token + "\n").data(), token.size() + 1) == static_cast<ssize_t>(token.size() + 1);
+    close(file);
+    if (!whole) throw OutputError(path + ": can't be written");
+    return token;
+}
+
+void openBrowser(const std::string& page) {
     std::string program = "xdg-open";
-    std::string address = url;
+    std::string address = page;
     char* const arguments[] = {program.data(), address.data(), nullptr};
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -161,11 +218,16 @@ void run(const CLI::App& app, const ViewCommand& o) {
     options.address = o.listen;
     options.port = o.port;
     options.hosts = o.hosts;
+    options.token = tokenOf(o.token_file);
     serve::Server server(options, view::pageFiles(), *viewer);
     fmt::print("{}\n", server.url());
     std::fflush(stdout);
     if (!o.common.quiet) tools::tellError("vdbview: ctrl-C ends it\n");
-    if (o.open) openBrowser(server.url());
+    std::unique_ptr<const LeadingPage> leading;
+    if (o.open) {
+        leading = std::make_unique<const LeadingPage>(server.url());
+        openBrowser(leading->path());
+    }
     view::FileWatch watch(viewer->files());
     if (watch.descriptor() >= 0) server.watch(watch.descriptor(), [&] { viewer->changed(watch.changed()); });
     server.run();

@@ -20,6 +20,10 @@ bool equalNames(std::string_view a, std::string_view b) {
                       [&lower](char x, char y) { return lower(x) == lower(y); });
 }
 
+bool isAmong(const std::vector<std::string>& names, std::string_view name) {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& known) { return equalNames(known, name); });
+}
+
 }  // namespace
 
 std::string randomToken() {
@@ -39,18 +43,23 @@ bool equalSecrets(std::string_view a, std::string_view b) {
     return difference == 0;
 }
 
-Access::Access(std::string token, const std::vector<std::string>& hosts, std::uint16_t port)
+Access::Access(std::string token, const std::vector<std::string>& hosts, std::uint16_t port,
+               const std::vector<std::string>& named)
     : token_(std::move(token)) {
     for (const std::string& host : hosts) hosts_.push_back(fmt::format("{}:{}", host, port));
+    for (const std::string& host : named) {
+        named_.push_back(host);
+        named_.push_back(fmt::format("{}:{}", host, port));
+    }
 }
 
-bool Access::knownHost(std::string_view host) const {
-    return std::any_of(hosts_.begin(), hosts_.end(), [&](const std::string& known) { return equalNames(known, host); });
-}
+bool Access::knownHost(std::string_view host) const { return isAmong(hosts_, host) || isAmong(named_, host); }
 
 bool Access::ownOrigin(std::string_view origin, std::string_view host) const {
-    constexpr std::string_view kScheme = "http://";
-    return origin.starts_with(kScheme) && equalNames(origin.substr(kScheme.size()), host) && knownHost(host);
+    constexpr std::string_view kPlain = "http://", kEncrypted = "https://";
+    if (origin.starts_with(kPlain)) return equalNames(origin.substr(kPlain.size()), host) && knownHost(host);
+    return origin.starts_with(kEncrypted) && equalNames(origin.substr(kEncrypted.size()), host) &&
+           isAmong(named_, host);
 }
 
 bool Access::below(std::string_view target, std::string_view& rest) const {

@@ -19,19 +19,24 @@ bool equalSecrets(std::string_view a, std::string_view b);
 class Access {
 public:
     /// @param hosts  names or addresses by which the server is called, without a port; IPv6 addresses in brackets
-    Access(std::string token, const std::vector<std::string>& hosts, std::uint16_t port);
+    /// @param named  further ones, behind a proxy say: "name" is that host at the usual ports, which browsers leave
+    /// out,
+    ///               and at `port`; "name:8443" is that host at that port
+    Access(std::string token, const std::vector<std::string>& hosts, std::uint16_t port,
+           const std::vector<std::string>& named = {});
 
     const std::string& token() const { return token_; }
-    /// Of the header Host: one of the hosts with the port.
+    /// Of the header Host: one of the hosts with its port.
     bool knownHost(std::string_view host) const;
-    /// Of the header Origin of a web socket: the page of this very server, under the host that it was called by.
+    /// Of the header Origin of a web socket: the page of this very server, under the host that it was called by; a
+    /// proxy may have encrypted what came under a further name.
     bool ownOrigin(std::string_view origin, std::string_view host) const;
     /// What follows "/TOKEN/" in the target of a request, without its query; false if the token is another.
     bool below(std::string_view target, std::string_view& rest) const;
 
 private:
     std::string token_;
-    std::vector<std::string> hosts_;  // with the port
+    std::vector<std::string> hosts_, named_;  // with their ports
 };
 
 }  // namespace stratum::serve

@@ -9,6 +9,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <list>
 #include <optional>
 #include <utility>
 
@@ -30,13 +32,16 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using tcp = asio::ip::tcp;
 
-constexpr auto kPatience = std::chrono::seconds(20);  // for a request to arrive and its answer to be taken
-constexpr std::uint32_t kMostHeader = 16 << 10;       // bytes
-constexpr std::string_view kSocket = "socket";        // below the token
+constexpr auto kPatience = std::chrono::seconds(20);     // for a request to arrive and its answer to be taken
+constexpr auto kPause = std::chrono::milliseconds(100);  // after a connection could not be taken
+constexpr std::uint32_t kMostHeader = 16 << 10;          // bytes
+constexpr std::string_view kSocket = "socket";           // below the token
 // Nothing of other hosts, no frames around the page, no sniffing of types.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+class Connection;
 
 /// What all connections share.
 struct Shared {
@@ -47,7 +52,8 @@ struct Shared {
     const std::vector<PageFile> files;
     const Access access;
     std::size_t connections = 0, clients = 0;
-    std::function<void()> freed;  // a connection is over
+    std::list<Connection*> unanswered;  // of whom no whole request has come, the longest first
+    std::function<void()> freed;        // a connection is over
 };
 
 /// One connection, until it is answered or has become a web socket.
@@ -57,6 +63,7 @@ public:
         ++shared_.connections;
     }
     ~Connection() {
+        shared_.unanswered.remove(this);
         if (upgraded_) return;
         --shared_.connections;
         shared_.freed();
@@ -64,7 +71,15 @@ public:
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
+    /// Makes room for another one.
+    void giveUp() {
+        shared_.unanswered.remove(this);
+        stream_.close();
+    }
+
     void read() {
+        shared_.unanswered.remove(this);
+        shared_.unanswered.push_back(this);
         parser_.emplace();
         parser_->body_limit(0);
         parser_->header_limit(kMostHeader);
@@ -79,6 +94,7 @@ public:
 
 private:
     void answer() {
+        shared_.unanswered.remove(this);
         const Request& request = parser_->get();
         const auto host = std::string_view(request[http::field::host].data(), request[http::field::host].size());
         if (!shared_.access.knownHost(host)) return refuse(http::status::forbidden, "unknown host");
@@ -155,21 +171,35 @@ std::string inUrl(const asio::ip::address& address) {
 }  // namespace
 
 struct Server::Parts {
+    std::optional<Shared> shared;  // before the context, whose end is that of the connections, which use it
     asio::io_context context{1};
+    asio::steady_timer pause{context};
     tcp::acceptor acceptor{context};
     asio::signal_set signals{context, SIGINT, SIGTERM};
-    std::optional<Shared> shared;
     std::string url;
     bool accepting = false;
     std::vector<std::unique_ptr<asio::posix::stream_descriptor>> watched;
 
     void accept() {
-        if (accepting || shared->connections >= shared->limits.connections) return;
+        if (accepting) return;
+        if (shared->connections >= shared->limits.connections) {
+            // Who has sent no request goes before who comes now: nobody blocks the page by waiting.
+            if (!shared->unanswered.empty()) shared->unanswered.front()->giveUp();
+            return;
+        }
         accepting = true;
         acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
             accepting = false;
             if (error == asio::error::operation_aborted) return;
-            if (!error) {
+            if (error) {
+                // No descriptors are left, say: the next attempt would fail at once, too.
+                pause.expires_after(kPause);
+                pause.async_wait([this](beast::error_code stopped) {
+                    if (!stopped) accept();
+                });
+                return;
+            }
+            {
                 socket.set_option(tcp::no_delay(true), error);
                 std::make_shared<Connection>(std::move(socket), *shared)->read();
             }
@@ -209,20 +239,19 @@ Server::Server(const ServerOptions& options, std::vector<PageFile> files, Handle
         throw UsageError(
             fmt::format("{}, port {}: can't listen there ({})", options.address, options.port, error.message()));
     const std::uint16_t port = acceptor.local_endpoint().port();
-    std::vector<std::string> hosts = options.hosts;
+    std::vector<std::string> hosts;
     for (const std::string& own :
          {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"), inUrl(address)})
         hosts.push_back(own);
     const std::string token = options.token.empty() ? randomToken() : options.token;
     const bool any = address.is_unspecified();
     parts_->url = fmt::format("http://{}:{}/{}/", any ? std::string("127.0.0.1") : inUrl(address), port, token);
-    parts_->shared.emplace(handler, options.limits, std::move(files), Access(token, hosts, port));
+    parts_->shared.emplace(handler, options.limits, std::move(files), Access(token, hosts, port, options.hosts));
     // Not at once: the connection that is over is still being destroyed.
     parts_->shared->freed = [parts = parts_.get()] { asio::post(parts->context, [parts] { parts->accept(); }); };
 }
 
 Server::~Server() {
-    // Connections go before what they share.
     parts_->context.stop();
     parts_->shared->freed = [] {};
 }

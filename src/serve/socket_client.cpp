@@ -39,8 +39,7 @@ void SocketClient::read() {
     stream_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         if (error) return self->end();
         if (!self->rate_.take()) {
-            self->close("too many messages");
-            return self->end();
+            return self->close("too many messages");  // and reads no more
         }
         const auto bytes = self->buffer_.cdata();
         if (self->stream_.got_text())

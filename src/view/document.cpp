@@ -5,10 +5,13 @@
 #include "gcode/summary.h"
 #include "shade/brdf/preset_names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
+#include <system_error>
 
 namespace stratum::view {
 namespace {
@@ -28,17 +31,25 @@ Json factsOf(const gcode::Toolpath& toolpath) {
                                 {"length_mm", totals[n].length},
                                 {"volume_mm3", totals[n].volume}});
     Json objects = Json::array();
+    // Beads without an object are hidden and shown on their own, too.
+    const auto unlabelled = [](const gcode::Run& run) { return run.object == 0 && run.layer > 0; };
+    if (toolpath.objects.size() > 1 && std::any_of(toolpath.runs.begin(), toolpath.runs.end(), unlabelled))
+        objects.push_back({{"number", 0}, {"name", "no object"}});
     for (std::size_t n = 1; n < toolpath.objects.size(); ++n)
         objects.push_back({{"number", n}, {"name", toolpath.objects[n].substr(0, 200)}});
     std::set<int> tools;
     for (const gcode::Run& run : toolpath.runs) tools.insert(run.tool);
     double highest = 0.0;
     for (const gcode::Bead& bead : toolpath.beads) highest = std::max<double>(highest, bead.z1);
-    return {{"layers", toolpath.layer_count}, {"features", std::move(features)},
-            {"objects", std::move(objects)},  {"tools", tools},
-            {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
-            {"height_mm", highest},           {"filament_mm", toolpath.filament_mm},
-            {"attributes", kAttributes}};
+    Json facts{{"layers", toolpath.layer_count}, {"features", std::move(features)},
+               {"objects", std::move(objects)},  {"tools", tools},
+               {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
+               {"height_mm", highest},           {"filament_mm", toolpath.filament_mm},
+               {"attributes", kAttributes}};
+    // As the file states them.
+    if (toolpath.stated.seconds) facts["seconds"] = *toolpath.stated.seconds;
+    if (toolpath.stated.grams) facts["grams"] = *toolpath.stated.grams;
+    return facts;
 }
 
 }  // namespace
@@ -50,6 +61,17 @@ std::vector<std::string> Document::files() const {
     std::sort(files.begin(), files.end());
     files.erase(std::unique(files.begin(), files.end()), files.end());
     return files;
+}
+
+void Document::requireFiles() const {
+    for (const std::string& file : files()) {
+        std::error_code ignored;
+        const auto kind = std::filesystem::status(file, ignored).type();
+        if (kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::socket ||
+            kind == std::filesystem::file_type::character)
+            throw InputError(
+                fmt::format("{}: is a pipe or a device, which can't be read anew; put a file there", file));
+    }
 }
 
 void Document::forget() {
@@ -65,6 +87,7 @@ std::shared_ptr<const gcode::Toolpath> Document::toolpath(std::size_t object) co
 
 std::shared_ptr<const gcode::Toolpath> Document::timedToolpath(std::size_t object) {
     if (!toolpath(object)) return nullptr;
+    requireFiles();
     const std::string& path = given_.objects[object].vdb;
     if (const assemble::ReadProgram* timed = kept_.program(path, true, false)) return timed->toolpath;
     assemble::PrintRequest request = given_.options.tracing.prints;

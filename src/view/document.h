@@ -24,6 +24,8 @@ public:
 
     /// Files whose change makes it another: the input and the objects of a scene.
     std::vector<std::string> files() const;
+    /// Throws InputError if one of them is a pipe or a device: nobody may ever write into that.
+    void requireFiles() const;
     /// Counts the changes of those files.
     std::uint64_t generation() const { return generation_; }
     /// Forgets what was read: the files have changed.

@@ -1,6 +1,7 @@
 #include "view/file_watch.h"
 
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,12 +17,8 @@ namespace fs = std::filesystem;
 FileWatch::FileWatch(const std::vector<std::string>& paths) : descriptor_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
     if (descriptor_ < 0) return;
     for (const std::string& path : paths) {
-        std::error_code failed;
-        const fs::path absolute = fs::absolute(path, failed);
-        if (failed) continue;
-        const int watch =
-            inotify_add_watch(descriptor_, absolute.parent_path().c_str(), IN_CLOSE_WRITE | IN_MOVED_TO | IN_ONLYDIR);
-        if (watch >= 0) folders_[watch][absolute.filename().string()] = path;
+        files_[path] = identityOf(path);
+        arm(path);
     }
 }
 
@@ -29,23 +26,73 @@ FileWatch::~FileWatch() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
+// What another file at that path, or other bytes in it, would change; zeros if nothing is there.
+FileWatch::Identity FileWatch::identityOf(const std::string& path) {
+    struct stat facts {};
+    if (stat(path.c_str(), &facts) != 0) return {};
+    return {facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtim.tv_sec, facts.st_mtim.tv_nsec};
+}
+
+void FileWatch::add(const std::string& place, std::uint32_t events, const std::string& name, const std::string& path) {
+    const int watch = inotify_add_watch(descriptor_, place.c_str(), events);
+    if (watch >= 0) watches_[watch].insert({name, path});
+}
+
+// Again after each event, since other folders, links and files may stand there now: what is watched stays so.
+void FileWatch::arm(const std::string& path) {
+    constexpr int kMaxLinks = 40;  // as the system
+    std::error_code failed;
+    fs::path at = fs::absolute(path, failed);
+    for (int link = 0; link < kMaxLinks && !failed; ++link) {
+        fs::path folder = at.parent_path();
+        fs::path name = at.filename();
+        while (!fs::is_directory(folder, failed) && folder.has_relative_path()) {
+            name = folder.filename();
+            folder = folder.parent_path();
+        }
+        add(folder.string(), IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_ONLYDIR, name.string(), path);
+        failed.clear();
+        if (!fs::is_symlink(at, failed)) break;
+        const fs::path next = fs::read_symlink(at, failed);
+        at = next.is_absolute() ? next : at.parent_path() / next;
+    }
+    add(path, IN_CLOSE_WRITE, "", path);  // under any of its names
+}
+
 std::set<std::string> FileWatch::changed() {
-    std::set<std::string> paths;
+    std::set<std::string> touched;
+    std::set<std::string> written;
     alignas(inotify_event) std::array<char, 16384> buffer;
     while (true) {
         const ssize_t size = read(descriptor_, buffer.data(), buffer.size());
-        if (size <= 0) return paths;
+        if (size <= 0) break;
         for (ssize_t at = 0; at + static_cast<ssize_t>(sizeof(inotify_event)) <= size;) {
             inotify_event event{};
             std::memcpy(&event, buffer.data() + at, sizeof(event));
-            const char* const name = buffer.data() + at + sizeof(event);
+            const std::string name = event.len > 0 ? buffer.data() + at + sizeof(event) : "";
             at += static_cast<ssize_t>(sizeof(event) + event.len);
-            const auto folder = folders_.find(event.wd);
-            if (folder == folders_.end() || event.len == 0) continue;
-            const auto file = folder->second.find(name);
-            if (file != folder->second.end()) paths.insert(file->second);
+            const auto watch = watches_.find(event.wd);
+            if (watch == watches_.end()) continue;
+            for (const auto& [its_name, path] : watch->second) {
+                if (its_name != name) continue;
+                touched.insert(path);
+                if ((event.mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) != 0) written.insert(path);
+            }
+            if ((event.mask & IN_IGNORED) != 0) watches_.erase(watch);
         }
     }
+    std::set<std::string> paths;
+    for (const std::string& path : touched) {
+        arm(path);
+        // A file that was made just now is empty until it is written and closed; a link or a folder leads to a whole
+        // one.
+        const Identity now = identityOf(path);
+        const bool there = std::get<2>(now) > 0 && now != files_[path];
+        if (!written.contains(path) && !there) continue;
+        files_[path] = now;
+        paths.insert(path);
+    }
+    return paths;
 }
 
 }  // namespace stratum::view

@@ -1,18 +1,22 @@
 // Tells when files were written anew, without looking at them again and again.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace stratum::view {
 
-/// Watches the folders of the files (inotify): also programs that write a file beside the old one and rename it are
-/// noticed. A file counts as changed when it has been closed after writing, or has got its name.
+/// Watches (inotify) each file, its folder and, of a symbolic link, all that it leads over: programs that write a file
+/// beside the old one and rename it are noticed, and a write under another of its names. A file counts as changed when
+/// it has been closed after writing, or has got its name.
 class FileWatch {
 public:
-    /// Files of one folder share a watch. Folders that can't be watched are left out.
+    /// Files of one folder share a watch. Of a folder that is not there, the nearest one above it is watched.
     explicit FileWatch(const std::vector<std::string>& paths);
     ~FileWatch();
     FileWatch(const FileWatch&) = delete;
@@ -24,8 +28,14 @@ public:
     std::set<std::string> changed();
 
 private:
+    using Identity = std::tuple<std::uint64_t, std::uint64_t, std::int64_t, std::int64_t, std::int64_t>;
+    static Identity identityOf(const std::string& path);
+    void arm(const std::string& path);
+    void add(const std::string& place, std::uint32_t events, const std::string& name, const std::string& path);
+
     int descriptor_ = -1;
-    std::map<int, std::map<std::string, std::string>> folders_;  // by watch: names and the paths they were given by
+    std::map<std::string, Identity> files_;                                 // by path, as it was last told of
+    std::map<int, std::set<std::pair<std::string, std::string>>> watches_;  // names in a folder, and paths they lead to
 };
 
 }  // namespace stratum::view

@@ -74,6 +74,7 @@ Json inspect(Document& document, const ViewScene& scene, const ViewedPicture& pi
     const auto toolpath = document.timedToolpath(hit.object);
     if (!toolpath || *bead >= toolpath->beads.size()) return json;
     json["bead"] = describe(*toolpath, *bead);
+    document.requireFiles();
     Json lines = Json::array();
     constexpr std::uint32_t kAround = 4;
     for (const ProgramLine& line : linesAround(objects[hit.object].vdb, document.given().options.tracing.prints.print,

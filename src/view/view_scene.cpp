@@ -97,6 +97,11 @@ ViewedPicture ViewScene::picture(const PicturePlan& plan, int width, int height,
     return stage(*objects_, plan, objects_->traced.intersector, objects_->bed_height, width, height, light);
 }
 
+const shade::BareLight& ViewScene::bareLight() {
+    if (!bare_light_) bare_light_ = std::make_shared<const shade::BareLight>(stage_->scene, stage_->middle);
+    return *bare_light_;
+}
+
 ViewedPicture ViewScene::standIn(const PicturePlan& plan, const ViewState& state, int width, int height) {
     const auto toolpath = document_.toolpath(0);
     std::uint32_t first = std::max(1U, state.first_layer);
@@ -154,8 +159,7 @@ ViewedPicture ViewScene::stage(Objects& objects, const PicturePlan& plan,
 }
 
 ViewedPicture ViewScene::staged(std::shared_ptr<const trace::Intersector> print, const PicturePlan& plan, Light light) {
-    if (light == Light::near && !bare_light_)
-        bare_light_ = std::make_shared<const shade::BareLight>(stage_->scene, stage_->middle);
+    if (light == Light::near) bareLight();
     return {std::move(print), stage_->scene, {stage_->exposure.value_or(plan.exposure.value_or(0.0))}, bare_light_};
 }
 

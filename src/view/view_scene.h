@@ -42,11 +42,14 @@ public:
     enum class Light { exact, near };
     /// A picture of the plan in another size, of its own objects.
     ViewedPicture picture(const PicturePlan& plan, int width, int height, Light light = Light::exact);
+    /// The light of the last picture, by normal; made when it is first asked for.
+    const shade::BareLight& bareLight();
     /// The same of what stands in for them.
     ViewedPicture standIn(const PicturePlan& plan, const ViewState& state, int width, int height);
 
     /// Of the last makeObjects().
     const assemble::TracedObjects& objects() const { return objects_->traced; }
+    std::shared_ptr<const assemble::TracedObjects> sharedObjects() const { return {objects_, &objects_->traced}; }
     bool empty() const { return !objects_; }
     /// Legends, warnings and the box, for the page.
     nlohmann::json describe() const;

@@ -64,6 +64,7 @@ void Viewer::load(Input& input) {
     Stopwatch watch;
     const std::string& path = input.document.given().path;
     try {
+        input.document.requireFiles();
         const PicturePlan plan = planPicture(input.document.given(), ViewState());
         input.scene.makeObjects(plan, loadingEvents([&input](const Json& message) {
                                     const std::lock_guard lock(input.mutex);

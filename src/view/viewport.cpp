@@ -5,6 +5,7 @@
 #include "shade/film/jpeg_writer.h"
 #include "shade/film/tonemap.h"
 #include "shade/post/denoise.h"
+#include "view/beads/bead_look.h"
 #include "view/inspect.h"
 #include "view/loading_events.h"
 #include "view/picture/quick_picture.h"
@@ -29,8 +30,6 @@ constexpr auto kRest = std::chrono::milliseconds(350);  // after the last moveme
 constexpr double kQuickBuild = 0.1;                     // seconds; no need for anything to stand in
 constexpr int kMovingQuality = 80, kRoughQuality = 92;
 
-Json list(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
-
 std::vector<std::uint8_t> movingPicture(const ViewedPicture& picture, shade::RenderOptions options) {
     if (shade::needsLight(options.integrator)) return quickPicture(picture, *picture.bare_light);
     options.width = picture.scene.camera.width();
@@ -46,7 +45,7 @@ std::string nameOf(const std::string& path) { return std::filesystem::path(path)
 }  // namespace
 
 Viewport::Viewport(Document& document, Output output)
-    : document_(document), output_(std::move(output)), frame_scale_(kFrameSeconds) {}
+    : document_(document), output_(std::move(output)), frame_scale_(kFrameSeconds), beads_(document, output_) {}
 
 void Viewport::startWith(const ViewScene& scene) {
     scene_.emplace(scene);
@@ -64,6 +63,8 @@ void Viewport::ask(Message message) {
                 if (inspects_.size() < kMostQueued) inspects_.push_back(it);
             if constexpr (std::is_same_v<Kind, SaveMessage>)
                 if (saves_.size() < kMostQueued) saves_.push_back(std::move(it));
+            if constexpr (std::is_same_v<Kind, CancelMessage>) saves_.clear();
+            if constexpr (std::is_same_v<Kind, BeadsMessage>) beads_asked_ = true;
             if constexpr (std::is_same_v<Kind, ShownMessage>) on_the_way_ = std::max(0, on_the_way_ - 1);
         },
         message);
@@ -81,6 +82,7 @@ bool Viewport::hasWork(bool urgent) const {
     const bool may_send = on_the_way_ < kMostOnTheWay;
     if ((asked_ && may_send) || !inspects_.empty() || (stage_ == Stage::moving && may_send)) return true;
     if (urgent) return false;
+    if (beads_asked_ && may_send) return true;
     if (stage_ == Stage::waiting) return Clock::now() >= rest_at_;
     return stage_ == Stage::exact || stage_ == Stage::rough || stage_ == Stage::final || !saves_.empty() || saving_;
 }
@@ -113,7 +115,7 @@ void Viewport::take() {
     still_.reset();
     full_.reset();
     plan_ = planPicture(document_.given(), current_.state);
-    set(Stage::moving);
+    set(current_.own ? Stage::exact : Stage::moving);
 }
 
 void Viewport::step(const std::function<void()>& check) {
@@ -145,6 +147,8 @@ void Viewport::fail(const char* text) {
 void Viewport::work(const std::function<void()>& check) {
     std::optional<InspectMessage> inspect;
     Stage stage = Stage::idle;
+    bool beads = false;
+    bool saves = false;
     {
         const std::lock_guard lock(mutex_);
         if (!inspects_.empty()) {
@@ -153,9 +157,18 @@ void Viewport::work(const std::function<void()>& check) {
         }
         if (stage_ == Stage::waiting && Clock::now() >= rest_at_) stage_ = Stage::exact;
         stage = stage_;
+        saves = !saves_.empty() || saving_;
+        beads = beads_asked_ && on_the_way_ < kMostOnTheWay && stage != Stage::moving;
+        on_the_way_ += beads ? 1 : 0;
         if (stage == Stage::moving && on_the_way_ >= kMostOnTheWay) stage = Stage::waiting;
     }
     if (inspect) return answer(*inspect);
+    if (beads) {
+        const bool more = beads_.sendPart();
+        const std::lock_guard lock(mutex_);
+        beads_asked_ = beads_asked_ && more;
+        return;
+    }
     switch (stage) {
         case Stage::moving:
             return showMoving();
@@ -164,7 +177,8 @@ void Viewport::work(const std::function<void()>& check) {
         case Stage::rough:
             return showRough(check);
         case Stage::final:
-            return workOnFinal(check);
+            // Who saves has seen enough of the view, and waits.
+            return saves ? workOnSave(check) : workOnFinal(check);
         case Stage::idle:
             return workOnSave(check);
         case Stage::waiting:
@@ -180,7 +194,16 @@ void Viewport::makeExact() {
     Json described = scene_->describe();
     described["type"] = "scene";
     output_.text(described);
+    if (current_.own) return showOwn();
     set(Stage::rough);
+}
+
+// The page draws what moves: it needs no rough picture either.
+void Viewport::showOwn() {
+    const shade::RenderOptions& options = plan_->options.render;
+    full_ = scene_->picture(*plan_, options.width, options.height);
+    beads_.sendLook(*full_, *plan_, *scene_, current_.number);
+    set(Stage::final);
 }
 
 // Of the exact objects if they are there or soon made, else of what can stand in for them.
@@ -232,8 +255,9 @@ void Viewport::showRough(const std::function<void()>& check) {
 void Viewport::workOnFinal(const std::function<void()>& check) {
     const shade::RenderOptions& options = plan_->options.render;
     if (!still_) {
-        full_ = scene_->picture(*plan_, options.width, options.height);
-        still_ = std::make_unique<StillPicture>(*full_, *plan_, nameOf(document_.given().path));
+        if (!full_) full_ = scene_->picture(*plan_, options.width, options.height);
+        still_ =
+            std::make_unique<StillPicture>(*full_, *plan_, nameOf(document_.given().path), scene_->sharedObjects());
     }
     if (!still_->done()) {
         still_->traceBand(check);
@@ -241,8 +265,7 @@ void Viewport::workOnFinal(const std::function<void()>& check) {
         return;
     }
     still_->finish(check);
-    send("final", "image/png", options.width, options.height, *full_, *plan_, current_.number,
-         still_->png(scene_->objects()));
+    send("final", "image/png", options.width, options.height, *full_, *plan_, current_.number, still_->png());
     still_.reset();
     set(Stage::idle);
 }
@@ -251,24 +274,25 @@ void Viewport::workOnSave(const std::function<void()>& check) {
     SaveMessage save;
     {
         const std::lock_guard lock(mutex_);
-        if (saves_.empty()) return;
+        if (saves_.empty()) return saving_.reset();  // it was given up
         save = saves_.front();
     }
-    const PicturePlan plan = planPicture(document_.given(), save.state);
-    const shade::RenderOptions& options = plan.options.render;
     if (!saving_) {
+        const PicturePlan plan = planPicture(document_.given(), save.state);
+        const shade::RenderOptions& options = plan.options.render;
         scene_->makeObjects(plan, loadingEvents(output_.text));
         saving_ = std::make_unique<StillPicture>(scene_->picture(plan, options.width, options.height), plan,
-                                                 nameOf(document_.given().path));
+                                                 nameOf(document_.given().path), scene_->sharedObjects());
     }
+    const shade::RenderOptions& options = saving_->plan().options.render;
     if (!saving_->done()) {
         saving_->traceBand(check);
         output_.text({{"type", "saving"}, {"number", save.number}, {"done", saving_->progress()}});
         return;
     }
     saving_->finish(check);
-    send("saved", "image/png", options.width, options.height, scene_->picture(plan, options.width, options.height),
-         plan, save.number, saving_->png(scene_->objects()));
+    send("saved", "image/png", options.width, options.height, saving_->picture(), saving_->plan(), save.number,
+         saving_->png());
     saving_.reset();
     const std::lock_guard lock(mutex_);
     if (!saves_.empty()) saves_.pop_front();
@@ -287,19 +311,13 @@ void Viewport::answer(const InspectMessage& inspect) {
 
 void Viewport::send(const char* kind, const char* type, int width, int height, const ViewedPicture& picture,
                     const PicturePlan& plan, std::uint64_t number, const std::vector<std::uint8_t>& file) {
-    const shade::Camera& camera = picture.scene.camera;
     Json head{{"type", "picture"},
               {"kind", kind},
               {"number", number},
               {"media", type},
               {"width", width},
               {"height", height},
-              {"camera",
-               {{"eye", list(camera.eye())},
-                {"forward", list(camera.forward())},
-                {"up", list(camera.up())},
-                {"right", list(camera.right())},
-                {"fov", camera.fov()}}},
+              {"camera", cameraJson(picture.scene.camera)},
               {"exposure", picture.tone.exposure},
               {"command", shellLine(plan.words)}};
     {

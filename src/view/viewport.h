@@ -2,12 +2,12 @@
 #pragma once
 
 #include "view/asked/message.h"
+#include "view/beads/bead_stream.h"
 #include "view/document.h"
+#include "view/output.h"
 #include "view/picture/frame_scale.h"
 #include "view/picture/still_picture.h"
 #include "view/view_scene.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cstdint>
@@ -20,14 +20,8 @@
 
 namespace stratum::view {
 
-/// Where what a viewport has to say goes; called on the thread of step().
-struct Output {
-    std::function<void(const nlohmann::json& message)> text;
-    /// A picture with what is to be known of it.
-    std::function<void(const nlohmann::json& head, const std::vector<std::uint8_t>& file)> picture;
-};
-
 /// Asked from any thread, worked on one thread. Pictures, from the first:
+/// A page that draws beads itself gets what it needs for that (bead_stream.h), and the final one alone. Others:
 ///   moving  in a size that keeps the frame rate, with ambient occlusion (quick_picture.h), as JPEG
 ///   rough   at rest: half of the size, few samples of the full light, denoised, as JPEG
 ///   final   the PNG of vdbtrace
@@ -62,6 +56,7 @@ private:
     void take();
     void work(const std::function<void()>& check);
     void showMoving();
+    void showOwn();
     void showRough(const std::function<void()>& check);
     void makeExact();
     void workOnFinal(const std::function<void()>& check);
@@ -81,7 +76,8 @@ private:
     std::optional<ShowMessage> asked_;
     std::deque<InspectMessage> inspects_;
     std::deque<SaveMessage> saves_;
-    int on_the_way_ = 0;  // pictures that the page has not shown yet
+    bool beads_asked_ = false;
+    int on_the_way_ = 0;  // pictures and parts of beads that the page has not taken yet
     bool started_ = false;
     Stage stage_ = Stage::idle;
     Clock::time_point rest_at_;
@@ -93,6 +89,7 @@ private:
     std::optional<ViewedPicture>
         full_;  // of the exact objects in the full size, for the finished picture and inspect()
     FrameScale frame_scale_;
+    BeadStream beads_;
 };
 
 }  // namespace stratum::view

@@ -48,5 +48,19 @@ TEST(Access, OnlyTheOwnHostsAndPages) {
     EXPECT_FALSE(access.ownOrigin("http://evil.example:8080", "evil.example:8080"));
 }
 
+// A browser leaves the usual ports out of Host and Origin, and a proxy has a port of its own.
+TEST(Access, NamesBehindAProxy) {
+    const Access access("0123", {"127.0.0.1"}, 8080, {"prints.example", "lab.example:8443"});
+    for (const char* host : {"prints.example", "PRINTS.example:8080", "lab.example:8443"}) {
+        SCOPED_TRACE(host);
+        EXPECT_TRUE(access.knownHost(host));
+        EXPECT_TRUE(access.ownOrigin(std::string("http://") + host, host));
+        EXPECT_TRUE(access.ownOrigin(std::string("https://") + host, host));
+    }
+    for (const char* host : {"prints.example:81", "lab.example", "127.0.0.1"})
+        EXPECT_FALSE(access.knownHost(host)) << host;
+    EXPECT_FALSE(access.ownOrigin("https://127.0.0.1:8080", "127.0.0.1:8080"));
+}
+
 }  // namespace
 }  // namespace stratum::serve

@@ -32,9 +32,42 @@ TEST(FileWatch, TellsOfWritingAndOfRenaming) {
     EXPECT_EQ(changesOf(watch), std::set<std::string>{path});
 }
 
-TEST(FileWatch, LeavesOutFoldersThatAreNotThere) {
-    FileWatch watch({"/nowhere/part.gcode"});
+TEST(FileWatch, FollowsLinksAndOtherNames) {
+    const test::ScratchFolder folder;
+    const std::string link = (folder / "link.gcode").string();
+    std::filesystem::create_directory(folder / "out");
+    std::ofstream(folder / "out/part.gcode") << "one";
+    std::filesystem::create_symlink("out/part.gcode", link);
+    std::filesystem::create_hard_link(folder / "out/part.gcode", folder / "out/other.gcode");
+    FileWatch watch({link});
+    std::ofstream(folder / "out/part.gcode") << "two";
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+    std::ofstream(folder / "out/other.gcode", std::ios::app) << "two";
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+    // The target gets another file, and the link another target.
+    std::ofstream(folder / "new") << "three";
+    std::filesystem::rename(folder / "new", folder / "out/part.gcode");
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+    std::ofstream(folder / "third.gcode") << "four";
+    std::filesystem::create_symlink("third.gcode", folder / "new_link");
+    (void)watch.changed();
+    std::filesystem::rename(folder / "new_link", link);
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+    std::ofstream(folder / "third.gcode") << "five";
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{link});
+}
+
+TEST(FileWatch, WaitsForFolders) {
+    const test::ScratchFolder folder;
+    const std::string path = (folder / "later/deep/part.gcode").string();
+    FileWatch watch({path});
     EXPECT_TRUE(watch.changed().empty());
+    std::filesystem::create_directory(folder / "later");
+    EXPECT_TRUE(changesOf(watch).empty());
+    std::filesystem::create_directory(folder / "later/deep");
+    EXPECT_TRUE(changesOf(watch).empty());
+    std::ofstream(path) << "one";
+    EXPECT_EQ(changesOf(watch), std::set<std::string>{path});
 }
 
 }  // namespace

@@ -26,8 +26,9 @@ Message parseMessage(std::string_view text) {
     };
     Message message;
     if (type == "show") {
-        ShowMessage show{number, false, state()};
+        ShowMessage show{number, false, false, state()};
         section.read("moving", show.moving);
+        section.read("own", show.own);
         message = std::move(show);
     } else if (type == "inspect") {
         InspectMessage inspect{number, 0.0, 0.0};
@@ -38,8 +39,12 @@ Message parseMessage(std::string_view text) {
         message = inspect;
     } else if (type == "save") {
         message = SaveMessage{number, state()};
+    } else if (type == "cancel") {
+        message = CancelMessage{};
     } else if (type == "shown") {
         message = ShownMessage{};
+    } else if (type == "beads") {
+        message = BeadsMessage{};
     } else if (type == "open") {
         OpenMessage open;
         std::uint32_t file = 0;
@@ -47,7 +52,7 @@ Message parseMessage(std::string_view text) {
         open.file = file;
         message = open;
     } else {
-        section.fail("type", "show, inspect, save, shown or open");
+        section.fail("type", "show, inspect, save, cancel, shown, beads or open");
     }
     section.finish();
     return message;

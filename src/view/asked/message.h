@@ -14,6 +14,7 @@ namespace stratum::view {
 struct ShowMessage {
     std::uint64_t number = 0;  ///< of the page's; pictures say which one they answer
     bool moving = false;       ///< more will follow at once: a quick picture is enough
+    bool own = false;          ///< the page draws moving pictures itself: what it needs for them, then the finished one
     ViewState state;
 };
 /// What is at this place of the picture?
@@ -26,14 +27,19 @@ struct SaveMessage {
     std::uint64_t number = 0;
     ViewState state;
 };
+/// Don't make the pictures that are to be saved.
+struct CancelMessage {};
 /// A picture has arrived and is shown.
 struct ShownMessage {};
+/// Send the beads of the print, for pages that draw them.
+struct BeadsMessage {};
 /// Look at another of the inputs.
 struct OpenMessage {
     std::size_t file = 0;
 };
 
-using Message = std::variant<ShowMessage, InspectMessage, SaveMessage, ShownMessage, OpenMessage>;
+using Message =
+    std::variant<ShowMessage, InspectMessage, SaveMessage, CancelMessage, ShownMessage, BeadsMessage, OpenMessage>;
 
 /// Throws InputError for anything else.
 Message parseMessage(std::string_view text);

@@ -1,22 +1,23 @@
 // What a click has found: the bead, its line of G-code, and the distance of two clicks. Marks follow the picture.
-import { project, sub, size } from "./camera.js";
+import { project, sub, size, times } from "./camera.js";
 
 const fixed = (value, digits = 2) => value.toFixed(digits);
 const point = (p) => p.map((v) => fixed(v)).join(", ");
 
-function clock(seconds) {
+export function clock(seconds) {
   const whole = Math.round(seconds);
   const two = (n) => String(n).padStart(2, "0");
   return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
 }
 
-function rowsOf(found) {
-  const rows = [["Position", point(found.position)]];
+function rowsOf(found, mm) {
+  const rows = found.position ? [["Position, mm", point(times(found.position, mm))]] : [];
   const bead = found.bead;
   if (!bead) return rows;
   rows.push(["Layer", bead.layer], ["Feature", bead.feature.replaceAll("-", " ")], ["Tool", `T${bead.tool}`]);
   if (bead.object) rows.push(["Object", bead.object]);
   rows.push(["Width", `${fixed(bead.width_mm, 3)} mm`], ["Height", `${fixed(bead.height_mm, 3)} mm`]);
+  if (bead.length_mm === undefined) return rows;
   rows.push(["Length", `${fixed(bead.length_mm)} mm`]);
   if (bead.speed_mm_s !== undefined) rows.push(["Speed", `${fixed(bead.speed_mm_s, 1)} mm/s (asked ${fixed(bead.feed_rate_mm_s, 0)})`]);
   else rows.push(["Speed", `${fixed(bead.feed_rate_mm_s, 0)} mm/s asked`]);
@@ -26,6 +27,7 @@ function rowsOf(found) {
 
 export class Answer {
   points = []; // that are marked, of the print
+  mm = 1; // a unit of the input's lengths
   measuring = false;
 
   constructor(place, marks) {
@@ -46,7 +48,7 @@ export class Answer {
     }
     if (!this.measuring) this.points = [];
     if (this.points.length >= 2) this.points = [];
-    this.points.push(found.position);
+    if (found.position) this.points.push(found.position);
     const title = this.measuring ? (this.points.length === 2 ? "Distance" : "Click the second point") : found.bead ? "Bead" : "Surface";
     const head = document.createElement("header");
     const heading = document.createElement("h2");
@@ -69,10 +71,11 @@ export class Answer {
   }
 
   #rows(found) {
-    if (!this.measuring) return rowsOf(found);
-    if (this.points.length < 2) return [["From", point(this.points[0])]];
-    const way = sub(this.points[1], this.points[0]);
-    return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(this.points[0])], ["To", point(this.points[1])]];
+    if (!this.measuring) return rowsOf(found, this.mm);
+    if (this.points.length < 2) return [["From", point(times(this.points[0], this.mm))]];
+    const mm = (p) => times(p, this.mm);
+    const way = mm(sub(this.points[1], this.points[0]));
+    return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(mm(this.points[0]))], ["To", point(mm(this.points[1]))]];
   }
 
   #lines(found) {

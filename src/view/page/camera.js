@@ -142,7 +142,11 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
   element.addEventListener("wheel", (event) => {
     event.preventDefault();
     const lines = event.deltaMode === 1 ? 30 : 1;
-    orbit().zoom(Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0015));
+    const factor = Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) * 0.0015);
+    const area = element.getBoundingClientRect();
+    const away = (1 - factor) / factor; // what is under the pointer stays there
+    orbit().zoom(factor);
+    orbit().pan((-away * (event.clientX - area.left - area.width / 2)) / area.height, (away * (event.clientY - area.top - area.height / 2)) / area.height);
     moved(true);
     clearTimeout(wheelTimer);
     wheelTimer = setTimeout(() => moved(false), 180);

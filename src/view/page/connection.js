@@ -28,8 +28,11 @@ export class Connection extends EventTarget {
       this.#tell("open");
     });
     socket.addEventListener("message", (event) => this.#take(event.data));
-    socket.addEventListener("close", () => {
+    socket.addEventListener("close", async () => {
       this.#tell("gone");
+      // A server that was started anew has another token, and never lets this page in.
+      const answer = await fetch(location.pathname, { method: "HEAD" }).catch(() => null);
+      if (answer?.status === 403) return this.#tell("stranger");
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#open(), this.#wait);
       this.#wait = Math.min(5000, this.#wait * 2);
@@ -42,10 +45,11 @@ export class Connection extends EventTarget {
       this.#tell(message.type, message);
       return;
     }
-    // Four bytes, the head's length; the head; the file of a picture.
+    // Four bytes, the head's length; the head; the file of a picture, or other bytes.
     const length = new DataView(data).getUint32(0, true);
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-    this.#tell(head.type, { ...head, file: new Blob([new Uint8Array(data, 4 + length)], { type: head.media }) });
+    const file = head.media ? new Blob([new Uint8Array(data, 4 + length)], { type: head.media }) : data.slice(4 + length);
+    this.#tell(head.type, { ...head, file });
   }
 
   #tell(type, detail = null) {

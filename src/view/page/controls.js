@@ -87,6 +87,14 @@ export class Controls {
     byId("spp").value = String(state.spp);
   }
 
+  toggleFeature(name) {
+    const hidden = this.state().hidden_features;
+    this.state().hidden_features = hidden.includes(name) ? hidden.filter((each) => each !== name) : [...hidden, name];
+    this.hold();
+    this.show();
+    this.changed(false);
+  }
+
   #checks(id, entries, take) {
     const place = byId(id);
     const collect = () => {
@@ -125,9 +133,11 @@ export class Controls {
       slider.addEventListener(moving ? "input" : "change", () => {
         // A handle pushes the other one.
         const [a, b] = [Number(low.value), Number(high.value)];
+        if (byId("one-layer").checked) return this.setLayers(Number(slider.value), Number(slider.value), moving);
         if (slider === low) this.setLayers(a, Math.max(a, b), moving);
         else this.setLayers(Math.min(a, b), b, moving);
       });
+    byId("one-layer").addEventListener("change", (e) => this.setLayers(e.target.checked ? Number(high.value) : 1, Number(high.value), false));
     for (const id of ["layer-from", "layer-to"])
       byId(id).addEventListener("change", () => this.setLayers(Number(byId("layer-from").value), Number(byId("layer-to").value), false));
   }

@@ -2,7 +2,8 @@
 
 const number = (value) => Number(value.toPrecision(4)).toString();
 
-export function showLegend(place, legends) {
+/** `shares` are shares of the filament by name; toggle(name) hides one or shows it again: `hidden` are names. */
+export function showLegend(place, legends, { shares, hidden, toggle }) {
   place.hidden = legends.length === 0;
   place.replaceChildren();
   for (const legend of legends) {
@@ -31,6 +32,14 @@ export function showLegend(place, legends) {
       swatch.style.background = entry.color;
       item.append(swatch, entry.name);
       list.append(item);
+      if (legend.title !== "feature" || !shares.has(entry.name)) continue;
+      item.append(Object.assign(document.createElement("output"), { textContent: `${(100 * shares.get(entry.name)).toFixed(1)} %` }));
+      item.setAttribute("role", "checkbox");
+      item.setAttribute("aria-checked", String(!hidden.includes(entry.name)));
+      item.tabIndex = 0;
+      const press = () => toggle(entry.name);
+      item.addEventListener("click", press);
+      item.addEventListener("keydown", (event) => (event.key === " " || event.key === "Enter") && (event.preventDefault(), press()));
     }
     place.append(list);
   }

@@ -1,8 +1,9 @@
 // The page of vdbview: the picture, and what changes it.
-import { Answer } from "./answer.js";
+import { Answer, clock } from "./answer.js";
 import { OrbitCamera, handleInput } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { OwnPicture, cameraOf } from "./own_picture.js";
 import { showLegend } from "./legend.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
@@ -18,6 +19,8 @@ let box = null;
 let number = 0; // of the last view that was asked for
 let asked = null; // a view that waits for the next frame
 const sentAt = new Map(); // times by number
+let viewFrom = 0; // the first number that the named view has
+let generation; // of the input's file
 let latest = 0; // the number that the last picture answers
 let shownSize = [0, 0]; // of the last view that was asked for
 /** For measurements and tests: one entry a picture, and the number of the last view. */
@@ -32,6 +35,8 @@ function orbitOf({ eye, look_at, fov }) {
 
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
 const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
+const own = new OwnPicture(byId("beads"));
+const streamed = new URLSearchParams(location.search).has("stream"); // as if there were no WebGL2
 const answer = new Answer(byId("answer"), byId("marks"));
 
 // ---------------------------------------------------------------- asking
@@ -51,16 +56,39 @@ function ask(moving) {
 function sendAsked() {
   const { moving } = asked;
   asked = null;
-  if (!connection.ready) return;
   if (orbit) state.camera = orbit.toJSON();
-  sentAt.set(++number, performance.now());
   shownSize = pixels();
-  connection.send({ type: "show", number, moving, state: toMessage(state, shownSize) });
+  if (own.ready) drawOwn(moving);
+  if (!connection.ready) return;
+  sentAt.set(++number, performance.now());
+  if (!own.ready || !moving) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
 }
 
+/** The beads in front of the camera, at once; a named view waits for the server, which fits it. */
+function drawOwn(moving) {
+  const from = orbit ? cameraOf(state.camera) : camera;
+  if (!from) return;
+  camera = from;
+  aspect = shownSize[0] / shownSize[1];
+  picture.classList.add("behind");
+  own.draw(camera, state, shownSize, moving);
+  answer.draw(camera, aspect);
+  record({ kind: "own", number, at: performance.now(), width: shownSize[0], height: shownSize[1], bytes: 0 });
+  if (moving) say(`${shownSize[0]} × ${shownSize[1]}`);
+}
+
+own.addEventListener("changed", () => {
+  const reason = streamed ? "as the address asks" : own.why;
+  byId("mover").textContent = own.ready ? "drawn by this browser" : `streamed by the server${reason ? `: ${reason}` : ""}`;
+  document.body.dataset.moving = own.ready ? "own" : "stream";
+  if (own.table?.complete && !own.why && !own.ready) ask(false); // for the light
+  if (own.why && latest > 0 && picture.classList.contains("behind")) ask(false);
+});
+
 function setView(view) {
   orbit = null;
+  viewFrom = number + 1;
   state.camera = { view, fov: state.camera.fov };
   ask(false);
 }
@@ -72,9 +100,9 @@ function fit() {
   ask(false);
 }
 
-/** A named view is fitted to what is shown; from here on it stays where the last picture was seen from. */
+/** A named view is fitted to what is shown; from here on it stays where it was seen from. */
 function hold() {
-  if (!orbit && camera && box && latest === number) orbit = OrbitCamera.from(camera, middle());
+  if (!orbit && camera && box && latest >= viewFrom) orbit = OrbitCamera.from(camera, middle());
 }
 
 const middle = () => [0, 1, 2].map((n) => (box[n] + box[n + 3]) / 2);
@@ -92,6 +120,7 @@ connection.addEventListener("picture", async ({ detail }) => {
   const order = ++shownKind;
   const bitmap = await createImageBitmap(detail.file);
   connection.send({ type: "shown" });
+  if (own.ready && detail.number !== number) return bitmap.close(); // it has moved on
   if (order !== shownKind && detail.kind === "moving") return;
   if (picture.width !== bitmap.width || picture.height !== bitmap.height) {
     picture.width = bitmap.width;
@@ -99,16 +128,17 @@ connection.addEventListener("picture", async ({ detail }) => {
   }
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
-  camera = detail.camera;
+  if (detail.number === number) picture.classList.remove("behind");
+  if (detail.number >= viewFrom) camera = detail.camera;
   aspect = detail.width / detail.height;
   latest = detail.number;
+  document.body.classList.remove("stale");
   answer.draw(camera, aspect);
   byId("command").textContent = `${detail.command} -o picture.png`;
   byId("loading").hidden = true;
   if (byId("trouble").dataset.of === "view") byId("trouble").hidden = true;
   const now = performance.now();
-  log.push({ kind: detail.kind, number: detail.number, at: now, latency: now - (sentAt.get(detail.number) ?? now), decode: now - arrived, width: detail.width, height: detail.height, bytes: detail.file.size });
-  if (log.length > 20000) log.splice(0, 10000);
+  record({ kind: detail.kind, number: detail.number, at: now, latency: now - (sentAt.get(detail.number) ?? now), decode: now - arrived, width: detail.width, height: detail.height, bytes: detail.file.size });
   for (const key of sentAt.keys()) if (key < detail.number) sentAt.delete(key);
   if (detail.kind === "final") {
     picture.dataset.final = detail.number;
@@ -117,7 +147,13 @@ connection.addEventListener("picture", async ({ detail }) => {
   say(detail.kind === "final" ? `${detail.width} × ${detail.height}, finished` : detail.kind === "rough" ? "finishing …" : `${detail.width} × ${detail.height}`);
 });
 
+function record(entry) {
+  log.push(entry);
+  if (log.length > 20000) log.splice(0, 10000);
+}
+
 function download({ file: blob }) {
+  setSaving(false);
   window.vdbviewSaved = blob;
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
@@ -146,15 +182,47 @@ connection.addEventListener("gone", () => {
   document.body.dataset.connection = "gone";
   trouble("The server does not answer. It may have ended: start vdbview again. Trying to reconnect …", "connection");
 });
+connection.addEventListener("stranger", () => trouble("The server was started anew, and its page has another address: open the one that it prints.", "connection"));
 connection.addEventListener("hello", ({ detail }) => {
   const files = byId("file");
   files.replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
   files.parentElement.hidden = false;
+  setSaving(false);
   file = Math.min(file, detail.files.length - 1);
   files.value = String(file);
   document.title = `${detail.files[file]} · vdbview`;
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
+  askBeads();
+});
+function askBeads() {
+  if (streamed) own.refuse("");
+  else connection.send({ type: "beads" });
+}
+connection.addEventListener("beads", ({ detail }) => {
+  connection.send({ type: "shown" });
+  own.begin(detail, detail.file);
+});
+connection.addEventListener("bead-part", ({ detail }) => {
+  connection.send({ type: "shown" });
+  own.add(detail, detail.file);
+});
+connection.addEventListener("no-beads", ({ detail }) => {
+  connection.send({ type: "shown" });
+  own.refuse(detail.text);
+});
+connection.addEventListener("colors", ({ detail }) => {
+  connection.send({ type: "shown" });
+  own.paint(detail.palette, detail.file);
+});
+connection.addEventListener("look", ({ detail }) => {
+  byId("command").textContent = `${detail.command} -o picture.png`;
+  if (detail.number !== number) return own.illuminate(detail);
+  if (!orbit) camera = detail.camera;
+  aspect = detail.width / detail.height;
+  latest = detail.number;
+  own.illuminate(detail);
+  if (own.ready) drawOwn(false);
 });
 connection.addEventListener("loading", ({ detail }) => {
   byId("loading").hidden = false;
@@ -165,21 +233,40 @@ connection.addEventListener("loading", ({ detail }) => {
 connection.addEventListener("facts", ({ detail: { facts } }) => {
   controls.setFacts(facts);
   const print = facts.print;
+  const all = print?.features.reduce((sum, each) => sum + each.volume_mm3, 0);
+  shares = new Map(print?.features.map((each) => [each.name, each.volume_mm3 / all]));
   byId("facts").textContent = print
-    ? [print.slicer, `${print.layers} layers`, `${print.height_mm.toFixed(1)} mm high`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`].filter(Boolean).join(" · ")
+    ? [print.seconds && clock(print.seconds), print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(1)} mm high`, print.slicer].filter(Boolean).join(" · ")
     : "";
   byId("loading").hidden = latest > 0;
+  if (generation !== undefined && generation !== facts.generation) askBeads();
+  generation = facts.generation;
 });
 connection.addEventListener("scene", ({ detail }) => {
   box = detail.box;
+  answer.mm = detail.mm_per_unit;
   controls.setBox(box);
-  showLegend(byId("legend"), detail.legends);
+  // A feature that is hidden stays in the legend, to be shown again.
+  const gone = (legend) => legends.flatMap((old) => old.entries).filter((e) => legend.title === "feature" && state.hidden_features.includes(e.name) && !legend.entries.some((o) => o.name === e.name));
+  legends = detail.legends.map((legend) => ({ ...legend, entries: [...legend.entries, ...gone(legend)] }));
+  explain();
 });
+let legends = [];
+let shares = new Map();
+function explain() {
+  showLegend(byId("legend"), legends, { shares, hidden: state.hidden_features, toggle: (name) => controls.toggleFeature(name) });
+}
 connection.addEventListener("progress", ({ detail }) => {
   if (detail.number === number) say(`finishing … ${Math.round(detail.done * 100)} %`);
 });
-connection.addEventListener("saving", ({ detail }) => say(`saving … ${Math.round(detail.done * 100)} %`));
-connection.addEventListener("failed", ({ detail }) => trouble(detail.text, "view"));
+connection.addEventListener("saving", ({ detail }) => {
+  if (saving) say(`saving … ${Math.round(detail.done * 100)} %`);
+});
+connection.addEventListener("failed", ({ detail }) => {
+  trouble(detail.text, "view");
+  document.body.classList.add("stale"); // what is on the screen is not what was asked for
+  byId("command").textContent = "";
+});
 connection.addEventListener("refused", ({ detail }) => trouble(detail.text, "view"));
 connection.addEventListener("inspected", ({ detail }) => {
   window.vdbviewFound = detail;
@@ -209,13 +296,20 @@ async function copy(text, what) {
 handleInput(picture, {
   orbit: () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera()),
   moved: ask,
-  clicked: (x, y) => connection.send({ type: "inspect", number, x: Math.min(1, Math.max(0, x)), y: Math.min(1, Math.max(0, y)) }),
+  clicked: (x, y) => {
+    // At once what the table says; the server answers with the place, the time and the line.
+    const texel = answer.measuring ? -1 : own.at(x, y);
+    window.vdbviewPicked = texel < 0 ? null : own.table.describe(texel);
+    if (texel >= 0) answer.show({ hit: true, bead: own.table.describe(texel) });
+    connection.send({ type: "inspect", number, x: Math.min(1, Math.max(0, x)), y: Math.min(1, Math.max(0, y)) });
+  },
   key: (event) => {
     const views = ["iso", "front", "back", "left", "right", "top", "bottom"];
     if (event.key in views) setView(views[event.key]);
     else if (event.key === "f" || event.key === "F") fit();
     else if (event.key === "m" || event.key === "M") setMeasuring(!answer.measuring);
     else if (event.key === "Escape") answer.clear();
+    else if (event.key === "?") byId("keys").showModal();
     else if (event.key === "[" || event.key === "]") {
       const [low, high] = [state.layers[0] || 1, state.layers[1] || controls.layerCount];
       controls.setLayers(low, high + (event.key === "[" ? -1 : 1), false);
@@ -225,11 +319,30 @@ handleInput(picture, {
 
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => setView(button.dataset.view));
 byId("fit").addEventListener("click", fit);
+byId("help").addEventListener("click", () => byId("keys").showModal());
+picture.addEventListener("dblclick", () => {
+  const place = window.vdbviewFound?.position;
+  if (!place || !camera) return;
+  orbit ??= OrbitCamera.from(camera, middle());
+  orbit.target = place;
+  ask(false);
+});
 byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring));
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
 byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
+let saving = false;
+function setSaving(on) {
+  saving = on;
+  byId("save").textContent = on ? "Cancel saving" : "Save picture";
+}
 byId("save").addEventListener("click", () => {
+  if (saving) {
+    connection.send({ type: "cancel" });
+    setSaving(false);
+    return say("not saved");
+  }
+  setSaving(true);
   const chosen = byId("save-size").value;
   if (orbit) state.camera = orbit.toJSON();
   say("saving …");
@@ -242,8 +355,11 @@ byId("file").addEventListener("change", () => {
   latest = 0;
   answer.clear();
   document.title = `${byId("file").selectedOptions[0].textContent} · vdbview`;
+  generation = undefined;
+  own.refuse("the beads are not here yet");
   connection.send({ type: "open", file });
   ask(false);
+  askBeads();
 });
 function showPanels(shown) {
   byId("side").classList.toggle("closed", !shown);
@@ -258,7 +374,6 @@ window.addEventListener("hashchange", () => {
   ask(false);
 });
 
-
 let resizeTimer = 0;
 new ResizeObserver(() => {
   answer.draw(camera, aspect);
@@ -267,3 +382,8 @@ new ResizeObserver(() => {
     if (String(pixels()) !== String(shownSize)) ask(false);
   }, 120);
 }).observe(picture);
+/** For tests: the browser's own picture of the view, as a PNG. */
+window.vdbviewDrawn = () => {
+  drawOwn(false);
+  return byId("beads").toDataURL();
+};

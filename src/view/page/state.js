@@ -39,14 +39,28 @@ export function toFragment(state, file) {
   return Object.keys(changed).length ? "#" + encodeURIComponent(JSON.stringify(changed)) : "";
 }
 
-/** The state of a fragment; unknown keys are left out, and the server checks the values. */
+// Whether a value is of the kind of another; null stands for a number, a plane or a switch that is left open.
+function fits(key, value, first) {
+  if (key === "camera") return isCamera(value);
+  if (key === "clip") return value === null || (Array.isArray(value) && value.length === 4 && value.every(Number.isFinite));
+  if (key === "layers") return Array.isArray(value) && value.length === 2 && value.every(Number.isInteger);
+  if (first === null) return value === null || typeof value === (key === "bed" ? "boolean" : "number");
+  return typeof value === typeof first && Array.isArray(value) === Array.isArray(first);
+}
+function isCamera(value) {
+  const point = (p) => Array.isArray(p) && p.length === 3 && p.every(Number.isFinite);
+  if (value === null || typeof value !== "object" || !Number.isFinite(value.fov)) return false;
+  return value.eye === undefined ? typeof value.view === "string" : point(value.eye) && point(value.look_at);
+}
+
+/** The state of a fragment; what is of no use is left out, and the server checks the values. */
 export function fromFragment(fragment) {
   const state = initial();
   let file = 0;
   try {
     const changed = JSON.parse(decodeURIComponent(fragment.slice(1)) || "{}");
-    for (const key of Object.keys(state)) if (key in changed) state[key] = changed[key];
-    if (Number.isInteger(changed.file)) file = changed.file;
+    for (const key of Object.keys(state)) if (key in changed && fits(key, changed[key], state[key])) state[key] = changed[key];
+    if (Number.isInteger(changed.file) && changed.file >= 0) file = changed.file;
   } catch {
     // Not ours, or cut short.
   }

@@ -36,8 +36,9 @@ void copyBand(const shade::Film& band, shade::Film& whole) {
 
 }  // namespace
 
-StillPicture::StillPicture(ViewedPicture picture, const PicturePlan& plan, std::string source)
-    : picture_(std::move(picture)), plan_(plan), source_(std::move(source)) {}
+StillPicture::StillPicture(ViewedPicture picture, const PicturePlan& plan, std::string source,
+                           std::shared_ptr<const assemble::TracedObjects> objects)
+    : picture_(std::move(picture)), plan_(plan), source_(std::move(source)), objects_(std::move(objects)) {}
 
 double StillPicture::progress() const {
     return static_cast<double>(next_row_) / static_cast<double>(plan_.options.render.height);
@@ -74,10 +75,10 @@ void StillPicture::finish(const std::function<void()>& check) {
 
 std::vector<std::uint8_t> StillPicture::rgb() const { return shade::toDisplay(whole_.film, picture_.tone); }
 
-std::vector<std::uint8_t> StillPicture::png(const assemble::TracedObjects& objects) const {
+std::vector<std::uint8_t> StillPicture::png() const {
     const shade::RenderOptions& render = plan_.options.render;
-    shade::Metadata metadata =
-        assemble::metadataOf(source_, render, plan_.options.scene.env, objects, picture_.scene, whole_, plan_.denoise);
+    shade::Metadata metadata = assemble::metadataOf(source_, render, plan_.options.scene.env, *objects_, picture_.scene,
+                                                    whole_, plan_.denoise);
     if (whole_.film.content() == shade::FilmContent::radiance) metadata.insert(assemble::exposureFact(picture_.tone));
     return shade::encodePng(render.width, render.height, rgb(), metadata);
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace stratum::view {
 /// The bytes of the .png that vdbtrace writes.
 class StillPicture {
 public:
-    /// @param source  name of the input, for the file's metadata
-    StillPicture(ViewedPicture picture, const PicturePlan& plan, std::string source);
+    /// @param source   name of the input, for the file's metadata
+    /// @param objects  of the picture, for the same: a viewport may show others by the time that it is finished
+    StillPicture(ViewedPicture picture, const PicturePlan& plan, std::string source,
+                 std::shared_ptr<const assemble::TracedObjects> objects);
 
     bool done() const { return next_row_ >= plan_.options.render.height; }
     /// 0..1
@@ -28,12 +31,15 @@ public:
     void finish(const std::function<void()>& check);
     std::vector<std::uint8_t> rgb() const;
     /// After finish(). As vdbtrace writes it.
-    std::vector<std::uint8_t> png(const assemble::TracedObjects& objects) const;
+    std::vector<std::uint8_t> png() const;
+    const ViewedPicture& picture() const { return picture_; }
+    const PicturePlan& plan() const { return plan_; }
 
 private:
     ViewedPicture picture_;
     PicturePlan plan_;
     std::string source_;
+    std::shared_ptr<const assemble::TracedObjects> objects_;
     shade::RenderResult whole_;
     int next_row_ = 0;
 };

@@ -62,9 +62,9 @@ TEST(StillPicture, HasTheBytesOfThePictureInOne) {
         scene.makeObjects(plan, {});
         // Moving pictures come between, of another size.
         (void)scene.picture(plan, 40, 30, ViewScene::Light::near);
-        StillPicture picture(scene.picture(plan, state.width, state.height), plan, "tile.gcode");
+        StillPicture picture(scene.picture(plan, state.width, state.height), plan, "tile.gcode", scene.sharedObjects());
         finish(picture);
-        EXPECT_EQ(picture.png(scene.objects()), fileOf(document.given(), plan, (folder / "tile.png").string()));
+        EXPECT_EQ(picture.png(), fileOf(document.given(), plan, (folder / "tile.png").string()));
     }
 }
 
@@ -74,9 +74,9 @@ TEST(StillPicture, GoesOnWhereItWasPutOff) {
     const PicturePlan plan = planPicture(document.given(), smallView());
     scene.makeObjects(plan, {});
     const ViewedPicture viewed = scene.picture(plan, 150, 140);
-    StillPicture straight(viewed, plan, "tile.gcode");
+    StillPicture straight(viewed, plan, "tile.gcode", scene.sharedObjects());
     finish(straight);
-    StillPicture halting(viewed, plan, "tile.gcode");
+    StillPicture halting(viewed, plan, "tile.gcode", scene.sharedObjects());
     // Put off after one tile, then after two, and so on: in the end every piece gets done.
     int calls = 0;
     int patience = 0;
@@ -100,7 +100,7 @@ TEST(StillPicture, GoesOnWhereItWasPutOff) {
     }
     EXPECT_GT(put_off, 5);
     ASSERT_TRUE(halting.done());
-    EXPECT_EQ(halting.png(scene.objects()), straight.png(scene.objects()));
+    EXPECT_EQ(halting.png(), straight.png());
 }
 
 }  // namespace

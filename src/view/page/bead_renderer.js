@@ -1,0 +1,293 @@
+// Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it.
+import { ROW_BITS, beadFragments, beadVertices } from "./bead_shaders.js";
+import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
+import { VisibleBeads } from "./visible_beads.js";
+import { dot, sub } from "./camera.js";
+
+const ROW = 1 << ROW_BITS;
+const DRAW = 16384; // beads a call: their corners are counted in 16 bits
+
+export class BeadRenderer {
+  /** Throws an Error that says what is missing. */
+  constructor(canvas, table) {
+    const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, powerPreference: "high-performance" });
+    if (!gl) throw new Error("no WebGL2");
+    this.gl = gl;
+    this.table = table;
+    this.canvas = canvas;
+    const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+    if (most < ROW || table.texels > ROW * most) throw new Error("too many beads for its textures");
+    this.visible = new VisibleBeads(table.texels);
+    const kinds = table.kinds;
+    const defines = ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}`).join("\n");
+    this.beads = this.#program(beadVertices(defines), beadFragments(defines));
+    this.light = this.#program(screenVertices, lightFragments(`${defines}\n#define FINE`));
+    this.plain = this.#program(screenVertices, lightFragments(defines));
+    this.back = this.#program(backVertices, backFragments);
+    this.textures = {
+      beads: this.#table(gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, table.words, 4),
+      runs: this.#table(gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, table.runs, 4),
+      shown: this.#table(gl.R8UI, gl.RED_INTEGER, gl.UNSIGNED_BYTE, new Uint8Array(table.runs.length / 4).fill(1), 1),
+      list: this.#table(gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, new Uint32Array(ROW), 1),
+      colors: this.#table(gl.R16UI, gl.RED_INTEGER, gl.UNSIGNED_SHORT, new Uint16Array(1), 1),
+      palette: this.#texture(),
+      light: this.#texture(gl.LINEAR),
+      ids: this.#texture(),
+      depths: this.#texture(),
+    };
+    this.listRows = 1;
+    this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
+    const corners = new Uint16Array(6 * DRAW);
+    for (let n = 0; n < DRAW; ++n) corners.set([0, 1, 2, 2, 1, 3].map((k) => 4 * n + k), 6 * n);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    this.target = gl.createFramebuffer();
+    this.size = [0, 0];
+    this.range = [0, table.texels];
+    this.look = null;
+    if (gl.getError()) throw new Error("not enough memory on its GPU");
+  }
+
+  #program(vertices, fragments) {
+    const gl = this.gl;
+    const program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertices], [gl.FRAGMENT_SHADER, fragments]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`its shader: ${gl.getShaderInfoLog(shader)}`);
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`its shaders: ${gl.getProgramInfoLog(program)}`);
+    const places = {};
+    for (let n = 0; n < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++n) {
+      const { name, type } = gl.getActiveUniform(program, n);
+      places[name] = [gl.getUniformLocation(program, name), type];
+    }
+    return { program, places };
+  }
+
+  /** Sets what the program has of these. */
+  #set({ places }, values) {
+    const gl = this.gl;
+    const setters = { [gl.FLOAT]: "uniform1f", [gl.FLOAT_VEC2]: "uniform2fv", [gl.FLOAT_VEC3]: "uniform3fv", [gl.FLOAT_VEC4]: "uniform4fv", [gl.UNSIGNED_INT]: "uniform1ui", [gl.UNSIGNED_INT_VEC2]: "uniform2uiv" };
+    for (const [name, value] of Object.entries(values))
+      if (places[name]) gl[setters[places[name][1]] ?? "uniform1i"](places[name][0], value);
+  }
+
+  #texture(filter = this.gl.NEAREST) {
+    const gl = this.gl;
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    return texture;
+  }
+
+  /** A texture of whole rows. */
+  #table(kind, format, type, values, each) {
+    const texture = this.#texture();
+    this.#fill(texture, kind, format, type, values, each);
+    return texture;
+  }
+  #fill(texture, kind, format, type, values, each) {
+    const gl = this.gl;
+    const rows = Math.max(1, Math.ceil(values.length / each / ROW));
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.texImage2D(gl.TEXTURE_2D, 0, kind, ROW, rows, 0, format, type, null);
+    const whole = Math.floor(values.length / each / ROW);
+    if (whole > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ROW, whole, format, type, values.subarray(0, whole * ROW * each));
+    const rest = values.length / each - whole * ROW;
+    if (rest > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, format, type, values.subarray(whole * ROW * each));
+  }
+
+  /** By run, which are shown; and the texels from, to that are printed. */
+  show(shown, range) {
+    const gl = this.gl;
+    this.#fill(this.textures.shown, gl.R8UI, gl.RED_INTEGER, gl.UNSIGNED_BYTE, shown, 1);
+    this.range = range;
+  }
+
+  /** Colours by texel, as places in a palette of [r, g, b], linear; null: one for all. */
+  paint(places, palette) {
+    const gl = this.gl;
+    this.colored = places !== null;
+    if (!places) return;
+    this.#fill(this.textures.colors, gl.R16UI, gl.RED_INTEGER, gl.UNSIGNED_SHORT, places, 1);
+    const values = new Float32Array(4 * 1024 * Math.ceil(palette.length / 1024));
+    palette.forEach((color, n) => values.set(color, 4 * n));
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.palette);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, 1024, Math.ceil(palette.length / 1024), 0, gl.RGBA, gl.FLOAT, values);
+  }
+
+  /** From the server: light, bed, exposure. */
+  illuminate(look) {
+    const gl = this.gl;
+    this.look = look;
+    const side = Math.sqrt(look.light.length / 2);
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.light);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG16F, side, side, 0, gl.RG, gl.FLOAT, new Float32Array(look.light));
+  }
+
+  resize(width, height) {
+    if (this.size[0] === width && this.size[1] === height) return;
+    const gl = this.gl;
+    this.size = [width, height];
+    this.canvas.width = width;
+    this.canvas.height = height;
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.ids);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.depths);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT32F, width, height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, null);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.textures.ids, 0);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.textures.depths, 0);
+  }
+
+  #view(camera, state) {
+    const { low, grain } = this.table;
+    const tangent = Math.tan((camera.fov * Math.PI) / 360);
+    const cut = state.clip ?? [0, 0, 0, 0];
+    const length = Math.hypot(...cut.slice(0, 3)) || 1;
+    const normal = cut.slice(0, 3).map((v) => v / length);
+    return {
+      ...this.units,
+      eye: sub(camera.eye, low), grain, right: camera.right, up: camera.up, forward: camera.forward,
+      slope: [(tangent * this.size[0]) / this.size[1], tangent],
+      cut: [...normal, cut[3] / length - dot(normal, camera.eye)],
+      size: this.size, texels: this.range,
+    };
+  }
+
+  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. */
+  draw(camera, state, parts, anew) {
+    const gl = this.gl;
+    const { program } = this.beads;
+    const view = this.#view(camera, state);
+    Object.values(this.textures).forEach((texture, n) => {
+      gl.activeTexture(gl.TEXTURE0 + n);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+    });
+    gl.activeTexture(gl.TEXTURE0 + 31);
+    gl.useProgram(program);
+    this.#set(this.beads, view);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    gl.viewport(0, 0, ...this.size);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.GREATER);
+    if (anew) {
+      this.visible.restart();
+      gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
+      gl.clearBufferfv(gl.DEPTH, 0, [0]);
+      this.#drawList();
+    }
+    for (let n = 0; n < parts; ++n) {
+      const part = this.visible.part();
+      if (!part) break;
+      this.#drawBeads(false, ...part);
+    }
+    this.#lit(view, state, camera);
+    return this.visible.partsLeft === 0;
+  }
+
+  #drawList() {
+    const gl = this.gl;
+    const { visible } = this;
+    const rows = Math.ceil(visible.count / ROW);
+    if (rows > this.listRows) {
+      this.listRows = 2 * rows;
+      this.#fill(this.textures.list, gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, new Uint32Array(this.listRows * ROW), 1);
+      visible.changedFrom = 0;
+      gl.activeTexture(gl.TEXTURE0 + this.units.list);
+      gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
+    }
+    gl.activeTexture(gl.TEXTURE0 + this.units.list);
+    gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
+    for (let y = Math.floor(visible.changedFrom / ROW); y < rows; ++y) {
+      const count = Math.min(ROW, visible.count - y * ROW);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, y, count, 1, gl.RED_INTEGER, gl.UNSIGNED_INT, visible.list, y * ROW);
+    }
+    visible.changedFrom = visible.count;
+    this.#drawBeads(true, 0, visible.count);
+  }
+
+  #drawBeads(from_list, first, count) {
+    const gl = this.gl;
+    for (let n = 0; n < count; n += DRAW) {
+      this.#set(this.beads, { from_list, first: first + n });
+      gl.drawElements(gl.TRIANGLES, 6 * Math.min(DRAW, count - n), gl.UNSIGNED_SHORT, 0);
+    }
+  }
+
+  #lit(view, state, camera) {
+    const gl = this.gl;
+    const { look } = this;
+    const bed = camera.eye[2] > look.bed?.z ? look.bed : null;
+    const angle = look.follows ? Math.atan2(camera.right[1], camera.right[0]) - Math.atan2(look.right[1], look.right[0]) : 0;
+    const values = {
+      ...view, has_bed: Number(bed !== null), bed_albedo: bed?.albedo ?? [0, 0, 0], horizon: look.horizon, zenith: look.zenith,
+      turned: [Math.cos(angle), Math.sin(angle)], brightest: look.brightest, scale: 2 ** look.exposure,
+      bed_z: (bed?.z ?? 0) - camera.eye[2], lines: bed?.grid ? 1 : 0, corner: this.table.low.slice(0, 2),
+      fade: bed ? [bed.center[0] - camera.eye[0], bed.center[1] - camera.eye[1], ...bed.fade] : [0, 0, 0, 1],
+    };
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.disable(gl.DEPTH_TEST);
+    const normals = state.integrator === "normal";
+    if (normals) gl.clear(gl.COLOR_BUFFER_BIT);
+    else {
+      gl.useProgram(this.back.program);
+      this.#set(this.back, values);
+      gl.drawArrays(gl.TRIANGLES, 0, 6 * GRID[0] * GRID[1]);
+    }
+    const light = this.fine ? this.light : this.plain;
+    gl.useProgram(light.program);
+    this.#set(light, { ...values, colored: Number(this.colored ?? false), normals: Number(normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(...this.#frame(camera));
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.disable(gl.BLEND);
+  }
+
+  /** Pixels that the print's box may cover: x, y, width, height from below. */
+  #frame(camera) {
+    const { low, grain } = this.table;
+    const [width, height] = this.size;
+    const tangent = Math.tan((camera.fov * Math.PI) / 360);
+    const least = [Infinity, Infinity];
+    const most = [-Infinity, -Infinity];
+    for (let n = 0; n < 8; ++n) {
+      const way = sub(low.map((v, axis) => (n & (1 << axis) ? v + 65535 * grain[axis] + 3 : v - 3)), camera.eye);
+      const depth = dot(way, camera.forward);
+      if (depth < 1e-3) return [0, 0, width, height];
+      const scale = height / (2 * depth * tangent);
+      [dot(way, camera.right) * scale + width / 2, dot(way, camera.up) * scale + height / 2].forEach((v, axis) => {
+        least[axis] = Math.min(least[axis], v);
+        most[axis] = Math.max(most[axis], v);
+      });
+    }
+    const [x, y] = least.map((v) => Math.max(0, Math.floor(v - 8)));
+    return [x, y, Math.max(0, Math.min(width, Math.ceil(most[0] + 8)) - x), Math.max(0, Math.min(height, Math.ceil(most[1] + 8)) - y)];
+  }
+
+  /** Remembers which beads the picture shows. */
+  note() {
+    this.visible.seen(this.ids(0, 0, ...this.size));
+  }
+
+  /** Which texel + 1 is at each pixel of a rectangle, from below; 0: none. */
+  ids(x, y, width, height) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    const red = gl.getParameter(gl.IMPLEMENTATION_COLOR_READ_FORMAT) === gl.RED_INTEGER;
+    const words = new Uint32Array((red ? 1 : 4) * width * height);
+    gl.readPixels(x, y, width, height, red ? gl.RED_INTEGER : gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+    return red ? words : words.filter((_, n) => n % 4 === 0);
+  }
+}

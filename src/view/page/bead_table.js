@@ -1,0 +1,130 @@
+// The beads of a print as the server streams them: 16 bytes each, and properties by run. Numbers, no drawing.
+
+const asFloat = (word) => new Float32Array(Uint32Array.of(word).buffer)[0];
+
+export class BeadTable {
+  /** `head` is the first message of the server: see bead_table.h; `runs` are its bytes. */
+  constructor(head, runs) {
+    const { texels, low, grain, kinds, features, objects, printed, generation } = head;
+    Object.assign(this, { texels, low, grain, kinds, features, objects, printed, generation });
+    this.words = new Uint32Array(4 * texels);
+    this.runs = new Uint32Array(runs);
+    this.got = 0; // texels
+    this.extras = []; // texels that belong to the bead before them, ascending
+  }
+
+  get complete() {
+    return this.got === this.texels;
+  }
+
+  /** The next part, in order. */
+  add(bytes) {
+    const part = new Uint32Array(bytes);
+    this.words.set(part, 4 * this.got);
+    const end = this.got + part.length / 4;
+    if (this.kinds.extras)
+      for (let n = this.got; n < end; ++n)
+        if (n > 0 && this.words[4 * n - 1] & 4096 && this.extras.at(-1) !== n - 1) this.extras.push(n);
+    this.got = end;
+  }
+
+  /** The number of a texel's bead, and the other way round: a bead and its extra are one. */
+  beadOf(texel) {
+    return texel - this.#extrasBefore(texel);
+  }
+  texelOf(bead) {
+    if (!this.extras.length) return bead;
+    let [low, high] = [0, this.texels];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.beadOf(middle + 1) <= bead) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+  #extrasBefore(texel) {
+    let [low, high] = [0, this.extras.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.extras[middle] < texel) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  layerOf(texel) {
+    return this.runs[4 * (this.words[4 * texel + 3] >>> 13) + 2];
+  }
+
+  /** Parts [first, end] of the texels with layers from low to high. */
+  ofLayers(low, high) {
+    const parts = [];
+    for (let n = 0; n < this.texels; ++n) {
+      const layer = this.layerOf(n);
+      if (layer < low || layer > high) continue;
+      const last = parts.at(-1);
+      if (last && last[1] === n) last[1] = n + 1;
+      else parts.push([n, n + 1]);
+    }
+    return parts;
+  }
+
+  /** Values by bead as values by texel. */
+  byTexel(values) {
+    if (!this.extras.length) return values;
+    const result = new values.constructor(this.texels);
+    let next = 0;
+    for (let texel = 0, bead = -1; texel < this.texels; ++texel) {
+      if (this.extras[next] === texel) ++next;
+      else ++bead;
+      result[texel] = values[bead];
+    }
+    return result;
+  }
+
+  /** Texels from, to of what the state says is printed. */
+  range(state) {
+    const moments = state.by_time ? this.printed.time : this.printed.volume;
+    const end = state.printed >= 100 ? this.texels : this.texelOf(moments[Math.max(1, Math.round(state.printed * 2)) - 1]);
+    return [0, end];
+  }
+
+  /** What the table knows of a bead, as the server describes it. */
+  describe(texel) {
+    const [x, y, z, w] = this.words.subarray(4 * texel, 4 * texel + 4);
+    const run = this.runs.subarray(4 * (w >>> 13), 4 * (w >>> 13) + 4);
+    const at = (n, axis) => this.low[axis] + n * this.grain[axis];
+    const from = [at(x & 65535, 0), at(x >>> 16, 1), at(z & 65535, 2)];
+    const to = [at(y & 65535, 0), at(y >>> 16, 1), at(z >>> 16, 2)];
+    return {
+      number: this.beadOf(texel),
+      layer: run[2],
+      feature: this.features[run[3] & 255],
+      tool: (run[3] >>> 8) & 255,
+      object: this.objects[run[3] >>> 16] || undefined,
+      width_mm: (w & 4095) * 0.004,
+      height_mm: asFloat(run[0]),
+      from,
+      to,
+    };
+  }
+
+  /** By run: 1 where the state shows it. */
+  shown(state) {
+    const count = this.runs.length / 4;
+    const shown = new Uint8Array(count);
+    const [low, high] = [state.layers[0] || 1, state.layers[1] || Infinity];
+    const hidden = new Set(state.hidden_features.map((name) => this.features.indexOf(name)));
+    const objects = new Set(state.objects);
+    const tools = new Set(state.tools);
+    for (let n = 0; n < count; ++n) {
+      const layer = this.runs[4 * n + 2];
+      const tags = this.runs[4 * n + 3];
+      if (layer < low || layer > high || hidden.has(tags & 255)) continue;
+      if (objects.size && !objects.has(tags >>> 16)) continue;
+      if (tools.size && !tools.has((tags >>> 8) & 255)) continue;
+      shown[n] = 1;
+    }
+    return shown;
+  }
+}

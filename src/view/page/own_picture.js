@@ -1,0 +1,140 @@
+// The picture that this browser draws itself while anything moves; the server's finished one fades in over it.
+import { BeadRenderer } from "./bead_renderer.js";
+import { BeadTable } from "./bead_table.js";
+import { cross, sub, unit } from "./camera.js";
+
+/** The camera of a state with an eye, as the server makes it. */
+export function cameraOf({ eye, look_at, fov }) {
+  const forward = unit(sub(look_at, eye));
+  const right = unit(cross(forward, [0, 0, 1]));
+  return { eye, forward, right, up: cross(right, forward), fov };
+}
+
+export class OwnPicture extends EventTarget {
+  table = null;
+  why = "the beads are not here yet"; // there is no own picture
+  #renderer = null;
+  #look = null;
+  #colors = null;
+  #key = ""; // of the selection that the renderer has
+  #frame = 0;
+  #resting = null; // camera, state and size of a picture that is not complete yet
+  #frames = 0;
+
+  /** Events: "changed" when `ready` or `why` have changed; "complete" when a picture at rest has all its beads. */
+  constructor(canvas) {
+    super();
+    this.canvas = canvas;
+    canvas.addEventListener("webglcontextlost", (event) => {
+      event.preventDefault();
+      this.#stop("the browser has lost its GPU");
+    });
+    canvas.addEventListener("webglcontextrestored", () => this.#start());
+  }
+
+  get ready() {
+    return this.#renderer !== null && this.#look !== null;
+  }
+
+  // ---------------------------------------------------------------- from the server
+
+  begin(head, runs) {
+    this.#stop("the beads are on their way");
+    this.table = new BeadTable(head, runs);
+    this.#look = this.#colors = null;
+  }
+  add({ generation }, bytes) {
+    if (this.table === null || generation !== this.table.generation) return;
+    this.table.add(bytes);
+    if (this.table.complete) this.#start();
+  }
+  /** There will be none. */
+  refuse(why) {
+    this.table = null;
+    this.#stop(why);
+  }
+  paint(palette, bytes) {
+    if (!this.table) return;
+    const places = new Uint16Array(bytes);
+    this.#colors = places.length ? [this.table.byTexel(places), palette] : [null, null];
+    this.#renderer?.paint(...this.#colors);
+  }
+  illuminate(look) {
+    this.#look = { ...this.#look, ...look };
+    if (!this.#renderer) return;
+    this.#renderer.illuminate(this.#look);
+    this.#tell("changed");
+  }
+
+  #tell(type) {
+    this.dispatchEvent(new Event(type));
+  }
+  #stop(why) {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    this.#renderer = null;
+    this.why = why;
+    this.#tell("changed");
+  }
+  #start() {
+    if (!this.table?.complete) return;
+    try {
+      this.#renderer = new BeadRenderer(this.canvas, this.table);
+    } catch (error) {
+      return this.#stop(error.message);
+    }
+    this.#key = "";
+    this.why = "";
+    if (this.#colors) this.#renderer.paint(...this.#colors);
+    if (this.#look) this.#renderer.illuminate(this.#look);
+    this.#tell("changed");
+  }
+
+  // ---------------------------------------------------------------- pictures
+
+  /** At once; a picture at rest is completed in the next frames. */
+  draw(camera, state, size, moving) {
+    const renderer = this.#renderer;
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    renderer.resize(...size);
+    this.#select(state);
+    renderer.fine = !moving;
+    const done = renderer.draw(camera, state, 1, true);
+    if (!moving || this.#frames++ % 2 === 0) renderer.note();
+    this.#resting = { camera, state };
+    if (done) return this.#tell("complete");
+    if (!moving) this.#frame = requestAnimationFrame(() => this.#goOn());
+  }
+  #goOn() {
+    this.#frame = 0;
+    const { camera, state } = this.#resting;
+    const done = this.#renderer.draw(camera, state, 2, false);
+    if (!done) return (this.#frame = requestAnimationFrame(() => this.#goOn()));
+    this.#renderer.note();
+    this.#tell("complete");
+  }
+
+  #select(state) {
+    const key = JSON.stringify([state.layers, state.printed, state.by_time, state.hidden_features, state.objects, state.tools]);
+    if (key === this.#key) return;
+    this.#key = key;
+    const { table } = this;
+    const renderer = this.#renderer;
+    const range = table.range(state);
+    renderer.show(table.shown(state), range);
+    // What is at the ends of the selection was hidden until now.
+    const last = state.printed < 100 ? table.layerOf(Math.max(0, range[1] - 1)) : state.layers[1];
+    for (const [low, high] of [[last - 2, last], state.layers[0] ? [state.layers[0], state.layers[0] + 1] : [0, -1]])
+      for (const [first, end] of last || state.layers[0] ? table.ofLayers(low, high) : []) renderer.visible.expect(first, end);
+  }
+
+  /** The texel that is seen at a place of the picture, from 0 to 1 and from the upper left corner; -1: none. */
+  at(x, y) {
+    if (!this.ready || !this.#resting) return -1;
+    const [width, height] = this.#renderer.size;
+    const column = Math.min(width - 1, Math.floor(x * width));
+    const line = Math.min(height - 1, Math.floor((1 - y) * height));
+    return this.#renderer.ids(column, line, 1, 1)[0] - 1;
+  }
+}

@@ -1,0 +1,211 @@
+"""The picture that the page draws itself: headless Chromium's WebGL2 against vdbtrace's normals, and what goes wrong."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from urllib.parse import quote
+
+from run_tools import BIN, check, gcode, skip_without
+
+skip_without(("chromium", "chromedriver"), ("selenium",))
+
+from chromium import browser
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_own_")
+# Counts what web sockets carry.
+COUNT = """window.carried = 0;
+const Plain = WebSocket;
+window.WebSocket = class extends Plain {
+  constructor(url) { super(url); this.addEventListener("message", (e) => (window.carried += e.data.length ?? e.data.byteLength)); }
+  send(data) { window.carried += data.length; super.send(data); }
+};
+window.WebSocket.OPEN = 1;"""
+# Of the pixels where one of two pictures of normals has a print, the share where the reference's normal is within 5
+# degrees of that of one of the nine pixels about it; where normals differ between those, as across the groove of two
+# layers, of a mixture of two of them, since the reference is filtered; at the silhouette, one pixel may be off.
+COMPARE = """
+const done = arguments[0];
+const load = async (source) => {
+  const bitmap = await createImageBitmap(source);
+  const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d", { willReadFrequently: true });
+  context.drawImage(bitmap, 0, 0);
+  return context.getImageData(0, 0, bitmap.width, bitmap.height);
+};
+(async () => {
+  const reference = await load(window.vdbviewFinal);
+  const own = await load(await (await fetch(window.vdbviewDrawn())).blob());
+  const { width, height } = reference;
+  if (own.width !== width || own.height !== height) return done({ error: "sizes" });
+  const normal = ({ data }, i) => [0, 1, 2].map((k) => data[4 * i + k] / 127.5 - 1);
+  const hit = ({ data }, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2] > 0;
+  const angle = (a, b) => Math.acos(Math.max(-1, Math.min(1, (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / (Math.hypot(...a) * Math.hypot(...b) || 1)))) * 57.2958;
+  let hits = 0, good = 0, exact = 0;
+  for (let y = 1; y < height - 1; ++y)
+    for (let x = 1; x < width - 1; ++x) {
+      const i = y * width + x, wanted = normal(reference, i);
+      const there = Math.hypot(...wanted) > 0.1 && hit(reference, i);
+      if (!there && !hit(own, i)) continue;
+      ++hits;
+      const around = [];
+      let edge = false;
+      for (const dy of [-1, 0, 1]) for (const dx of [-1, 0, 1]) {
+        const k = i + dy * width + dx;
+        if (hit(own, k)) around.push(normal(own, k)); else edge = true;
+      }
+      if (there && hit(own, i) && angle(wanted, normal(own, i)) <= 5) ++exact;
+      const mixed = (a, b) => [0.15, 0.3, 0.45, 0.6, 0.75, 0.9].some((t) => angle(wanted, a.map((v, n) => v + t * (b[n] - v))) <= 5);
+      if (edge || around.some((n) => angle(wanted, n) <= 5) || around.some((a, n) => around.some((b, m) => m !== n && mixed(a, b)))) ++good;
+    }
+  done({ hits, share: good / hits, exact: exact / hits });
+})().catch((error) => done({ error: String(error) }));"""
+
+
+def js(text, *arguments):
+    return page.execute_script(text, *arguments)
+
+
+def until(condition, text, seconds=150):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = js(f"return {condition}")
+        if value:
+            return value
+        time.sleep(0.05)
+    print(js("return [window.vdbviewLog?.slice(-5), document.body.innerText]"), page.get_log("browser"))
+    sys.exit(f"FAILED: {text}: not within {seconds} s")
+
+
+class Server:
+    """A vdbview, whose page is open."""
+
+    def __init__(self, path, *options, query=""):
+        self.process = subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", *options],
+                                        stdout=subprocess.PIPE, text=True)
+        page.get(self.process.stdout.readline().strip() + query)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        page.get("about:blank")
+        self.process.terminate()
+        self.process.wait()
+
+
+def drawn_here():
+    until("document.body.dataset.moving === 'own'", "the page draws what moves")
+
+
+def show(**view):
+    js("window.vdbviewLog.length = 0; location.hash = arguments[0]", quote(json.dumps(view)))
+    until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "the finished picture")
+
+
+def drag(lift):
+    js("""const c = document.getElementById('picture'), b = c.getBoundingClientRect(), done = arguments[1];
+          c.setPointerCapture = () => {};
+          const at = (type, x, y, buttons) => c.dispatchEvent(new PointerEvent(type,
+              { pointerId: 1, clientX: b.left + x, clientY: b.top + y, buttons, button: 0, bubbles: true }));
+          if (arguments[0]) return at('pointerup', 150, 60, 0);
+          at('pointerdown', 100, 50, 1);
+          window.dragged = 0;
+          const step = () => { at('pointermove', 100 + 5 * ++window.dragged, 50 + window.dragged, 1); if (window.dragged < 10) requestAnimationFrame(step); };
+          step();""", lift)
+    if not lift:
+        until("window.dragged === 10", "ten steps of turning")
+
+
+def agrees(name, view, *options):
+    with Server(gcode(name), "--voxel-size", "0.0125", *options):
+        drawn_here()
+        show(integrator="normal", bed=False, spp=256, camera=view)
+        found = page.execute_async_script(COMPARE)
+        check("error" not in found and found["hits"] > 20000, f"{name}: pictures of the print: {found}")
+        print(f"{name} {' '.join(options)}: {found['share']:.4f} of {found['hits']} pixels agree, {found['exact']:.4f} exactly")
+        check(found["share"] >= 0.995, f"{name}: normals are those of vdbtrace: {found}")
+
+
+def carries_nothing():
+    """While a view turns, its pictures are as large as the canvas, and nothing is sent."""
+    with Server(gcode("tile.gcode"), "--voxel-size", "0.1", query="#" + quote('{"integrator":"normal"}')):  # soon finished
+        drawn_here()
+        until("window.vdbviewLog.some((e) => e.kind === 'final')", "the first finished picture")
+        js("window.vdbviewLog.length = 0; window.carried = 0")
+        drag(False)
+        carried, log, ratio = js("return [window.carried, window.vdbviewLog, devicePixelRatio]")
+        check(len(log) >= 2 and all(e["kind"] == "own" for e in log), f"own pictures: {[e['kind'] for e in log]}")
+        width, height = js("const c = document.getElementById('picture'); return [c.clientWidth, c.clientHeight]")
+        check(all((e["width"], e["height"]) == (round(ratio * width), round(ratio * height)) for e in log), "in device pixels")
+        check(carried == 0, f"{carried} bytes on the wire while turning")
+        js("const s = document.getElementById('layer-high'); s.value = 3; s.dispatchEvent(new Event('input'));")
+        time.sleep(0.5)
+        check(js("return window.carried") == 0, "nor while a slider moves")
+        drag(True)
+        until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "then the finished picture")
+        until("!document.getElementById('picture').classList.contains('behind')", "over the own one")
+        picks()
+        loses()
+
+
+def picks():
+    """The page's own answers are those of the server."""
+    same = 0
+    for n in range(12):
+        x, y = 0.35 + 0.1 * (n % 4), 0.4 + 0.1 * (n // 4)
+        js("""const c = document.getElementById('picture'), b = c.getBoundingClientRect();
+              window.vdbviewFound = window.vdbviewPicked = null; c.setPointerCapture = () => {};
+              for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { pointerId: 1,
+                clientX: b.left + b.width * arguments[0], clientY: b.top + b.height * arguments[1], button: 0, bubbles: true }));""", x, y)
+        found = until("window.vdbviewFound", "the server's answer")
+        own = js("return window.vdbviewPicked")
+        check(found["hit"] == (own is not None), f"a bead or none at {x:.2f}, {y:.2f}")
+        if own:
+            # The level set may give a place between two beads to the other one.
+            same += own["number"] == found["bead"]["number"]
+            check(own["layer"] == found["bead"]["layer"], f"its layer, {own['layer']}")
+            check(abs(own["width_mm"] - found["bead"]["width_mm"]) < 0.3, "its width")
+    print(f"{same} picks are the same bead")
+    check(same >= 4, f"{same} of 12 picks are the same bead")
+
+
+def loses():
+    """A lost GPU: the server's stream, until it is back."""
+    js("window.lost = document.getElementById('beads').getContext('webgl2').getExtension('WEBGL_lose_context');"
+       "window.lost.loseContext()")
+    until("document.body.dataset.moving === 'stream'", "the loss is noticed")
+    check("lost" in js("return document.getElementById('mover').textContent"), "and told")
+    js("window.vdbviewLog.length = 0")
+    drag(False)
+    drag(True)
+    until("window.vdbviewLog.some((e) => e.kind === 'moving')", "the server's pictures")
+    until("window.vdbviewLog.some((e) => e.kind === 'final')", "and its finished one")
+    js("window.lost.restoreContext()")
+    drawn_here()
+
+
+def streams():
+    """What the page does not draw is streamed, and it says why."""
+    for options, query, words in ((("--layers", "1:3"), "", "command line"), ((), "?stream", "address")):
+        with Server(gcode("tile.gcode"), "--voxel-size", "0.1", *options, query=query):
+            until("window.vdbviewLog?.some((e) => e.kind === 'moving')", "a picture of the server's")
+            until(f"document.getElementById('mover').textContent.includes('{words}')", f"the reason: {words}")
+            check(js("return document.body.dataset.moving") == "stream", "the server's stream")
+
+
+page = browser(f"{FOLDER}/profile", 500, 420, 400)
+page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
+try:
+    carries_nothing()
+    agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
+    agrees("tile_arcs.gcode", {"eye": [115, 70, 45], "look_at": [107, 104, 1.5], "fov": 2.5})
+    agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})
+    agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5})
+    agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5}, "--flow-lag", "0.04")
+    streams()
+finally:
+    page.quit()
+    shutil.rmtree(FOLDER, ignore_errors=True)
