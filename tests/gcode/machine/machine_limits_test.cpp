@@ -10,14 +10,14 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr const char* kSettings =
+constexpr const char* kKlipperSettings =
     "; gcode_flavor = klipper\n; machine_max_speed_x = 500,200\n; machine_max_speed_y = 400\n"
     "; machine_max_speed_z = 20\n; machine_max_speed_e = 30\n; machine_max_acceleration_x = 9000\n"
     "; machine_max_acceleration_z = 500\n; machine_max_acceleration_e = 5000\n"
     "; machine_max_acceleration_extruding = 7000\n; machine_max_acceleration_travel = 8000\n"
     "; machine_max_jerk_x = 9\n; machine_min_travel_rate = 3\n";
 
-PrinterLimits klipper() {
+PrinterLimits klipperPrinter() {
     PrinterLimits printer;
     printer.name = "printer.cfg";
     printer.firmware = Firmware::klipper;
@@ -30,7 +30,7 @@ PrinterLimits klipper() {
 }
 
 TEST(MachineLimits, ForKlipperSettingsAreAnAssumption) {
-    const MachineSettings read = readMachineSettings(kSettings, CornerRule::automatic);
+    const MachineSettings read = readMachineSettings(kKlipperSettings, CornerRule::automatic);
     EXPECT_EQ(read.limits.rule, CornerRule::corner_velocity);  // with or without jerk
     EXPECT_EQ(read.limits.path_speed, 400);
     EXPECT_EQ(read.limits.printing, 7000);
@@ -53,7 +53,7 @@ TEST(MachineLimits, ForKlipperSettingsAreAnAssumption) {
 }
 
 TEST(MachineLimits, TheSlicersRuleIsThereByName) {
-    const MachineSettings read = readMachineSettings(kSettings, CornerRule::slicer_jerk);
+    const MachineSettings read = readMachineSettings(kKlipperSettings, CornerRule::slicer_jerk);
     EXPECT_EQ(read.limits.speed[0], 500);
     EXPECT_EQ(read.limits.travel, 8000);
     EXPECT_EQ(read.most_travel, 8000);
@@ -61,7 +61,8 @@ TEST(MachineLimits, TheSlicersRuleIsThereByName) {
 }
 
 TEST(MachineLimits, AUsersLimitsWin) {
-    const MachineSettings read = readMachineSettings(kSettings, CornerRule::automatic, klipper(), Firmware::klipper);
+    const MachineSettings read =
+        readMachineSettings(kKlipperSettings, CornerRule::automatic, klipperPrinter(), Firmware::klipper);
     EXPECT_EQ(read.limits.path_speed, 300);
     EXPECT_EQ(read.limits.printing, 3000);
     EXPECT_EQ(read.limits.speed[2], 300);
@@ -71,8 +72,9 @@ TEST(MachineLimits, AUsersLimitsWin) {
     // What it leaves open is assumed as ever.
     EXPECT_EQ(read.limits.extrude_only_speed, 30);
     EXPECT_EQ(read.origins[Limit::extrude_only_speed].kind, LimitOrigin::Kind::setting);
-    EXPECT_EQ(readMachineSettings("", CornerRule::automatic, klipper(), Firmware::klipper).limits.extrude_only_speed,
-              0.2661 * 300);
+    EXPECT_EQ(
+        readMachineSettings("", CornerRule::automatic, klipperPrinter(), Firmware::klipper).limits.extrude_only_speed,
+        0.2661 * 300);
     EXPECT_TRUE(read.rule_chosen);
     // A few of them, for Marlin: the others stay the file's, and M204 is not capped by what they replace.
     PrinterLimits some;
@@ -89,7 +91,7 @@ TEST(MachineLimits, AUsersLimitsWin) {
     EXPECT_EQ(marlin.most_travel, 600);
 }
 
-class Log : public MotionSink {
+class LastLimits : public MotionSink {
 public:
     void limits(const MachineLimits& limits) override { last = limits; }
     void move(const Move&) override {}
@@ -104,10 +106,10 @@ TEST(MachineLimits, OfACommandHoldWhereTheFirmwareReadsIt) {
     constexpr const char* kProgram =
         "M83\nM201 X1 Z1\nM203 X1 Z1\nM205 X1\nM566 X1\nM204 P100\nM204 P700 T800\nSET_VELOCITY_LIMIT VELOCITY=50\n"
         "M204 S900\nG1 X1 E1\n";
-    Log log;
+    LastLimits log;
     ReadOptions options;
     options.motion = &log;
-    options.printer = klipper();
+    options.printer = klipperPrinter();
     const Toolpath toolpath = readProgram(kProgram, options);
     EXPECT_EQ(toolpath.firmware, "klipper");
     EXPECT_EQ(toolpath.firmware_reason, "as printer.cfg says");
@@ -129,7 +131,7 @@ TEST(MachineLimits, OfACommandHoldWhereTheFirmwareReadsIt) {
     EXPECT_EQ(warned("M205: Klipper"), 4U);
     EXPECT_EQ(warned("M566: Klipper"), 5U);
     EXPECT_EQ(warned("M204 without S, or P and T together"), 6U);
-    // The corner velocities and the like, which klipper() leaves out.
+    // The corner velocities and the like, which klipperPrinter() leaves out.
     EXPECT_EQ(warned("assumed for the times"), 1U);
 
     // Marlin obeys all of them.
