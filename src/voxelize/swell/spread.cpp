@@ -12,21 +12,25 @@ public:
     explicit Tent(int edge) : edge_(edge), rows_(static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge)) {}
 
     void sum(const std::vector<double>& values, int reach, std::vector<double>& out) {
-        out.resize(values.size());
-        along(values, reach, 1, edge_, rows_);
-        along(rows_, reach, edge_, 1, out);
+        std::fill(rows_.begin(), rows_.end(), 0.0);
+        out.assign(values.size(), 0.0);
+        for (int step = -reach; step <= reach; ++step) {
+            const double weight = 1 - static_cast<double>(std::abs(step)) / (reach + 1);
+            const int from = std::max(-step, 0);
+            const int to = std::min(edge_ - step, edge_);
+            for (int row = 0; row < edge_; ++row)
+                add(weight, values.data() + row * edge_ + from + step, to - from, rows_.data() + row * edge_ + from);
+        }
+        for (int step = -reach; step <= reach; ++step) {
+            const double weight = 1 - static_cast<double>(std::abs(step)) / (reach + 1);
+            for (int row = std::max(-step, 0); row < std::min(edge_ - step, edge_); ++row)
+                add(weight, rows_.data() + (row + step) * edge_, edge_, out.data() + row * edge_);
+        }
     }
 
 private:
-    void along(const std::vector<double>& in, int reach, int step, int line_step, std::vector<double>& out) const {
-        for (int line = 0; line < edge_; ++line)
-            for (int n = 0; n < edge_; ++n) {
-                double sum = 0;
-                for (int m = std::max(n - reach, 0); m <= std::min(n + reach, edge_ - 1); ++m)
-                    sum += (1 - static_cast<double>(std::abs(m - n)) / (reach + 1)) *
-                           in[static_cast<std::size_t>(line * line_step + m * step)];
-                out[static_cast<std::size_t>(line * line_step + n * step)] = sum;
-            }
+    static void add(double weight, const double* from, int count, double* to) {
+        for (int n = 0; n < count; ++n) to[n] += weight * from[n];
     }
 
     const int edge_;
