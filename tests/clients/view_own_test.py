@@ -37,7 +37,10 @@ const load = async (source) => {
 };
 (async () => {
   const reference = await load(window.vdbviewFinal);
-  const own = await load(await (await fetch(window.vdbviewDrawn())).blob());
+  const image = new Image();
+  image.src = window.vdbviewDrawn();
+  await image.decode();
+  const own = await load(image);
   const { width, height } = reference;
   if (own.width !== width || own.height !== height) return done({ error: "sizes" });
   const normal = ({ data }, i) => [0, 1, 2].map((k) => data[4 * i + k] / 127.5 - 1);

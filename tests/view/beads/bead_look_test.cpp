@@ -28,7 +28,8 @@ TEST(BeadLook, ColoursAreThoseOfTheLegend) {
     for (std::size_t n = 0; n < print.beads.size(); n += 97) {
         const auto found = legend.find(std::string(gcode::featureName(print.runOf(print.beads[n]).feature)));
         if (found == legend.end()) continue;  // before the first layer
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors.palette[colors.places[n]][c], found->second[c], 1e-4);
+        // The reflectance of a plastic is its colour and a little gloss.
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors.palette[colors.places[n]][c], found->second[c], 0.03);
     }
 }
 
