@@ -138,20 +138,20 @@ TEST_P(EachMaking, WritersFailInTheDestinationsName) {
     EXPECT_EQ(filesIn(folder.path()), 1U);
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
+void writeText(const std::filesystem::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
 TEST_P(EachMaking, ALinkStaysAndItsFileIsReplaced) {
     const test::ScratchFolder folder;
     std::filesystem::create_directory(folder / "elsewhere");
-    write(folder / "elsewhere/file", "old");
+    writeText(folder / "elsewhere/file", "old");
     std::filesystem::create_symlink("elsewhere/file", folder / "link");
     std::filesystem::create_symlink(folder / "link", folder / "second");
     std::filesystem::create_symlink("elsewhere/new", folder / "dangling");
     for (const char* name : {"link", "second", "dangling"}) {
         AtomicFile file(folder / name, GetParam());
-        write(file.temporary(), name);
+        writeText(file.temporary(), name);
         file.commit();
         EXPECT_TRUE(std::filesystem::is_symlink(folder / name)) << name;
         EXPECT_EQ(slurp(folder / name), name);
@@ -171,9 +171,9 @@ protected:
 };
 
 TEST_F(Guarded, AFileOfSomebodyElseIsNotReplaced) {
-    write(folder_ / "theirs", "solid by hand");
-    write(folder_ / "ours", "binary STL by Stratum 1.0");
-    write(folder_ / "empty", "");
+    writeText(folder_ / "theirs", "solid by hand");
+    writeText(folder_ / "ours", "binary STL by Stratum 1.0");
+    writeText(folder_ / "empty", "");
     std::filesystem::create_symlink("theirs", folder_ / "link");
     EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);
     EXPECT_THROW(AtomicFile(folder_ / "link"), UsageError);
@@ -189,7 +189,7 @@ TEST_F(Guarded, AFileOfSomebodyElseIsNotReplaced) {
 }
 
 TEST_F(Guarded, UnlessThatIsAllowed) {
-    write(folder_ / "theirs", "solid by hand");
+    writeText(folder_ / "theirs", "solid by hand");
     {
         const Replacement no(folder_ / "theirs", false);
         EXPECT_THROW(AtomicFile(folder_ / "theirs"), UsageError);

@@ -51,7 +51,7 @@ TEST(HugeArray, AGatherOfEightBytesAtTheLastSamplesStaysInTheMapping) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     // The system refuses to copy what may not be read, where a load would end the program.
-    EXPECT_EQ(write(ends[1], guarded->data() + kSize - 2, 8), 8) << "the read reaches the page behind the mapping";
+    EXPECT_EQ(::write(ends[1], guarded->data() + kSize - 2, 8), 8) << "the read reaches the page behind the mapping";
     (void)close(ends[0]);
     (void)close(ends[1]);
     (void)munmap(guard, kPage);

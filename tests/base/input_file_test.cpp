@@ -15,7 +15,7 @@
 namespace stratum {
 namespace {
 
-void write(const std::filesystem::path& path, const std::string& bytes) {
+void writeBytes(const std::filesystem::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
@@ -38,7 +38,7 @@ void expectChanged(const std::function<void()>& read) {
 TEST(InputFile, GivesTheBytes) {
     const test::ScratchFolder folder;
     const auto path = folder / "input.bin";
-    write(path, std::string("G1 X1\0\r\n", 8));
+    writeBytes(path, std::string("G1 X1\0\r\n", 8));
     const InputFile file(path);
     EXPECT_EQ(file.bytes(), std::string_view("G1 X1\0\r\n", 8));
     EXPECT_EQ(file.first(2), "G1");
@@ -49,7 +49,7 @@ TEST(InputFile, ReadsThePartsThatAreAskedFor) {
     const test::ScratchFolder folder;
     const auto path = folder / "input.bin";
     const std::string text = longText();
-    write(path, text);
+    writeBytes(path, text);
     InputFile opened(path);
     const InputFile file(std::move(opened));
     EXPECT_EQ(file.size(), text.size());
@@ -64,7 +64,7 @@ TEST(InputFile, AFileThatChangesIsAnError) {
     const test::ScratchFolder folder;
     const auto path = folder / "input.bin";
     const std::string text = longText();
-    write(path, text);
+    writeBytes(path, text);
     {
         const InputFile file(path);
         file.load(0, 100);
@@ -74,10 +74,10 @@ TEST(InputFile, AFileThatChangesIsAnError) {
         expectChanged([&] { file.load(1500000, 10); });
         expectChanged([&] { file.load(300000, 10); });
     }
-    write(path, text);
+    writeBytes(path, text);
     const InputFile file(path);
     const timespec later[2] = {{1900000000, 0}, {1900000000, 5}};
-    write(path, std::string(text.size(), 'x'));  // as long as before
+    writeBytes(path, std::string(text.size(), 'x'));  // as long as before
     ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), later, 0), 0);
     expectChanged([&] { file.bytes(); });
 }
@@ -86,9 +86,9 @@ TEST(InputFile, AFileThatIsReplacedIsReadToItsEnd) {
     const test::ScratchFolder folder;
     const auto path = folder / "input.bin";
     const std::string text = longText();
-    write(path, text);
+    writeBytes(path, text);
     const InputFile file(path);
-    write(folder / "other.bin", "other");
+    writeBytes(folder / "other.bin", "other");
     std::filesystem::rename(folder / "other.bin", path);
     EXPECT_TRUE(file.bytes() == text);
 }

@@ -52,6 +52,18 @@ shutil.copy(gcode("tile.gcode"), path("t.gcode"))
 shutil.copy(gcode("tile.gcode"), path("u.gcode"))
 does(GCODE2VDB, "t.gcode", "-o", "t.vdb", *COARSE)
 
+# --- a summary writes nothing but itself, unless an output is named -----------------------------------------------------
+os.remove(path("u.gcode"))
+before = contents()
+for words in ([], ["--beads", "settled"], ["--beads", "settled", "--stats", "-"]):
+    text = does(GCODE2VDB, "t.gcode", "--summary", *words).stdout
+    check("nan" not in text.lower(), f"  and {words} prints no NaN")
+    check(not words or ("settled: 0.00 of" not in text and "mm^3" in text), f"  and {words} states volumes")
+check(contents() == before, "a summary alone writes no file")
+does(GCODE2VDB, "t.gcode", "--summary", "-o", "summary.vdb", *COARSE)
+check("summary.vdb" in contents(), "with -o it is written")
+shutil.copy(gcode("tile.gcode"), path("u.gcode"))
+
 # --- each takes its own words, so that the input may come last ---------------------------------------------------------
 for words in (["--light", "ambient:1,1,1"], ["--eye", "60,-60,30"], ["--focus", "100", "--f-number", "4"],
               ["--eye", "-60,-60,30", "--look-at", "10,10,1"], ["--integrator", "phong", "--phong", "1,1,1,500,0"],

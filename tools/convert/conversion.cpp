@@ -63,6 +63,8 @@ Conversion::Conversion(const ConvertCommand& command, const std::string& input, 
 Json Conversion::run(int threads) {
     read();
     tell();
+    const bool needs_beads = settles() || stats() || !o_.compare.model.empty();
+    if (!o_.makesGrid() && !needs_beads) return finish(Json(), threads);
     choose();
     if (isElementsPath(output_)) {
         makeElements();
@@ -76,6 +78,13 @@ Json Conversion::run(int threads) {
     seconds_.voxelize += watch_.lap();
     if (!o_.compare.model.empty()) comparison_ = compareWithModel(o_, toolpath_, plan_->selection(), plan_->lattice());
     seconds_.compare = watch_.lap();
+    if (!o_.makesGrid()) {
+        tellDeposit(voxelizer, 0);
+        const Json left_out{{{"what", "the level set"},
+                             {"why", "a summary and a comparison need none (-o FILE writes it)"},
+                             {"saved", "leaves, their grid and file"}}};
+        return finish(left_out, threads);
+    }
     const std::vector<ConversionJob> jobs = planJobs();
     for (const ConversionJob& job : jobs)
         if (!job.label.empty()) {
@@ -131,7 +140,7 @@ void Conversion::choose() {
     as_mesh_ = exporter::isMeshPath(output_);
     plan_.emplace(toolpath_, choicesOf(o_, output_));
     attributes_ = as_mesh_ ? meshAttributes(o_, toolpath_, plan_->selection(), output_) : plan_->attributes();
-    if (plan_->addsColor()) {
+    if (plan_->addsColor() && o_.makesGrid()) {
         if (part_)
             throw UsageError(fmt::format(
                 "--shard: the print has {} colors of filament, and a color grid is made of the whole print; leave "
@@ -141,6 +150,7 @@ void Conversion::choose() {
             fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", plan_->colors()));
     }
     const voxelize::Lattice& lattice = plan_->lattice();
+    if (!o_.makesGrid()) return;
     say(o_.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes", lattice.voxel_size,
                                lattice.reason, lattice.aligned_share * 100));
     // Elements are chosen for what a solver can take, not for layer lines; they say what volume they hold.

@@ -71,10 +71,13 @@ struct ConvertCommand {
     ThumbnailCommand thumbnail;
     ConvertReport report;
 
-    /// Whether a level set is written: not if only a report is asked for.
+    /// Whether a level set is written: not if only a report, a summary or a comparison is asked for.
     bool writesGrid() const {
-        return !report.asked() || !output.empty() || usda || !snapshots.empty() || !grids.empty() || compare.grid;
+        const bool tells = report.asked() || summary || !compare.model.empty();
+        return !tells || !output.empty() || usda || !snapshots.empty() || !grids.empty() || compare.grid ||
+               !shard.text.empty();
     }
+    bool makesGrid() const { return writesGrid() || report.asked(); }
 };
 
 /// The .usda beside a .vdb.

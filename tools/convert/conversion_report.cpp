@@ -47,12 +47,15 @@ void Conversion::tellMesh(const exporter::SurfaceMesh& mesh, const openvdb::Floa
     say(o_.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh.triangleCount()))));
 }
 
+void Conversion::tellDeposit(const voxelize::Voxelizer& voxelizer, double surface_mm3) {
+    if (!settles() || !(stats() || o_.summary)) return;
+    const voxelize::DepositBalance balance = voxelizer.balance();
+    if (o_.summary) say(o_.common, depositLines(balance));
+    if (stats()) deposit_ = describeDeposit(toolpath_.deposit, balance, surface_mm3);
+}
+
 void Conversion::describeWhole(const voxelize::Voxelizer& voxelizer, const GridNumbers& grid, double surface_mm3) {
-    if (settles() && (stats() || o_.summary)) {
-        const voxelize::DepositBalance balance = voxelizer.balance();
-        if (o_.summary) say(o_.common, depositLines(balance));
-        if (stats()) deposit_ = describeDeposit(toolpath_.deposit, balance, surface_mm3);
-    }
+    tellDeposit(voxelizer, surface_mm3);
     if (stats()) grid_ = describeGrid(grid, plan_->lattice());
 }
 

@@ -82,6 +82,7 @@ private:
     void tellMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid);
     // Reports that cost time: only of the whole print, and only if somebody reads them. `surface_mm3`: what the level
     // set of settled beads encloses, if that is asked for.
+    void tellDeposit(const voxelize::Voxelizer& voxelizer, double surface_mm3);
     void describeWhole(const voxelize::Voxelizer& voxelizer, const GridNumbers& grid, double surface_mm3);
     Json skipped(const voxelize::VoxelizeReport& built) const;
     Json report(const Json& left_out, int threads, double total) const;

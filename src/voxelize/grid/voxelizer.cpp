@@ -107,6 +107,7 @@ struct Voxelizer::State {
     const float background;
     openvdb::FloatGrid::Ptr grid;
     std::uint32_t printed = 0;
+    std::uint32_t streamed = 0;
     VoxelizeReport report;
 };
 
@@ -220,6 +221,7 @@ LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, 
     const auto start = Clock::now();
     const LeafStreamReport streamed = streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure,
                                                    state_->options.progress, blocks());
+    state_->streamed = end;
     VoxelizeReport& report = state_->report;
     report.leaf_positions = report.leaves_evaluated = streamed.evaluated;
     report.build_seconds = secondsSince(start);
@@ -270,8 +272,9 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
 }
 
 DepositBalance Voxelizer::balance() const {
-    State& s = *state_;
-    return balanceDeposit(s.toolpath, s.stack, s.printed);
+    const State& s = *state_;
+    const std::uint32_t end = std::max(s.printed, s.streamed);
+    return balanceDeposit(s.toolpath, s.stack, end > 0 ? end : static_cast<std::uint32_t>(s.toolpath.beads.size()));
 }
 
 const VoxelizeReport& Voxelizer::report() const { return state_->report; }

@@ -100,7 +100,8 @@ public:
     /// instead of evaluating distances; takes about a third of the time of a build.
     CullForecast forecastCull() const;
 
-    /// How much of the beads printed so far their layers have room for: balanceDeposit().
+    /// How much of the beads printed or streamed so far, or of all if none was, their layers have room for:
+    /// balanceDeposit().
     DepositBalance balance() const;
 
     const VoxelizeReport& report() const;
