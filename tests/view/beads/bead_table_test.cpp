@@ -1,7 +1,7 @@
 #include "view/beads/bead_table.h"
 
 #include "base/error.h"
-#include "base/mapped_file.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 std::shared_ptr<const gcode::Toolpath> read(const char* name) {
     return std::make_shared<const gcode::Toolpath>(
-        gcode::readToolpath(MappedFile(test::sourceDir() / "data/gcode" / name).bytes(), name));
+        gcode::readToolpath(InputFile(test::sourceDir() / "data/gcode" / name).bytes(), name));
 }
 
 std::vector<std::uint32_t> allOf(const BeadTable& table, std::size_t count) {

@@ -12,8 +12,8 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr double kWidth = 0.45;
-constexpr double kHeight = 0.2;
+constexpr double kLineWidth = 0.45;
+constexpr double kLineHeight = 0.2;
 
 struct Totals {
     double surplus = 0, gain = 0;
@@ -43,27 +43,27 @@ double endsOf(double half_flat, double radius) {
 TEST(TileSums, ALoneLineLacksNothingButItsEnds) {
     for (const double angle : {0.0, 0.3, std::numbers::pi / 4, std::numbers::pi / 2}) {
         gcode::Toolpath toolpath;
-        test::addBead(toolpath, -7.1, 0.13, kHeight, -7.1 + 14 * std::cos(angle), 0.13 + 14 * std::sin(angle), kHeight,
-                      kWidth, kHeight);
+        test::addBead(toolpath, -7.1, 0.13, kLineHeight, -7.1 + 14 * std::cos(angle), 0.13 + 14 * std::sin(angle),
+                      kLineHeight, kLineWidth, kLineHeight);
         const Totals totals = totalsOf(toolpath);
-        const double radius = kHeight / 2;
+        const double radius = kLineHeight / 2;
         const double fed = gcode::beadVolume(toolpath);
-        EXPECT_NEAR(totals.surplus, -endsOf(kWidth / 2 - radius, radius), 4e-3 * fed) << angle;
+        EXPECT_NEAR(totals.surplus, -endsOf(kLineWidth / 2 - radius, radius), 4e-3 * fed) << angle;
         // All around it a strip kMostSwell wide is filled up.
-        const double around = 2 * 14 * kMostSwell * kHeight;
+        const double around = 2 * 14 * kMostSwell * kLineHeight;
         EXPECT_NEAR(totals.gain, around, 0.1 * around) << angle;
     }
 }
 
 TEST(TileSums, LinesThatCrossHaveTheSurplusOfTheirCrossing) {
     gcode::Toolpath toolpath;
-    test::addBead(toolpath, -6, 0.1, kHeight, 6, 0.1, kHeight, kWidth, kHeight);
+    test::addBead(toolpath, -6, 0.1, kLineHeight, 6, 0.1, kLineHeight, kLineWidth, kLineHeight);
     const double one = totalsOf(toolpath).surplus;
-    test::addBead(toolpath, 0.2, -6, kHeight, 0.2, 6, kHeight, kWidth, kHeight);
+    test::addBead(toolpath, 0.2, -6, kLineHeight, 0.2, 6, kLineHeight, kLineWidth, kLineHeight);
     const double crossing = totalsOf(toolpath).surplus - 2 * one;
     // The flats at least, and at most the rectangle of both widths.
-    EXPECT_GT(crossing, std::pow(kWidth - kHeight, 2) * kHeight);
-    EXPECT_LT(crossing, kWidth * kWidth * kHeight);
+    EXPECT_GT(crossing, std::pow(kLineWidth - kLineHeight, 2) * kLineHeight);
+    EXPECT_LT(crossing, kLineWidth * kLineWidth * kLineHeight);
 }
 
 }  // namespace
