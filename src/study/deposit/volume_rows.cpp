@@ -83,7 +83,7 @@ Row volumesOf(const ReadModel& read, const BeadModel& model, const std::string& 
     const voxelize::Lattice lattice = latticeOf(toolpath, beads, per_layer);
     voxelize::Voxelizer voxelizer(toolpath, beads, lattice);
     const double surface = voxelize::enclosedVolume(*voxelizer.printAll());
-    const double surplus = voxelizer.balance().all.surplus();
+    const double surplus = voxelizer.balance().unplaced();
     return {fmt::format("{:.6g}", lattice.voxel_size),
             fmt::format("{:.7g}", fed),
             fmt::format("{:.7g}", laid),
