@@ -80,6 +80,7 @@ done
 tiles deposit 4 data/gcode/tile.gcode "${pairs[@]}"
 shown=(--size 640x480)
 picture gallery_gear data/gcode/gear.gcode "${shown[@]}" --brdf pla-yellow
+picture tutorial_feature data/gcode/gear.gcode --size 800x600 --printed 50% --color-by feature --legend
 picture gallery_vase data/gcode/vase.gcode "${shown[@]}" --brdf silk-pink
 picture gallery_ripple "$corpus/gcode/gcode-preview-ripple_vase.gcode" "${shown[@]}" --brdf petg-orange
 picture gallery_knot data/gcode/knot.gcode "${shown[@]}" --brdf petg-black

@@ -146,7 +146,8 @@ for name, (faces, words) in bad.items():
     vdb = os.path.join(FOLDER, "kept.vdb")
     with open(vdb, "w", encoding="ascii") as file:
         file.write("old")
-    done = subprocess.run([GCODE2VDB, os.path.join(FOLDER, "box.gcode"), "-o", vdb, "--compare", write_model(name, faces)],
+    done = subprocess.run([GCODE2VDB, os.path.join(FOLDER, "box.gcode"), "-o", vdb, "--force", "--compare",
+                           write_model(name, faces)],
                           capture_output=True, text=True)
     check(done.returncode == 3 and (words in done.stderr or name == "none.stl"), f"{name}: {done.stderr.strip().splitlines()[-1]}")
     with open(vdb, encoding="ascii") as file:

@@ -190,7 +190,7 @@ for name in ("LAYER_1", "FEATURE_EXTERNAL_PERIMETER", "FEATURE_PERIMETER", "TOOL
     check(f"*ELSET, ELSET={name}," in text and f"*NSET, NSET={name}," in text, f"  {name}")
 
 # What can't be: a message, no file.
-old = write("old.inp", "old")
+old = write("old.inp", "by gcode2vdb 0.1: old")
 for options, words in ((["--max-nodes", "100"], "--voxel-size"), (["--elastic", "3500,0.7"], "stable"),
                        (["--elastic", "1,2,3"], "nine"), (["--grids", "layer"], "sets of layers"), (["--unit", "m"], "mm, N"),
                        (["--interior", "cull"], "solid"), (["--up", "y"], "as printed"), (["--usda"], "volume"),
@@ -198,7 +198,7 @@ for options, words in ((["--max-nodes", "100"], "--voxel-size"), (["--elastic", 
     done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", old, *options], capture_output=True, text=True)
     check(done.returncode == 2 and words in done.stderr, f"{' '.join(options)}: {done.stderr.strip().splitlines()[-1]}")
 with open(old, encoding="ascii") as file:
-    check(file.read() == "old", "the old file stays")
+    check(file.read() == "by gcode2vdb 0.1: old", "the old file stays")
 done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", os.path.join(FOLDER, "a.vdb"), "--elastic", "3500"],
                       capture_output=True, text=True)
 check(done.returncode == 2 and ".inp" in done.stderr, "--elastic is for elements")

@@ -215,13 +215,13 @@ for name, script, text in (("dies", "head -c 20000 > /dev/null; kill -9 $$", "wa
     for old in (False, True):
         if old:
             with open(path(f"{name}.mp4"), "w", encoding="ascii") as file:
-                file.write("old")
+                file.write("by vdbtrace 0.1: old")
         command = ["part.gcode", "--film", f"{name}.mp4", *QUICK, "--seconds", "0.5"]
         done = call(*command, env={**os.environ, "PATH": path(name)})
         check(done.returncode == 1 and text in done.stderr and f"{name}.mp4.frames" in done.stderr,
               f"ffmpeg that {name}: exit {done.returncode}: {done.stderr.strip()}")
         left = [x for x in os.listdir(FOLDER) if x.startswith(f".{name}") or x == f"{name}.mp4"]
-        check(left == ([f"{name}.mp4"] if old else []) and (not old or read(f"{name}.mp4") == b"old"), f"no half file: {left}")
+        check(left == ([f"{name}.mp4"] if old else []) and (not old or read(f"{name}.mp4") == b"by vdbtrace 0.1: old"), f"no half file: {left}")
     done = call(*command, "--stats", "-")
     check(done.returncode == 0 and json.loads(done.stdout)["film"]["reused"] > 0 and probe(f"{name}.mp4")[2] == 15,
           "the same command with a good one goes on from there")

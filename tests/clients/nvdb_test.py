@@ -27,7 +27,7 @@ def grids(name):
 
 
 def convert(name, *options, source="tile.gcode"):
-    run(GCODE2VDB, gcode(source), "-o", path(name), "--quiet", "--voxel-size", "0.1", *options)
+    run(GCODE2VDB, gcode(source), "-o", path(name), "--quiet", "--voxel-size", "0.1", "--force", *options)
 
 
 convert("print.vdb", "--grids", "layer,width")

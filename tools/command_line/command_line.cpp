@@ -197,8 +197,16 @@ std::size_t peakRssBytes() {
 void writeStats(const CommonOptions& options, const nlohmann::ordered_json& report) {
     if (options.stats.empty()) return;
     // File names need not be UTF-8; a report must not fail over one.
-    nlohmann::ordered_json marked{{"program", kProgramMark}};
-    marked.update(report);
+    const auto mark = [](const nlohmann::ordered_json& one) {
+        nlohmann::ordered_json marked{{"program", kProgramMark}};
+        marked.update(one);
+        return marked;
+    };
+    nlohmann::ordered_json marked = nlohmann::ordered_json::array();  // one of each input
+    if (report.is_array())
+        for (const nlohmann::ordered_json& one : report) marked.push_back(mark(one));
+    else
+        marked = mark(report);
     const std::string text = marked.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (options.stats == "-") {
         if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
