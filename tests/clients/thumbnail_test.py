@@ -45,7 +45,7 @@ def call(*arguments, stdin=b""):
 
 
 def pictured(source, sizes, output, *options):
-    done = call(source, "--thumbnail", sizes, "-o", output, "--stats", "report.json", *options)
+    done = call(source, "--thumbnail", sizes, "-o", output, "--force", "--stats", "report.json", *options)
     check(done.returncode == 0, f"{os.path.basename(source)} --thumbnail {sizes}: {done.stderr.decode().strip()[-300:]}")
     return json.loads(content("report.json"))
 
