@@ -63,12 +63,12 @@ def main(build):
                 return []
         return [found for found in map(alone, batch) if found]
 
-    findings = []
+    failed = False
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for found in pool.map(check, enumerate(batches(units, commands))):
-            findings += found
-    print("".join(findings), end="")
-    sys.exit(1 if findings else 0)
+            failed = failed or bool(found)
+            print("".join(found), end="", flush=True)
+    sys.exit(1 if failed else 0)
 
 
 main(os.path.abspath(sys.argv[1]))

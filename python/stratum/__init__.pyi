@@ -186,10 +186,13 @@ def read(
     source: _Path | bytes | bytearray, *, timed: bool | None = ..., progress: _Progress | None = ...,
     plate: int | None = ..., filament_diameter: float | Sequence[float] | None = ...,
     filament_colors: str | Sequence[str] | None = ...,
-    layer_height: float | None = ..., e_mode: Literal["auto", "absolute", "relative"] | None = ...,
+    layer_height: float | None = ..., belt: float | None = ..., planar: bool | None = ...,
+    e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,
-    planner: Literal["auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"] | None = ...,
-    printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "settled"] | None = ...,
+    planner: Literal[
+        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
+    ] | None = ...,
+    printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow_lag: float | None = ..., pressure_advance: float | None = ...,
     sag: float | None = ...,
 ) -> Toolpath: ...
