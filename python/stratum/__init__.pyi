@@ -260,10 +260,13 @@ def render(
     clip: Sequence[float] | None = ..., grid: str | None = ..., file_up: Literal["z", "y"] | None = ...,
     printed: str | None = ..., plate: int | None = ..., filament_diameter: float | Sequence[float] | None = ...,
     filament_colors: str | Sequence[str] | None = ...,
-    layer_height: float | None = ..., e_mode: Literal["auto", "absolute", "relative"] | None = ...,
+    layer_height: float | None = ..., belt: float | None = ..., planar: bool | None = ...,
+    e_mode: Literal["auto", "absolute", "relative"] | None = ...,
     firmware: Literal["auto", "marlin", "klipper", "reprap"] | None = ...,
-    planner: Literal["auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity"] | None = ...,
-    printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "settled"] | None = ...,
+    planner: Literal[
+        "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
+    ] | None = ...,
+    printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow_lag: float | None = ..., pressure_advance: float | None = ...,
     sag: float | None = ..., voxel_size: float | Literal["auto"] | None = ..., voxels_per_layer: int | None = ...,
     tolerance: float | None = ..., memory_budget: str | None = ..., half_width: float | None = ...,
