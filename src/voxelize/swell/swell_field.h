@@ -39,7 +39,7 @@ constexpr int kFar = 4;               ///< cells
 struct TileSums {
     static constexpr int kNodes = kTileCells + 1;
     static constexpr int kLevels = 3;
-    using Nodes = std::array<float, kNodes * kNodes>;
+    using Nodes = std::array<float, std::size_t{kNodes} * kNodes>;
     struct Layer {
         Nodes surplus{};                    ///< fed less held
         std::array<Nodes, kLevels> gain{};  ///< where outlines move out by (n + 1) / kLevels of kMostSwell
@@ -52,7 +52,7 @@ struct TileSums {
 
 /// The swell of a tile, mm, by the 16 x 16 nodes that it owns. Layers without any are left out.
 struct SwellTile {
-    using Nodes = std::array<float, kTileCells * kTileCells>;
+    using Nodes = std::array<float, std::size_t{kTileCells} * kTileCells>;
     std::vector<std::uint32_t> layers;  ///< ascending
     std::vector<Nodes> swell;           ///< in the same order
 
