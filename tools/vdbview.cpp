@@ -168,7 +168,7 @@ std::string tokenOf(const std::string& path) {
                              ": holds no token of at least 32 hexadecimal digits; remove it, and a new one is made");
         return token;
     }
-    const std::string token = serve::randomToken();
+    std::string token = serve::randomToken();
     const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (file < 0) throw OutputError(path + ": can't be written");
     const bool whole = write(file, (token + "\n").data(), token.size() + 1) == static_cast<ssize_t>(token.size() + 1);
