@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-MOST = 6  # units in a file
+MOST = 12  # units in a file
 CLANG = ["--quiet"]
 
 

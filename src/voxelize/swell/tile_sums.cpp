@@ -19,20 +19,22 @@ constexpr int kColumnNodes = kColumnCells + 1;
 
 using Layers = std::map<std::uint32_t, TileSums::Layer>;
 // The weights of a column's nodes at its points.
-using Weights = std::array<PlanField, kColumnNodes * kColumnNodes>;
+using Weights = std::array<PlanField, std::size_t{kColumnNodes} * kColumnNodes>;
 
 Weights columnWeights(const ColumnGrid& points) {
     Weights weights{};
     // From the middle of the samples to that of the square.
     const double shift = 0.5 * cellLattice().voxel_size;
-    for (int node = 0; node < kColumnNodes * kColumnNodes; ++node)
+    for (int node = 0; node < kColumnNodes * kColumnNodes; ++node) {
+        const int column = node % kColumnNodes;
+        const int row = node / kColumnNodes;
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (static_cast<double>(points.qx.v[c]) - shift) / kNodeSpacing + 1;
             const double y = (static_cast<double>(points.qy.v[c]) - shift) / kNodeSpacing + 1;
             weights[static_cast<std::size_t>(node)].v[c] =
-                static_cast<float>(std::max(1 - std::abs(x - node % kColumnNodes), 0.0) *
-                                   std::max(1 - std::abs(y - node / kColumnNodes), 0.0));
+                static_cast<float>(std::max(1 - std::abs(x - column), 0.0) * std::max(1 - std::abs(y - row), 0.0));
         }
+    }
     return weights;
 }
 
@@ -212,7 +214,7 @@ private:
         const int j = static_cast<int>(in_y);
         const double fx = in_x - i;
         const double fy = in_y - j;
-        const auto at = static_cast<std::size_t>(j * kNodes + i);
+        const auto at = static_cast<std::size_t>(j) * kNodes + static_cast<std::size_t>(i);
         nodes[at] += static_cast<float>(volume * (1 - fx) * (1 - fy));
         nodes[at + 1] += static_cast<float>(volume * fx * (1 - fy));
         nodes[at + kNodes] += static_cast<float>(volume * (1 - fx) * fy);
