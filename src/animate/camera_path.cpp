@@ -18,6 +18,15 @@ namespace {
 
 using Json = nlohmann::json;
 
+// What lies beyond would make no picture, and its differences no number.
+constexpr double kLatest = 1e7;      // s
+constexpr double kFarthest = 1e9;    // units of the world
+constexpr double kLeastStep = 1e-6;  // s, from one key to the next
+
+bool isNear(const glm::dvec3& p) {
+    return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
 CameraKey readKey(const Json& json, const std::string& place, const std::string& file) {
     JsonSection section(json, place, file);
     CameraKey key;
@@ -30,8 +39,11 @@ CameraKey readKey(const Json& json, const std::string& place, const std::string&
     double fov = std::numeric_limits<double>::quiet_NaN();
     section.read("fov", fov);
     section.finish();
-    if (!std::isfinite(key.time)) section.fail("time", "a number, the seconds from the film's begin");
-    if (!eye) section.fail("eye", "3 numbers, [ ... ]: where the camera stands");
+    if (!(std::abs(key.time) <= kLatest))
+        section.fail("time", "a number of at most 1e7, the seconds from the film's begin");
+    if (!eye || !isNear(*eye)) section.fail("eye", "3 numbers of at most 1e9, [ ... ]: where the camera stands");
+    if (key.look_at && !isNear(*key.look_at)) section.fail("look_at", "3 numbers of at most 1e9, [ ... ]");
+    if (key.up && !isNear(*key.up)) section.fail("up", "3 numbers of at most 1e9, [ ... ]");
     key.eye = *eye;
     if (std::isnan(fov)) return key;
     if (!(fov > 0.0 && fov <= 170.0)) section.fail("fov", "an angle above 0 and at most 170 degrees");
@@ -87,9 +99,11 @@ std::vector<CameraKey> readCameraKeys(const std::filesystem::path& path) {
     for (const Json& json_key : *list) {
         const std::string place = fmt::format("keys[{}]", keys.size());
         keys.push_back(readKey(json_key, place, file));
-        if (keys.size() > 1 && !(keys.back().time > keys[keys.size() - 2].time))
-            throw InputError(fmt::format("{}: {}.time: is {:g}, and the key before has {:g}; sort the keys by time",
-                                         file, place, keys.back().time, keys[keys.size() - 2].time));
+        if (keys.size() > 1 && !(keys.back().time >= keys[keys.size() - 2].time + kLeastStep))
+            throw InputError(fmt::format(
+                "{}: {}.time: is {:g}, and the key before has {:g}; sort the keys by time, a microsecond apart at "
+                "least",
+                file, place, keys.back().time, keys[keys.size() - 2].time));
     }
     return keys;
 }

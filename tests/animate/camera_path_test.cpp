@@ -81,6 +81,9 @@ TEST(CameraPath, SaysWhatIsWrongWithAFile) {
     mentions("keys: expected a list of two or more", R"({"keys": [{"time": 0, "eye": [0,0,0]}]})");
     mentions("keys[1].time: is 1, and the key before has 1",
              R"({"keys": [{"time": 1, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1]}]})");
+    mentions("a microsecond apart", R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"time": 1e-300, "eye": [1,1,1]}]})");
+    mentions("keys[0].eye: expected 3 numbers of at most 1e9",
+             R"({"keys": [{"time": 0, "eye": [0,0,1e300]}, {"time": 1, "eye": [1,1,1]}]})");
     mentions("keys[0].eye: expected 3 numbers",
              R"({"keys": [{"time": 0, "eye": [0,0]}, {"time": 1, "eye": [1,1,1]}]})");
     mentions("keys[0].eye: expected 3 numbers", R"({"keys": [{"time": 0}, {"time": 1, "eye": [1,1,1]}]})");

@@ -28,7 +28,8 @@ void check(const std::vector<stratum::animate::CameraKey>& keys) {
         path.place(share, options);
         require(options.eye.has_value());
         for (int axis = 0; axis < 3; ++axis) require(std::isfinite((*options.eye)[axis]));
-        require(options.eye->z >= least->eye.z && options.eye->z <= most->eye.z);
+        const double rounding = 1e-12 * std::max(std::abs(least->eye.z), std::abs(most->eye.z));
+        require(options.eye->z >= least->eye.z - rounding && options.eye->z <= most->eye.z + rounding);
     }
 }
 
