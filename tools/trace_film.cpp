@@ -131,10 +131,11 @@ private:
         }
         const assemble::StageOptions options = stageOptionsOf(o_);
         const int turns = film.turn ? static_cast<int>(film.frames) : 1;
-        reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
+        reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                          std::span<const glm::dvec3> outline) {
             if (!o_.objects.empty())
                 throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-            return assemble::pixelSpreadOf(options, print, part, nullptr, turns);
+            return assemble::pixelSpreadOf(options, print, part, outline, nullptr, turns);
         };
         assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, 0), reading);
         for (const std::string& line : objects.lines) say(o_.common, line);

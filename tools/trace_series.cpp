@@ -62,8 +62,9 @@ namespace {
 class Series {
 public:
     Series(const TraceCommand& o, int threads) : o_(o), threads_(threads), reading_(readingOf(o)) {
-        reading_.prints.pixel_spread = [this](const voxelize::Bounds& print, const voxelize::Bounds& part) {
-            return spread(print, part);
+        reading_.prints.pixel_spread = [this](const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                              std::span<const glm::dvec3> outline) {
+            return spread(print, part, outline);
         };
     }
 
@@ -95,9 +96,10 @@ public:
     const Json& reports() const { return reports_; }
 
 private:
-    shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part) const {
+    shade::PixelSpread spread(const voxelize::Bounds& print, const voxelize::Bounds& part,
+                              std::span<const glm::dvec3> outline) const {
         if (!o_.objects.empty()) throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-        return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, scene_ ? &scene_->camera : nullptr,
+        return assemble::pixelSpreadOf(stageOptionsOf(o_), print, part, outline, scene_ ? &scene_->camera : nullptr,
                                        o_.turntable);
     }
 

@@ -11,7 +11,10 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
     shade::SceneOptions seen = options.scene;
     seen.mm_per_unit = objects.mm_per_unit;
     seen.brdf = objects.brdf;
-    if (!options.frame_all) seen.frame = objects.part;
+    if (!options.frame_all) {
+        seen.frame = objects.part;
+        seen.outline = objects.outline;
+    }
     if (seen.transparent && !shade::catchesShadows(options.render.integrator)) seen.bed = false;
     // An integrator without light needs no environment.
     if (!needs_light && seen.env == "studio") seen.env = "constant:0,0,0";
@@ -31,12 +34,15 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
 }
 
 shade::PixelSpread pixelSpreadOf(const StageOptions& options, const voxelize::Bounds& print,
-                                 const voxelize::Bounds& part, const shade::Camera* camera, int turns) {
+                                 const voxelize::Bounds& part, std::span<const glm::dvec3> outline,
+                                 const shade::Camera* camera, int turns) {
     const trace::Box box = boxOf(print);
     if (camera != nullptr) return shade::pixelSpread(*camera, box, turns);
-    return shade::pixelSpread(shade::Camera::make(options.scene.camera, options.frame_all ? box : boxOf(part),
-                                                  options.render.width, options.render.height),
-                              box, turns);
+    const shade::Camera framed =
+        options.frame_all ? shade::Camera::make(options.scene.camera, box, options.render.width, options.render.height)
+                          : shade::Camera::make(options.scene.camera, boxOf(part), options.render.width,
+                                                options.render.height, outline);
+    return shade::pixelSpread(framed, box, turns);
 }
 
 ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOptions& options) {
@@ -44,10 +50,11 @@ ReadyScene readyScene(const std::vector<ObjectOptions>& objects, const PictureOp
     options.scene.camera.validate();
     TracingOptions tracing = tracingFor(options.scene, options.render, options.tracing);
     if (!tracing.prints.pixel_spread)
-        tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
+        tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                          std::span<const glm::dvec3> outline) {
             if (objects.size() != 1 || !objects.front().placement.isIdentity())
                 throw UsageError("--voxel-size auto is of a print that stands alone; give a number");
-            return pixelSpreadOf(options, print, part);
+            return pixelSpreadOf(options, print, part, outline);
         };
     TracedObjects read = readTracedObjects(objects, tracing);
     Stage stage = makeStage(read, options, tracing.events);

@@ -41,10 +41,12 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
 
 /// The sizes of pixels on a print, for PrintRequest::pixel_spread, which is called while the print is read. World space
 /// is that of the print, mm.
+/// @param outline  PrintLevels::outline
 /// @param camera  of the picture, if it is known already; else null, and it follows from the boxes
 /// @param turns   pictures of a turntable
 shade::PixelSpread pixelSpreadOf(const StageOptions& options, const voxelize::Bounds& print,
-                                 const voxelize::Bounds& part, const shade::Camera* camera = nullptr, int turns = 1);
+                                 const voxelize::Bounds& part, std::span<const glm::dvec3> outline,
+                                 const shade::Camera* camera = nullptr, int turns = 1);
 
 /// All inputs of a picture except the files.
 struct PictureOptions : StageOptions {

@@ -29,18 +29,28 @@ trace::Placement upright(const trace::Placement& placement) {
     return result;
 }
 
-// Expands the box of all parts by that of a placed shape: by all of it, if its file doesn't state the part's box.
-void include(std::optional<trace::Box>& parts, const Shape& shape, const trace::Placement& placement) {
+std::vector<glm::dvec3> cornersOf(const trace::Box& box) {
+    std::vector<glm::dvec3> corners;
+    for (int corner = 0; corner < 8; ++corner)
+        corners.emplace_back((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                             (corner & 4) != 0 ? box.max.z : box.min.z);
+    return corners;
+}
+
+// Adds a placed shape to the box and the outline of all parts: all of it, if its file doesn't state the part's box.
+void include(std::optional<trace::Box>& parts, std::vector<glm::dvec3>& outline, const Shape& shape,
+             const trace::Placement& placement) {
     const trace::Box own = shape.part.value_or(shape.intersector->bounds());
     if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 place((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
-                               (corner & 4) != 0 ? own.max.z : own.min.z);
-        const glm::dvec3 world = placement.linear * place + placement.offset;
+    const auto placed = [&placement](const glm::dvec3& place) { return placement.linear * place + placement.offset; };
+    const std::vector<glm::dvec3> corners = cornersOf(own);
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 world = placed(corner);
         if (!parts) parts = trace::Box{world, world};
         parts->min = glm::min(parts->min, world);
         parts->max = glm::max(parts->max, world);
     }
+    for (const glm::dvec3& point : shape.outline.empty() ? corners : shape.outline) outline.push_back(placed(point));
 }
 
 /// What one object is made of.
@@ -146,18 +156,21 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     std::vector<trace::SceneObject> scene;
     std::optional<trace::Box> parts;
     bool any_part = false;
+    bool any_outline = false;
     for (std::size_t n = 0; n < objects.size(); ++n) {
         const ObjectOptions& object = objects[n];
         const Shape& shape = reader.shapeOf(object, result);
         const bool y_up = object.up.empty() ? shape.y_up : object.up == "y";
         scene.push_back({shape.intersector, y_up ? upright(object.placement) : object.placement});
-        include(parts, shape, scene.back().placement);
+        include(parts, result.outline, shape, scene.back().placement);
         any_part = any_part || shape.part.has_value();
+        any_outline = any_outline || !shape.outline.empty();
         if (n == 0) result.mm_per_unit = shape.mm_per_unit;
         addFacts(shape, result);
         addMaterial(plans[n], shape, needs, materials);
     }
     if (any_part) result.part = parts;
+    if (!any_outline) result.outline.clear();
     result.materials = materials.materials();
     result.brdf = materials.brdf();
     result.material_report = materials.report();

@@ -28,7 +28,8 @@ struct TracedObjects {
     std::vector<shade::Legend> legends;
     /// World-space box of the parts without what is printed beside them, if a file states it.
     std::optional<trace::Box> part;
-    double mm_per_unit = 1.0;  ///< of world space, as the first object's file states
+    std::vector<glm::dvec3> outline;  ///< points around those parts, for cameras; empty: the corners of the box
+    double mm_per_unit = 1.0;         ///< of world space, as the first object's file states
     /// Of each G-code file, in the order of their first objects: to show another moment of it, and to report its
     /// bricks.
     std::vector<std::shared_ptr<LazyPrint>> prints;

@@ -36,6 +36,7 @@ TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderO
     options.color_by = scene.color_by;
     options.smooth_normals = scene.smooth_normals;
     options.labels = shade::labelsOf(render.aovs);
+    options.prints.outline = !scene.camera.eye;
     if (const std::string& name = render.integrator.name; name == "layer" || name == "tool" || name == "feature") {
         const shade::Label label = shade::parseLabel(name);
         if (std::find(options.labels.begin(), options.labels.end(), label) == options.labels.end())

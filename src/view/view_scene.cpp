@@ -141,7 +141,9 @@ ViewedPicture ViewScene::stage(Objects& objects, const PicturePlan& plan,
         const trace::Box box = options.frame_all ? print->bounds() : objects.traced.part.value_or(print->bounds());
         shade::CameraOptions camera = options.scene.camera;
         camera.mm_per_unit = objects.traced.mm_per_unit;
-        const shade::Camera moved = shade::Camera::make(camera, box, width, height);
+        const shade::Camera moved = shade::Camera::make(
+            camera, box, width, height,
+            options.frame_all ? std::span<const glm::dvec3>{} : std::span<const glm::dvec3>(objects.traced.outline));
         if (lightFits(moved, options.scene.env, light)) {
             ViewedPicture picture = staged(std::move(print), plan, light);
             picture.scene.camera = moved;

@@ -12,6 +12,7 @@
 #include "ondemand/detail_levels.h"
 #include "voxelize/beads/growth.h"
 #include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/part_outline.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxel_choice.h"
 
@@ -210,13 +211,16 @@ private:
         if (!request_.printed.empty()) cut(selection_, request_.printed, *toolpath_);
         bounds_ = voxelize::boundsOf(*toolpath_, selection_);
         result_.part = voxelize::partBounds(*toolpath_, selection_);
+        if (!request_.outline) return;
+        for (const auto& [x, y, z] : voxelize::partOutline(*toolpath_, selection_, result_.part))
+            result_.outline.emplace_back(x, y, z);
     }
 
     void chooseLattice() {
         if (request_.print.voxel_auto) {
             if (!request_.pixel_spread)
                 throw UsageError("--voxel-size auto: nothing says what a pixel spans; give a number");
-            pixels_ = request_.pixel_spread(bounds_, result_.part);
+            pixels_ = request_.pixel_spread(bounds_, result_.part, result_.outline);
         }
         lattice_ = voxelize::latticeFor(request_.print, *toolpath_, selection_, bounds_, voxelize::Interior::keep,
                                         pixels_.smallest);

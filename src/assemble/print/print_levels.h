@@ -31,9 +31,12 @@ struct PrintRequest {
     /// Exactly that many moments, of the selected beads, of which some may be equal, see voxelize::growthMoments().
     /// Else they are shares of the whole file, each with more beads than the one before.
     bool series_of_selection = false;
-    /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; the second box is that of the part,
-    /// see voxelize::partBounds().
-    std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part)> pixel_spread;
+    /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; what else it gets is of the part
+    /// alone.
+    std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                     std::span<const glm::dvec3> outline)>
+        pixel_spread;
+    bool outline = false;  ///< PrintLevels::outline is needed
     /// Where prints are kept for the next scene of the same files; null: nothing is kept. Not with print.voxel_auto.
     KeptPrints* kept = nullptr;
     /// A program that is in memory already: then the objects' path is only a name. Its times are not computed.
@@ -54,10 +57,11 @@ struct PrintLevels {
     std::vector<glm::dvec3> tips;          ///< mm, by moment: where the nozzle is when the last bead is finished
     std::vector<std::uint32_t> selection;  ///< indices of its beads, ascending
     std::shared_ptr<const gcode::Toolpath> toolpath;
-    voxelize::Bounds part;          ///< mm, of its beads without what is printed beside the part
-    std::string content;            ///< SHA-256 of the file, if asked for
-    nlohmann::ordered_json report;  ///< path, counts and voxel sizes
-    std::string line;               ///< the same in short, for people
+    voxelize::Bounds part;            ///< mm, of its beads without what is printed beside the part
+    std::vector<glm::dvec3> outline;  ///< voxelize::partOutline(); empty unless PrintRequest::outline
+    std::string content;              ///< SHA-256 of the file, if asked for
+    nlohmann::ordered_json report;    ///< path, counts and voxel sizes
+    std::string line;                 ///< the same in short, for people
     double parse_seconds = 0;
 };
 

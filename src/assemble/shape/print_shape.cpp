@@ -73,6 +73,7 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     shape.report = print.report;
     shape.line = print.line;
     shape.part = boxOf(print.part);
+    shape.outline = print.outline;
     shape.source = print.content;
     if (needs.needsStatedColors(object)) {
         shape.colors = colorsOf(*print.toolpath, print.selection);

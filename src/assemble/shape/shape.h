@@ -26,6 +26,7 @@ struct Shape {
     std::shared_ptr<const trace::Intersector> intersector;
     std::map<std::string, trace::AttributeSummary> summaries;  ///< of the attributes that it must provide
     std::optional<trace::Box> part;                            ///< without what is printed beside it, if that is known
+    std::vector<glm::dvec3> outline;                           ///< points around the part; none: the corners of its box
     PrintColors colors;                                        ///< that the file states, if they are used
     std::string source;                                        ///< identifies the file, if asked for
     nlohmann::ordered_json report;

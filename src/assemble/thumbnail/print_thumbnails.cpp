@@ -30,6 +30,7 @@ StageOptions stageOf(int width, int height) {
     StageOptions stage;
     stage.scene.bed = false;
     stage.scene.transparent = true;
+    stage.scene.camera.margin = 0.02;  // a thumbnail has no room to spare
     stage.render.width = width;
     stage.render.height = height;
     return stage;
@@ -49,24 +50,6 @@ void leaveOutWhatIsBeside(voxelize::PrintOptions& print, const gcode::Toolpath& 
                                      gcode::featureName(gcode::Feature::wipe_tower));
 }
 
-// A thumbnail has no room to spare: the box of the part reaches nearly to its edges. Named views leave more.
-void fill(StageOptions& options, const trace::Box& box) {
-    constexpr double kFilled = 0.96;
-    const glm::dvec2 half = 0.5 * glm::dvec2(options.render.width, options.render.height);
-    const shade::Camera camera =
-        shade::Camera::make(options.scene.camera, box, options.render.width, options.render.height);
-    double reach = 0.0;  // of the farthest corner, from the middle to the edge
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        const auto seen =
-            camera.project({(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
-                            (corner & 4) != 0 ? box.max.z : box.min.z});
-        if (!seen) return;
-        const glm::dvec2 from_middle = glm::abs(*seen - half) / half;
-        reach = std::max({reach, from_middle.x, from_middle.y});
-    }
-    if (reach > 0.0) options.scene.camera.zoom = std::clamp(kFilled / reach, 0.5, 4.0);
-}
-
 // RGBA of the print in one size.
 Pixels drawn(const TracedObjects& objects, StageOptions options, const ReadEvents& events) {
     // Below this a pixel of the denoiser's window is a layer or a wall: samples are cheaper than what it would blur.
@@ -74,7 +57,6 @@ Pixels drawn(const TracedObjects& objects, StageOptions options, const ReadEvent
     constexpr int kSamples = 128;
     const bool small = options.render.width * options.render.height <= kSmall;
     if (small) options.render.spp = kSamples;
-    fill(options, objects.part.value_or(objects.intersector->bounds()));
     const bool denoised = chooseDenoising({small ? std::optional(false) : std::nullopt, false, small}, options.render);
     const Stage stage = makeStage(objects, options, events);
     const Step step(events, "rendering", false);
@@ -120,9 +102,9 @@ std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::
     tracing.prints.print.voxel_auto = !choosesVoxels(options.print);
     leaveOutWhatIsBeside(tracing.prints.print, *toolpath);
     tracing.prints.toolpath = toolpath;
-    tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part) {
-        fill(sharpest, boxOf(part));
-        return pixelSpreadOf(sharpest, print, part);
+    tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
+                                      std::span<const glm::dvec3> outline) {
+        return pixelSpreadOf(sharpest, print, part, outline);
     };
     ObjectOptions object;
     object.vdb = name;

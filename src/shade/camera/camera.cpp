@@ -42,14 +42,14 @@ glm::dvec3 defaultUp(const glm::dvec3& forward) {
 
 /// One image axis of the fit: points (a, depth) must be seen within +-slope from the eye (position, back).
 struct Axis {
-    std::array<double, 8> a{}, depth{};
+    std::vector<double> a, depth;
     double slope = 1.0;
 
     /// Depth of the one eye whose two bounding lines of this slope both touch the points.
     double tightest() const {
         double high = -std::numeric_limits<double>::infinity();
         double low = high;
-        for (std::size_t i = 0; i < 8; ++i) {
+        for (std::size_t i = 0; i < a.size(); ++i) {
             high = std::max(high, a[i] - slope * depth[i]);
             low = std::max(low, -a[i] - slope * depth[i]);
         }
@@ -64,7 +64,7 @@ struct Axis {
             const double s = 0.5 * (narrow + wide);
             double from = -std::numeric_limits<double>::infinity();
             double to = -from;
-            for (std::size_t k = 0; k < 8; ++k) {
+            for (std::size_t k = 0; k < a.size(); ++k) {
                 from = std::max(from, a[k] - s * (depth[k] - back));
                 to = std::min(to, a[k] + s * (depth[k] - back));
             }
@@ -124,6 +124,31 @@ Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec
 
 namespace {
 
+std::vector<glm::dvec3> cornersOf(const trace::Box& box) {
+    std::vector<glm::dvec3> corners;
+    corners.reserve(8);
+    for (unsigned n = 0; n < 8; ++n)
+        corners.emplace_back((n & 1u) ? box.max.x : box.min.x, (n & 2u) ? box.max.y : box.min.y,
+                             (n & 4u) ? box.max.z : box.min.z);
+    return corners;
+}
+
+/// Points around all that these pass through when they turn about the vertical axis through `middle`.
+std::vector<glm::dvec3> turnedAround(const std::vector<glm::dvec3>& points, const glm::dvec3& middle) {
+    constexpr int kSides = 16;
+    std::vector<glm::dvec3> around;
+    around.reserve(points.size() * kSides);
+    for (const glm::dvec3& point : points) {
+        // The corners of a polygon around the circle.
+        const double radius = std::hypot(point.x - middle.x, point.y - middle.y) / std::cos(std::numbers::pi / kSides);
+        for (int n = 0; n < kSides; ++n) {
+            const double angle = 2.0 * std::numbers::pi * n / kSides;
+            around.emplace_back(middle.x + radius * std::cos(angle), middle.y + radius * std::sin(angle), point.z);
+        }
+    }
+    return around;
+}
+
 /// The camera with the lens of the options.
 Camera focused(const Camera& camera, const CameraOptions& options, const trace::Box& box) {
     double radius = 0.5 * options.aperture;
@@ -143,12 +168,14 @@ Camera focused(const Camera& camera, const CameraOptions& options, const trace::
 
 }  // namespace
 
-Camera Camera::make(const CameraOptions& options, const trace::Box& box, int width, int height) {
+Camera Camera::make(const CameraOptions& options, const trace::Box& box, int width, int height,
+                    std::span<const glm::dvec3> outline) {
     options.validate();
-    return focused(fitted(options, box, width, height).zoomed(options.zoom), options, box);
+    return focused(fitted(options, box, outline, width, height).zoomed(options.zoom), options, box);
 }
 
-Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, int width, int height) {
+Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, std::span<const glm::dvec3> outline,
+                      int width, int height) {
     const glm::dvec3 middle = 0.5 * (box.min + box.max);
     if (options.eye) {
         const glm::dvec3 target = options.look_at.value_or(middle);
@@ -161,31 +188,31 @@ Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, int w
     const glm::dvec3 forward = kViews[static_cast<std::size_t>(options.view)].forward;
     Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
 
-    // Turned about its middle, a box fills a cylinder; the box around that.
-    const double around = 0.5 * std::hypot(box.max.x - box.min.x, box.max.y - box.min.y);
-    const trace::Box fit = options.all_around ? trace::Box{{middle.x - around, middle.y - around, box.min.z},
-                                                           {middle.x + around, middle.y + around, box.max.z}}
-                                              : box;
+    std::vector<glm::dvec3> points(outline.begin(), outline.end());
+    if (points.empty()) points = cornersOf(box);
+    camera.fit(middle, options.all_around ? turnedAround(points, middle) : points, options.margin);
+    return camera;
+}
 
+void Camera::fit(const glm::dvec3& middle, const std::vector<glm::dvec3>& points, double margin) {
     // In view space each pair of opposite frustum planes is a problem in the plane of one image axis and depth.
-    const double room = camera.tan_half_ * (1.0 - 2.0 * options.margin);
+    const double room = tan_half_ * (1.0 - 2.0 * margin);
     Axis x;
     Axis y;
-    x.slope = room * width / height;
+    x.slope = room * width_ / height_;
     y.slope = room;
-    for (std::size_t i = 0; i < 8; ++i) {
-        const glm::dvec3 corner((i & 1u) ? fit.max.x : fit.min.x, (i & 2u) ? fit.max.y : fit.min.y,
-                                (i & 4u) ? fit.max.z : fit.min.z);
-        const glm::dvec3 d = corner - middle;
-        x.a[i] = glm::dot(d, camera.right_);
-        y.a[i] = glm::dot(d, camera.up_);
-        x.depth[i] = y.depth[i] = glm::dot(d, camera.forward_);
+    double size = 0.0;
+    for (const glm::dvec3& point : points) {
+        const glm::dvec3 d = point - middle;
+        x.a.push_back(glm::dot(d, right_));
+        y.a.push_back(glm::dot(d, up_));
+        x.depth.push_back(glm::dot(d, forward_));
+        size = std::max(size, glm::length(d));
     }
-    double back = std::min(x.tightest(), y.tightest());
-    // A box without any size has no distance of its own.
-    if (glm::length(box.max - box.min) <= 0.0) back = -1.0;
-    camera.eye_ = middle + back * camera.forward_ + x.centered(back) * camera.right_ + y.centered(back) * camera.up_;
-    return camera;
+    y.depth = x.depth;
+    // What has no size has no distance of its own.
+    const double back = size > 0.0 ? std::min(x.tightest(), y.tightest()) : -1.0;
+    eye_ = middle + back * forward_ + x.centered(back) * right_ + y.centered(back) * up_;
 }
 
 Camera Camera::zoomed(double factor) const {

@@ -8,7 +8,9 @@
 #include <glm/vec3.hpp>
 
 #include <optional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 namespace stratum::shade {
 
@@ -19,7 +21,7 @@ enum class View { iso, front, back, left, right, top, bottom };
 View parseView(std::string_view text);
 
 struct CameraOptions {
-    View view = View::iso;              ///< used unless `eye` is given; the distance is fitted to the box
+    View view = View::iso;              ///< used unless `eye` is given; the distance is fitted to what is seen
     std::optional<glm::dvec3> eye;      ///< world space
     std::optional<glm::dvec3> look_at;  ///< world space; needs `eye`; default: the middle of the box
     std::optional<glm::dvec3> up;  ///< world space, any length; default: +z, or +y when looking straight up or down
@@ -31,7 +33,7 @@ struct CameraOptions {
     std::optional<glm::dvec3> focus_point;  ///< or this world-space point is sharp; default: the middle of the box
     bool all_around = false;                ///< fit a named view so that the box fits from all sides, for turntables
     double zoom = 1.0;                      ///< magnification from the same eye, in [0.05, 50]; narrows the fov
-    double margin = 0.05;  ///< share of the frame left free on each side of a fitted view, in [0, 0.45]
+    double margin = 0.08;  ///< share of the frame left free on each side of a fitted view, in [0, 0.45]
 
     /// Throws UsageError.
     void validate() const;
@@ -47,9 +49,12 @@ public:
     /// Throws UsageError if eye and look_at coincide or `up` is parallel to the line between them.
     Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec3& up, double fov, int width, int height);
 
-    /// The camera of `options` for this box. A named view is as close as possible with all corners of the box inside
-    /// the frame without its margin, and centered. Throws UsageError.
-    static Camera make(const CameraOptions& options, const trace::Box& box, int width, int height);
+    /// The camera of `options` for this box. A named view is as close as possible with all points of `outline` inside
+    /// the frame without its margin, and centered.
+    /// @param outline  points whose convex hull holds what is seen; none: the corners of the box
+    /// Throws UsageError.
+    static Camera make(const CameraOptions& options, const trace::Box& box, int width, int height,
+                       std::span<const glm::dvec3> outline = {});
 
     /// The ray through a point of the frame, in pixels.
     trace::Ray ray(const glm::dvec2& pixel) const {
@@ -87,7 +92,9 @@ public:
     double fov() const { return fov_; }
 
 private:
-    static Camera fitted(const CameraOptions& options, const trace::Box& box, int width, int height);
+    static Camera fitted(const CameraOptions& options, const trace::Box& box, std::span<const glm::dvec3> outline,
+                         int width, int height);
+    void fit(const glm::dvec3& middle, const std::vector<glm::dvec3>& points, double margin);
 
     glm::dvec3 eye_, right_, up_, forward_;
     double fov_;       // degrees

@@ -94,7 +94,7 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
     const trace::Box box = print.bounds();
     CameraOptions camera = options.camera;
     camera.mm_per_unit = options.mm_per_unit;
-    SceneDescription scene{.camera = Camera::make(camera, options.frame.value_or(box), width, height),
+    SceneDescription scene{.camera = Camera::make(camera, options.frame.value_or(box), width, height, options.outline),
                            .material = makeBrdf(options.brdf),
                            .objects = {},
                            .smooth_normals = options.smooth_normals,

@@ -37,6 +37,7 @@ struct SceneOptions {
     CameraOptions camera;
     /// The box that a named view is fitted to, world space: the part without skirts and towers. Empty: everything.
     std::optional<trace::Box> frame;
+    std::vector<glm::dvec3> outline;  ///< points around the part, closer than that box; may be empty
 };
 
 /// Integer attributes of what was printed.

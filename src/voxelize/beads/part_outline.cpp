@@ -1,0 +1,117 @@
+#include "voxelize/beads/part_outline.h"
+
+#include "gcode/toolpath/purpose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr std::size_t kDirections = 32;
+constexpr std::size_t kSlabs = 32;
+
+// How far a slab reaches into each direction, mm from the middle of the part.
+using Reach = std::array<float, kDirections>;
+
+class Outline {
+public:
+    explicit Outline(const Bounds& bounds) : bounds_(bounds) {
+        for (std::size_t n = 0; n < kDirections; ++n) {
+            const double angle = angleOf(static_cast<double>(n));
+            cosine_[n] = static_cast<float>(std::cos(angle));
+            sine_[n] = static_cast<float>(std::sin(angle));
+        }
+        for (Reach& reach : slabs_) reach.fill(-std::numeric_limits<float>::infinity());
+    }
+
+    void add(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
+        const Section section = sectionOf(toolpath, bead);
+        const float half_width = static_cast<float>(section.half_flat + section.radius);
+        addPoint(bead.x0, bead.y0, bead.z0, half_width, section);
+        addPoint(bead.x1, bead.y1, bead.z1, half_width, section);
+        if (bead.arc < 0) return;
+        // Pieces that are short enough that the circle stays within a hundredth of its radius of them.
+        const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+        constexpr double kStep = 0.25;  // radians
+        const int pieces = static_cast<int>(std::abs(arc.sweep) / kStep) + 1;
+        const double rx = bead.x0 - arc.center_x;
+        const double ry = bead.y0 - arc.center_y;
+        for (int n = 1; n < pieces; ++n) {
+            const double share = static_cast<double>(n) / pieces;
+            const double c = std::cos(share * arc.sweep);
+            const double s = std::sin(share * arc.sweep);
+            addPoint(arc.center_x + c * rx - s * ry, arc.center_y + s * rx + c * ry,
+                     std::lerp(double{bead.z0}, double{bead.z1}, share), half_width, section);
+        }
+    }
+
+    std::vector<std::array<double, 3>> points() const {
+        std::vector<std::array<double, 3>> points;
+        for (std::size_t slab = 0; slab < kSlabs; ++slab) {
+            const Reach& reach = slabs_[slab];
+            if (!std::isfinite(reach[0])) continue;
+            for (std::size_t n = 0; n < kDirections; ++n) {
+                const std::array<double, 2> corner = cornerOf(reach, n);
+                for (const double z : {heightOf(slab), heightOf(slab + 1)}) points.push_back({corner[0], corner[1], z});
+            }
+        }
+        return points;
+    }
+
+private:
+    static double angleOf(double n) { return 2 * std::numbers::pi * n / kDirections; }
+    double middle(std::size_t axis) const { return 0.5 * (bounds_.min[axis] + bounds_.max[axis]); }
+    double heightOf(std::size_t slab) const {
+        return std::lerp(bounds_.min[2], bounds_.max[2], static_cast<double>(slab) / kSlabs);
+    }
+    std::size_t slabOf(double z) const {
+        const double share = (z - bounds_.min[2]) / std::max(bounds_.max[2] - bounds_.min[2], 1e-9);
+        return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0 - 1e-9) * kSlabs);
+    }
+
+    void addPoint(double x, double y, double z, float half_width, const Section& section) {
+        const auto px = static_cast<float>(x - middle(0));
+        const auto py = static_cast<float>(y - middle(1));
+        const double middle_z = z - section.drop;
+        const std::size_t last = slabOf(middle_z + section.halfHeight());
+        for (std::size_t slab = slabOf(middle_z - section.halfHeight()); slab <= last; ++slab)
+            for (std::size_t n = 0; n < kDirections; ++n)
+                slabs_[slab][n] = std::max(slabs_[slab][n], px * cosine_[n] + py * sine_[n] + half_width);
+    }
+
+    // Where the lines of two neighbouring directions meet, within the box.
+    std::array<double, 2> cornerOf(const Reach& reach, std::size_t n) const {
+        const double a = static_cast<double>(reach[n]);
+        const double b = static_cast<double>(reach[(n + 1) % kDirections]);
+        const double half = 0.5 * angleOf(1);
+        // Along the direction between both, and across.
+        const double along = (a + b) / (2 * std::cos(half));
+        const double across = (b - a) / (2 * std::sin(half));
+        const double angle = angleOf(static_cast<double>(n)) + half;
+        return {
+            std::clamp(middle(0) + along * std::cos(angle) - across * std::sin(angle), bounds_.min[0], bounds_.max[0]),
+            std::clamp(middle(1) + along * std::sin(angle) + across * std::cos(angle), bounds_.min[1], bounds_.max[1])};
+    }
+
+    const Bounds bounds_;
+    std::array<float, kDirections> cosine_{}, sine_{};
+    std::array<Reach, kSlabs> slabs_{};
+};
+
+}  // namespace
+
+std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
+                                               std::span<const std::uint32_t> selection, const Bounds& bounds) {
+    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath);
+    const auto isPart = [&purposes](std::uint32_t bead) { return purposes[bead] != gcode::Purpose::beside; };
+    const bool any = std::any_of(selection.begin(), selection.end(), isPart);
+    Outline outline(bounds);
+    for (const std::uint32_t bead : selection)
+        if (!any || isPart(bead)) outline.add(toolpath, toolpath.beads[bead]);
+    return outline.points();
+}
+
+}  // namespace stratum::voxelize
