@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <vector>
 
 namespace stratum {
 namespace {
@@ -44,6 +45,30 @@ TEST(Camera, FitsTheBoxTightlyAndInTheMiddle) {
             }
         }
     }
+}
+
+// An octahedron fills as much of the frame as its box would, though the corners of the box are far from it.
+TEST(Camera, FitsAnOutline) {
+    const trace::Box box{{0, 0, 0}, {60, 40, 50}};
+    const std::vector<glm::dvec3> outline{{0, 20, 25},  {60, 20, 25}, {30, 0, 25},
+                                          {30, 40, 25}, {30, 20, 0},  {30, 20, 50}};
+    for (int v = 0; v < 7; ++v)
+        for (const bool all_around : {false, true}) {
+            CameraOptions options;
+            options.view = static_cast<View>(v);
+            options.all_around = all_around;
+            const Camera camera = Camera::make(options, box, 800, 600, outline);
+            double least = 1.0;  // share of the frame between a point and the edge
+            for (const glm::dvec3& point : outline) {
+                const auto p = camera.project(point);
+                ASSERT_TRUE(p);
+                least = std::min({least, p->x / 800, 1.0 - p->x / 800, p->y / 600, 1.0 - p->y / 600});
+            }
+            if (all_around)
+                EXPECT_GE(least, options.margin - 1e-6);
+            else
+                EXPECT_NEAR(least, options.margin, 1e-6) << v;
+        }
 }
 
 TEST(Camera, ProjectIsTheInverseOfRay) {
