@@ -1,5 +1,7 @@
 #include "study/picture/thumbnail.h"
 
+#include "shade/film/picture.h"
+
 namespace stratum::study {
 
 shade::Film thumbnail(const shade::Film& film, int factor) {
@@ -14,6 +16,10 @@ shade::Film thumbnail(const shade::Film& film, int factor) {
             sum.alpha += film.at(x, y).alpha * share;
         }
     return small;
+}
+
+void writeThumbnail(const std::filesystem::path& path, const shade::Film& film, int factor) {
+    shade::PictureFile(path).write(thumbnail(film, factor), {{"Software", "vdbstudy " STRATUM_VERSION}});
 }
 
 }  // namespace stratum::study

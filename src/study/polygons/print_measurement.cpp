@@ -2,7 +2,6 @@
 
 #include "march/brick/brick_intersector.h"
 #include "ondemand/print_field.h"
-#include "shade/film/picture.h"
 #include "shade/integrator/render.h"
 #include "study/cost/own_process.h"
 #include "study/picture/image_error.h"
@@ -187,7 +186,7 @@ std::vector<std::string> measurePrint(const std::string& path, const Representat
     }
     const std::size_t peak = peakSoFar();
     const std::size_t bytes = held.traced.intersector->bytes();
-    if (!picture.empty()) shade::PictureFile(picture).write(thumbnail(result.film, kThumbnail), {});
+    if (!picture.empty()) writeThumbnail(picture, result.film, kThumbnail);
     std::string noise;
     std::string bias;
     if (shot.noise_spp > 0 && peers.beads) {

@@ -2,7 +2,6 @@
 #include "march/brick/brick_intersector.h"
 #include "march/file/sdf_grid.h"
 #include "march/reference/sphere_intersector.h"
-#include "shade/film/picture.h"
 #include "study/cost/times.h"
 #include "study/picture/image_error.h"
 #include "study/picture/thumbnail.h"
@@ -198,7 +197,7 @@ SceneResult measureScene(const std::string& path, const PeerTracers& peers, int 
         const auto scene = describe(file, *traced.intersector, width, height);
         const shade::Film film = shade::render(*traced.intersector, scene, file.render).film;
         fs::create_directories(common.folder / "references");
-        shade::PictureFile(result.picture).write(thumbnail(film, kThumbnail), {});
+        writeThumbnail(result.picture, film, kThumbnail);
         exact = displayed(film);
         return *exact;
     };

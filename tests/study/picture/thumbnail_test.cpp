@@ -1,5 +1,7 @@
 #include "study/picture/thumbnail.h"
 
+#include "base/own_file.h"
+
 #include <gtest/gtest.h>
 
 namespace stratum::study {
@@ -21,6 +23,16 @@ TEST(Thumbnail, IsTheMeanOfItsPixels) {
     EXPECT_EQ(small.at(0, 0).alpha, 1.0f);
     EXPECT_EQ(small.at(1, 0).alpha, 0.5f);
     EXPECT_EQ(small.at(2, 0).alpha, 0.0f);
+}
+
+TEST(Thumbnail, IsAFileThatTheNextStudyMayReplace) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() / "stratum_study_thumbnail.jpg";
+    std::filesystem::remove(path);
+    const shade::Film film(8, 6, {0, 0, 8, 6}, shade::FilmContent::unit);
+    writeThumbnail(path, film, 2);
+    EXPECT_TRUE(isOwnFile(path));
+    writeThumbnail(path, film, 2);
+    std::filesystem::remove(path);
 }
 
 }  // namespace
