@@ -139,10 +139,9 @@ std::size_t writeMaterial(const SolidElements& elements, const gcode::Toolpath& 
 InpReport writeInp(const SolidElements& elements, const Hexahedra& mesh, const gcode::Toolpath& toolpath,
                    const InpOptions& options, const std::filesystem::path& path) {
     if (elements.list.empty())
-        throw UsageError(
-            fmt::format("{}: no element of {:g} mm has its middle inside the print; choose a smaller "
-                        "--voxel-size, half a layer height or less",
-                        path.string(), elements.edge));
+        throw UsageError(fmt::format(
+            "{}: the print holds less plastic than half an element of {:g} mm; choose a smaller --voxel-size",
+            path.string(), elements.edge));
     AtomicFile file(path);
     std::ofstream stream(file.temporary(), std::ios::binary);
     Lines out(stream);

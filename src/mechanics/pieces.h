@@ -4,6 +4,8 @@
 #include "mechanics/solid_elements.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 
 namespace stratum::mechanics {
 
@@ -14,6 +16,8 @@ struct Pieces {
 
 /// Keeps the piece with the most elements, of equal ones the lowest. Elements are one piece where they share a face:
 /// what shares an edge alone would be a hinge.
-Pieces keepLargestPiece(SolidElements& elements);
+/// @param counts  whether elements of a bead (an index into Toolpath::beads) count, e.g. those of the part; without it,
+///                and if none does, all count
+Pieces keepLargestPiece(SolidElements& elements, const std::function<bool(std::uint32_t)>& counts = {});
 
 }  // namespace stratum::mechanics

@@ -1,4 +1,4 @@
-// Toolpath -> the solid voxels of a print, each with the bead that it was printed as.
+// Toolpath -> the solid cubes of a print, each with the bead that it was printed as.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -12,7 +12,7 @@
 
 namespace stratum::mechanics {
 
-/// A cube whose middle is inside the print's surface.
+/// A cube that is solid.
 struct SolidElement {
     std::int32_t i = 0, j = 0, k = 0;  ///< its place, counted in cubes
     std::uint32_t bead = 0;            ///< index into Toolpath::beads: the one whose surface is nearest to the middle
@@ -24,6 +24,8 @@ struct SolidElements {
     double origin[3] = {0, 0, 0};    ///< mm
     std::vector<SolidElement> list;  ///< ascending k, then j, then i
 
+    double plastic = 0;  ///< volume of the print's solid, mm^3
+
     double volume() const { return static_cast<double>(list.size()) * edge * edge * edge; }  ///< mm^3
 };
 
@@ -32,10 +34,11 @@ struct SolidOptions {
     std::function<void(double)> progress;  ///< fraction done, one thread at a time
 };
 
-/// Cubes of the lattice's voxel size, whose faces lie on layer planes where the lattice's planes do. The solid is that
-/// of the level set: beads, and what closes the planes between layers. `selection`: indices into toolpath.beads,
-/// ascending. Parallel; the result does not depend on the number of threads. Throws UsageError, with a size that fits,
-/// if there are more than `most`, and if a layer has more than kMostPerLayer cubes.
+/// Cubes of the lattice's voxel size, whose faces lie on layer planes where the lattice's planes do; which of them are
+/// solid: see chosenCubes(). The solid is that of the level set: beads, and what closes the planes between layers.
+/// `selection`: indices into toolpath.beads, ascending. Parallel; the result does not depend on the number of threads.
+/// Throws UsageError, with a size that fits, if there are more than `most`, and if a layer has more than kMostPerLayer
+/// cubes.
 SolidElements solidElements(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                             const voxelize::Lattice& lattice, const SolidOptions& options = {});
 

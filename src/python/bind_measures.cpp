@@ -7,6 +7,7 @@
 
 #include "compare/comparison_report.h"
 #include "compare/model_file.h"
+#include "gcode/toolpath/purpose.h"
 #include "report/print_report.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
@@ -83,7 +84,7 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
         voxelize::VoxelizeOptions outside;
         outside.interior = voxelize::Interior::cull;
         outside.progress = report;
-        const auto grid = voxelize::voxelize(*print.toolpath, voxelize::beadsOfModel(*print.toolpath, plan.selection()),
+        const auto grid = voxelize::voxelize(*print.toolpath, gcode::beadsOfPart(*print.toolpath, plan.selection()),
                                              plan.lattice(), outside);
         return compare::describe(compare::compareToModel(*grid, closed, options));
     }));

@@ -1,5 +1,6 @@
 #include "report/print_report.h"
 
+#include "gcode/toolpath/purpose.h"
 #include "report/level_set/field_probe.h"
 #include "report/level_set/outside.h"
 #include "report/level_set/solid_sums.h"
@@ -230,9 +231,21 @@ private:
         report_.by_slab = {std::move(plastic), std::move(porosity), std::move(closed)};
     }
 
+    // The selected beads of the part but those that iron what is there.
+    std::vector<std::uint32_t> wallBeads() const {
+        const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath_);
+        std::vector<std::uint32_t> beads;
+        for (const std::uint32_t bead : selection_)
+            if (purposes[bead] == gcode::Purpose::part &&
+                toolpath_.runOf(toolpath_.beads[bead]).feature != gcode::Feature::ironing)
+                beads.push_back(bead);
+        return beads;
+    }
+
     void addWalls(const LeafMap& map, const Outside* outside) {
+        const std::vector<std::uint32_t> beads = wallBeads();
         if (outside != nullptr) {
-            if (const auto wall = findThinnestWall(grid_, toolpath_, selection_, lattice_, map, *outside)) {
+            if (const auto wall = findThinnestWall(grid_, toolpath_, beads, lattice_, map, *outside)) {
                 const gcode::Bead& bead = toolpath_.beads[wall->bead];
                 add("thinnest_wall", wall->thickness).details = {{"at_mm", Vector3{wall->at.x, wall->at.y, wall->at.z}},
                                                                  {"line", static_cast<double>(toolpath_.lineOf(bead))},
@@ -241,7 +254,7 @@ private:
                 leaveOut("thinnest_wall", "no bead of the part has the outside beside it", "select more of the print");
             }
         }
-        const std::vector<RoughnessLine> lines = measureRoughness(grid_, toolpath_, selection_, lattice_, map, outside);
+        const std::vector<RoughnessLine> lines = measureRoughness(grid_, toolpath_, beads, lattice_, map, outside);
         if (lines.empty()) {
             for (const char* key : {"roughness_ra", "roughness_rz"})
                 leaveOut(key, "no outer wall goes on for a sampling length", "select more layers of the print");

@@ -71,6 +71,17 @@ TEST(Pieces, AgreeWithAFlood) {
     EXPECT_EQ(pieces.removed, places.size() - largest);
 }
 
+// A wipe tower may be larger than the part.
+TEST(Pieces, TheLargestIsThatOfTheBeadsThatCount) {
+    SolidElements elements = elementsAt({{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 5, 0}, {0, 5, 1}, {0, 9, 0}});
+    for (SolidElement& e : elements.list) e.bead = e.j == 0 ? 1 : 2;
+    SolidElements others = elements;
+    EXPECT_EQ(keepLargestPiece(elements, [](std::uint32_t bead) { return bead == 2; }).removed, 4U);
+    ASSERT_EQ(elements.list.size(), 2U);
+    EXPECT_EQ(elements.list.front().j, 5);
+    EXPECT_EQ(keepLargestPiece(others, [](std::uint32_t) { return false; }).removed, 3U);
+}
+
 TEST(Pieces, NothingIsNoPiece) {
     SolidElements none;
     EXPECT_EQ(keepLargestPiece(none).count, 0U);

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/human_text.h"
 #include "base/text.h"
+#include "gcode/toolpath/purpose.h"
 #include "mechanics/elastic.h"
 #include "mechanics/inp_file.h"
 #include "mechanics/pieces.h"
@@ -12,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -22,6 +24,21 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostNodes = std::size_t{1} << 31;
+
+// More or less of the plastic than this share is a warning.
+constexpr double kDoubt = 0.05;
+
+std::string doubtOf(const mechanics::SolidElements& elements, const mechanics::Pieces& pieces,
+                    const std::string& source) {
+    const double kept = elements.volume() / elements.plastic;
+    if (std::abs(kept - 1) <= kDoubt) return {};
+    std::string text = fmt::format("{}: the elements hold {:.1f} % of the plastic", source, 100 * kept);
+    if (kept > 1)
+        text += fmt::format("; elements of {:g} mm are wider than walls; choose a smaller --voxel-size", elements.edge);
+    else if (pieces.removed > 0)
+        text += fmt::format("; {} pieces beside the largest are left out; --all-pieces keeps them", pieces.count - 1);
+    return text;
+}
 
 }  // namespace
 
@@ -41,7 +58,7 @@ void addElementOptions(CLI::App& app, ElementOptions& options) {
         ->type_name("N")
         ->group(elements);
     app.add_flag("--all-pieces", options.all_pieces,
-                 "Keep what no face joins to the largest piece, e.g. skirts and the other parts of a plate")
+                 "Keep what no face joins to the part's largest piece, e.g. skirts and the other parts of a plate")
         ->group(elements);
 }
 
@@ -73,9 +90,12 @@ Json writeElements(const ConvertCommand& o, const gcode::Toolpath& toolpath, std
         ProgressBar bar("elements", o.common.quiet);
         elements = mechanics::solidElements(toolpath, selection, lattice, {o.elements.most_nodes, bar.callback()});
     }
-    const double solid_mm3 = elements.volume();
     mechanics::Pieces pieces;
-    if (!o.elements.all_pieces) pieces = mechanics::keepLargestPiece(elements);
+    if (!o.elements.all_pieces) {
+        const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath);
+        pieces = mechanics::keepLargestPiece(
+            elements, [&purposes](std::uint32_t bead) { return purposes[bead] == gcode::Purpose::part; });
+    }
     const mechanics::Hexahedra mesh = mechanics::hexahedraOf(elements, o.elements.most_nodes);
     mechanics::InpOptions options;
     if (!o.elements.elastic.empty()) options.elastic = mechanics::parseElastic(o.elements.elastic);
@@ -88,20 +108,22 @@ Json writeElements(const ConvertCommand& o, const gcode::Toolpath& toolpath, std
     }
     const double laid = voxelize::depositedVolume(toolpath, selection);
     say(o.common,
-        fmt::format("  {}: {} elements of {:g} mm, {} nodes, {} sets; {:.4g} cm3 of {:.4g} that the beads hold",
+        fmt::format("  {}: {} elements of {:g} mm, {} nodes, {} sets; {:.4g} cm3, {:.1f} % of the solid of the beads",
                     output.string(), humanCount(static_cast<double>(mesh.corners.size())), elements.edge,
                     humanCount(static_cast<double>(mesh.nodes.size())), report.element_sets + report.node_sets,
-                    elements.volume() * 1e-3, laid * 1e-3));
+                    elements.volume() * 1e-3, 100 * elements.volume() / elements.plastic));
     if (pieces.removed > 0)
         say(o.common,
             fmt::format("  the largest of {} pieces; {} elements of the others are left out (--all-pieces keeps them)",
                         pieces.count, pieces.removed));
+    if (const std::string doubt = doubtOf(elements, pieces, source); !doubt.empty() && !o.common.quiet)
+        tellError(fmt::format("gcode2vdb: {}\n", doubt));
     return {{"path", output.string()},
             {"bytes", fs::is_regular_file(output) ? fs::file_size(output) : 0},
             {"elements", mesh.corners.size()},
             {"nodes", mesh.nodes.size()},
             {"edge_mm", elements.edge},
-            {"solid_mm3", solid_mm3},
+            {"solid_mm3", elements.plastic},
             {"written_mm3", elements.volume()},
             {"deposited_mm3", laid},
             {"pieces", o.elements.all_pieces ? Json(nullptr) : Json(pieces.count)},

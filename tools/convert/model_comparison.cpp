@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "compare/comparison_report.h"
 #include "compare/model_file.h"
-#include "voxelize/beads/selection.h"
+#include "gcode/toolpath/purpose.h"
 #include "voxelize/grid/voxelizer.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ ModelComparison compareWithModel(const ConvertCommand& o, const gcode::Toolpath&
     voxelize::VoxelizeOptions outside;
     outside.interior = voxelize::Interior::cull;
     const openvdb::FloatGrid::Ptr grid =
-        voxelize::voxelize(toolpath, voxelize::beadsOfModel(toolpath, selection), lattice, outside);
+        voxelize::voxelize(toolpath, gcode::beadsOfPart(toolpath, selection), lattice, outside);
     compare::CompareOptions options;
     if (o.compare.placement == "bed") options.placement = compare::ModelPlacement::bed;
     comparison.found = compare::compareToModel(*grid, *comparison.model, options);

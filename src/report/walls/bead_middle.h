@@ -40,12 +40,4 @@ inline BeadMiddle middleOf(const gcode::Toolpath& toolpath, const gcode::Bead& b
     return middle;
 }
 
-/// Whether a bead is of the part itself, and not of what is thrown away or printed beside it.
-inline bool ofPart(gcode::Feature feature) {
-    using gcode::Feature;
-    return feature != Feature::skirt && feature != Feature::brim && feature != Feature::support &&
-           feature != Feature::support_interface && feature != Feature::wipe_tower && feature != Feature::custom &&
-           feature != Feature::ironing;
-}
-
 }  // namespace stratum::report

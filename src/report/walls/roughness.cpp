@@ -143,9 +143,7 @@ std::vector<std::uint32_t> placesOf(const gcode::Toolpath& toolpath, std::span<c
     const auto featureOf = [&](std::uint32_t bead) { return toolpath.runOf(toolpath.beads[bead]).feature; };
     const bool labelled =
         std::any_of(selection.begin(), selection.end(), [&](std::uint32_t bead) { return isOuter(featureOf(bead)); });
-    const auto counts = [&](std::uint32_t bead) {
-        return labelled ? isOuter(featureOf(bead)) : ofPart(featureOf(bead));
-    };
+    const auto counts = [&](std::uint32_t bead) { return !labelled || isOuter(featureOf(bead)); };
     double total = 0;
     for (const std::uint32_t bead : selection)
         if (counts(bead)) total += gcode::beadLength(toolpath, toolpath.beads[bead]);

@@ -52,7 +52,6 @@ std::optional<ThinnestWall> findThinnestWall(const openvdb::FloatGrid& grid, con
         const FieldProbe probe(grid, lattice, map, &outside);
         for (std::size_t n = begin * kPart; n < std::min(end * kPart, selection.size()); ++n) {
             const gcode::Bead& bead = toolpath.beads[selection[n]];
-            if (!ofPart(toolpath.runOf(bead).feature)) continue;
             ThinnestWall& least = parts[n / kPart];
             const BeadMiddle middle = middleOf(toolpath, bead);
             if (middle.nx == 0 && middle.ny == 0) continue;

@@ -17,7 +17,7 @@ struct ThinnestWall {
     std::size_t walls = 0;   ///< beads that were measured
 };
 
-/// Across the middle of each bead of the part with the outside beside it, at half of its height, the plastic in a row
+/// Across the middle of each selected bead with the outside beside it, at half of its height, the plastic in a row
 /// is measured; the least counts. Nothing if no bead has the outside beside it. Parallel; the same result for any
 /// number of threads.
 std::optional<ThinnestWall> findThinnestWall(const openvdb::FloatGrid& grid, const gcode::Toolpath& toolpath,

@@ -1,26 +1,21 @@
 #include "voxelize/beads/part_bounds.h"
 
+#include "gcode/toolpath/purpose.h"
+
 #include <algorithm>
 #include <vector>
 
 namespace stratum::voxelize {
 
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
-    using gcode::Feature;
+    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath);
     std::vector<std::uint32_t> part;
     std::vector<std::uint32_t> brim;
     for (const std::uint32_t bead : selection) {
-        switch (toolpath.runOf(toolpath.beads[bead]).feature) {
-            case Feature::skirt:
-            case Feature::wipe_tower:
-            case Feature::custom:
-                break;
-            case Feature::brim:
-                brim.push_back(bead);
-                break;
-            default:
-                part.push_back(bead);
-        }
+        if (purposes[bead] == gcode::Purpose::brim)
+            brim.push_back(bead);
+        else if (purposes[bead] != gcode::Purpose::beside)
+            part.push_back(bead);
     }
     if (part.empty()) return boundsOf(toolpath, selection);
     Bounds bounds = boundsOf(toolpath, part);

@@ -13,8 +13,8 @@ namespace stratum::voxelize {
 /// A brim counts as part of the box up to this distance from it, mm.
 inline constexpr double kBrimReach = 10;
 
-/// Bounds of the selected beads, mm, without skirts, prime towers and custom G-code (start lines); a brim counts only
-/// within kBrimReach. If nothing else is selected: bounds of all selected beads.
+/// Bounds of the selected beads, mm, without what is printed beside the part (gcode::Purpose); supports count, a brim
+/// only within kBrimReach. If nothing else is selected: bounds of all selected beads.
 /// @param selection  indices into `toolpath.beads`, at least one
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
 

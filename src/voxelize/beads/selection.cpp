@@ -43,15 +43,22 @@ std::vector<std::size_t> endsOfLayers(const gcode::Toolpath& toolpath) {
     return ends;
 }
 
+// Of the layers: prime lines are drawn by nothing but --layers 0:.
 std::size_t endOfShare(const gcode::Toolpath& toolpath, double share) {
+    std::vector<double> volumes(toolpath.beads.size());
+    double all = 0;
+    for (std::uint32_t i = 0; i < volumes.size(); ++i) {
+        if (toolpath.runOf(toolpath.beads[i]).layer > 0) volumes[i] = gcode::laidVolume(toolpath, i);
+        all += volumes[i];
+    }
     // With the margin, half of twenty equal beads is ten, however the sum is rounded.
-    const double target = share * gcode::beadVolume(toolpath) * (1 - 1e-9);
+    const double target = share * all * (1 - 1e-9);
     double sum = 0;
-    for (std::size_t i = 0; i < toolpath.beads.size(); ++i) {
-        sum += gcode::laidVolume(toolpath, static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        sum += volumes[i];
         if (sum >= target) return i + 1;
     }
-    return toolpath.beads.size();
+    return volumes.size();
 }
 
 // When each bead is finished, in s.
@@ -239,19 +246,6 @@ std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Se
                         toolpath.layer_count, fmt::join(toolsOf(toolpath), ", "), names));
     }
     return beads;
-}
-
-std::vector<std::uint32_t> beadsOfModel(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
-    using gcode::Feature;
-    std::vector<std::uint32_t> of_model;
-    for (const std::uint32_t bead : selection) {
-        const Feature feature = toolpath.runOf(toolpath.beads[bead]).feature;
-        if (feature != Feature::skirt && feature != Feature::brim && feature != Feature::support &&
-            feature != Feature::support_interface && feature != Feature::wipe_tower)
-            of_model.push_back(bead);
-    }
-    if (of_model.empty()) of_model.assign(selection.begin(), selection.end());
-    return of_model;
 }
 
 bool needsTiming(std::string_view snapshots) { return snapshots.find("time:") != std::string_view::npos; }

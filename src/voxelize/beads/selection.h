@@ -42,10 +42,6 @@ void chooseTool(std::uint8_t tool, const gcode::Toolpath& toolpath, Selection& s
 /// Indices of the selected beads, ascending. Throws InputError, with a list of what the print has, if there are none.
 std::vector<std::uint32_t> selectBeads(const gcode::Toolpath& toolpath, const Selection& selection);
 
-/// Those of a selection that print the model: without what slicers add to it (skirts, brims, supports, wipe towers);
-/// all if there is nothing else.
-std::vector<std::uint32_t> beadsOfModel(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
-
 /// Whether such a list names a time, which needs a planned motion (Toolpath::timing) to be accurate.
 bool needsTiming(std::string_view snapshots);
 
@@ -55,10 +51,10 @@ struct Snapshot {
     std::size_t bead_count = 0;
 };
 
-/// Parses a list of "25%" (of the extruded volume), "layer:40" (through layer 40), "every:10" (after each 10 layers)
-/// and "time:90" (everything printed after 90 minutes; also time:5400s, time:90m, time:1.5h, and time:50%, of the time
-/// to the last bead). Times are those of Toolpath::timing; without it, of extruding at the programmed speeds. In print
-/// order, without duplicates. Throws UsageError, which names the option of the text.
+/// Parses a list of "25%" (of the volume of the layers, without prime lines), "layer:40" (through layer 40), "every:10"
+/// (after each 10 layers) and "time:90" (everything printed after 90 minutes; also time:5400s, time:90m, time:1.5h, and
+/// time:50%, of the time to the last bead). Times are those of Toolpath::timing; without it, of extruding at the
+/// programmed speeds. In print order, without duplicates. Throws UsageError, which names the option of the text.
 std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpath& toolpath,
                                      std::string_view option = "--snapshots");
 

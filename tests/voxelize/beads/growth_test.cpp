@@ -53,10 +53,11 @@ TEST(Growth, WithoutTimesBySpeedAndWithoutSpeedsByVolume) {
 TEST(Growth, IsThatOfSnapshots) {
     const InputFile file(test::dataDir() / "gcode/tile.gcode");
     const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), "tile.gcode", {});
-    const Moments all = test::allBeads(toolpath);
     constexpr std::size_t kSteps = 8;
     for (const auto by : {GrowthBy::volume, GrowthBy::time}) {
-        const Moments moments = growthMoments(toolpath, all, kSteps, by);
+        // Shares of the volume leave prime lines out.
+        const Moments beads = by == GrowthBy::volume ? selectBeads(toolpath, {}) : test::allBeads(toolpath);
+        const Moments moments = growthMoments(toolpath, beads, kSteps, by);
         ASSERT_EQ(moments.size(), kSteps);
         EXPECT_TRUE(std::is_sorted(moments.begin(), moments.end()));
         for (std::size_t n = 0; n < kSteps; ++n) {

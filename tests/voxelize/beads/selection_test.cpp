@@ -166,6 +166,23 @@ TEST(Snapshots, PercentLayerAndEvery) {
         EXPECT_THROW(parseSnapshots(bad, toolpath), UsageError) << bad;
 }
 
+// Half of the print is half of what is drawn.
+TEST(Snapshots, PrimeLinesAreNoShare) {
+    gcode::Toolpath toolpath = tenLayers();
+    const gcode::Toolpath without = toolpath;
+    // Before the first layer, as much as all layers.
+    gcode::Run prime = toolpath.runs.front();
+    prime.layer = 0;
+    toolpath.runs.push_back(prime);
+    std::vector<gcode::Bead> beads = without.beads;
+    for (gcode::Bead& bead : beads) bead.run = static_cast<std::uint32_t>(toolpath.runs.size() - 1);
+    toolpath.beads.insert(toolpath.beads.begin(), beads.begin(), beads.end());
+    for (const char* text : {"25%", "50%", "100%"})
+        EXPECT_EQ(parseSnapshots(text, toolpath)[0].bead_count,
+                  beads.size() + parseSnapshots(text, without)[0].bead_count)
+            << text;
+}
+
 TEST(Snapshots, LabelsOfOneKindSortAsTheyPrint) {
     const gcode::Toolpath toolpath = tenLayers();
     const auto snapshots = parseSnapshots("12.5%,100%,50%", toolpath);
