@@ -59,6 +59,19 @@ assemble::StageOptions stageOptionsOf(const TraceCommand& o) {
 
 namespace {
 
+// --write-brdf: the objects have one material.
+void requireOneMaterial(const assemble::TracedObjects& objects) {
+    if (!objects.legends.empty())
+        throw UsageError(
+            "--write-brdf: writes one material, and here each place has a colour of its own; name one "
+            "with --brdf");
+    if (objects.brdfs.size() > 1)
+        throw UsageError(
+            fmt::format("--write-brdf: writes one material, and the objects have {}: {}; trace one of "
+                        "them with --brdf",
+                        objects.brdfs.size(), fmt::join(objects.brdfs, "; ")));
+}
+
 class Series {
 public:
     Series(const TraceCommand& o, int threads) : o_(o), threads_(threads), reading_(readingOf(o)) {
@@ -104,6 +117,7 @@ private:
     }
 
     void begin(const assemble::TracedObjects& objects) {
+        if (!o_.write_brdf.empty()) requireOneMaterial(objects);
         assemble::Stage stage = assemble::makeStage(objects, stageOptionsOf(o_), reading_.events);
         scene_ = std::move(stage.scene);
         middle_ = stage.middle;

@@ -15,6 +15,7 @@ struct Warning {
         program,      ///< of a line of the G-code
         voxel_size,   ///< the voxels are too large for what is printed
         narrow_band,  ///< a level set holds fewer values around its surface than it should
+        color_by,     ///< what is coloured by is not known, everywhere or somewhere
     };
     Kind kind = Kind::program;
     std::string text;  ///< one line, without the name of the program that reads

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "trace/clip_intersector.h"
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,6 +16,8 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 
 namespace stratum::assemble {
@@ -87,6 +90,19 @@ MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& opt
     return plan;
 }
 
+/// Why an attribute tells nothing apart, if its file says nothing of it; else nothing.
+std::string_view lackOf(const std::string& by, const trace::AttributeSummary& summary) {
+    const bool only_zero = summary.values == std::vector<int>{0};
+    if (by == "feature" && only_zero)
+        return "names no features (comments such as ;TYPE: say what is printed), so --color-by feature has one colour";
+    if (by == "object" && only_zero) return "names no objects, so --color-by object has one colour";
+    const auto stated = [](const glm::vec3& color) { return color != trace::kNoColor; };
+    if (summary.kind == trace::AttributeSummary::Kind::color &&
+        std::none_of(summary.colors.begin(), summary.colors.end(), stated))
+        return "states no colour of its filament, so --color-by color has the default one";
+    return {};
+}
+
 /// Makes each shape once.
 class ShapeReader {
 public:
@@ -104,6 +120,20 @@ public:
         return *known;
     }
     const std::vector<Warning>& warnings() const { return warnings_.all(); }
+    /// Tells once of a file whose attribute does not color what it is asked to color.
+    void tellUncolored(const ObjectOptions& object, const MaterialPlan& plan, const Shape& shape) {
+        const auto summary = shape.summaries.find(plan.by);
+        if (summary == shape.summaries.end() || !told_.insert({&shape, plan.by}).second) return;
+        if (const std::string_view lack = lackOf(plan.by, summary->second); !lack.empty())
+            warnings_.add(Warning::Kind::color_by, fmt::format("{}: {}", object.vdb, lack));
+        if (options_.clip.empty() || shape.print) return;
+        warnings_.add(
+            Warning::Kind::color_by,
+            fmt::format("{}: has values of {} near the surface alone; where --clip cuts deeper, {}. G-code "
+                        "itself has them everywhere",
+                        object.vdb, plan.by,
+                        plan.material.each.empty() ? "the cut is grey" : "the cut has the material of others"));
+    }
 
 private:
     const Shape& keep(Shape shape, TracedObjects& result) {
@@ -119,6 +149,7 @@ private:
     Warnings warnings_;
     std::vector<std::unique_ptr<Shape>> shapes_;
     std::map<std::pair<std::string, std::string>, const Shape*> files_;  // by path and grid
+    std::set<std::pair<const Shape*, std::string>> told_;                // of an attribute
 };
 
 void addMaterial(const MaterialPlan& plan, const Shape& shape, AttributeNeeds& needs, ObjectMaterials& materials) {
@@ -168,11 +199,13 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
         if (n == 0) result.mm_per_unit = shape.mm_per_unit;
         addFacts(shape, result);
         addMaterial(plans[n], shape, needs, materials);
+        reader.tellUncolored(object, plans[n], shape);
     }
     if (any_part) result.part = parts;
     if (!any_outline) result.outline.clear();
     result.materials = materials.materials();
     result.brdf = materials.brdf();
+    result.brdfs = materials.brdfs();
     result.material_report = materials.report();
     result.legends = materials.legends();
     result.no_color_lookup = materials.noLookup();

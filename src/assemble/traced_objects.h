@@ -24,7 +24,8 @@ struct TracedObjects {
     std::shared_ptr<const trace::Intersector> intersector;
     std::vector<shade::ObjectMaterial> materials;  ///< by trace::Hit::object; empty if all are of the scene's
     decltype(shade::SceneDescription::labels) labels;
-    std::string brdf;  ///< the scene's material, see ObjectMaterials::brdf()
+    std::string brdf;                ///< the scene's material, see ObjectMaterials::brdf()
+    std::vector<std::string> brdfs;  ///< the materials in use, see ObjectMaterials::brdfs()
     std::vector<shade::Legend> legends;
     /// World-space box of the parts without what is printed beside them, if a file states it.
     std::optional<trace::Box> part;

@@ -30,7 +30,7 @@ std::optional<std::uint32_t> BeadLookup::at(const glm::dvec3& position) {
     return bead;
 }
 
-// The bead whose surface is nearest to an active voxel; nothing for others.
+// The bead whose surface is nearest to a voxel that is active or inside; nothing for others.
 std::optional<std::uint32_t> BeadLookup::ownerOf(const openvdb::Coord& voxel) {
     const openvdb::Coord origin = voxel & ~(voxelize::kLeafDim - 1);
     const auto bit = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) >> 3; };
@@ -38,20 +38,24 @@ std::optional<std::uint32_t> BeadLookup::ownerOf(const openvdb::Coord& voxel) {
     Owned& leaf = cache_[(bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast)];
     if (leaf.origin != origin) fill(leaf, origin);
     const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
-    if ((leaf.active[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
+    if ((leaf.owned[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
     return leaf.bead[n];
 }
 
 void BeadLookup::fill(Owned& leaf, const openvdb::Coord& origin) {
     leaf.origin = openvdb::Coord::max();  // invalid if evaluation throws
-    leaf.active = {};
-    if (maker_.make(origin, field_.printed()) == voxelize::LeafContent::surface) {
+    leaf.owned = {};
+    const voxelize::LeafContent content = maker_.make(origin, field_.printed());
+    if (content != voxelize::LeafContent::outside) {
         std::array<float, voxelize::Leaf::SIZE> values;
         voxelize::storeLeaf(maker_.column().planes(), values.data());
-        voxelize::maskWithin(values.data(), field_.background(), leaf.active.data());
         maker_.column().owners(leaf.bead);
-        for (std::uint32_t& rank : leaf.bead)
-            if (rank != kEnd) rank = field_.layout().stack.beads[rank];
+        for (std::size_t n = 0; n < values.size(); ++n) {
+            std::uint32_t& bead = leaf.bead[n];
+            if (values[n] >= field_.background() || bead == kEnd) continue;
+            bead = field_.layout().stack.beads[bead];
+            leaf.owned[n >> 6] |= std::uint64_t{1} << (n & 63);
+        }
     }
     leaf.origin = origin;
 }

@@ -18,14 +18,14 @@ class BeadLookup {
 public:
     explicit BeadLookup(const PrintField& field);
 
-    /// The index of the bead whose surface is nearest to the nearest active voxel of the eight around a point in the
-    /// field's world space; nothing where none of them is active.
+    /// The index of the bead whose surface is nearest to the nearest voxel of the eight around a point in the field's
+    /// world space, of those that are active or inside the print, however deep; nothing where all are outside.
     std::optional<std::uint32_t> at(const glm::dvec3& position);
 
 private:
     struct Owned {
         openvdb::Coord origin{openvdb::Coord::max()};
-        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> active{};
+        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> owned{};
         std::array<std::uint32_t, voxelize::Leaf::SIZE> bead{};
     };
     std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel);

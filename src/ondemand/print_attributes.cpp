@@ -38,7 +38,7 @@ public:
     Lookup(const PrintField& field, const voxelize::BeadAttributes& values, Attribute attribute)
         : beads_(field), values_(values), attribute_(attribute) {}
 
-    // As march::AttributeLookup of a grid.
+    // As march::AttributeLookup of a grid, and inside.
     std::optional<glm::vec3> at(const glm::dvec3& position) override {
         const std::optional<std::uint32_t> bead = beads_.at(position);
         if (!bead) return std::nullopt;

@@ -17,9 +17,8 @@ namespace stratum::ondemand {
 /// The attribute of that name, as in --grids. Throws UsageError with the list of names.
 voxelize::Attribute attributeNamed(std::string_view name);
 
-/// The values of the grid that voxelize::Voxelizer::attributes() would make, computed on demand: from the nearest
-/// active voxel of the eight around a point, and the bead nearest to that voxel. Each thread caches a few recent
-/// leaves.
+/// The values of the grid that voxelize::Voxelizer::attributes() would make, computed on demand, and beyond its narrow
+/// band those of the whole inside, which a section shows: of BeadLookup::at(). Each thread caches a few recent leaves.
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
                                                                  voxelize::Attribute attribute);
 

@@ -9,7 +9,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::assemble {
@@ -128,6 +132,111 @@ TEST(TracedObjects, TellsOfItsStepsAndWarnings) {
     EXPECT_EQ(std::vector<std::string>(told.begin(), told.begin() + 7),
               (std::vector<std::string>{"loading", "end", "warning", "laying out", "end", "reading %", "end"}));
     EXPECT_GT(last, 0.0);
+}
+
+// The feature of each place that a section at that height shows, seen from above; nothing where it is not known.
+std::vector<std::optional<float>> featuresOfCut(const TracedObjects& objects, double z) {
+    const trace::Box box = objects.part.value_or(objects.intersector->bounds());
+    const auto tracer = objects.intersector->makeTracer();
+    std::vector<std::optional<float>> seen;
+    for (double x = box.min.x; x < box.max.x; x += 0.37)
+        for (double y = box.min.y; y < box.max.y; y += 0.41) {
+            trace::Ray ray;
+            ray.origin = {x, y, box.max.z + 1};
+            ray.direction = {0, 0, -1};
+            trace::Hit hit;
+            if (!tracer->intersect(ray, hit) || std::abs(hit.position.z - z) > 1e-9) continue;
+            const auto value = tracer->attribute(hit, 0);
+            seen.push_back(value ? std::optional(value->x) : std::nullopt);
+        }
+    return seen;
+}
+
+TEST(TracedObjects, ASectionHasTheColorsOfItsPlace) {
+    TracingOptions options = test::coarseTracing();
+    options.prints.print.lattice.voxel_size = 0.02;  // of a band of 0.06 mm
+    options.color_by = "feature";
+    options.clip = {{{0, 0, 1}, 0.5}};
+    const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, options);
+    const auto seen = featuresOfCut(objects, 0.5);
+    EXPECT_GT(seen.size(), 100U);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), std::nullopt), 0);
+    EXPECT_TRUE(objects.warnings.empty());
+}
+
+TEST(TracedObjects, SaysWhatASectionOfALevelSetLacks) {
+    const test::ScratchFolder scratch;
+    const std::filesystem::path path = test::writeSphere(scratch / "sphere.vdb");
+    openvdb::FloatGrid::Ptr surface = test::sphereGrid(2, {1, 2, 3}, 0.2F, 3);
+    surface->setName("surface");
+    const auto tools = openvdb::Int32Grid::create();
+    tools->setName("tool");
+    tools->setTransform(surface->transform().copy());
+    for (auto it = surface->cbeginValueOn(); it; ++it) tools->tree().setValueOn(it.getCoord(), 1);
+    openvdb::io::File(path.string()).write({surface, tools});
+    TracingOptions options;
+    options.color_by = "tool";
+    EXPECT_TRUE(readTracedObjects({test::objectOf(path)}, options).warnings.empty());
+    options.clip = {{{0, 0, 1}, 3}};
+    const TracedObjects objects = readTracedObjects({test::objectOf(path), test::objectOf(path)}, options);
+    ASSERT_EQ(objects.warnings.size(), 1U);
+    EXPECT_EQ(objects.warnings[0].kind, Warning::Kind::color_by);
+    EXPECT_NE(objects.warnings[0].text.find("where --clip cuts deeper, the cut is grey"), std::string::npos)
+        << objects.warnings[0].text;
+    trace::Ray ray;
+    ray.origin = {1.01, 2.01, 9};
+    ray.direction = {0, 0, -1};
+    trace::Hit hit;
+    const auto tracer = objects.intersector->makeTracer();
+    ASSERT_TRUE(tracer->intersect(ray, hit));
+    const shade::Color cut = objects.materials[0].of(tracer->attribute(hit, 0)).albedo;
+    EXPECT_EQ(cut.r, cut.g);
+    EXPECT_EQ(cut.r, cut.b);
+}
+
+TEST(TracedObjects, SaysWhatAFileDoesNotTellApart) {
+    const test::ScratchFolder scratch;
+    // Two layers without a comment.
+    std::string plain = "M83\nG1 Z0.2 F600\n";
+    for (int layer = 0; layer < 2; ++layer)
+        plain += "G1 Z" + std::to_string(0.2 * (layer + 1)) +
+                 "\nG1 X0 Y0 F3000\nG1 X20 Y0 E0.7 F1200\nG1 X20 Y20 E0.7\nG1 X0 Y20 E0.7\nG1 X0 Y0 E0.7\n";
+    test::writeText(scratch / "plain.gcode", plain);
+    for (const auto& [by, said] :
+         {std::pair{"feature", "names no features"}, {"object", "names no objects"}, {"color", "states no colour"}}) {
+        TracingOptions options = test::coarseTracing();
+        options.color_by = by;
+        const TracedObjects objects = readTracedObjects({test::objectOf(scratch / "plain.gcode")}, options);
+        const bool told =
+            std::any_of(objects.warnings.begin(), objects.warnings.end(), [words = said](const Warning& warning) {
+                return warning.kind == Warning::Kind::color_by && warning.text.find(words) != std::string::npos;
+            });
+        EXPECT_TRUE(told) << by;
+    }
+    TracingOptions options = test::coarseTracing();
+    options.color_by = "feature";
+    for (const Warning& warning : readTracedObjects({test::printOf("tile.gcode")}, options).warnings)
+        EXPECT_NE(warning.kind, Warning::Kind::color_by) << warning.text;
+}
+
+TEST(TracedObjects, ReportsTheMaterialsInUse) {
+    const test::ScratchFolder scratch;
+    ObjectOptions red = test::objectOf(test::writeSphere(scratch / "sphere.vdb"));
+    red.material.brdf = "lambert:1,0,0";
+    // The scene's material is that of the only object, not the unused default.
+    const TracedObjects one = readTracedObjects({red}, {});
+    EXPECT_EQ(one.brdf, "lambert:1,0,0");
+    EXPECT_EQ(one.material_report["brdf"], "lambert:1,0,0");
+    ObjectOptions other = red;
+    other.material.brdf = "lambert:0,1,0";
+    const TracedObjects two = readTracedObjects({red, other, red}, {});
+    EXPECT_EQ(two.brdfs, (std::vector<std::string>{"lambert:1,0,0", "lambert:0,1,0"}));
+    EXPECT_EQ(two.material_report["brdf"].size(), 2U);
+    TracingOptions options;
+    options.brdf = "lambert:0,0,1";
+    ObjectOptions plain = red;
+    plain.material.brdf.clear();
+    EXPECT_EQ(readTracedObjects({plain}, options).material_report["brdf"], "lambert:0,0,1");
 }
 
 TEST(TracedObjects, RefusesWhatDoesNotFit) {

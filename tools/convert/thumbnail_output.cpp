@@ -122,6 +122,12 @@ Json writeOne(const ConvertCommand& o, const std::string& input, const fs::path&
     }
     const double write = watch.lap();
 
+    Json left_out = Json::array();
+    for (const auto& [width, height, coding] : holder.leftOut())
+        left_out.push_back(fmt::format("{}x{}/{}", width, height, gcode::codingName(coding)));
+    if (!left_out.empty() && !o.common.quiet)
+        tellError(fmt::format("gcode2vdb: {}: has no place for all pictures; not written: {}\n", file.name(),
+                              fmt::join(left_out.get<std::vector<std::string>>(), ", ")));
     Json list = Json::array();
     std::string text;
     for (const gcode::Thumbnail& picture : pictures) {
@@ -140,6 +146,7 @@ Json writeOne(const ConvertCommand& o, const std::string& input, const fs::path&
         {"output", output.string()},
         {"bytes", patched.size()},
         {"thumbnails", list},
+        {"left_out", left_out},
         {"seconds", {{"parse", parse}, {"render", render}, {"write", write}, {"total", seconds}}},
         {"peak_rss_bytes", peakRssBytes()},
         {"threads", threads}};

@@ -1,13 +1,18 @@
 #include "assemble/print/print_colors.h"
 
 #include "gcode/slicer/bead_colors.h"
+#include "shade/palette/color_name.h"
 #include "shade/palette/filament_color.h"
+#include "shade/palette/finish_words.h"
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace stratum::assemble {
 namespace {
@@ -17,9 +22,25 @@ void add(PrintColors& colors, const std::string& hex, const std::string& from) {
     colors.report.push_back({{"color", hex}, {"from", from}});
 }
 
+// The finish of the last color, by the words of its filament.
+void addFinish(PrintColors& colors, const gcode::StatedFacts& facts, std::size_t tool) {
+    for (const std::vector<std::string>* const names : {&facts.profiles, &facts.materials}) {
+        if (tool >= names->size()) continue;
+        const shade::Finish finish = shade::finishOfProfile((*names)[tool]);
+        if (finish == shade::Finish::plain) continue;
+        const std::string& hex = colors.stated.back();
+        const auto color = static_cast<std::uint32_t>(std::stoul(hex.substr(1), nullptr, 16));
+        colors.finishes.emplace(hex, shade::brdfOf(color, finish));
+        colors.report.back()["finish"] = shade::finishName(finish);
+        colors.report.back()["finish_from"] = (*names)[tool];
+        return;
+    }
+}
+
 }  // namespace
 
-PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                     std::span<const std::optional<gcode::Rgb>> asked) {
     PrintColors colors;
     if (std::none_of(toolpath.tool_colors.begin(), toolpath.tool_colors.end(),
                      [](const std::optional<gcode::Rgb>& color) { return color.has_value(); }) &&
@@ -37,6 +58,8 @@ PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint3
                         : stated.changed ? "a change of colour"
                                          : "the file's settings",
                         stated.tool));
+        const bool own = stated.tool < asked.size() && asked[stated.tool];
+        if (!own && !stated.changed) addFinish(colors, toolpath.stated, stated.tool);
     }
     colors.by_place = colors.stated.size() + (colors.some_unstated ? 1 : 0) > 1 && !colors.stated.empty();
     return colors;

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,13 +19,18 @@ namespace stratum::assemble {
 struct PrintColors {
     /// "#rrggbb", each once, in the order of first use. Empty: the file states none.
     std::vector<std::string> stated;
-    bool some_unstated = false;                                       ///< parts of it have no stated color
-    bool by_place = false;                                            ///< the color depends on the position
+    bool some_unstated = false;  ///< parts of it have no stated color
+    bool by_place = false;       ///< the color depends on the position
+    /// "#rrggbb" -> material, of filaments whose names say that they are not plain plastic (shade::finishOfProfile()).
+    /// Tools of one color share the first one's.
+    std::map<std::string, std::string> finishes;
     nlohmann::ordered_json report = nlohmann::ordered_json::array();  ///< color and where it was found, for --stats
 };
 
 /// Of the selected beads, see gcode::statedColors().
-PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
+/// @param asked  by tool: colors that were asked for instead of the file's, with their own finishes
+PrintColors colorsOf(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                     std::span<const std::optional<gcode::Rgb>> asked = {});
 
 /// Of a level set: a grid named "color" beside it, else the metadata "filament_color" of its own.
 /// @param head  metadata of the level set

@@ -36,6 +36,11 @@ std::shared_ptr<const shade::Brdf> ObjectMaterials::brdfOf(const std::string& te
     return brdf;
 }
 
+void ObjectMaterials::use(const std::string& text) {
+    std::string name = text.empty() ? shade::kDefaultBrdf : text;
+    if (std::find(used_.begin(), used_.end(), name) == used_.end()) used_.push_back(std::move(name));
+}
+
 void ObjectMaterials::explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary) {
     lookup_ = true;
     shade::Legend legend = shade::makeLegend(material, summary, materials_.back());
@@ -48,10 +53,13 @@ void ObjectMaterials::explain(const shade::MaterialOptions& material, const trac
 void ObjectMaterials::add(const shade::MaterialOptions& material, std::size_t attribute,
                           const trace::AttributeSummary* summary) {
     own_ = own_ || !material.by.empty() || !material.brdf.empty();
+    const std::string& text = material.brdf.empty() ? brdf_ : material.brdf;
+    use(text);
     if (summary == nullptr) {
-        materials_.emplace_back(brdfOf(material.brdf.empty() ? brdf_ : material.brdf));
+        materials_.emplace_back(brdfOf(text));
         return;
     }
+    for (const auto& each : material.each) use(each.second);
     materials_.push_back(shade::makeObjectMaterial(material, brdf_, attribute, *summary));
     explain(material, *summary);
 }
@@ -59,18 +67,21 @@ void ObjectMaterials::add(const shade::MaterialOptions& material, std::size_t at
 void ObjectMaterials::add(const PrintColors& colors, std::size_t attribute, const trace::AttributeSummary* summary) {
     for (const Json& color : colors.report)
         if (std::find(colors_.begin(), colors_.end(), color) == colors_.end()) colors_.push_back(color);
+    std::map<std::string, std::string> finishes = finishes_;
+    finishes.insert(colors.finishes.begin(), colors.finishes.end());
     if (summary != nullptr) {
         shade::MaterialOptions material;
         material.by = "color";
-        material.each = finishes_;
+        material.each = std::move(finishes);
         add(material, attribute, summary);
         return;
     }
     no_lookup_ = colors.stated.empty() ? "the file states no colour" : "the print has one colour";
-    only_color_ = colors.stated.empty() ? std::string() : colors.stated.front();
-    if (const auto finish = finishes_.find(only_color_); finish != finishes_.end()) only_color_ = finish->second;
+    std::string text = colors.stated.empty() ? std::string() : colors.stated.front();
+    if (const auto finish = finishes.find(text); finish != finishes.end()) text = finish->second;
     own_ = own_ || !colors.stated.empty();
-    materials_.emplace_back(brdfOf(only_color_));
+    use(text);
+    materials_.emplace_back(brdfOf(text));
 }
 
 std::vector<shade::ObjectMaterial> ObjectMaterials::materials() const {
@@ -78,12 +89,12 @@ std::vector<shade::ObjectMaterial> ObjectMaterials::materials() const {
 }
 
 std::string ObjectMaterials::brdf() const {
-    if (!brdf_.empty()) return brdf_;
-    return materials_.size() == 1 && !only_color_.empty() ? only_color_ : shade::kDefaultBrdf;
+    if (used_.size() == 1) return used_.front();
+    return brdf_.empty() ? shade::kDefaultBrdf : brdf_;
 }
 
 Json ObjectMaterials::report() const {
-    Json report{{"brdf", brdf()}};
+    Json report{{"brdf", used_.size() > 1 ? Json(used_) : Json(brdf())}};
     if (!colors_.empty()) report["colors"] = colors_;
     if (!legend_reports_.empty()) report["legend"] = legend_reports_;
     return report;

@@ -36,10 +36,11 @@ public:
 
     /// By object; empty if all of them are of the scene's material.
     std::vector<shade::ObjectMaterial> materials() const;
-    /// Text of the scene's material: the given one, or the single color that the only object's file states, or the
-    /// default.
+    /// The texts of the materials that objects have, each once. One that an attribute colors is there as it was before.
+    const std::vector<std::string>& brdfs() const { return used_; }
+    /// Text of the scene's material: the one that all objects have, or else the given one or the default.
     std::string brdf() const;
-    /// Material, colors, legends, and the number of non-finite values.
+    /// Materials (a list, if there are several), colors, legends, and the number of non-finite values.
     nlohmann::ordered_json report() const;
     /// Of each attribute that colors something, without duplicates.
     const std::vector<shade::Legend>& legends() const { return legends_; }
@@ -48,6 +49,8 @@ public:
 
 private:
     std::shared_ptr<const shade::Brdf> brdfOf(const std::string& text);
+    /// Lists a text among those in use; nothing stands for the default.
+    void use(const std::string& text);
     void explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary);
 
     const std::string brdf_;
@@ -57,7 +60,8 @@ private:
     std::vector<shade::Legend> legends_;
     nlohmann::ordered_json colors_ = nlohmann::ordered_json::array();
     nlohmann::ordered_json legend_reports_ = nlohmann::ordered_json::array();
-    std::string only_color_, no_lookup_;
+    std::string no_lookup_;
+    std::vector<std::string> used_;
     bool own_ = false;  // some object has another material than the scene
     bool lookup_ = false;
 };

@@ -76,7 +76,7 @@ Shape shapeOfPrint(const ObjectOptions& object, const TracingOptions& options, A
     shape.outline = print.outline;
     shape.source = print.content;
     if (needs.needsStatedColors(object)) {
-        shape.colors = colorsOf(*print.toolpath, print.selection);
+        shape.colors = colorsOf(*print.toolpath, print.selection, request.print.read.filament_colors);
         if (shape.colors.by_place) needs.add(object, "color");
     }
     for (const std::string& name : needs.names())

@@ -91,6 +91,19 @@ std::vector<ThumbnailSize> ThumbnailFile::pictures() const {
     return asked_;
 }
 
+std::vector<ThumbnailSize> ThumbnailFile::leftOut() const {
+    const std::vector<ThumbnailSize> held = pictures();
+    std::vector<ThumbnailSize> left;
+    for (const ThumbnailSize& size : asked_)
+        if (std::none_of(held.begin(), held.end(), [&size](const ThumbnailSize& other) {
+                // The BMP of a .gx stands for any kind of its size.
+                return other == size || (other.coding == ThumbnailCoding::bmp && other.width == size.width &&
+                                         other.height == size.height);
+            }))
+            left.push_back(size);
+    return left;
+}
+
 PatchedBytes ThumbnailFile::patched(std::span<const Thumbnail> pictures) const {
     if (zip_) return zip_->patched(asked_, pictures);
     if (isGx(bytes_)) return withGxThumbnails(bytes_, pictures);

@@ -26,6 +26,9 @@ public:
     /// UsageError for what it can't hold, InputError.
     std::vector<ThumbnailSize> pictures() const;
 
+    /// Of what is asked for, what is not among pictures(): the container has no place for it. Throws as pictures().
+    std::vector<ThumbnailSize> leftOut() const;
+
     /// The file with those pictures, in their order, in place of its own. Text keeps its other lines, a container its
     /// other parts. It stays what it is: gzip is packed again. Throws InputError.
     PatchedBytes patched(std::span<const Thumbnail> pictures) const;

@@ -116,6 +116,10 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
         if (const auto grams = sum(value); grams && !total_grams_) facts_.grams = grams;
     } else if (key == "filament_type") {
         split(value, ";,", [this](std::size_t tool, std::string_view name) { setMaterial(tool, name); });
+    } else if (key == "filament_settings_id") {
+        facts_.profiles.clear();
+        split(value, ";",
+              [this](std::size_t, std::string_view name) { facts_.profiles.emplace_back(trimQuoted(name)); });
     } else if (key == "nozzle_diameter") {
         split(value, ",;", [this](std::size_t tool, std::string_view size) { setNozzle(tool, size); });
     } else if (key == "filament_density") {

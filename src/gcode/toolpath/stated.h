@@ -22,6 +22,7 @@ struct StatedFacts {
     std::optional<double> model_seconds;       ///< of the printing alone (BambuStudio)
     std::optional<double> grams;               ///< all filament
     std::vector<std::string> materials;        ///< as the slicer names them, e.g. "PLA"
+    std::vector<std::string> profiles;         ///< names of the filaments' settings, e.g. "Generic PLA Silk @MK4"
     std::vector<double> nozzle_diameters;      ///< mm
     std::vector<double> densities;             ///< g/cm^3, of the filament; 0 for a tool without one
     std::vector<double> prices;                ///< of a kg of filament, in the user's currency; 0 without one

@@ -24,6 +24,13 @@ struct BrdfSample {
     float pdf = 0.0f;    ///< per steradian, > 0
 };
 
+/// Mirror-like flakes of a material, for the guides of the denoiser.
+struct Flakes {
+    float strength =
+        0.0f;  ///< how much brighter than a coat of plastic they mirror, by their share of the area; 0: none
+    glm::vec2 slope{0.0f};  ///< by which they lean to both sides, see FlakePair
+};
+
 /// A bidirectional reflectance distribution function, in 1/sr.
 ///
 /// Frame: local, z is the surface normal, x and y any tangents (every material here is isotropic). `wo` points to the
@@ -54,6 +61,8 @@ public:
     virtual bool variesByPlace() const { return false; }
     /// Of this place: mm, in the space of the scene. As long-lived as this one.
     virtual const Brdf& at(const glm::dvec3& /*place*/) const { return *this; }
+    /// Those of this place, after at().
+    virtual Flakes flakes() const { return {}; }
     /// Notes for reports: the source of a table, and whether it was measured.
     virtual const std::vector<std::string>& notes() const;
 };

@@ -1,10 +1,9 @@
 // Satin plastic: a colored diffuse body under a rough, colorless dielectric coat, as of printed filament.
 #pragma once
 
+#include "shade/brdf/albedo_table.h"
 #include "shade/brdf/brdf.h"
 #include "shade/brdf/microfacet.h"
-
-#include <array>
 
 namespace stratum::shade {
 
@@ -29,19 +28,17 @@ public:
 
     /// The coat's directional albedo E at this angle.
     /// @param cosine  to the normal, in [0, 1]
-    float coatAlbedo(float cosine) const;
+    float coatAlbedo(float cosine) const { return coat_.at(cosine); }
 
 private:
     /// Probability of drawing from the coat.
     float coatShare(float cosine) const;
     float coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const;
 
-    static constexpr int kNodes = 65;  // in cosine^(1/4): a smooth coat's E changes where the cosine is about alpha
     Color body_;
     float body_max_;
     Ggx ggx_;
-    std::array<float, kNodes> table_{};
-    float one_minus_mean_ = 1.0f;  // 1 - Eavg
+    AlbedoTable coat_;
 };
 
 }  // namespace stratum::shade

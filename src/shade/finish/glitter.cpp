@@ -70,6 +70,16 @@ std::optional<BrdfSample> FlakePair::sample(const glm::vec3& wo, float lobe, con
     return BrdfSample{wi, eval(wo, wi), density};
 }
 
+Flakes FlakePair::flakes() const {
+    constexpr float kCoat = 0.04f;  // of plastic from above
+    return {luminance(color_) / kCoat, slope_};
+}
+
+Flakes Glitter::Spot::flakes() const {
+    const Flakes all = flakes_.flakes();
+    return {share_ * all.strength, all.slope};
+}
+
 Color Glitter::Spot::eval(const glm::vec3& wo, const glm::vec3& wi) const {
     return share_ * flakes_.eval(wo, wi) + (1.0f - share_) * plastic_->eval(wo, wi);
 }

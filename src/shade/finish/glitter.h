@@ -31,6 +31,8 @@ public:
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+    /// Without a share of the area.
+    Flakes flakes() const override;
 
 private:
     /// Density of facet normals, per steradian of projected area.
@@ -76,6 +78,7 @@ private:
         Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
         std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
         float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
+        Flakes flakes() const override;
 
     private:
         std::shared_ptr<const Plastic> plastic_;

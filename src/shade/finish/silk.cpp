@@ -22,8 +22,8 @@ std::optional<BrdfSample> Silk::sample(const glm::vec3& wo, float lobe, const gl
 }
 
 std::shared_ptr<const Brdf> Silk::recolored(const Color& body) const {
-    auto other = std::make_shared<Silk>(*this);  // tables of the coat don't depend on the body
-    other->platelets_ = Metal(body, kPlateletAlpha);
+    auto other = std::make_shared<Silk>(*this);  // the tables don't depend on the body
+    other->platelets_ = static_cast<const Metal&>(*platelets_.recolored(body));
     other->plastic_ = static_cast<const Plastic&>(*plastic_.recolored(body));
     return other;
 }

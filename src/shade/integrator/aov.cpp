@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "shade/frame.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -114,8 +115,23 @@ AovRecorder::AovRecorder(const SceneDescription& scene, const trace::Intersector
         const trace::Box box = print.bounds();
         const glm::dvec3 middle = 0.5 * (box.min + box.max);
         const bool endless = !std::isfinite(middle.x + middle.y + middle.z);
-        bare_light_.emplace(scene, endless ? scene.camera.eye() : middle);
+        bare_light_.emplace(scene, endless ? scene.camera.eye() : middle, scene.anyByPlace());
     }
+}
+
+float AovRecorder::glintOf(const SurfacePoint& point, const glm::dvec3& direction) const {
+    const Flakes flakes = point.brdf->flakes();
+    if (!(flakes.strength > 0.0f)) return 0.0f;
+    const Frame frame{glm::vec3(point.normal)};
+    const glm::vec3 wo = frame.toLocal(glm::vec3(-direction));
+    float sum = 0.0f;
+    for (const glm::vec2& slope : {flakes.slope, -flakes.slope}) {
+        const glm::vec3 facet = glm::normalize(glm::vec3(slope, 1.0f));
+        const float cosine = glm::dot(wo, facet);
+        const glm::vec3 mirror = 2.0f * cosine * facet - wo;
+        if (cosine > 0.0f && mirror.z > 0.0f) sum += bare_light_->glint(frame.toWorld(mirror));
+    }
+    return 0.5f * flakes.strength * sum;
 }
 
 void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const {
@@ -142,7 +158,7 @@ void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, Ex
             case Aov::shading: {
                 const glm::dvec3 mirror = direction - 2.0 * glm::dot(direction, point.normal) * point.normal;
                 add1(share * static_cast<double>(bare_light_->matt(glm::vec3(point.normal))));
-                add1(share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror))));
+                add1(share * static_cast<double>(bare_light_->gloss(glm::vec3(mirror)) + glintOf(point, direction)));
                 break;
             }
             case Aov::mask:

@@ -23,7 +23,7 @@ enum class Aov {
     depth,     ///< Z: world units along the ray
     position,  ///< X, Y, Z: world space
     albedo,    ///< R, G, B: reflectanceFactor of the material
-    shading,   ///< M, G: BareLight::matt and gloss of the surface's normal
+    shading,   ///< M, G: BareLight::matt and gloss of the surface's normal; where there are flakes, with their glint
     mask,      ///< V: share of the pixel that the print covers
     variance,  ///< V: variance of the pixel's mean luminance, estimated from its samples as if they were independent;
                ///< stratified samples do better, so it is an upper estimate
@@ -69,6 +69,9 @@ public:
     void add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const;
 
 private:
+    /// Light that flakes at a point mirror, beyond the gloss of its surface; 0 without flakes.
+    float glintOf(const SurfacePoint& point, const glm::dvec3& direction) const;
+
     Surfaces surfaces_;
     std::vector<Aov> aovs_;
     std::optional<BareLight> bare_light_;  // only for Aov::shading

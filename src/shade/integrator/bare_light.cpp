@@ -18,6 +18,7 @@ constexpr std::size_t kSide = 64;  // nodes of the table
 constexpr int kRows = 32;          // rows of cells on the sphere in which light is summed; twice as many columns
 constexpr int kFine = 8;           // samples along each side of a cell: fine enough not to miss a small light
 constexpr float kGlossPower = 16.0f;
+constexpr float kGlintPower = 128.0f;
 
 /// Light from a part of the sphere.
 struct LightPart {
@@ -89,7 +90,8 @@ glm::vec3 unfolded(float u, float v) {
 
 }  // namespace
 
-BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : table_(kSide * kSide) {
+BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center, bool glints)
+    : table_(kSide * kSide), glints_(glints ? table_.size() : 0) {
     const std::vector<LightPart> parts = gather(scene, center);
     parallelFor(table_.size(), kSide, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {
@@ -97,6 +99,7 @@ BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : 
             const glm::vec3 d = unfolded(place(n % kSide), place(n / kSide));
             float matt = 0.0f;
             float gloss = 0.0f;
+            float glint = 0.0f;
             for (const LightPart& part : parts) {
                 const float c = std::max(glm::dot(part.direction, d), 0.0f);
                 matt += c * part.irradiance;
@@ -105,17 +108,27 @@ BareLight::BareLight(const SceneDescription& scene, const glm::dvec3& center) : 
                 power *= power;
                 power *= power;
                 gloss += power * part.irradiance;
+                if (!glints) continue;
+                power *= power;
+                power *= power;
+                power *= power;
+                glint += power * part.irradiance;
             }
+            if (glints) glints_[n] = glint * (kGlintPower + 1.0f) * 0.5f * kInvPi;
             table_[n] = {matt * kInvPi, gloss * (kGlossPower + 1.0f) * 0.5f * kInvPi};
         }
     });
     // Relative to the brightest matt surface, so that the light's unit cancels.
     for (const glm::vec2& node : table_) brightest_ = std::max(brightest_, node.x);
     if (brightest_ > 0.0f && std::isfinite(brightest_))
-        for (glm::vec2& node : table_) node /= brightest_;
+        for (std::size_t n = 0; n < table_.size(); ++n) {
+            table_[n] /= brightest_;
+            if (glints) glints_[n] /= brightest_;
+        }
 }
 
-glm::vec2 BareLight::at(const glm::vec3& direction) const {
+template <typename Value>
+Value BareLight::at(const std::vector<Value>& table, const glm::vec3& direction) {
     const float sum = std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z);
     float u = direction.x / sum;
     float v = direction.y / sum;
@@ -133,8 +146,11 @@ glm::vec2 BareLight::at(const glm::vec3& direction) const {
     std::size_t y = 0;
     const float a = cell(u, x);
     const float b = cell(v, y);
-    const glm::vec2* row = &table_[y * kSide + x];
+    const Value* row = &table[y * kSide + x];
     return (1.0f - b) * ((1.0f - a) * row[0] + a * row[1]) + b * ((1.0f - a) * row[kSide] + a * row[kSide + 1]);
 }
+
+template glm::vec2 BareLight::at(const std::vector<glm::vec2>& table, const glm::vec3& direction);
+template float BareLight::at(const std::vector<float>& table, const glm::vec3& direction);
 
 }  // namespace stratum::shade

@@ -20,19 +20,25 @@ namespace stratum::shade {
 class BareLight {
 public:
     /// @param center  a point on the print, world space
-    BareLight(const SceneDescription& scene, const glm::dvec3& center);
+    /// @param glints  make glint(), too
+    BareLight(const SceneDescription& scene, const glm::dvec3& center, bool glints = false);
 
     /// Radiance of a white Lambert surface, relative to that of the brightest normal.
     float matt(const glm::vec3& normal) const { return at(normal).x; }
     /// Mean radiance about a direction, by the weight (wi . mirror)^16, in the same unit.
     float gloss(const glm::vec3& mirror) const { return at(mirror).y; }
+    /// The same by (wi . mirror)^128, as narrow as the reflection of a flake of glitter; 0 if it was not asked for.
+    float glint(const glm::vec3& mirror) const { return glints_.empty() ? 0.0f : at(glints_, mirror); }
     /// Radiance (relative, see color.h) of the brightest normal; 0 if there is no light.
     float brightest() const { return brightest_; }
 
 private:
-    glm::vec2 at(const glm::vec3& direction) const;
+    glm::vec2 at(const glm::vec3& direction) const { return at(table_, direction); }
+    template <typename Value>
+    static Value at(const std::vector<Value>& table, const glm::vec3& direction);
 
     std::vector<glm::vec2> table_;
+    std::vector<float> glints_;
     float brightest_ = 0.0f;
 };
 

@@ -89,8 +89,22 @@ void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direct
 }
 
 PathIntegrator::PathVertex::PathVertex(Path& of)
-    : path(&of), frame(glm::vec3(of.point.normal)), wo(frame.toLocal(glm::vec3(-of.direction))) {
+    : path(&of),
+      frame(glm::vec3(of.point.normal)),
+      wo(frame.toLocal(glm::vec3(-of.direction))),
+      bent(of.solid != nullptr && of.point.normal != of.point.geometric) {
     if (of.solid != nullptr && of.side() == Side::solid) wo.z = -wo.z;
+}
+
+glm::vec3 PathIntegrator::PathVertex::mirrored(const glm::vec3& direction) const {
+    const glm::vec3 surface(path->point.geometric);
+    return direction - 2.0f * glm::dot(direction, surface) * surface;
+}
+
+float PathIntegrator::PathVertex::bentPdf(const glm::vec3& direction) const {
+    const Brdf& brdf = *path->point.brdf;
+    if (!(glm::dot(glm::dvec3(direction), path->point.geometric) > 0.0)) return 0.0f;
+    return brdf.pdf(wo, frame.toLocal(direction)) + brdf.pdf(wo, frame.toLocal(mirrored(direction)));
 }
 
 void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, ShadowRays& shadow_rays) const {
@@ -102,8 +116,11 @@ void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, Sh
         const std::optional<LightSample> sample = light->sample(point.position, draw);
         if (!sample) continue;
         const glm::vec3 wi = vertex.frame.toLocal(sample->direction);
-        Color value = path.throughput * point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f) * sample->light;
-        if (sample->pdf > 0.0f) value *= powerHeuristic(sample->pdf, point.brdf->pdf(wo, wi)) / sample->pdf;
+        const float bent = vertex.bent ? vertex.bentPdf(sample->direction) : 0.0f;
+        const Color reflected = vertex.bent ? Color(bent) : point.brdf->eval(wo, wi) * std::max(wi.z, 0.0f);
+        Color value = path.throughput * reflected * sample->light;
+        if (sample->pdf > 0.0f)
+            value *= powerHeuristic(sample->pdf, vertex.bent ? bent : point.brdf->pdf(wo, wi)) / sample->pdf;
         if (!(maxComponent(value) > 0.0f)) continue;
         trace::Ray& ray = shadow_rays.add(value, path.pixel);
         ray = surfaces_.leave(point, sample->direction);
@@ -148,7 +165,7 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             const PathVertex& vertex = vertices[group.members[k]];
             const EnvironmentSample& light = batch.samples[k];
             const glm::vec3 wi = vertex.frame.toLocal(light.direction);
-            if (!(light.pdf > 0.0f && wi.z > 0.0f)) continue;
+            if (!(light.pdf > 0.0f && (wi.z > 0.0f || vertex.bent))) continue;
             lit.push_back(k);
             reflections.addPair(*vertex.path->point.brdf, vertex.wo, wi);
         }
@@ -157,10 +174,11 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             const std::size_t k = lit[m];
             const PathVertex& vertex = vertices[group.members[k]];
             const EnvironmentSample& light = batch.samples[k];
-            const float other = (group.bed ? kBedShare : 1.0f) * reflections.densities[m];
-            const float weight = balanceHeuristic(light.pdf, other);
-            const Color value = vertex.path->throughput * reflections.values[m] *
-                                (reflections.wi(m).z * weight / light.pdf) * light.radiance;
+            const float density = vertex.bent ? vertex.bentPdf(light.direction) : reflections.densities[m];
+            const float weight = balanceHeuristic(light.pdf, (group.bed ? kBedShare : 1.0f) * density);
+            const Color reflected = vertex.bent ? Color(1.0f) : reflections.values[m];
+            const float cosine = vertex.bent ? density : reflections.wi(m).z;
+            const Color value = vertex.path->throughput * reflected * (cosine * weight / light.pdf) * light.radiance;
             if (!(maxComponent(value) > 0.0f)) continue;
             surfaces_.leave(vertex.path->point, light.direction, shadow_rays.add(value, vertex.path->pixel));
         }
@@ -187,15 +205,15 @@ bool PathIntegrator::scatterThrough(PathVertex& vertex, const glm::vec2& lobe_dr
     const std::optional<InterfaceSample> next = path.solid->surface().sample(path.side(), vertex.wo, lobe_draw, draw);
     if (!next) return false;
     const bool out = next->side == Side::air;
-    const glm::vec3 direction = vertex.frame.toWorld({next->wi.x, next->wi.y, out ? next->wi.z : -next->wi.z});
+    glm::vec3 direction = vertex.frame.toWorld({next->wi.x, next->wi.y, out ? next->wi.z : -next->wi.z});
     // With smooth normals it may be on the wrong side of the real surface.
-    if ((glm::dot(glm::dvec3(direction), path.point.geometric) > 0.0) != out) return false;
+    if ((glm::dot(glm::dvec3(direction), path.point.geometric) > 0.0) != out) direction = vertex.mirrored(direction);
     bounce.from = &vertex;
     bounce.direction = direction;
-    bounce.pdf = next->pdf;
+    bounce.pdf = vertex.bent && out ? vertex.bentPdf(direction) : next->pdf;
     if (out) {
         bounce.ray = surfaces_.leave(path.point, direction);
-        bounce.escaped = hitLights(bounce.ray, kFar, next->pdf);
+        bounce.escaped = hitLights(bounce.ray, kFar, bounce.pdf);
     } else {
         bounce.ray = surfaces_.enter(path.point, direction);
         bounce.inside = path.side() == Side::solid && path.inside != nullptr ? path.inside : path.solid;

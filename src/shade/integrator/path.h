@@ -62,9 +62,16 @@ private:
     /// The current vertex of a path, with its shading frame.
     struct PathVertex {
         explicit PathVertex(Path& of);
+        /// A direction mirrored at the real surface.
+        glm::vec3 mirrored(const glm::vec3& direction) const;
+        /// Of a bent vertex: the density of a direction into the air, which is its value times the cosine, too.
+        float bentPdf(const glm::vec3& direction) const;
         Path* path;
         Frame frame;
         glm::vec3 wo;  // unit, in `frame`, towards the previous vertex; z of the side that it is on (RoughInterface)
+        /// On a translucent solid whose smooth normal is not that of the real surface. What is drawn to one side by the
+        /// smooth normal and lies on the other by the real one is mirrored, so that no light is lost.
+        bool bent;
     };
     /// A ray drawn from the BRDF.
     struct Bounce {

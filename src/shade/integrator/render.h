@@ -26,8 +26,8 @@ struct RenderOptions {
     int height = 960;  ///< pixels, 1 to 32768
     int spp = 16;      ///< samples a pixel, 1 to 65536; powers of two are best. With `noise`: at most
     /// --noise: 0, or the error at which a tile of 32 x 32 pixels is finished, in (0, 1]: root mean square over the
-    /// tile of the standard error of luminance over sqrt(luminance^2 + 0.01). Each tile gets 16 samples, then twice as
-    /// many, etc.
+    /// tile's pixels of the standard error of luminance, over sqrt(L^2 + 0.01), L being the tile's mean luminance. Each
+    /// tile gets 16 samples, then twice as many, etc.
     double noise = 0.0;
     /// --time: 0, or seconds. Every tile gets 4 samples; then those with the largest errors get twice as many,
     /// repeatedly, until the time is over, or all reach `noise` or `spp`. The film is not reproducible: it depends on

@@ -93,12 +93,14 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
 }
 
 double Tile::error() const {
-    double sum = 0.0;
+    double variance = 0.0;
+    double luminance = 0.0;
     for (std::size_t n = 0; n < pixels(); ++n) {
-        const double mean = sums_.luminance(n, samples());
-        sum += sums_.variance(n, samples()) / (mean * mean + 0.01);
+        variance += sums_.variance(n, samples());
+        luminance += sums_.luminance(n, samples());
     }
-    return std::sqrt(sum / static_cast<double>(pixels()));
+    const double mean = luminance / static_cast<double>(pixels());
+    return std::sqrt(variance / static_cast<double>(pixels()) / (mean * mean + 0.01));
 }
 
 void Tile::store(Film& film) const {

@@ -40,7 +40,9 @@ public:
     /// Adds samples to every pixel, from the one after its last to target - 1.
     void sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                 const PixelFilter& filter, TileWorker& worker);
-    /// Root mean square over the pixels of the relative standard error of luminance, as RenderOptions::noise counts it.
+    /// Root mean square over the pixels of the standard error of luminance, by the tile's mean luminance, as
+    /// RenderOptions::noise counts it. A pixel's own mean would not do: where a rare sample is most of the light, the
+    /// pixels that have it are bright and those that still lack it have no variance, so that all look finished.
     double error() const;
     /// Writes the means into the film and its layers.
     void store(Film& film) const;

@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "base/text.h"
 #include "shade/data_folder.h"
+#include "shade/palette/finish_words.h"
 
 #include <fmt/format.h>
 
@@ -60,10 +61,15 @@ std::optional<std::uint32_t> colorOf(std::string_view hex) {
     return color;
 }
 
-Finish finishOf(const std::vector<std::string>& name, std::string_view stated, std::string_view pattern) {
+Finish finishOf(const Filament& filament, std::string_view stated, std::string_view pattern) {
     if (pattern == "sparkle") return Finish::glitter;
-    if (std::find(name.begin(), name.end(), "silk") != name.end()) return Finish::silk;
-    return stated == "matte" ? Finish::matte : stated == "glossy" ? Finish::glossy : Finish::plain;
+    std::vector<std::string> words = wordsOf(filament.material);
+    words.insert(words.end(), filament.name_words.begin(), filament.name_words.end());
+    const Finish said = finishOfWords(words);
+    if (said == Finish::glitter || said == Finish::silk) return said;
+    if (stated == "matte") return Finish::matte;
+    if (stated == "glossy") return Finish::glossy;
+    return said;
 }
 
 }  // namespace
@@ -112,7 +118,7 @@ std::vector<Filament> parseFilaments(std::string_view text, std::string_view fil
         Filament filament{
             std::string(cells[0]), std::string(cells[1]), std::string(cells[2]), *color, Finish::plain, {},
             wordsOf(cells[2])};
-        filament.finish = finishOf(filament.name_words, cells[4], cells[6]);
+        filament.finish = finishOf(filament, cells[4], cells[6]);
         filament.words = wordsOf(fullName(filament));
         table.push_back(std::move(filament));
     }

@@ -21,8 +21,9 @@ struct Filament {
     std::vector<std::string> name_words;  ///< of the name
 };
 
-/// The table, read once; immutable. Rows of several colors are left out. A "silk" in the name is Finish::silk, the
-/// pattern "sparkle" Finish::glitter. Throws InputError if the file is missing or damaged.
+/// The table, read once; immutable. Rows of several colors are left out. The pattern "sparkle" is Finish::glitter; else
+/// flakes and silk by the words of name and material (finishOfWords()), then the stated finish, then their other words.
+/// Throws InputError if the file is missing or damaged.
 const std::vector<Filament>& filaments();
 
 /// Reads such a table. `file` is its name for messages. Throws InputError.

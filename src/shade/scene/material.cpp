@@ -137,6 +137,11 @@ bool ObjectMaterial::anyTranslucent() const {
                        [](const Material& material) { return material.brdf->translucent() != nullptr; });
 }
 
+bool ObjectMaterial::anyByPlace() const {
+    return std::any_of(materials_.begin(), materials_.end(),
+                       [](const Material& material) { return material.by_place; });
+}
+
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary) {
     using Kind = trace::AttributeSummary::Kind;

@@ -37,7 +37,7 @@ class ObjectMaterial {
 public:
     explicit ObjectMaterial(std::shared_ptr<const Brdf> brdf);
     /// @param attribute  number of the attribute, see Tracer::attribute()
-    /// @param brdfs      at least one; the first is for points without a value, the last for values that are not finite
+    /// @param brdfs      at least one; the last is for points without a value, and for values that are not finite
     /// @param choose     finite value -> index into brdfs
     ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
                    std::function<std::size_t(const glm::vec3&)> choose);
@@ -45,11 +45,12 @@ public:
     bool single() const { return !choose_; }
     /// Whether light goes through one of them.
     bool anyTranslucent() const;
+    /// Whether one of them is another one at other places.
+    bool anyByPlace() const;
     std::size_t attribute() const { return attribute_; }
     const Material& only() const { return materials_.front(); }
     const Material& of(const std::optional<glm::vec3>& value) const {
-        if (!value) return materials_.front();
-        return isFinite(*value) ? materials_[choose_(*value)] : materials_.back();
+        return value && isFinite(*value) ? materials_[choose_(*value)] : materials_.back();
     }
 
 private:
@@ -62,8 +63,8 @@ private:
 /// With `each`: those materials; of colors, the others are as without. Without: `brdf` (or `scene_brdf`) in other
 /// colors: those of the attribute itself if its values are colors, of a palette for up to 32 whole numbers (features
 /// have fixed colors), else of a ramp from the least value to the most, from blue over white to red if they are
-/// opposite; gray where a value is not finite. Throws UsageError: a BRDF without a body color (a table), a name that
-/// the attribute doesn't have.
+/// opposite; gray where there is no value, or one that is not finite. Throws UsageError: a BRDF without a body color (a
+/// table), a name that the attribute doesn't have.
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary);
 

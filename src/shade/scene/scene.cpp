@@ -90,6 +90,11 @@ bool SceneDescription::anyTranslucent() const {
            std::any_of(objects.begin(), objects.end(), [](const ObjectMaterial& m) { return m.anyTranslucent(); });
 }
 
+bool SceneDescription::anyByPlace() const {
+    return material->variesByPlace() ||
+           std::any_of(objects.begin(), objects.end(), [](const ObjectMaterial& m) { return m.anyByPlace(); });
+}
+
 SceneDescription makeScene(const SceneOptions& options, const trace::Intersector& print, int width, int height) {
     const trace::Box box = print.bounds();
     CameraOptions camera = options.camera;

@@ -77,6 +77,8 @@ struct SceneDescription {
 
     /// Whether light goes through a material of it.
     bool anyTranslucent() const;
+    /// Whether one of its materials is another one at other places.
+    bool anyByPlace() const;
 };
 
 /// Builds the scene around a print. The bed is at restingHeight(); it is invisible to a camera below it. A transparent

@@ -121,6 +121,13 @@ TEST(ThumbnailFile, PicturesOfAPlate) {
     EXPECT_EQ(sizes({kAsked}), (std::vector<ThumbnailSize>{kAsked, {128, 128, ThumbnailCoding::png}}));
     EXPECT_EQ(sizes({{50, 50}, kTiny, kAsked}), (std::vector<ThumbnailSize>{kAsked, {50, 50}}));
     EXPECT_THROW((void)sizes({kTiny}), UsageError);
+    // What it has no place for is known: a picture of another kind, and those between the largest and the smallest.
+    const auto left = [&](std::vector<ThumbnailSize> asked) {
+        return ThumbnailFile(file, "a.gcode.3mf", std::move(asked)).leftOut();
+    };
+    EXPECT_EQ(left({kAsked}), std::vector<ThumbnailSize>());
+    EXPECT_EQ(left({{50, 50}, kTiny, {70, 70}, kAsked}), (std::vector<ThumbnailSize>{kTiny, {70, 70}}));
+    EXPECT_EQ(ThumbnailFile(text, "a.gcode", {kTiny}).leftOut(), std::vector<ThumbnailSize>());
     const std::string made = patch(file, {kAsked});
     EXPECT_NE(made.find("picture of 300PNG"), std::string::npos);
     EXPECT_NE(made.find("picture of 128PNG"), std::string::npos);

@@ -73,6 +73,12 @@ TEST(Stated, DensitiesAndPrices) {
     EXPECT_EQ(other.prices, (std::vector<double>{46, 0}));
 }
 
+TEST(Stated, NamesOfFilamentProfiles) {
+    EXPECT_EQ(factsOf({"filament_settings_id = \"Prusament PLA Galaxy Black @MK4\";\"Generic PLA, Silk\""}).profiles,
+              (std::vector<std::string>{"Prusament PLA Galaxy Black @MK4", "Generic PLA, Silk"}));
+    EXPECT_EQ(factsOf({"filament_settings_id = MyFilament"}).profiles, std::vector<std::string>{"MyFilament"});
+}
+
 TEST(Stated, TheSummaryBeginsWithIt) {
     const std::string text = summarize(readProgram(
         "M83\nG1 Z.2\nG1 X9 E4\n; estimated printing time (normal mode) = 1h 5m 24s\n; total filament used [g] = "

@@ -24,15 +24,47 @@ TEST(Metal, AMirrorReflectsItsColor) {
     EXPECT_GT(test::sampledAlbedo(brdf, test::direction(0.05, 0.0)), 0.8);
 }
 
-TEST(Metal, GainsNothingAndLosesWhatIsReflectedTwice) {
-    for (const float alpha : {0.001f, 0.05f, 0.25f, 0.5f, 1.0f})
-        for (const double cosine : {0.01, 0.1, 0.4, 0.7, 1.0}) {
-            const double albedo = test::sampledAlbedo(Metal(Color(1.0f), alpha), test::direction(cosine, 0.4));
-            EXPECT_LE(albedo, 1.001) << alpha << " " << cosine;
-            EXPECT_GT(albedo, alpha <= 0.25f && cosine > 0.3 ? 0.84 : 0.3) << alpha << " " << cosine;
+// Light that facets pass on among themselves was lost once: ln 2 of it from above at alpha 1.
+TEST(Metal, AWhiteOneLosesAndGainsNothing) {
+    for (const float alpha : {0.1f, 0.25f, 0.5f, 1.0f}) {
+        const Metal brdf(Color(1.0f), alpha);
+        for (const double cosine : {0.02, 0.1, 0.4, 0.7, 1.0}) {
+            const int rings = alpha < 0.2f ? 3000 : 800;
+            EXPECT_NEAR(test::albedo(brdf, test::direction(cosine, 0.4), rings, rings), 1.0, 3e-3)
+                << alpha << " " << cosine;
         }
-    // Known in closed form.
-    EXPECT_NEAR(test::sampledAlbedo(Metal(Color(1.0f), 1.0f), test::direction(1.0, 0.0)), 1.0 - std::log(2.0), 2e-3);
+    }
+    // Narrow lobes by their own samples. The nodes of the table are far apart where a smooth surface is grazed.
+    for (const float alpha : {0.001f, 0.05f, 0.25f, 1.0f})
+        for (const double cosine : {0.001, 0.01, 0.1, 0.4, 0.7, 1.0})
+            EXPECT_NEAR(test::sampledAlbedo(Metal(Color(1.0f), alpha), test::direction(cosine, 0.4)), 1.0,
+                        alpha < 0.01f && cosine < 0.1 ? 1e-2 : 2e-3)
+                << alpha << " " << cosine;
+}
+
+TEST(Metal, AColoredOneKeepsLessThanAWhiteOne) {
+    for (const float alpha : {0.25f, 1.0f})
+        for (const double cosine : {0.1, 0.5, 1.0}) {
+            const glm::vec3 wo = test::direction(cosine, 0.4);
+            double last = 0.0;
+            for (const float color : {0.0f, 0.3f, 0.6f, 0.9f, 1.0f}) {
+                const double albedo = test::albedo(Metal(Color(color), alpha), wo, 800, 800);
+                EXPECT_GT(albedo, last) << alpha << " " << cosine;
+                EXPECT_LE(albedo, 1.002);
+                last = albedo;
+            }
+        }
+}
+
+TEST(AlbedoTable, KnowsWhatIsReflectedOnce) {
+    const shade::AlbedoTable once(shade::Ggx{1.0f}, shade::AlbedoTable::Facets::steep, [](float) { return 1.0f; });
+    EXPECT_NEAR(once.at(1.0f), 1.0f - std::log(2.0f), 1e-3f);  // in closed form
+    // The rest has the albedo that is lacking.
+    for (const float cosine : {0.1f, 0.5f, 1.0f}) {
+        const double rest = test::overHemisphere(
+            [&](const glm::vec3& wi) { return static_cast<double>(once.rest(cosine, wi.z) * wi.z); }, 800, 16);
+        EXPECT_NEAR(rest, 1.0 - static_cast<double>(once.at(cosine)), 1e-3) << cosine;
+    }
 }
 
 TEST(Metal, SamplesItsDensity) {
@@ -44,13 +76,13 @@ TEST(Metal, SamplesItsDensity) {
 }
 
 TEST(Metal, IsAMaterialOfTheCommandLine) {
-    const auto brdf = shade::makeBrdf("metal:0.9,0.7,0.4,0.3");
+    const auto brdf = shade::makeBrdf("metal:0.9,0.7,0.4,0.02");
     const glm::vec3 up(0.0f, 0.0f, 1.0f);
     const Color straight = brdf->eval(up, up);
-    EXPECT_NEAR(straight.g / straight.r, 0.7f / 0.9f, 1e-5f);
+    EXPECT_NEAR(straight.g / straight.r, 0.7f / 0.9f, 1e-3f);
     const auto other = brdf->recolored(Color(0.1f, 0.2f, 0.3f));
     ASSERT_TRUE(other);
-    EXPECT_NEAR(other->eval(up, up).b / other->eval(up, up).r, 3.0f, 1e-4f);
+    EXPECT_NEAR(other->eval(up, up).b / other->eval(up, up).r, 3.0f, 3e-3f);
 }
 
 }  // namespace

@@ -175,6 +175,52 @@ TEST(RandomWalk, AWhiteBodyInAWhiteFurnaceCannotBeSeen) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1.0, 2e-3);
 }
 
+/// A ball whose smooth normals lean to a side, by the angle with this tangent.
+class LeaningBall final : public trace::Intersector {
+public:
+    explicit LeaningBall(double tangent) : tangent_(tangent) {}
+    std::unique_ptr<trace::Tracer> makeTracer() const override { return std::make_unique<Rays>(ball_, tangent_); }
+    std::string_view name() const override { return "leaning"; }
+    trace::Box bounds() const override { return ball_.bounds(); }
+    double voxelSize() const override { return 0.1; }
+    std::size_t bytes() const override { return 0; }
+    double surfaceOffset() const override { return ball_.surfaceOffset(); }
+
+private:
+    struct Rays final : trace::Tracer {
+        Rays(const test::FunctionIntersector& ball, double lean) : inner(ball.makeTracer()), tangent(lean) {}
+        bool intersect(const trace::Ray& ray, trace::Hit& hit) override { return inner->intersect(ray, hit); }
+        bool occluded(const trace::Ray& ray) override { return inner->occluded(ray); }
+        glm::dvec3 shadingNormal(const trace::Hit& hit) override {
+            // Like the facets of voxels: from place to place to another side.
+            const double turn = 40.0 * (hit.position.x + 2.0 * hit.position.y + 3.0 * hit.position.z);
+            const glm::dvec3 side(std::cos(turn), std::sin(turn), std::cos(1.7 * turn));
+            return glm::normalize(hit.normal + tangent * glm::normalize(side));
+        }
+        std::unique_ptr<trace::Tracer> inner;
+        double tangent;
+    };
+    const test::FunctionIntersector ball_ = test::sphere({0, 0, 0}, 3.0);
+    const double tangent_;
+};
+
+// Once, what a leaning normal sent to the wrong side of the real surface was lost.
+TEST(RandomWalk, SmoothNormalsLoseNoLight) {
+    const LeaningBall ball(0.3);
+    shade::SceneDescription scene = test::plainScene(ball, "translucent:1,1,1,1.5", "constant:1,1,1", false);
+    scene.smooth_normals = true;
+    glm::dvec3 mean(0.0);
+    std::uint32_t seed = 0;
+    for (const double y : {0.0, 1.5, 2.5, 2.9}) {
+        trace::Ray ray;
+        ray.origin = {30.0, y, 0.1};
+        ray.direction = {-1.0, 0.0, 0.0};
+        mean +=
+            glm::dvec3(test::meanRadiance(ball, shade::PathIntegrator(scene, ball, 1), ray, 1u << 16, ++seed)) / 4.0;
+    }
+    EXPECT_NEAR(mean.x, 1.0, 1e-3);
+}
+
 TEST(RandomWalk, AThickPieceHasTheColorAskedFor) {
     // Of the light that gets in; what the surface reflects comes on top, and is all of a black piece.
     constexpr double kDeep = 1500.0;

@@ -7,10 +7,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace stratum {
 namespace {
@@ -97,6 +100,46 @@ TEST(Denoise, IsTheEstimatorThatItSays) {
         }
     std::printf("largest difference from the plain estimator: %.1e\n", worst);
     EXPECT_LT(worst, 2e-3);
+}
+
+/// The middle of a ball of glitter, whose flakes are a few pixels large.
+Film glitter(int spp, std::uint32_t seed) {
+    const auto print = test::sphere({0, 0, 5}, 5.0);
+    shade::RenderOptions options;
+    options.width = 160;
+    options.height = 120;
+    options.crop = shade::PixelBox{44, 24, 116, 84};
+    options.spp = spp;
+    options.seed = seed;
+    options.integrator.name = "direct";
+    shade::addDenoisingGuides(options);
+    shade::SceneOptions scene;
+    scene.brdf = "glitter:0.1,0.1,0.4,0.4";
+    Film film = shade::render(print, shade::makeScene(scene, print, options.width, options.height), options).film;
+    return film;
+}
+
+// Flashes are no noise: without their light among the guides the brightest pixels lost a quarter.
+TEST(Denoise, GlitterKeepsItsFlashes) {
+    const Film reference = glitter(1024, 9);
+    Film film = glitter(8, 1);
+    const Film noisy = film;
+    shade::denoise(film);
+    std::vector<std::pair<float, std::size_t>> order;
+    for (std::size_t n = 0; n < reference.pixels().size(); ++n)
+        order.emplace_back(-shade::luminance(reference.pixels()[n].rgb), n);
+    std::sort(order.begin(), order.end());
+    order.resize(order.size() / 100);
+    double sum = 0.0;
+    double kept = 0.0;
+    for (const auto& [light, n] : order) {
+        sum -= double(light);
+        kept += double(shade::luminance(film.pixels()[n].rgb));
+    }
+    std::printf("the brightest 1 %% keep %.3f; relMSE %.2e, denoised %.2e\n", kept / sum, relMse(noisy, reference),
+                relMse(film, reference));
+    EXPECT_GT(kept, 0.9 * sum);
+    EXPECT_LT(relMse(film, reference), relMse(noisy, reference));
 }
 
 /// A matt ball on a bed, whole or in part.

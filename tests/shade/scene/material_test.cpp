@@ -117,6 +117,8 @@ TEST(Material, ValuesThatAreNoNumbersAreGray) {
             EXPECT_NEAR(albedo.r, 0.18f, 1e-5f);
             EXPECT_EQ(albedo.r, albedo.b);
         }
+        // So are places without a value, as in a cut that is deeper than a file's values.
+        EXPECT_NEAR(material.of(std::nullopt).albedo.r, 0.18f, 1e-5f);
     }
     options.by = "tool";
     options.each = {{"1", "lambert:0,1,0"}};
