@@ -296,7 +296,10 @@ int main(int argc, char** argv) {
     return tools::runTool(app, argc, argv, [&] {
         if (!options.color.empty())
             options.print.read.filament_colors = assemble::toolColorsOf(options.color, "--color").colors;
-        if (app.count("--thumbnail") > 0) return tools::writeThumbnails(options);
+        if (app.count("--thumbnail") > 0) {
+            tools::keepFreedMemory();
+            return tools::writeThumbnails(options);
+        }
         tools::useHugePages(argv);
         options.shard.said = tools::saidOf(app);
         return run(options);

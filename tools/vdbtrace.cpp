@@ -165,6 +165,7 @@ void runFilm(tools::TraceCommand& o, const std::vector<std::string>& given_of_pr
 void run(const CLI::App& app, tools::TraceCommand& whole, int argc, char** argv) {
     // Before standard input is read: the process starts itself once more. Bricks have huge pages of their own.
     if (whole.march != "auto" && whole.march != "brick") tools::useHugePages(argv);
+    tools::keepFreedMemory();
     std::vector<std::string> given_of_prints = tools::givenPrintOptions(app);
     if (tools::colorsTools(whole)) given_of_prints.emplace_back("--color");
     if (!whole.film.output.empty()) return runFilm(whole, given_of_prints, argc, argv);

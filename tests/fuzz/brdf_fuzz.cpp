@@ -1,9 +1,7 @@
 // libFuzzer: any bytes as a measured material, of whichever kind they look like. Only InputError may come out of
 // reading them, and what is read must be a BRDF: finite and not negative.
 //
-//   build/fuzz/bin/brdf_fuzz -dict=tests/fuzz/brdf.dict -max_total_time=1900 -max_len=8192 FOLDER tests/fuzz/brdf
-//
-// How to build it stands in gcode_fuzz.cpp. MERL tables have 35 MB, always; the bytes behind their head are repeated up
+// How to build and run it stands in scripts/fuzz.sh. MERL tables have 35 MB, always; the bytes behind their head are repeated up
 // to that.
 #include "base/error.h"
 #include "fuzz/memory_file.h"

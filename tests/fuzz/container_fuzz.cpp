@@ -1,15 +1,12 @@
 // libFuzzer: any bytes as a container, and what comes out as a program. Only InputError and UsageError may come
 // out of it.
 //
-//   cmake --preset release -B build/fuzz -DSTRATUM_FUZZ=ON
-//       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
-//   cmake --build build/fuzz --target container_fuzz
-//   build/fuzz/bin/container_fuzz -max_total_time=300 -rss_limit_mb=4096 -max_len=65536 FOLDER
-//
 // FOLDER collects the inputs that reach new code; start it with a copy of tests/fuzz/container, which the tests run too
 // and whose successor comes out of:
 //   container_fuzz -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW tests/fuzz/container FOLDER
 // Checksums are what a fuzzer can't guess, so the CRC32s of a binary G-code file are put right before it is read.
+//
+// How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "gcode/container/bgcode.h"
 #include "gcode/container/container.h"

@@ -2,13 +2,10 @@
 // reading it, and a toolpath that is read must be one that can be drawn: finite places, positive sections, no index out
 // of bounds.
 //
-//   cmake --preset release -B build/fuzz -DSTRATUM_FUZZ=ON
-//       -DSTRATUM_SANITIZE=address,undefined -DCMAKE_BUILD_TYPE=RelWithDebInfo
-//   cmake --build build/fuzz --target gcode_fuzz
-//   build/fuzz/bin/gcode_fuzz -dict=tests/fuzz/gcode.dict -max_total_time=300 -max_len=4096 FOLDER tests/fuzz/gcode
-//
 // FOLDER collects the inputs that reach new code; tests/fuzz/gcode holds the smallest set of them so far. The first
 // byte chooses the options, so that one folder serves all firmwares.
+//
+// How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "deposit/read_print.h"
 #include "gcode/reader.h"

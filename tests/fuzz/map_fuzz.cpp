@@ -1,9 +1,7 @@
 // libFuzzer: any bytes as a map of light, Radiance or OpenEXR. Only InputError may come out of reading it, and what is
 // read must give light: finite radiance and densities in all directions.
 //
-//   build/fuzz/bin/map_fuzz -max_total_time=1900 -max_len=8192 FOLDER tests/fuzz/map
-//
-// How to build it stands in gcode_fuzz.cpp.
+// How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
 #include "shade/environment/light_map.h"

@@ -1,10 +1,7 @@
 // libFuzzer: any bytes as a message of a page to the viewer. Only InputError may come out of reading them; what is read
 // makes options without a NaN that name no file, and is the same when it is written and read again.
 //
-//   build/fuzz/bin/message_fuzz -dict=tests/fuzz/message.dict -max_total_time=1900 -max_len=4096 FOLDER
-//   tests/fuzz/message
-//
-// How to build it stands in gcode_fuzz.cpp.
+// How to build and run it stands in scripts/fuzz.sh.
 #include "base/error.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/palette/filament_color.h"

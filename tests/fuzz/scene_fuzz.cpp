@@ -1,9 +1,7 @@
 // libFuzzer: any text as a scene. Only InputError and UsageError may come out of reading it, and what is read must make
 // shapes without a NaN, cameras, lamps and placements.
 //
-//   build/fuzz/bin/scene_fuzz -dict=tests/fuzz/scene.dict -max_total_time=1900 -max_len=4096 FOLDER tests/fuzz/scene
-//
-// How to build it stands in gcode_fuzz.cpp. Materials and environments that name files are left out: they have a target
+// How to build and run it stands in scripts/fuzz.sh. Materials and environments that name files are left out: they have a target
 // of their own.
 #include "assemble/scene_file.h"
 #include "base/error.h"

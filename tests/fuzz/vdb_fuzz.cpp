@@ -1,9 +1,7 @@
 // libFuzzer: any bytes as a .vdb, read as the tools read it. Only InputError may come out of reading, and a level set
 // that is read must be one that can be traced, leaf by leaf or whole, to the same finite hits.
 //
-//   build/fuzz/bin/vdb_fuzz -max_total_time=1900 -max_len=65536 FOLDER tests/fuzz/vdb
-//
-// How to build it stands in gcode_fuzz.cpp. OpenVDB itself is not instrumented, but for what its headers hold.
+// How to build and run it stands in scripts/fuzz.sh. OpenVDB itself is not instrumented, but for what its headers hold.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
 #include "march/attribute/attribute_grid.h"

@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -23,6 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <new>
 
 namespace stratum::tools {
@@ -126,6 +128,15 @@ void useHugePages(char** argv) {
     ::execv(self.c_str(), argv);
 #else
     static_cast<void>(argv);
+#endif
+}
+
+void keepFreedMemory() {
+#if defined(__GLIBC__) && !defined(STRATUM_SANITIZED)
+    constexpr int kNever = std::numeric_limits<int>::max();
+    constexpr int kLargest = 32 << 20;  // that the C library accepts
+    ::mallopt(M_TRIM_THRESHOLD, kNever);
+    ::mallopt(M_MMAP_THRESHOLD, kLargest);
 #endif
 }
 

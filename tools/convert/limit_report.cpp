@@ -25,18 +25,11 @@ std::string fromOf(const LimitOrigin& origin, gcode::CornerRule rule) {
     }
 }
 
-bool isListed(Limit limit, const gcode::LimitOrigins& limits) {
-    const LimitOrigin& origin = limits[limit];
-    // Steps that nobody stated are no assumption: the rule leaves out what needs them.
-    return gcode::isUsed(limit, limits.rule) &&
-           !(limit >= Limit::steps_per_mm && limit < Limit::printing && origin.value == 0 && origin.changes == 0);
-}
-
 template <typename Take>
 void eachLimit(const gcode::LimitOrigins& limits, const Take& take) {
     const auto list = [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
-            if (isListed(static_cast<Limit>(n), limits)) take(static_cast<Limit>(n));
+            if (gcode::isUsed(static_cast<Limit>(n), limits)) take(static_cast<Limit>(n));
     };
     // Those of whole moves first, then those of axes.
     constexpr auto kAxes = static_cast<std::size_t>(Limit::printing);

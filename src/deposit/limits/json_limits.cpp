@@ -26,7 +26,7 @@ constexpr std::array<std::pair<const char*, Limit>, 4> kAxisKeys{{{"speed_mm_s",
                                                                   {"jerk_mm_s", Limit::jerk},
                                                                   {"steps_per_mm", Limit::steps_per_mm}}};
 
-constexpr std::array<std::pair<const char*, Limit>, 16> kKeys{{
+constexpr std::array<std::pair<const char*, Limit>, 17> kKeys{{
     {"max_velocity_mm_s", Limit::path_speed},
     {"max_accel_mm_s2", Limit::printing},  // and travel
     {"minimum_cruise_ratio", Limit::cruise_ratio},
@@ -43,6 +43,7 @@ constexpr std::array<std::pair<const char*, Limit>, 16> kKeys{{
     {"junction_deviation_mm", Limit::junction_deviation},
     {"least_printing_speed_mm_s", Limit::least_printing_speed},
     {"least_travel_speed_mm_s", Limit::least_travel_speed},
+    {"wait_after_m400_s", Limit::wait_after_m400},
 }};
 
 class JsonLimits {

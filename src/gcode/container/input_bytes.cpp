@@ -52,11 +52,9 @@ ByteBuffer readAll(int descriptor, std::string_view name, std::size_t most) {
 
 InputBytes::InputBytes(const std::string& path, Streams streams, std::size_t most)
     : name_(path == "-" ? "standard input" : path) {
-    if (streams == Streams::refuse) {
-        file_.emplace(path);
-    } else if (path == "-") {
+    if (streams == Streams::read && path == "-") {
         buffer_ = readAll(STDIN_FILENO, name_, most);
-    } else if (isStream(path)) {
+    } else if (streams == Streams::read && isStream(path)) {
         const Descriptor stream(path);
         buffer_ = readAll(stream.fd, name_, most);
     } else {

@@ -49,6 +49,7 @@ constexpr std::array<Facts, kLimitCount> kFacts{{
     {"corner velocity of e", "instantaneous_corner_velocity", kJump},
     {"cruise ratio", "minimum_cruise_ratio", {"", {0, 0.99}}},
     {"arc resolution", "resolution of arcs", {"mm", {1e-3, 100}}},
+    {"wait after M400", "wait after M400", {"s", {0, 60}}},
 }};
 
 const Facts& factsOf(Limit limit) { return kFacts[static_cast<std::size_t>(limit)]; }
@@ -88,8 +89,10 @@ double& valueOf(MachineLimits& limits, Limit limit) {
             return limits.extruder_corner_velocity;
         case Limit::cruise_ratio:
             return limits.cruise_ratio;
-        default:
+        case Limit::arc_resolution:
             return limits.arc_resolution;
+        default:
+            return limits.wait_after_m400;
     }
 }
 
@@ -102,7 +105,12 @@ std::string_view limitUnit(Limit limit) { return factsOf(limit).kind.unit; }
 
 Bounds boundsOf(Limit limit) { return factsOf(limit).kind.bounds; }
 
-bool isUsed(Limit limit, CornerRule rule) {
+bool isUsed(Limit limit, const LimitOrigins& origins) {
+    const CornerRule rule = origins.rule;
+    const LimitOrigin& origin = origins[limit];
+    if ((limit == Limit::wait_after_m400 || isOf(limit, Limit::steps_per_mm)) && origin.value == 0 &&
+        origin.changes == 0)
+        return false;
     if (rule == CornerRule::corner_velocity) return !factsOf(limit).klipper.empty();
     if (isOf(limit, Limit::steps_per_mm))
         return rule == CornerRule::junction_deviation || rule == CornerRule::marlin_jerk;

@@ -29,8 +29,9 @@ enum class Limit : std::uint8_t {
     extruder_corner_velocity,
     cruise_ratio,
     arc_resolution,
+    wait_after_m400,
 };
-constexpr std::size_t kLimitCount = static_cast<std::size_t>(Limit::arc_resolution) + 1;
+constexpr std::size_t kLimitCount = static_cast<std::size_t>(Limit::wait_after_m400) + 1;
 
 /// The limit of one axis, of the four that begin with `first`.
 constexpr Limit ofAxis(Limit first, std::size_t axis) {
@@ -50,9 +51,6 @@ struct Bounds {
 };
 /// Numbers beyond them are damaged, or of no machine.
 Bounds boundsOf(Limit limit);
-
-/// Whether a planner by this rule reads the limit.
-bool isUsed(Limit limit, CornerRule rule);
 
 struct LimitOrigin {
     enum class Kind : std::uint8_t {
@@ -78,5 +76,8 @@ public:
 private:
     std::array<LimitOrigin, kLimitCount> origins_;
 };
+
+/// Whether the planner reads the limit. Steps of motors and waits that nobody stated are left out: nothing is assumed.
+bool isUsed(Limit limit, const LimitOrigins& origins);
 
 }  // namespace stratum::gcode

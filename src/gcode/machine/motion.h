@@ -52,6 +52,7 @@ struct MachineLimits {
     double extruder_corner_velocity = 1;  ///< mm/s of E (instantaneous_corner_velocity); Klipper's default
     double cruise_ratio = 0.5;            ///< minimum_cruise_ratio; Klipper's older max_accel_to_decel is (1 - this) a
     double arc_resolution = 1;            ///< mm, of the pieces of an arc ([gcode_arcs] resolution)
+    double wait_after_m400 = 0;           ///< s; until a host goes on once the machine has come to rest
     double pressure_advance = 0;          ///< s (M900 K, M572 S, SET_PRESSURE_ADVANCE); for flow, not for times
     std::array<double, kMotionAxes> steps_per_mm{};  ///< M92; 0: unknown
     CornerRule rule = CornerRule::jerk;

@@ -201,7 +201,7 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
             if (command.hasValue('K')) pressureAdvance("M900 K", command.value('K'), line);
             return;
         default:
-            if (rests(command)) sink_.wait(0);
+            if (rests(command)) sink_.wait(command.code == 400 ? limits_.wait_after_m400 : 0);
             return;
     }
     sink_.limits(limits_);
@@ -270,7 +270,7 @@ void MotionRecorder::finish() {
         const auto limit = static_cast<Limit>(n);
         const LimitOrigin& origin = settings_.origins[limit];
         const bool from_setting = origin.kind == LimitOrigin::Kind::setting;
-        if (!isUsed(limit, limits_.rule) || (origin.kind != LimitOrigin::Kind::assumed && !from_setting)) continue;
+        if (!isUsed(limit, settings_.origins) || (origin.kind != LimitOrigin::Kind::assumed && !from_setting)) continue;
         assumed += fmt::format("{}{} {:g}{}", assumed.empty() ? "" : ", ", limitName(limit, limits_.rule), origin.value,
                                from_setting ? fmt::format(" ({})", origin.place) : "");
     }

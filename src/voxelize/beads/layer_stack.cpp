@@ -63,27 +63,26 @@ void addSettling(LayerStack& stack) {
 }
 
 void findWelds(LayerStack& stack) {
-    // Bottom planes in order, so that each top plane finds its partners by bisection.
-    std::vector<std::pair<double, std::uint32_t>> bottoms;
-    double widest_gap = 0;
-    for (std::uint32_t i = 0; i < stack.layers.size(); ++i) {
-        bottoms.emplace_back(stack.layers[i].center_z - stack.layers[i].halfHeight(), i);
-        widest_gap = std::max(widest_gap, kWeldGap * 2 * stack.layers[i].halfHeight());
-    }
-    std::sort(bottoms.begin(), bottoms.end());
-    for (std::uint32_t lower = 0; lower < stack.layers.size(); ++lower) {
-        const Layer& below = stack.layers[lower];
-        const double top = below.center_z + below.halfHeight();
-        auto it = std::lower_bound(bottoms.begin(), bottoms.end(), std::pair{top - widest_gap, std::uint32_t{0}});
-        for (; it != bottoms.end() && it->first <= top + widest_gap; ++it) {
-            const Layer& above = stack.layers[it->second];
-            const double limit = kWeldGap * 2 * std::min(below.halfHeight(), above.halfHeight());
-            if (it->second != lower && std::abs(it->first - top) <= limit) stack.welds.push_back({lower, it->second});
+    // Top planes in order, so that each bottom plane finds its partners by bisection.
+    std::vector<std::pair<double, std::uint32_t>> tops;
+    tops.reserve(stack.layers.size());
+    for (std::uint32_t i = 0; i < stack.layers.size(); ++i)
+        tops.emplace_back(stack.layers[i].center_z + stack.layers[i].halfHeight(), i);
+    std::sort(tops.begin(), tops.end());
+    std::vector<std::uint32_t> lowers;
+    for (std::uint32_t upper = 0; upper < stack.layers.size(); ++upper) {
+        const Layer& above = stack.layers[upper];
+        const double bottom = above.center_z - above.halfHeight();
+        const double gap = kWeldGap * 2 * above.halfHeight();
+        lowers.clear();
+        auto it = std::lower_bound(tops.begin(), tops.end(), std::pair{bottom - gap, std::uint32_t{0}});
+        for (; it != tops.end() && it->first <= bottom + gap; ++it) {
+            const double limit = kWeldGap * 2 * std::min(stack.layers[it->second].halfHeight(), above.halfHeight());
+            if (it->second != upper && std::abs(bottom - it->first) <= limit) lowers.push_back(it->second);
         }
+        std::sort(lowers.begin(), lowers.end());
+        for (const std::uint32_t lower : lowers) stack.welds.push_back({lower, upper});
     }
-    std::sort(stack.welds.begin(), stack.welds.end(), [](const Weld& a, const Weld& b) {
-        return std::pair{a.upper, a.lower} < std::pair{b.upper, b.lower};
-    });
 }
 
 }  // namespace

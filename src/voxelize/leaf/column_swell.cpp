@@ -44,8 +44,8 @@ bool LeafColumn::swell(std::uint32_t layer, PlanField& d, PlanField& sides2) {
         any = true;
         for (int j = source.first_j; j <= source.last_j; ++j)
             for (int i = source.first_i; i <= source.last_i; ++i)
-                swell_nodes_[static_cast<std::size_t>((j - first_node_j_) * nodes_i_ + i - first_node_i_)] =
-                    (*nodes)[static_cast<std::size_t>((j & (kTileCells - 1)) * kTileCells + (i & (kTileCells - 1)))];
+                swell_nodes_[nodeIndex(j - first_node_j_, nodes_i_, i - first_node_i_)] =
+                    (*nodes)[nodeIndex(j & (kTileCells - 1), kTileCells, i & (kTileCells - 1))];
     }
     if (!any) return false;
     const auto scale = static_cast<float>(scale_);
@@ -55,7 +55,7 @@ bool LeafColumn::swell(std::uint32_t layer, PlanField& d, PlanField& sides2) {
         const int j = std::clamp(static_cast<int>(swell_y_.v[c]), 0, nodes_j_ - 2);
         const float fx = swell_x_.v[c] - static_cast<float>(i);
         const float fy = swell_y_.v[c] - static_cast<float>(j);
-        const float* low = swell_nodes_.data() + j * nodes_i_ + i;
+        const float* low = swell_nodes_.data() + nodeIndex(j, nodes_i_, i);
         const float* high = low + nodes_i_;
         const float at_low = low[0] + fx * (low[1] - low[0]);
         const float at_high = high[0] + fx * (high[1] - high[0]);

@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace stratum::voxelize {
 namespace {
 
 // How far planes that count as touching may be apart, for a layer of this half height (mm).
 double weldGap(double half_height) { return kWeldGap * 2 * half_height; }
+
+// Bounds of the work where far more beads than any print has lie in one column. Of more beads, those nearest to the
+// column fill grooves; of more layers whose top planes meet one bottom plane, the nearest are welded.
+constexpr std::ptrdiff_t kMostFilling = 512;
+constexpr std::ptrdiff_t kMostPartners = 8;
 
 }  // namespace
 
@@ -115,6 +121,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     free_.insert(free_.end(), window_.begin(), window_.end());
     swell_placed_ = false;
     window_.clear();
+    by_layer_.clear();
     welds_.clear();
     half_heights_.clear();
     // Prefetch: the next beads are scattered in memory.
@@ -223,6 +230,8 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     if (static_cast<double>(least) >= reach * reach) return;
     free_.pop_back();
     window_.push_back(slot);
+    const std::pair entry{source.layer, slot};
+    by_layer_.insert(std::lower_bound(by_layer_.begin(), by_layer_.end(), entry), entry);
     if (std::find(half_heights_.begin(), half_heights_.end(), plan.half_height) == half_heights_.end())
         half_heights_.push_back(plan.half_height);
     addWelds(plan);
@@ -271,24 +280,45 @@ float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d
     return fillBetweenNear(rule, d, sides2);
 }
 
-float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const {
+float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) {
+    filling_.resize(near_.size());
+    std::iota(filling_.begin(), filling_.end(), 0U);
+    if (filling_.size() > kMostFilling) {
+        const auto nearest = filling_.begin() + kMostFilling;
+        std::nth_element(filling_.begin(), nearest, filling_.end(), [this](std::uint32_t a, std::uint32_t b) {
+            return std::pair{near_[a].least, a} < std::pair{near_[b].least, b};
+        });
+        filling_.erase(nearest, filling_.end());
+    }
     PlanField levels;
     std::fill(std::begin(levels.v), std::end(levels.v), kNoGroove);
-    for (std::size_t a = 0; a < near_.size(); ++a)
-        for (std::size_t b = a + 1; b < near_.size(); ++b)
-            if (near_[a].least + near_[b].least < 2 * rule.radius) lowerLevels(near_[a], near_[b], d, rule, levels);
+    for (auto a = filling_.begin(); a != filling_.end(); ++a)
+        for (auto b = a + 1; b != filling_.end(); ++b)
+            if (near_[*a].least + near_[*b].least < 2 * rule.radius) lowerLevels(near_[*a], near_[*b], d, rule, levels);
     return fillGrooves(levels, rule, d, sides2);
 }
 
 void LeafColumn::addWelds(const PlanLayer& upper) {
+    const double bottom = upper.center_z - upper.half_height;
+    partners_.clear();
+    // Both lists ascend by layer.
+    auto present = by_layer_.begin();
     for (std::size_t w = weld_offsets_[upper.layer]; w < weld_offsets_[upper.layer + 1]; ++w) {
-        const std::uint32_t wanted = stack_.welds[w].lower;
-        const auto lower = std::find_if(window_.begin(), window_.end(),
-                                        [&](std::uint32_t slot) { return slots_[slot].layer == wanted; });
-        if (lower == window_.end()) continue;
-        const PlanLayer& below = slots_[*lower];
+        const std::uint32_t lower = stack_.welds[w].lower;
+        present = std::lower_bound(present, by_layer_.end(), std::pair{lower, std::uint32_t{0}});
+        if (present == by_layer_.end()) break;
+        if (present->first != lower) continue;
+        const PlanLayer& below = slots_[present->second];
+        partners_.emplace_back(std::abs(bottom - below.center_z - below.half_height), present - by_layer_.begin());
+    }
+    if (partners_.size() > kMostPartners) {
+        const auto last = partners_.begin() + kMostPartners;
+        std::nth_element(partners_.begin(), last, partners_.end());
+        partners_.erase(last, partners_.end());
+    }
+    for (const auto& [gap, place] : partners_) {
+        const PlanLayer& below = slots_[by_layer_[place].second];
         const double top = below.center_z + below.half_height;
-        const double bottom = upper.center_z - upper.half_height;
         PlanWeld weld{std::min(top, bottom),
                       std::max(top, bottom),
                       0.5 * (below.center_z + upper.center_z),
@@ -310,6 +340,7 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
     for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
     if (kept != window_.size()) {
         window_.resize(kept);
+        std::erase_if(by_layer_, [&](const auto& entry) { return passed(entry.second); });
         half_heights_.clear();
         for (const std::uint32_t slot : window_)
             if (std::find(half_heights_.begin(), half_heights_.end(), slots_[slot].half_height) == half_heights_.end())

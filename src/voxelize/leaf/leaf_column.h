@@ -141,7 +141,7 @@ private:
     /// Fills the grooves of a layer whose d is the minimum over its paths; returns the least of sides2.
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     /// The same for the beads in near_.
-    float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) const;
+    float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2);
     /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed.
     bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2);
     void placeSwell();
@@ -171,18 +171,21 @@ private:
     std::size_t first_direct_ = 0;
     std::vector<LeafRange> ranges_;
 
-    // The window. Slots are reused; window_ and weld_window_ list those in use.
+    // The window. Slots are reused; window_ lists those in use, by_layer_ finds them by (layer, slot), ascending.
     std::vector<PlanLayer> slots_;
     std::vector<std::uint32_t> window_, free_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> by_layer_;
+    std::vector<std::pair<double, std::size_t>> partners_;  // of a layer to weld: gap, place in by_layer_
     std::vector<PlanWeld> welds_;
     std::vector<double> half_heights_;  // distinct, of the window
     std::vector<LocalLine> lines_;
     std::vector<LocalTaper> tapers_;
     std::vector<LocalArc> arcs_;
     std::vector<std::uint32_t> line_ids_, taper_ids_, arc_ids_;
-    std::vector<BeadPlan> near_;  // beads that may fill a groove; all of the layer in planLayer()
-    PlanField d_, sides2_;        // of planLayer()
-    PlanField swollen_;           // likewise
+    std::vector<BeadPlan> near_;          // beads that may fill a groove; all of the layer in planLayer()
+    std::vector<std::uint32_t> filling_;  // of near_, those that do
+    PlanField d_, sides2_;                // of planLayer()
+    PlanField swollen_;                   // likewise
     // Where the swell of the open column comes from.
     struct SwellSource {
         const SwellTile* tile;

@@ -19,12 +19,14 @@ public:
             const int from = std::max(-step, 0);
             const int to = std::min(edge_ - step, edge_);
             for (int row = 0; row < edge_; ++row)
-                add(weight, values.data() + row * edge_ + from + step, to - from, rows_.data() + row * edge_ + from);
+                add(weight, values.data() + nodeIndex(row, edge_, from + step), to - from,
+                    rows_.data() + nodeIndex(row, edge_, from));
         }
         for (int step = -reach; step <= reach; ++step) {
             const double weight = 1 - static_cast<double>(std::abs(step)) / (reach + 1);
             for (int row = std::max(-step, 0); row < std::min(edge_ - step, edge_); ++row)
-                add(weight, rows_.data() + (row + step) * edge_, edge_, out.data() + row * edge_);
+                add(weight, rows_.data() + nodeIndex(row + step, edge_, 0), edge_,
+                    out.data() + nodeIndex(row, edge_, 0));
         }
     }
 

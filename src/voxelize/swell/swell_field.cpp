@@ -32,8 +32,8 @@ SpreadNodes gather(const std::array<const TileSums*, 9>& around, std::uint32_t l
         const int to_y = (tile / 3 - 1) * kTileCells + kSpreadHalo;
         for (int j = std::max(0, -to_y); j < std::min(TileSums::kNodes, nodes.edge - to_y); ++j)
             for (int i = std::max(0, -to_x); i < std::min(TileSums::kNodes, nodes.edge - to_x); ++i) {
-                const auto from = static_cast<std::size_t>(j * TileSums::kNodes + i);
-                const auto to = static_cast<std::size_t>((j + to_y) * nodes.edge + i + to_x);
+                const std::size_t from = nodeIndex(j, TileSums::kNodes, i);
+                const std::size_t to = nodeIndex(j + to_y, nodes.edge, i + to_x);
                 nodes.surplus[to] += static_cast<double>(sums->surplus[from]);
                 for (std::size_t level = 0; level < nodes.gain.size(); ++level)
                     nodes.gain[level][to] += static_cast<double>(sums->gain[level][from]);
@@ -57,9 +57,9 @@ SwellTile spreadTile(const std::array<const TileSums*, 9>& around) {
         bool any = false;
         for (int j = 0; j < kTileCells; ++j)
             for (int i = 0; i < kTileCells; ++i) {
-                const auto n = static_cast<std::size_t>((j + kSpreadHalo) * nodes.edge + i + kSpreadHalo);
+                const std::size_t n = nodeIndex(j + kSpreadHalo, nodes.edge, i + kSpreadHalo);
                 const auto value = static_cast<float>(swellThatGains(nodes, n, given[n]));
-                swell[static_cast<std::size_t>(j * kTileCells + i)] = value;
+                swell[nodeIndex(j, kTileCells, i)] = value;
                 any |= value > 0;
             }
         if (!any) continue;

@@ -35,6 +35,11 @@ constexpr int kTileCells = 16;        ///< along the edge of a tile
 constexpr int kNear = 2;              ///< cells: about two widths of a line
 constexpr int kFar = 4;               ///< cells
 
+/// Of a node, in rows of `width` nodes.
+constexpr std::size_t nodeIndex(int row, int width, int column) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+}
+
 /// What a tile of one layer holds, by its 17 x 17 nodes: sums over the tile's own cells, mm^3.
 struct TileSums {
     static constexpr int kNodes = kTileCells + 1;

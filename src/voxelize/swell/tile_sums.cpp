@@ -214,7 +214,7 @@ private:
         const int j = static_cast<int>(in_y);
         const double fx = in_x - i;
         const double fy = in_y - j;
-        const auto at = static_cast<std::size_t>(j) * kNodes + static_cast<std::size_t>(i);
+        const std::size_t at = nodeIndex(j, kNodes, i);
         nodes[at] += static_cast<float>(volume * (1 - fx) * (1 - fy));
         nodes[at + 1] += static_cast<float>(volume * fx * (1 - fy));
         nodes[at + kNodes] += static_cast<float>(volume * (1 - fx) * fy);

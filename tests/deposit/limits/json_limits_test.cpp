@@ -18,7 +18,7 @@ TEST(JsonLimits, HaveAKeyForEveryLimit) {
         "max_extrude_only_velocity_mm_s": 7, "max_extrude_only_accel_mm_s2": 8,
         "instantaneous_corner_velocity_mm_s": 9, "arc_resolution_mm": 10, "jerk_mm_s": [11, 12, 13, 14],
         "steps_per_mm": [15, 16, 17, 18], "junction_deviation_mm": 0.19, "least_printing_speed_mm_s": 20,
-        "least_travel_speed_mm_s": 21}})");
+        "least_travel_speed_mm_s": 21, "wait_after_m400_s": 0.3}})");
     const gcode::MachineLimits& limits = printer.limits;
     EXPECT_EQ(printer.firmware, gcode::Firmware::klipper);
     EXPECT_EQ(limits.rule, CornerRule::corner_velocity);
@@ -38,6 +38,7 @@ TEST(JsonLimits, HaveAKeyForEveryLimit) {
     EXPECT_EQ(limits.junction_deviation, 0.19);
     EXPECT_EQ(limits.least_printing_speed, 20);
     EXPECT_EQ(limits.least_travel_speed, 21);
+    EXPECT_EQ(limits.wait_after_m400, 0.3);
     EXPECT_EQ(placeOf(printer, Limit::corner_velocity), "printer:4");
     EXPECT_EQ(printer.origins[Limit::speed].kind, LimitOrigin::Kind::assumed);
 }

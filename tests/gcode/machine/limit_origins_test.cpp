@@ -27,13 +27,18 @@ TEST(LimitOrigins, EveryLimitIsAMemberOfItsOwn) {
 }
 
 TEST(LimitOrigins, EachRuleReadsItsOwn) {
-    EXPECT_TRUE(isUsed(Limit::cruise_ratio, CornerRule::corner_velocity));
-    EXPECT_FALSE(isUsed(Limit::cruise_ratio, CornerRule::jerk));
-    EXPECT_FALSE(isUsed(Limit::jerk, CornerRule::corner_velocity));
-    EXPECT_FALSE(isUsed(Limit::speed, CornerRule::corner_velocity));
-    EXPECT_TRUE(isUsed(ofAxis(Limit::speed, 2), CornerRule::corner_velocity));
-    EXPECT_TRUE(isUsed(Limit::junction_deviation, CornerRule::junction_deviation));
-    EXPECT_FALSE(isUsed(Limit::jerk, CornerRule::junction_deviation));
+    const auto reads = [](CornerRule rule, Limit limit) {
+        LimitOrigins origins;
+        origins.rule = rule;
+        return isUsed(limit, origins);
+    };
+    EXPECT_TRUE(reads(CornerRule::corner_velocity, Limit::cruise_ratio));
+    EXPECT_FALSE(reads(CornerRule::jerk, Limit::cruise_ratio));
+    EXPECT_FALSE(reads(CornerRule::corner_velocity, Limit::jerk));
+    EXPECT_FALSE(reads(CornerRule::corner_velocity, Limit::speed));
+    EXPECT_TRUE(reads(CornerRule::corner_velocity, ofAxis(Limit::speed, 2)));
+    EXPECT_TRUE(reads(CornerRule::junction_deviation, Limit::junction_deviation));
+    EXPECT_FALSE(reads(CornerRule::junction_deviation, Limit::jerk));
     EXPECT_EQ(limitName(Limit::printing, CornerRule::corner_velocity), "max_accel");
     EXPECT_EQ(limitName(Limit::printing, CornerRule::jerk), "acceleration of printing");
 }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace stratum::gcode {
 namespace {
@@ -95,12 +96,30 @@ class LastLimits : public MotionSink {
 public:
     void limits(const MachineLimits& limits) override { last = limits; }
     void move(const Move&) override {}
-    void wait(double) override {}
+    void wait(double seconds) override { waits.push_back(seconds); }
     void origin(const LimitOrigins& origins) override { from = origins; }
 
     MachineLimits last;
     LimitOrigins from;
+    std::vector<double> waits;
 };
+
+TEST(MachineLimits, AWaitAfterM400IsThePrintersOrNone) {
+    constexpr const char* kProgram = "M83\nG1 X1 E1\nM400\nG1 X2 E1\nM109 S200\n";
+    LastLimits log;
+    ReadOptions options;
+    options.motion = &log;
+    options.printer = klipperPrinter();
+    readProgram(kProgram, options);
+    EXPECT_EQ(log.waits, (std::vector<double>{0, 0}));
+    EXPECT_FALSE(isUsed(Limit::wait_after_m400, log.from));
+    LastLimits stated;
+    options.motion = &stated;
+    options.printer->set(Limit::wait_after_m400, 0.3, LimitOrigin::Kind::printer, "my.json:1");
+    readProgram(kProgram, options);
+    EXPECT_EQ(stated.waits, (std::vector<double>{0.3, 0}));
+    EXPECT_TRUE(isUsed(Limit::wait_after_m400, stated.from));
+}
 
 TEST(MachineLimits, OfACommandHoldWhereTheFirmwareReadsIt) {
     constexpr const char* kProgram =
