@@ -277,12 +277,14 @@ void Viewport::workOnSave(const std::function<void()>& check) {
         if (saves_.empty()) return saving_.reset();  // it was given up
         save = saves_.front();
     }
+    if (saving_number_ != save.number) saving_.reset();  // it was given up, and another one asked for since
     if (!saving_) {
         const PicturePlan plan = planPicture(document_.given(), save.state);
         const shade::RenderOptions& options = plan.options.render;
         scene_->makeObjects(plan, loadingEvents(output_.text));
         saving_ = std::make_unique<StillPicture>(scene_->picture(plan, options.width, options.height), plan,
                                                  nameOf(document_.given().path), scene_->sharedObjects());
+        saving_number_ = save.number;
     }
     const shade::RenderOptions& options = saving_->plan().options.render;
     if (!saving_->done()) {
@@ -295,7 +297,7 @@ void Viewport::workOnSave(const std::function<void()>& check) {
          saving_->png());
     saving_.reset();
     const std::lock_guard lock(mutex_);
-    if (!saves_.empty()) saves_.pop_front();
+    if (!saves_.empty() && saves_.front().number == save.number) saves_.pop_front();
 }
 
 void Viewport::answer(const InspectMessage& inspect) {

@@ -86,6 +86,7 @@ private:
     ShowMessage current_;
     std::optional<PicturePlan> plan_;
     std::unique_ptr<StillPicture> still_, saving_;
+    std::uint64_t saving_number_ = 0;  // of the message that saving_ answers
     std::optional<ViewedPicture>
         full_;  // of the exact objects in the full size, for the finished picture and inspect()
     FrameScale frame_scale_;

@@ -13,7 +13,7 @@ import tempfile
 import xml.etree.ElementTree as ET
 import zipfile
 
-from run_tools import BIN, SOURCE, check, gcode, run
+from run_tools import BIN, check, corpus, gcode, run
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_colors_")
 INSIDE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "colors_inside.py")
@@ -237,17 +237,13 @@ check(model.get("unit") == "centimeter" and abs(10 * (max(heights) - min(heights
       "a 3MF says its unit, and z stays up")
 
 # A real print of two colours, if the corpus is there.
-real = os.path.join(os.environ.get("STRATUM_CORPUS", os.path.join(SOURCE, "..", "shared", "corpus")), "gcode",
-                    "slicer-meta-flashstudio_2color.gcode.3mf")
-if os.path.exists(real):
+if real := corpus("slicer-meta-flashstudio_2color.gcode.3mf"):
     path, _ = convert("real.3mf", source=real, common=["--voxel-size", "0.3"])
     with zipfile.ZipFile(path) as archive:
         model = ET.fromstring(archive.read("3D/3dmodel.model"))
     bases = {(base.get("name"), base.get("displaycolor").lower()) for base in model.iter(space + "base")}
     check(bases == {("tool_0", "#ffffff"), ("tool_1", "#00c1ae")}, f"FlashStudio's print of two colours: {bases}")
     check("manifold = yes" in run("prusa-slicer", "--info", path), "  is manifold")
-else:
-    print(f"skipped: {real} is not there")
 
 # --- names ---------------------------------------------------------------------------------------------------------------
 tool = os.path.join(BIN, "vdbtrace")

@@ -37,6 +37,16 @@ def gcode(name):
     return os.path.join(SOURCE, "data", "gcode", name)
 
 
+def corpus(name):
+    """A real G-code file of the corpus; None, and a word of it, if it is not there."""
+    folder = os.environ.get("STRATUM_CORPUS", os.path.join(SOURCE, "..", "shared", "corpus"))
+    path = os.path.join(folder, "gcode", name)
+    if os.path.exists(path):
+        return path
+    print(f"skipped: corpus file {name} is not there")
+    return None
+
+
 def convert(source, *options):
     """Converts G-code in a fresh folder; returns the .vdb and the report."""
     folder = tempfile.mkdtemp(prefix="stratum_client_")

@@ -18,11 +18,10 @@ import time
 import zipfile
 import zlib
 
-from run_tools import BIN, SOURCE, check, gcode
+from run_tools import BIN, check, corpus, gcode
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_thumbnails_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
-CORPUS = os.path.join(os.environ.get("STRATUM_CORPUS", os.path.join(SOURCE, "..", "shared", "corpus")), "gcode")
 
 
 def path(name):
@@ -254,18 +253,10 @@ check(one.returncode == 0 and content("one.gcode") == content("prusa.gcode"), "o
 # --- real files -------------------------------------------------------------------------------------------------------
 
 
-def corpus(name):
-    found = os.path.join(CORPUS, name)
-    if not os.path.exists(found):
-        print(f"skipped: {name} is not there")
-        return None
-    return found
-
-
 for name in ("preprocess_cancellation-prusaslicer.gcode", "preprocess_cancellation-superslicer.gcode",
              "libbgcode-mini_cube_a.gcode", "slicercompare-bambu_plate_1.gcode", "preprocess_cancellation-cura.gcode"):
-    if corpus(name):
-        check_text(corpus(name), name)
+    if source := corpus(name):
+        check_text(source, name)
 
 if source := corpus("libbgcode-mini_cube_b.bgcode"):
     pictured(source, SIZES, "cube.bgcode")

@@ -5,10 +5,9 @@ import os
 import subprocess
 import tempfile
 
-from run_tools import BIN, SOURCE, check, gcode, run
+from run_tools import BIN, check, corpus, gcode, run
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_voxels_")
-CORPUS = os.path.join(os.path.dirname(SOURCE), "shared", "corpus", "gcode")
 
 
 def convert(source, *options):
@@ -27,11 +26,8 @@ def held(report):
 
 # What the tool chooses by itself has two voxels a layer at least, and holds what was extruded.
 sources = [gcode("tile.gcode")]
-cancelled = os.path.join(CORPUS, "preprocess_cancellation-m486.gcode")
-if os.path.exists(cancelled):
+if cancelled := corpus("preprocess_cancellation-m486.gcode"):
     sources.append(cancelled)
-else:
-    print("skipped: there is no corpus")
 out = os.path.join(FOLDER, "part.vdb")
 for source in sources:
     for options in (["--tolerance", "0.1"], ["--tolerance", "5"], ["--memory-budget", "40MB", "--interior", "cull"]):

@@ -71,6 +71,8 @@ Json describeDeposit(const gcode::DepositModel& deposit, const voxelize::Deposit
 }
 
 std::string depositLines(const voxelize::DepositBalance& balance) {
+    // What rounds to nothing has no sign.
+    const auto rounded = [](double value, double places) { return std::round(value * places) / places + 0.0; };
     std::string lines = fmt::format(
         "settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} of them press outlines out; {:.2f} mm^3 ({:.2f} %) have "
         "no place\n",
@@ -80,8 +82,8 @@ std::string depositLines(const voxelize::DepositBalance& balance) {
         const voxelize::DepositShare& share = balance.features[f];
         if (share.fed > 0)
             lines += fmt::format("  {:<20} {:>9.2f} mm^3 fed {:>8.2f} surplus ({:.1f} %)\n",
-                                 gcode::featureName(static_cast<gcode::Feature>(f)), share.fed, share.surplus(),
-                                 100 * share.surplus() / share.fed);
+                                 gcode::featureName(static_cast<gcode::Feature>(f)), share.fed,
+                                 rounded(share.surplus(), 100), rounded(100 * share.surplus() / share.fed, 10));
     }
     return lines;
 }

@@ -332,6 +332,7 @@ byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = 
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
 byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
 let saving = false;
+let saves = 0; // how often: numbers of their own, since the view that was asked for last stays that
 function setSaving(on) {
   saving = on;
   byId("save").textContent = on ? "Cancel saving" : "Save picture";
@@ -346,7 +347,7 @@ byId("save").addEventListener("click", () => {
   const chosen = byId("save-size").value;
   if (orbit) state.camera = orbit.toJSON();
   say("saving …");
-  connection.send({ type: "save", number: ++number, state: toMessage(state, chosen ? chosen.split("x").map(Number) : pixels()) });
+  connection.send({ type: "save", number: ++saves, state: toMessage(state, chosen ? chosen.split("x").map(Number) : pixels()) });
 });
 byId("file").addEventListener("change", () => {
   file = Number(byId("file").value);

@@ -1,0 +1,125 @@
+#include "view/viewer.h"
+
+#include "given_tile.h"
+#include "scratch_folder.h"
+#include "shown.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace stratum::view {
+namespace {
+
+/// A page on the other side of a web socket.
+class Page final : public serve::Client {
+public:
+    void sendText(std::string text) override { shown.note(nlohmann::json::parse(text)); }
+    void sendBytes(std::vector<std::uint8_t> bytes) override {
+        std::size_t size = 0;
+        for (std::size_t n = 0; n < 4; ++n) size |= std::size_t{bytes[n]} << (8 * n);
+        shown.note(nlohmann::json::parse(bytes.begin() + 4, bytes.begin() + 4 + static_cast<std::ptrdiff_t>(size)));
+    }
+    void close(const std::string&) override {}
+    test::Shown shown;
+};
+
+std::string showText(std::uint64_t number) {
+    const nlohmann::json message{{"type", "show"}, {"number", number}, {"state", toJson(test::smallState())}};
+    return message.dump();
+}
+
+GivenInput inputAt(const std::string& path) {
+    GivenInput given = test::givenTile(0.2);
+    given.path = path;
+    given.objects.front().vdb = path;
+    return given;
+}
+
+TEST(Viewer, AnswersEveryPage) {
+    Viewer viewer({test::givenTile(0.2)}, [](const std::string&) {});
+    std::vector<std::shared_ptr<Page>> pages;
+    for (int n = 0; n < 3; ++n) {
+        pages.push_back(std::make_shared<Page>());
+        viewer.opened(pages.back());
+        viewer.received(pages.back(), showText(1));
+    }
+    for (const auto& page : pages) {
+        EXPECT_EQ(page->shown.waitFor("hello")["files"][0], "tile.gcode");
+        EXPECT_FALSE(page->shown.waitFor("facts").is_null());
+        EXPECT_FALSE(page->shown.waitFor("picture", 1, "moving").is_null());
+        viewer.received(page, R"({"type":"shown"})");
+        EXPECT_FALSE(page->shown.waitFor("picture", 1, "final").is_null());
+    }
+    for (const auto& page : pages) viewer.closed(page);
+}
+
+TEST(Viewer, RefusesWhatItDoesNotUnderstand) {
+    Viewer viewer({test::givenTile(0.2)}, [](const std::string&) {});
+    const auto page = std::make_shared<Page>();
+    viewer.received(page, showText(1));  // before it was opened: nobody
+    viewer.opened(page);
+    for (const char* text : {"", "{", R"({"type":"open","file":1})", R"({"type":"show","state":{"size":[1e9,1]}})"}) {
+        page->shown.clear();
+        viewer.received(page, text);
+        EXPECT_FALSE(page->shown.waitFor("refused").is_null()) << text;
+    }
+    viewer.closed(page);
+    viewer.closed(page);
+}
+
+TEST(Viewer, ShowsChangesAndFailures) {
+    const test::ScratchFolder folder;
+    const std::string path = (folder / "part.gcode").string();
+    std::filesystem::copy_file(test::dataDir() / "gcode/tile.gcode", path);
+    std::mutex mutex;
+    std::vector<std::string> said;
+    Viewer viewer({inputAt(path)}, [&](const std::string& text) {
+        const std::lock_guard lock(mutex);
+        said.push_back(text);
+    });
+    EXPECT_EQ(viewer.files(), std::vector<std::string>{path});
+    const auto page = std::make_shared<Page>();
+    viewer.opened(page);
+    viewer.received(page, showText(1));
+    EXPECT_FALSE(page->shown.waitFor("picture", 1, "final").is_null());
+    page->shown.clear();
+    std::ofstream(path) << "this is no G-code\n";
+    viewer.changed({path});
+    EXPECT_FALSE(page->shown.waitFor("failed").is_null());
+    viewer.received(page, R"({"type":"shown"})");
+    viewer.received(page, R"({"type":"shown"})");
+    page->shown.clear();
+    std::filesystem::copy_file(test::dataDir() / "gcode/tile_arcs.gcode", path,
+                               std::filesystem::copy_options::overwrite_existing);
+    viewer.changed({path});
+    EXPECT_FALSE(page->shown.waitFor("facts").is_null());
+    viewer.received(page, showText(2));
+    EXPECT_FALSE(page->shown.waitFor("picture", 2, "moving").is_null());
+    viewer.closed(page);
+    const std::lock_guard lock(mutex);
+    EXPECT_GE(said.size(), 3U);
+}
+
+// Pages come and go while their pictures are made.
+TEST(Viewer, EndsAmidWork) {
+    std::vector<std::shared_ptr<Page>> pages;
+    Viewer viewer({test::givenTile(0.2), test::givenTile(0.1)}, [](const std::string&) {});
+    for (int n = 0; n < 6; ++n) {
+        pages.push_back(std::make_shared<Page>());
+        viewer.opened(pages.back());
+        viewer.received(pages.back(), showText(1));
+        if (n % 2 == 0) viewer.received(pages.back(), R"({"type":"open","file":1})");
+        if (n % 3 == 0) viewer.closed(pages.back());
+    }
+    EXPECT_FALSE(pages[1]->shown.waitFor("picture", 1, "moving").is_null());
+}
+
+}  // namespace
+}  // namespace stratum::view

@@ -1,0 +1,122 @@
+#include "view/viewport.h"
+
+#include "given_tile.h"
+#include "shown.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace stratum::view {
+namespace {
+
+/// A viewport that is worked on by the test itself.
+class OnePage {
+public:
+    OnePage() : scene_(document_), viewport(document_, shown.output()) { viewport.startWith(scene_); }
+    void workUntilIdle() {
+        for (int n = 0; n < 1000 && (viewport.hasWork(false) || viewport.worksAt()); ++n) {
+            if (viewport.hasWork(false)) viewport.step([] {});
+            viewport.ask(ShownMessage{});
+        }
+        EXPECT_FALSE(viewport.hasWork(false));
+    }
+
+private:
+    Document document_{test::givenTile(0.2)};
+    ViewScene scene_;
+
+public:
+    test::Shown shown;
+    Viewport viewport;
+};
+
+TEST(Viewport, FromTheQuickPictureToTheFinishedOne) {
+    OnePage page;
+    EXPECT_FALSE(page.viewport.hasWork(false));
+    page.viewport.ask(test::show(7, test::smallState()));
+    EXPECT_TRUE(page.viewport.hasWork(true));
+    page.workUntilIdle();
+    EXPECT_EQ(page.shown.kinds(), (std::vector<std::string>{"moving", "rough", "final"}));
+    const auto final = page.shown.waitFor("picture", 7, "final");
+    EXPECT_EQ(final["width"], 64);
+    EXPECT_NE(final["command"].get<std::string>().find("--size 64x48"), std::string::npos);
+}
+
+TEST(Viewport, SendsNoMoreThanThePageTakes) {
+    OnePage page;
+    for (std::uint64_t number = 1; number <= 6; ++number) {
+        page.viewport.ask(test::show(number, test::smallState()));
+        if (page.viewport.hasWork(true)) page.viewport.step([] {});
+    }
+    EXPECT_EQ(page.shown.kinds().size(), 2U);  // that are on their way
+    page.workUntilIdle();
+    EXPECT_FALSE(page.shown.waitFor("picture", 6, "final").is_null());
+}
+
+// The saved picture is of its own view, whatever is looked at meanwhile.
+TEST(Viewport, WhatIsSavedIsWhatWasAskedFor) {
+    OnePage page;
+    page.viewport.ask(test::show(1, test::smallState()));
+    page.workUntilIdle();
+    ViewState layers = test::smallState(80);
+    layers.last_layer = 2;
+    page.viewport.ask(SaveMessage{2, layers});
+    page.viewport.step([] {});
+    ViewState other = test::smallState(96);
+    other.named = shade::View::top;
+    page.viewport.ask(test::show(3, other));
+    page.workUntilIdle();
+    const auto saved = page.shown.waitFor("picture", 2, "saved");
+    ASSERT_FALSE(saved.is_null());
+    EXPECT_EQ(saved["width"], 80);
+    const std::string command = saved["command"];
+    EXPECT_NE(command.find("--layers 1:2"), std::string::npos) << command;
+    EXPECT_NE(command.find("--view iso"), std::string::npos) << command;
+    EXPECT_NE(saved["camera"], page.shown.waitFor("picture", 3, "final")["camera"]);
+}
+
+// One that is given up is not taken for the next one.
+TEST(Viewport, ASavedPictureThatIsGivenUpGivesWay) {
+    OnePage page;
+    page.viewport.ask(test::show(1, test::smallState()));
+    page.workUntilIdle();
+    page.viewport.ask(SaveMessage{2, test::smallState(80)});
+    page.viewport.step([] {});  // is begun
+    page.viewport.ask(CancelMessage{});
+    page.viewport.ask(SaveMessage{3, test::smallState(96)});
+    page.workUntilIdle();
+    const auto saved = page.shown.waitFor("picture", 3, "saved");
+    ASSERT_FALSE(saved.is_null());
+    EXPECT_EQ(saved["width"], 96);
+    for (const std::string& kind : page.shown.kinds()) EXPECT_TRUE(kind != "saved" || saved["number"] == 3);
+}
+
+TEST(Viewport, WhatFailsIsTold) {
+    OnePage page;
+    ViewState state = test::smallState();
+    state.first_layer = 4000;
+    state.last_layer = 4001;
+    page.viewport.ask(test::show(1, state));
+    page.workUntilIdle();
+    EXPECT_FALSE(page.shown.waitFor("failed", 1).is_null());
+    page.viewport.ask(test::show(2, test::smallState()));
+    page.workUntilIdle();
+    EXPECT_FALSE(page.shown.waitFor("picture", 2, "final").is_null());
+}
+
+TEST(Viewport, InspectsThePicture) {
+    OnePage page;
+    ViewState state = test::smallState();
+    state.named = shade::View::top;
+    page.viewport.ask(test::show(1, state));
+    page.viewport.ask(InspectMessage{2, 0.5, 0.5});
+    page.workUntilIdle();
+    const auto found = page.shown.waitFor("inspected", 2);
+    ASSERT_FALSE(found.is_null());
+    EXPECT_TRUE(found["hit"]);
+}
+
+}  // namespace
+}  // namespace stratum::view
