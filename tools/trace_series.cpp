@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 assemble::TracingOptions readingOf(const TraceCommand& o) {
-    assemble::TracingOptions reading = assemble::tracingFor(o.scene, o.render);
+    assemble::TracingOptions reading;
     reading.march = assemble::parseMarchMethod(o.march);
     reading.values = o.values;
     reading.clip = o.clip_planes;
@@ -39,7 +39,7 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
             throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
         reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.bricks.cache), 1e18));
     }
-    return reading;
+    return assemble::tracingFor(o.scene, o.render, std::move(reading));
 }
 
 std::vector<assemble::ObjectOptions> objectsOf(const TraceCommand& o, std::size_t n) {

@@ -74,6 +74,7 @@ void ViewScene::makeObjects(const PicturePlan& plan, const assemble::ReadEvents&
     assemble::TracingOptions tracing =
         assemble::tracingFor(plan.options.scene, plan.options.render, plan.options.tracing);
     tracing.prints.kept = &document_.kept();
+    tracing.prints.outline = true;  // the same objects may be shown in a named view later
     tracing.events = events;
     const bool whole = !selectsLayers(tracing.prints);
     // What is not needed any more makes room first.
