@@ -37,7 +37,7 @@ TEST(PrintLevels, ANearEyeSeesFarBeadsCoarser) {
     PrintRequest request = coarse();
     request.print.lattice.voxel_size.reset();
     request.print.voxel_auto = true;
-    request.pixel_spread = [](const voxelize::Bounds&, const voxelize::Bounds& part) {
+    request.pixel_spread = [](const voxelize::Bounds&, const voxelize::Bounds& part, std::span<const glm::dvec3>) {
         shade::PixelSpread spread;
         spread.eye = {0.5 * (part.min[0] + part.max[0]), 0.5 * (part.min[1] + part.max[1]), part.max[2]};
         spread.smallest = 0.1;
@@ -56,7 +56,9 @@ TEST(PrintLevels, ANearEyeSeesFarBeadsCoarser) {
 TEST(PrintLevels, MomentsGrowToTheWholePrint) {
     PrintRequest request = coarse();
     request.series = 4;
+    request.outline = true;
     const PrintLevels print = read(request);
+    EXPECT_FALSE(print.outline.empty());
     EXPECT_EQ(print.moments.size(), 4U);
     EXPECT_TRUE(std::is_sorted(print.moments.begin(), print.moments.end()));
     EXPECT_EQ(print.moments.back(), print.toolpath->beads.size());
