@@ -154,10 +154,34 @@ private:
     const double size_;  // mm, of the print
 };
 
+// The centroid, without what lies farther from it than kStranger times the median: a single point far away.
 glm::dvec3 middleOf(const std::vector<glm::dvec3>& points) {
-    glm::dvec3 sum(0.0);
-    for (const glm::dvec3& p : points) sum += p;
-    return sum / static_cast<double>(points.size());
+    constexpr double kStranger = 4;
+    constexpr int kSteps = 20;
+    std::vector<double> distances(points.size());
+    glm::dvec3 middle(0.0);
+    double most = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+        glm::dvec3 sum(0.0);
+        std::size_t count = 0;
+        for (const glm::dvec3& p : points) {
+            if (step > 0 && glm::length(p - middle) > most) continue;
+            sum += p;
+            ++count;
+        }
+        if (count == 0) break;
+        middle = sum / static_cast<double>(count);
+        double farthest = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            distances[n] = glm::length(points[n] - middle);
+            farthest = std::max(farthest, distances[n]);
+        }
+        const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+        std::nth_element(distances.begin(), half, distances.end());
+        most = kStranger * *half;
+        if (farthest <= most) break;
+    }
+    return middle;
 }
 
 // mm: the farthest point from the middle.
