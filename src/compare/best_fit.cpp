@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -23,6 +24,9 @@ constexpr int kCoarseSteps = 12;
 constexpr int kFineSteps = 60;
 constexpr int kTurns = 24;
 constexpr std::size_t kRefined = 4;
+constexpr int kPatience = 6;  // steps
+// Of the print's size: a smaller residual is that of a model that fits.
+constexpr double kFits = 0.01;
 // Samples farther than this count for nothing: of the distance that nine tenths keep, or of the print's size if that is
 // more. A share of the samples instead would be taken from one side when the other is nearer: walls are printed a
 // little inside the model, and a shift would feed itself.
@@ -69,8 +73,14 @@ public:
 
     Candidate run(Candidate candidate, int steps) {
         std::fill(hints_.begin(), hints_.end(), Nearest::kNone);
+        double before = std::numeric_limits<double>::infinity();
         for (int step = 0; step < steps; ++step) {
             const Rigid moved = improve(candidate);
+            // A placement that is far off and hardly gets nearer is not that of this model.
+            if (step % kPatience == kPatience - 1) {
+                if (candidate.residual > kFits * size_ && candidate.residual > 0.98 * before) break;
+                before = candidate.residual;
+            }
             const double turned = angleOf(moved.turn) * size_;
             if (turned + glm::length(moved.move) < 1e-5) break;
         }
@@ -103,9 +113,10 @@ private:
         return found;
     }
 
-    // One step; what it changes.
+    // One step; what it changes. The residual is that from before.
     Rigid improve(Candidate& candidate) {
         const std::vector<Pair> found = pairs(candidate.print_to_model);
+        candidate.residual = residualOf(found);
         glm::dvec3 middle(0.0);
         for (const Pair& pair : found) middle += pair.at;
         middle /= static_cast<double>(found.size());
@@ -130,12 +141,12 @@ private:
         return moved;
     }
 
-    void measure(Candidate& candidate) {
-        const std::vector<Pair> found = pairs(candidate.print_to_model);
+    static double residualOf(const std::vector<Pair>& found) {
         double sum = 0;
         for (const Pair& pair : found) sum += pair.nearest.distance * pair.nearest.distance;
-        candidate.residual = std::sqrt(sum / static_cast<double>(found.size()));
+        return std::sqrt(sum / static_cast<double>(found.size()));
     }
+    void measure(Candidate& candidate) { candidate.residual = residualOf(pairs(candidate.print_to_model)); }
 
     const ClosedModel& model_;
     const std::vector<glm::dvec3>& points_;
@@ -143,10 +154,34 @@ private:
     const double size_;  // mm, of the print
 };
 
+// The centroid, without what lies farther from it than kStranger times the median: a single point far away.
 glm::dvec3 middleOf(const std::vector<glm::dvec3>& points) {
-    glm::dvec3 sum(0.0);
-    for (const glm::dvec3& p : points) sum += p;
-    return sum / static_cast<double>(points.size());
+    constexpr double kStranger = 4;
+    constexpr int kSteps = 20;
+    std::vector<double> distances(points.size());
+    glm::dvec3 middle(0.0);
+    double most = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kSteps; ++step) {
+        glm::dvec3 sum(0.0);
+        std::size_t count = 0;
+        for (const glm::dvec3& p : points) {
+            if (step > 0 && glm::length(p - middle) > most) continue;
+            sum += p;
+            ++count;
+        }
+        if (count == 0) break;
+        middle = sum / static_cast<double>(count);
+        double farthest = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            distances[n] = glm::length(points[n] - middle);
+            farthest = std::max(farthest, distances[n]);
+        }
+        const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+        std::nth_element(distances.begin(), half, distances.end());
+        most = kStranger * *half;
+        if (farthest <= most) break;
+    }
+    return middle;
 }
 
 // mm: the farthest point from the middle.
@@ -217,7 +252,7 @@ Fit fitModel(const ClosedModel& model, const SurfaceSamples& print) {
             any = true;
         }
         // As it lies in the file: surfaces of beads are a tenth of a millimetre from the model, and hardly more.
-        if (best.residual < 0.01 * size) break;
+        if (best.residual < kFits * size) break;
     }
     return refineFit(model, print, best.print_to_model.inverse());
 }

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -22,32 +24,110 @@ struct Edge {
     auto ends() const { return std::tie(low, high); }
 };
 
+// A triangle whose area is less than this share of its longest edge's square has no normal to rely on.
+constexpr double kFlat = 1e-10;
+
 }  // namespace
 
 ClosedModel::ClosedModel(TriangleMesh mesh, const std::string& name) : mesh_(std::move(mesh)), tree_(mesh_) {
     joinEdges(name);
-    normals_.reserve(mesh_.triangles.size());
-    corner_normals_.assign(mesh_.points.size(), glm::dvec3(0.0));
-    // Relative to a point of the mesh: models may lie far from the origin.
-    const glm::dvec3 origin = mesh_.points.front();
-    for (const Triangle& t : mesh_.triangles) {
-        const glm::dvec3 normal = mesh_.areaNormal(t);
-        const double length = glm::length(normal);
-        const glm::dvec3 unit = length > 0 ? normal / length : glm::dvec3(0.0);
-        normals_.push_back(unit);
-        area_ += 0.5 * length;
-        volume_ += glm::dot(mesh_.corner(t, 0) - origin, normal) / 6;
-        for (std::size_t n = 0; n < 3; ++n) {
-            const glm::dvec3 a = mesh_.corner(t, (n + 1) % 3) - mesh_.corner(t, n);
-            const glm::dvec3 b = mesh_.corner(t, (n + 2) % 3) - mesh_.corner(t, n);
-            corner_normals_[t[n]] += unit * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-        }
-    }
+    addNormals();
+    addCornerNormals();
+    countRepeated();
     if (!(volume_ > 0))
         throw InputError(
             fmt::format("{}: is inside out or flat: its triangles enclose {:.4g} mm3; turn its faces over, "
                         "and export it again",
                         name, volume_));
+}
+
+void ClosedModel::addNormals() {
+    normals_.reserve(mesh_.triangles.size());
+    flat_.reserve(mesh_.triangles.size());
+    // Relative to a point of the mesh: models may lie far from the origin.
+    const glm::dvec3 origin = mesh_.points.front();
+    for (const Triangle& t : mesh_.triangles) {
+        const glm::dvec3 normal = mesh_.areaNormal(t);
+        const double length = glm::length(normal);
+        std::size_t longest = 0;
+        double longest2 = 0;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const glm::dvec3 edge = mesh_.corner(t, (n + 1) % 3) - mesh_.corner(t, n);
+            if (glm::dot(edge, edge) > longest2) longest2 = glm::dot(edge, edge), longest = n;
+        }
+        const bool flat = length <= kFlat * longest2;
+        flat_.push_back(flat ? static_cast<std::uint8_t>(longest) : kNotFlat);
+        normals_.push_back(flat ? glm::dvec3(0.0) : normal / length);
+        area_ += 0.5 * length;
+        volume_ += glm::dot(mesh_.corner(t, 0) - origin, normal) / 6;
+    }
+}
+
+void ClosedModel::addCornerNormals() {
+    corner_normals_.assign(mesh_.points.size(), glm::dvec3(0.0));
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+        const Triangle& corners = mesh_.triangles[t];
+        if (flat_[t] != kNotFlat) {
+            // The corner between the ends of its line: the face beyond goes on there.
+            const std::uint32_t between = corners[(flat_[t] + 2U) % 3];
+            normals_[t] = beyond(t, flat_[t], mesh_.points[between]);
+            corner_normals_[between] += std::numbers::pi * normals_[t];
+            continue;
+        }
+        for (std::size_t n = 0; n < 3; ++n) {
+            const glm::dvec3 a = mesh_.corner(corners, (n + 1) % 3) - mesh_.corner(corners, n);
+            const glm::dvec3 b = mesh_.corner(corners, (n + 2) % 3) - mesh_.corner(corners, n);
+            corner_normals_[corners[n]] += normals_[t] * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+        }
+    }
+}
+
+void ClosedModel::countRepeated() {
+    std::vector<Triangle> turned = mesh_.triangles;
+    for (Triangle& t : turned) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(turned.begin(), turned.end());
+    for (std::size_t n = 1; n < turned.size(); ++n) repeated_ += turned[n] == turned[n - 1] ? 1 : 0;
+}
+
+// Of the two short edges of a triangle without area that on which the place lies.
+std::size_t ClosedModel::shortEdge(std::uint32_t flat, const glm::dvec3& at) const {
+    const Triangle& corners = mesh_.triangles[flat];
+    const std::size_t longest = flat_[flat];
+    const std::size_t between = (longest + 2) % 3;
+    const glm::dvec3 middle = mesh_.corner(corners, between);
+    const glm::dvec3 begin = mesh_.corner(corners, longest);
+    return glm::dot(at - middle, begin - middle) > 0 ? between : (longest + 1) % 3;
+}
+
+// The normal of the first face with area beyond an edge, near a place on it.
+glm::dvec3 ClosedModel::beyond(std::uint32_t triangle, std::size_t edge, const glm::dvec3& at) const {
+    constexpr int kMostFlat = 64;  // one behind the other; a ring of them has no end
+    for (int step = 0; step < kMostFlat; ++step) {
+        const std::uint32_t from = mesh_.triangles[triangle][(edge + 1) % 3];
+        triangle = beside_[triangle][edge];
+        if (flat_[triangle] == kNotFlat) return normals_[triangle];
+        std::size_t entered = 0;
+        while (entered < 2 && mesh_.triangles[triangle][entered] != from) ++entered;
+        edge = entered == flat_[triangle] ? shortEdge(triangle, at) : flat_[triangle];
+    }
+    return glm::dvec3(0.0);
+}
+
+glm::dvec3 ClosedModel::lineNormal(std::uint32_t flat, const glm::dvec3& at) const {
+    return beyond(flat, flat_[flat], at) + beyond(flat, shortEdge(flat, at), at);
+}
+
+glm::dvec3 ClosedModel::edgeNormal(const Nearest& nearest, std::size_t edge) const {
+    const std::uint32_t other = beside_[nearest.triangle][edge];
+    if (flat_[other] != kNotFlat) {
+        // The corner of the line beyond may be the place.
+        const Triangle& corners = mesh_.triangles[other];
+        const std::uint32_t between = corners[(flat_[other] + 2U) % 3];
+        const glm::dvec3 off = mesh_.points[between] - nearest.point;
+        const glm::dvec3 line = mesh_.corner(corners, flat_[other]) - mesh_.points[between];
+        if (glm::dot(off, off) <= kFlat * kFlat * glm::dot(line, line)) return corner_normals_[between];
+    }
+    return normals_[nearest.triangle] + beyond(nearest.triangle, edge, nearest.point);
 }
 
 void ClosedModel::joinEdges(const std::string& name) {
@@ -94,25 +174,12 @@ ModelDistance ClosedModel::distance(const glm::dvec3& p, std::uint32_t hint) con
     const Nearest nearest = tree_.nearest(p, hint);
     const Triangle& t = mesh_.triangles[nearest.triangle];
     glm::dvec3 normal = normals_[nearest.triangle];
-    const auto edge = [&](std::size_t n) { return normal + normals_[beside_[nearest.triangle][n]]; };
-    switch (nearest.feature) {
-        case 1:
-        case 2:
-        case 4:
-            normal = corner_normals_[t[nearest.feature >> 1]];
-            break;
-        case 1 | 2:
-            normal = edge(0);
-            break;
-        case 2 | 4:
-            normal = edge(1);
-            break;
-        case 1 | 4:
-            normal = edge(2);
-            break;
-        default:
-            break;
-    }
+    if (std::has_single_bit(nearest.feature))
+        normal = corner_normals_[t[nearest.feature >> 1]];
+    else if (flat_[nearest.triangle] != kNotFlat)
+        normal = lineNormal(nearest.triangle, nearest.point);
+    else if (nearest.feature != (1 | 2 | 4))
+        normal = edgeNormal(nearest, nearest.feature == (1 | 2) ? 0 : nearest.feature == (2 | 4) ? 1 : 2);
     const double distance = std::sqrt(nearest.distance2);
     return {glm::dot(p - nearest.point, normal) < 0 ? -distance : distance, nearest.triangle, nearest.point};
 }

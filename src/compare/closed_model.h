@@ -17,7 +17,8 @@ struct ModelDistance {
 };
 
 /// Immutable; shared by all threads. Signs are those of the angle-weighted normal of the nearest corner or edge, the
-/// face's own elsewhere (Baerentzen and Aanaes, IEEE TVCG 11, 2005).
+/// face's own elsewhere (Baerentzen and Aanaes, IEEE TVCG 11, 2005). A triangle without area has no normal: for its
+/// neighbours it is a line, beyond which the next face lies.
 class ClosedModel {
 public:
     /// Throws InputError if an edge has not as many triangles in one direction as in the other (with a place of one),
@@ -27,21 +28,34 @@ public:
     ClosedModel& operator=(const ClosedModel&) = delete;
 
     ModelDistance distance(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
-    /// Unit normal of a triangle, outward.
+    /// Unit normal of a triangle, outward; of one without area that of the face beyond its longest edge.
     glm::dvec3 normal(std::uint32_t triangle) const { return normals_[triangle]; }
     const TriangleMesh& mesh() const { return mesh_; }
     double volume() const { return volume_; }  ///< mm^3
     double area() const { return area_; }      ///< mm^2
+    /// Triangles with the corners of another one: of bodies that the file has twice.
+    std::size_t repeated() const { return repeated_; }
 
 private:
+    static constexpr std::uint8_t kNotFlat = 3;
+
     void joinEdges(const std::string& name);
+    void addNormals();
+    void addCornerNormals();
+    void countRepeated();
+    glm::dvec3 beyond(std::uint32_t triangle, std::size_t edge, const glm::dvec3& at) const;
+    glm::dvec3 edgeNormal(const Nearest& nearest, std::size_t edge) const;
+    glm::dvec3 lineNormal(std::uint32_t flat, const glm::dvec3& at) const;
+    std::size_t shortEdge(std::uint32_t flat, const glm::dvec3& at) const;
 
     const TriangleMesh mesh_;
     const TriangleTree tree_;
     std::vector<glm::dvec3> normals_;                   // by triangle
+    std::vector<std::uint8_t> flat_;                    // by triangle: the longest edge of one without area
     std::vector<glm::dvec3> corner_normals_;            // by point
     std::vector<std::array<std::uint32_t, 3>> beside_;  // by triangle: beyond the edge from corner n to n + 1
     double volume_ = 0, area_ = 0;
+    std::size_t repeated_ = 0;
 };
 
 }  // namespace stratum::compare

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "compare/another_model.h"
 #include "compare/surface_samples.h"
 #include "export/surface_mesh.h"
 
@@ -39,6 +40,14 @@ TriangleMesh meshOf(const openvdb::FloatGrid& print) {
     return mesh;
 }
 
+// mm^3: a slit between inner and outer surfaces makes it that of the plastic.
+double volumeOf(const TriangleMesh& mesh) {
+    double volume = 0;
+    const glm::dvec3 origin = mesh.points.front();
+    for (const Triangle& t : mesh.triangles) volume += glm::dot(mesh.corner(t, 0) - origin, mesh.areaNormal(t)) / 6;
+    return volume;
+}
+
 template <typename Keep>
 Deviations statisticsOf(const std::vector<Place>& places, const Keep& keep) {
     Deviations found;
@@ -74,13 +83,20 @@ DeviationsByNormal byNormal(const std::vector<Place>& places) {
 }
 
 // Whether the print lies between one of its places and the outside of the model beyond: along the model's normal, from
-// a voxel above the place to a voxel above the model.
+// a voxel above the place to a voxel above the model. There is nothing outside of the print's box.
 class Hidden {
 public:
-    explicit Hidden(const openvdb::FloatGrid& print) : phi_(print), voxel_(print.voxelSize()[0]) {}
+    Hidden(const openvdb::FloatGrid& print, const openvdb::BBoxd& box)
+        : phi_(print), box_(box), voxel_(print.voxelSize()[0]) {}
 
     bool operator()(const glm::dvec3& at, const glm::dvec3& normal, double distance) const {
-        const auto steps = static_cast<int>(std::ceil(std::max(-distance, 0.0) / (0.5 * voxel_)));
+        double most = std::max(-distance, 0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double room = normal[axis] > 0 ? box_.max()[axis] - at[axis] : at[axis] - box_.min()[axis];
+            // Divided only where it bounds.
+            if (room < most * std::abs(normal[axis])) most = std::max(room, 0.0) / std::abs(normal[axis]);
+        }
+        const auto steps = static_cast<int>(std::ceil(most / (0.5 * voxel_)));
         for (int n = 0; n < steps; ++n) {
             const glm::dvec3 p = at + normal * (voxel_ * (1 + 0.5 * n));
             if (phi_.wsSample({p.x, p.y, p.z}) < 0) return true;
@@ -90,6 +106,7 @@ public:
 
 private:
     const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi_;
+    const openvdb::BBoxd box_;
     const double voxel_;
 };
 
@@ -99,8 +116,9 @@ std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& 
     const Rigid to_model = model_to_print.inverse();
     std::vector<Place> places(samples.points.size());
     std::vector<std::uint8_t> seen(places.size());
+    const openvdb::BBoxd box = print.transform().indexToWorld(print.evalActiveVoxelBoundingBox());
     parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
-        const Hidden hidden(print);
+        const Hidden hidden(print, box);
         std::uint32_t hint = Nearest::kNone;
         for (std::size_t n = first; n < last; ++n) {
             const ModelDistance found = model.distance(to_model(samples.points[n]), hint);
@@ -164,29 +182,42 @@ glm::dvec3 slopeTowardsSurface(const Accessor& phi, const openvdb::Coord& at, do
 
 }  // namespace
 
-Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& model, const CompareOptions& options) {
-    const TriangleMesh mesh = meshOf(print);
-    if (mesh.triangles.empty())
+PrintedSurface::PrintedSurface(const openvdb::FloatGrid& print) : grid_(print), mesh_(meshOf(print)), tree_(mesh_) {
+    if (mesh_.triangles.empty())
         throw UsageError("--compare: the print has no surface at this voxel size; choose a smaller --voxel-size");
-    SurfaceSamples printed = sampleSurface(mesh, options.samples);
+}
+
+Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options,
+                             const Rigid* model_to_print) {
+    SurfaceSamples printed = sampleSurface(print.mesh(), options.samples);
     const auto all = static_cast<double>(printed.points.size());
     Comparison comparison;
     comparison.model_mm3 = model.volume();
     comparison.model_mm2 = model.area();
     comparison.print_mm2 = printed.area;
+    comparison.print_mm3 = volumeOf(print.mesh());
     const bool fits = options.placement == ModelPlacement::fit;
-    if (fits) comparison.model_to_print = fitModel(model, printed).model_to_print;
-    std::vector<Place> places = fromPrint(printed, print, model, comparison.model_to_print);
+    if (fits)
+        comparison.model_to_print =
+            (model_to_print != nullptr ? refineFit(model, printed, *model_to_print) : fitModel(model, printed))
+                .model_to_print;
+    std::vector<Place> places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
     comparison.hidden_share = 1 - static_cast<double>(places.size()) / all;
     if (fits && printed.points.size() >= kFewestSamples) {
         comparison.fit = refineFit(model, printed, comparison.model_to_print);
         comparison.model_to_print = comparison.fit->model_to_print;
-        places = fromPrint(printed, print, model, comparison.model_to_print);
+        places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
     }
     comparison.print_to_model = byNormal(places);
-    const TriangleTree surface(mesh);
-    comparison.model_to_surface = byNormal(
-        fromModel(sampleSurface(model.mesh(), options.samples), model, comparison.model_to_print, surface, print));
+    comparison.model_to_surface = byNormal(fromModel(sampleSurface(model.mesh(), options.samples), model,
+                                                     comparison.model_to_print, print.tree(), print.grid()));
+    return comparison;
+}
+
+Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& model, const CompareOptions& options) {
+    const PrintedSurface surface(print);
+    Comparison comparison = measureDeviations(surface, model, options);
+    comparison.doubts = doubtsOf(surface, model, comparison, options);
     return comparison;
 }
 

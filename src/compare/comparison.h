@@ -4,12 +4,14 @@
 #include "compare/best_fit.h"
 #include "compare/closed_model.h"
 #include "compare/rigid.h"
+#include "compare/surface_samples.h"
 
 #include <openvdb/openvdb.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace stratum::compare {
@@ -41,6 +43,9 @@ struct Comparison {
     double model_mm3 = 0, model_mm2 = 0;
     double print_mm2 = 0;     ///< of the printed surface that a flood from outside reaches
     double hidden_share = 0;  ///< of that surface; see compareToModel()
+    double print_mm3 = 0;     ///< within that surface
+    /// Why it may be another model, or the same in another size or unit; sentences without a capital and a full stop.
+    std::vector<std::string> doubts;
 };
 
 enum class ModelPlacement : std::uint8_t {
@@ -51,13 +56,37 @@ enum class ModelPlacement : std::uint8_t {
 struct CompareOptions {
     ModelPlacement placement = ModelPlacement::fit;
     std::size_t samples = 200'000;  ///< of each surface
+    double line_width = 0.5;        ///< mm, of the print's beads: a print of the model is nearer to it
 };
+
+/// The outer surface of a print, ready for several comparisons.
+class PrintedSurface {
+public:
+    /// `print`: see compareToModel(); must outlive it. Throws UsageError if the print has no surface.
+    explicit PrintedSurface(const openvdb::FloatGrid& print);
+    PrintedSurface(const PrintedSurface&) = delete;
+    PrintedSurface& operator=(const PrintedSurface&) = delete;
+
+    const openvdb::FloatGrid& grid() const { return grid_; }
+    const TriangleMesh& mesh() const { return mesh_; }
+    const TriangleTree& tree() const { return tree_; }
+
+private:
+    const openvdb::FloatGrid& grid_;
+    const TriangleMesh mesh_;
+    const TriangleTree tree_;
+};
+
+/// compareToModel() without doubts, from a placement that is nearly right if there is one.
+Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options,
+                             const Rigid* model_to_print = nullptr);
 
 /// Both ways. Printed parts are not airtight, and what lies below their skin is no deviation from the model: places of
 /// the printed surface from which the print hides the nearest place of the model are left out.
 /// `print`: the outer surface (Interior::cull) in print space, mm. Distances are exact for the polygons of
-/// both surfaces; the print's are within a tenth of a voxel of its level set. Parallel; the result does not depend on
-/// the number of threads. Throws UsageError if the print has no surface.
+/// both surfaces; the print's are within a tenth of a voxel of its level set. If it does not fit, other units and sizes
+/// of the model and its mirror image are tried: see doubtsOf(). Parallel; the result does not depend on the number of
+/// threads. Throws UsageError if the print has no surface.
 Comparison compareToModel(const openvdb::FloatGrid& print, const ClosedModel& model, const CompareOptions& options);
 
 /// What a picture of deviations shows to both sides of 0, mm: 95 % of both surfaces, rounded up to 1, 2 or 5 times a

@@ -55,9 +55,11 @@ nlohmann::ordered_json describe(const Comparison& comparison) {
             {"model_mm3", comparison.model_mm3},
             {"model_mm2", comparison.model_mm2},
             {"print_mm2", comparison.print_mm2},
+            {"print_mm3", comparison.print_mm3},
             {"hidden_share", comparison.hidden_share},
             {"print_to_model", describe(comparison.print_to_model)},
-            {"model_to_print", describe(comparison.model_to_surface)}};
+            {"model_to_print", describe(comparison.model_to_surface)},
+            {"doubts", comparison.doubts}};
 }
 
 }  // namespace stratum::compare

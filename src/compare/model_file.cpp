@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "compare/model_unit.h"
 #include "compare/reader_process.h"
 
 #include <assimp/config.h>
@@ -77,6 +78,8 @@ TriangleMesh readByAssimp(const std::string& name) {
     TriangleMesh mesh;
     for (unsigned n = 0; n < scene->mNumMeshes; ++n) append(*scene->mMeshes[n], name, mesh);
     mergeEqualPoints(mesh);
+    const double unit = unitOfModel(name);
+    for (glm::dvec3& p : mesh.points) p *= unit;
     return mesh;
 }
 

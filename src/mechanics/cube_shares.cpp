@@ -155,11 +155,12 @@ private:
     void divide(const Inside& whole, PartOfCube part, std::uint8_t sides) {
         const double from = (whole.from - cubes_.origin[2]) / cubes_.edge;
         const double to = (whole.to - cubes_.origin[2]) / cubes_.edge;
-        for (double k = std::floor(from); k < to; ++k) {
-            const double length = std::min(to, k + 1) - std::max(from, k);
+        const auto end = static_cast<std::int32_t>(std::ceil(to));
+        for (auto k = static_cast<std::int32_t>(std::floor(from)); k < end; ++k) {
+            const double length = std::min(to, k + 1.0) - std::max<double>(from, k);
             part.length = static_cast<std::uint64_t>(std::llround(length * kUnits));
             if (part.length == 0) continue;
-            part.k = static_cast<std::int32_t>(k);
+            part.k = k;
             part.reached = sides;
             if (from < k) part.reached |= 1U << z_low;
             if (to > k + 1) part.reached |= 1U << z_high;

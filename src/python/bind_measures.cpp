@@ -84,9 +84,11 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
         voxelize::VoxelizeOptions outside;
         outside.interior = voxelize::Interior::cull;
         outside.progress = report;
-        const auto grid = voxelize::voxelize(*print.toolpath, gcode::beadsOfPart(*print.toolpath, plan.selection()),
-                                             plan.lattice(), outside);
-        return compare::describe(compare::compareToModel(*grid, closed, options));
+        const std::vector<std::uint32_t> part = gcode::beadsOfPart(*print.toolpath, plan.selection());
+        const auto grid = voxelize::voxelize(*print.toolpath, part, plan.lattice(), outside);
+        compare::CompareOptions measured = options;
+        measured.line_width = gcode::meanWidth(*print.toolpath, part);
+        return compare::describe(compare::compareToModel(*grid, closed, measured));
     }));
 }
 

@@ -53,7 +53,7 @@ public:
         addMaterial();
         const voxelize::LayerStack stack = voxelize::stackLayers(toolpath_, selection_);
         addLevelSet(stack);
-        addContact(stack);
+        addContact();
         addDepositedByLayer();
         sortByDefinition();
         return std::move(report_);
@@ -279,8 +279,8 @@ private:
     }
 
     // What rests on what.
-    void addContact(const voxelize::LayerStack& stack) {
-        const PlanContact contact = measureContact(toolpath_, stack, lattice_);
+    void addContact() {
+        const PlanContact contact = measureContact(toolpath_, selection_, lattice_);
         const auto base = std::find_if(contact.layers.begin(), contact.layers.end(),
                                        [](const LayerContact& layer) { return layer.area > 0; });
         if (base == contact.layers.end()) {

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace stratum::compare {
 namespace {
@@ -48,6 +50,44 @@ TEST(ClosedModel, SignsAreThoseOfTheSolid) {
             ((p.x > 0 && p.x < 20 && p.y > 0 && p.y < 5) || (p.x > 0 && p.x < 6 && p.y > 0 && p.y < 12));
         ASSERT_EQ(model.distance(p).distance < 0, inside) << p.x << ' ' << p.y << ' ' << p.z;
     }
+}
+
+// A wedge whose sharp edge has a corner more above than below: a triangle without area lies between.
+TriangleMesh wedge() {
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 0}, {0, 0, 4}, {0, 0, 10}, {10, 1, 0}, {10, 1, 10}, {10, -1, 0}, {10, -1, 10}};
+    mesh.triangles = {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {0, 5, 2}, {5, 6, 2},
+                      {0, 2, 1}, {3, 4, 6}, {3, 6, 5}, {0, 3, 5}, {2, 6, 4}};
+    return mesh;
+}
+
+TEST(ClosedModel, SignsBesideATriangleWithoutArea) {
+    // The triangles' order decides which of equally near ones is found.
+    for (std::size_t turned = 0; turned < 10; ++turned) {
+        TriangleMesh mesh = wedge();
+        std::rotate(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(turned),
+                    mesh.triangles.end());
+        const ClosedModel model(std::move(mesh), "wedge");
+        test::Numbers random(7);
+        for (int n = 0; n < 20000; ++n) {
+            glm::dvec3 p(9 * random() - 4, 4 * random() - 2, 12 * random() - 1);
+            if (n % 10 == 0) p.z = 4;
+            const bool inside = p.z > 0 && p.z < 10 && std::abs(p.y) < 0.1 * p.x;
+            ASSERT_EQ(model.distance(p).distance < 0, inside) << p.x << ' ' << p.y << ' ' << p.z;
+        }
+        EXPECT_NEAR(model.volume(), 100, 1e-9);
+    }
+}
+
+TEST(ClosedModel, CountsTrianglesThatAreThereTwice) {
+    TriangleMesh mesh = wedge();
+    EXPECT_EQ(ClosedModel(mesh, "wedge").repeated(), 0U);
+    const std::vector<Triangle> once = mesh.triangles;
+    for (Triangle t : once) {
+        std::rotate(t.begin(), t.begin() + 1, t.end());
+        mesh.triangles.push_back(t);
+    }
+    EXPECT_EQ(ClosedModel(mesh, "wedges").repeated(), once.size());
 }
 
 // The tree against all triangles.

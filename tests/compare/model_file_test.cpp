@@ -7,10 +7,12 @@
 #include "compare/closed_model.h"
 
 #include <gtest/gtest.h>
+#include <zip.h>
 
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <utility>
 
 namespace stratum::compare {
 namespace {
@@ -66,6 +68,49 @@ TEST(ModelFile, ReadsObjAndStl) {
         EXPECT_EQ(mesh.triangles.size(), 12U) << name;
         EXPECT_NEAR(ClosedModel(std::move(mesh), name).volume(), 60, 1e-5) << name;
     }
+}
+
+// A package with a model whose numbers are in this unit; empty: not stated.
+void write3mf(const fs::path& path, const TriangleMesh& mesh, const std::string& unit) {
+    std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model ";
+    if (!unit.empty()) model += "unit=\"" + unit + "\" ";
+    model +=
+        "xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+        "<object id=\"1\" type=\"model\"><mesh><vertices>";
+    for (const glm::dvec3& p : mesh.points)
+        model += "<vertex x=\"" + std::to_string(p.x) + "\" y=\"" + std::to_string(p.y) + "\" z=\"" +
+                 std::to_string(p.z) + "\"/>";
+    model += "</vertices><triangles>";
+    for (const Triangle& t : mesh.triangles)
+        model += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
+                 std::to_string(t[2]) + "\"/>";
+    model += "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>";
+    const std::string relations =
+        "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+    zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
+    ASSERT_NE(archive, nullptr);
+    const auto add = [archive](const char* name, const std::string& text) {
+        zip_file_add(archive, name, zip_source_buffer(archive, text.data(), text.size(), 0), 0);
+    };
+    add("_rels/.rels", relations);
+    add("3D/3dmodel.model", model);
+    ASSERT_EQ(zip_close(archive), 0);
+}
+
+TEST(ModelFile, TheUnitOfA3mfIsThatOfItsNumbers) {
+    const test::ScratchFolder folder;
+    const TriangleMesh box = test::boxModel({0, 0, 0}, {1, 2, 3});
+    for (const auto& [unit, mm] :
+         {std::pair{"", 1.0}, std::pair{"millimeter", 1.0}, std::pair{"inch", 25.4}, std::pair{"meter", 1000.0},
+          std::pair{"micron", 0.001}, std::pair{"foot", 304.8}, std::pair{"centimeter", 10.0}}) {
+        write3mf(folder / "box.3mf", box, unit);
+        const ClosedModel model(readModel(folder / "box.3mf"), unit);
+        EXPECT_NEAR(model.volume() / (6 * mm * mm * mm), 1, 1e-6) << unit;
+    }
+    write3mf(folder / "box.3mf", box, "cubit");
+    EXPECT_NE(refusalOf(folder / "box.3mf").find("cubit"), std::string::npos);
 }
 
 TEST(ModelFile, WhatIsNoModelIsRefused) {

@@ -82,12 +82,16 @@ ModelComparison compareWithModel(const ConvertCommand& o, const gcode::Toolpath&
     const ProgressNote note("comparing", o.common.quiet);
     voxelize::VoxelizeOptions outside;
     outside.interior = voxelize::Interior::cull;
-    const openvdb::FloatGrid::Ptr grid =
-        voxelize::voxelize(toolpath, gcode::beadsOfPart(toolpath, selection), lattice, outside);
+    const std::vector<std::uint32_t> part = gcode::beadsOfPart(toolpath, selection);
+    const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, part, lattice, outside);
     compare::CompareOptions options;
+    options.line_width = gcode::meanWidth(toolpath, part);
     if (o.compare.placement == "bed") options.placement = compare::ModelPlacement::bed;
     comparison.found = compare::compareToModel(*grid, *comparison.model, options);
     tell(o, comparison.found);
+    if (!o.common.quiet)
+        for (const std::string& doubt : comparison.found.doubts)
+            tellError(fmt::format("gcode2vdb: {}: {}\n", o.compare.model, doubt));
     return comparison;
 }
 

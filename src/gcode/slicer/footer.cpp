@@ -3,8 +3,11 @@
 #include "gcode/text/setting_text.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace stratum::gcode {
 namespace {
@@ -12,10 +15,34 @@ namespace {
 constexpr std::size_t kMostTools = 256;
 const double kMostAmount = std::nextafter(1e9, 0.0);
 
-// Numbers separated by commas, with or without a unit behind each, times `scale`. Empty if one is no amount.
-std::vector<double> amounts(std::string_view text, double scale) {
-    std::vector<double> values = numbersOf(text, 0, kMostAmount);
-    for (double& value : values) value *= scale;
+struct Unit {
+    std::string_view name;
+    double scale;  // to mm or mm^3
+};
+constexpr std::array kLengths{Unit{"mm", 1}, Unit{"cm", 10}, Unit{"m", 1000}};
+constexpr std::array kVolumes{Unit{"mm3", 1}, Unit{"mm^3", 1}, Unit{"cm3", 1000}, Unit{"cm^3", 1000}};
+
+// The letters and digits that a text begins with, after blanks.
+std::string_view wordOf(std::string_view text) {
+    text = trim(text);
+    const auto end = std::find_if(text.begin(), text.end(),
+                                  [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '^'; });
+    return text.substr(0, static_cast<std::size_t>(end - text.begin()));
+}
+
+// Numbers separated by commas, each with one of the units behind it, or without a unit times `scale`. Empty if one is
+// no amount, or of something else: slicers state grams by the words of lengths.
+std::vector<double> amounts(std::string_view text, double scale, std::span<const Unit> units) {
+    std::vector<double> values;
+    for (const std::string_view part : partsOf(text, ",")) {
+        const char* p = part.data();
+        double value = 0;
+        if (!parseNumber(p, p + part.size(), value) || !(value >= 0 && value <= kMostAmount)) return {};
+        const std::string_view word = wordOf(part.substr(static_cast<std::size_t>(p - part.data())));
+        const auto unit = std::find_if(units.begin(), units.end(), [word](const Unit& u) { return u.name == word; });
+        if (!word.empty() && unit == units.end()) return {};
+        values.push_back(value * (word.empty() ? scale : unit->scale));
+    }
     return values;
 }
 
@@ -30,11 +57,11 @@ std::size_t takeIndex(std::string_view& text) {
 }
 
 void setLengths(std::string_view text, double scale, Footer& footer) {
-    if (auto list = amounts(text, scale); !list.empty()) footer = {.length = std::move(list), .volume = {}};
+    if (auto list = amounts(text, scale, kLengths); !list.empty()) footer = {.length = std::move(list), .volume = {}};
 }
 
-void setAt(std::vector<double>& list, std::size_t tool, std::string_view text) {
-    const std::vector<double> value = amounts(text, 1);
+void setAt(std::vector<double>& list, std::size_t tool, std::string_view text, std::span<const Unit> units) {
+    const std::vector<double> value = amounts(text, 1, units);
     if (value.empty()) return;
     if (list.size() <= tool) list.resize(tool + 1);
     list[tool] = value[0];
@@ -43,8 +70,6 @@ void setAt(std::vector<double>& list, std::size_t tool, std::string_view text) {
 }  // namespace
 
 bool readFooter(std::string_view text, Footer& footer) {
-    // Slic3r states grams by the same words.
-    if (text.starts_with("filament used =") && text.ends_with('g')) return true;
     if (takePrefix(text, "filament used [mm] =") || takePrefix(text, "filament used =") ||
         takePrefix(text, "Filament length:") || takePrefix(text, "--- filament used:")) {
         setLengths(text, 1, footer);
@@ -54,12 +79,12 @@ bool readFooter(std::string_view text, Footer& footer) {
         if (text.find("mm3") == std::string_view::npos)
             setLengths(text, 1000, footer);
         else
-            footer = {.length = {}, .volume = amounts(text, 1)};
+            footer = {.length = {}, .volume = amounts(text, 1, kVolumes)};
         return true;
     }
     if (takePrefix(text,
                    "total filament length [mm] :")) {  // BambuStudio lists those in use, so that the sum alone is sure
-        const std::vector<double> list = amounts(text, 1);
+        const std::vector<double> list = amounts(text, 1, kLengths);
         if (!list.empty()) footer = {.length = {std::accumulate(list.begin(), list.end(), 0.0)}, .volume = {}};
         return true;
     }
@@ -70,18 +95,18 @@ bool readFooter(std::string_view text, Footer& footer) {
     if (takePrefix(text, "Ext ")) {  // KISSlicer: "Ext 1 =    53.49 mm  (0.378 cm^3)"
         const std::size_t number = takeIndex(text);
         if (number == 0 || number >= kMostTools || !takePrefix(text, " =")) return false;
-        setAt(footer.length, number - 1, text);
+        setAt(footer.length, number - 1, text, kLengths);
         return true;
     }
     if (takePrefix(text, "EXTRUDER_TRAIN.")) {
         const std::size_t tool = takeIndex(text);
-        if (tool < kMostTools && takePrefix(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text);
+        if (tool < kMostTools && takePrefix(text, ".MATERIAL.VOLUME_USED:")) setAt(footer.volume, tool, text, kVolumes);
         return true;
     }
     if (takePrefix(text, "Material#")) {
         const std::size_t number = takeIndex(text);
         if (number == 0 || number >= kMostTools || !takePrefix(text, " Used:")) return false;
-        setAt(footer.length, number - 1, text);
+        setAt(footer.length, number - 1, text, kLengths);
         return true;
     }
     return false;

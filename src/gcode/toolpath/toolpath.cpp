@@ -57,6 +57,17 @@ double beadSeconds(const Toolpath& toolpath, const Bead& bead) {
     return speed > 0 ? beadLength(toolpath, bead) / speed : 0;
 }
 
+double meanWidth(const Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+    double sum = 0;
+    double length = 0;
+    for (const std::uint32_t bead : selection) {
+        const double along = beadLength(toolpath, toolpath.beads[bead]);
+        sum += along * static_cast<double>(toolpath.beads[bead].width);
+        length += along;
+    }
+    return length > 0 ? sum / length : 0;
+}
+
 double sectionArea(double width, double height) {
     constexpr double kQuarterPi = std::numbers::pi / 4;
     if (width < height) return kQuarterPi * width * width;

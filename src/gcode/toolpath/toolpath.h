@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -153,6 +154,9 @@ double beadLength(const Toolpath& toolpath, const Bead& bead);
 
 /// Seconds to lay a bead at the programmed speed, without accelerations; 0 if the file has no speed.
 double beadSeconds(const Toolpath& toolpath, const Bead& bead);
+
+/// Mean width of the beads of a selection by their length, mm; 0 of none.
+double meanWidth(const Toolpath& toolpath, std::span<const std::uint32_t> selection);
 
 /// Area of a bead's cross-section in mm^2: a stadium of `width` x `height`, or a disc of diameter `width` if narrower.
 double sectionArea(double width, double height);

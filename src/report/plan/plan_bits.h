@@ -57,19 +57,22 @@ private:
         }
     }
 
-    static constexpr int kMost = 24;  // pixels, three columns
-    // Rows of pixels along y around a column: bit y + kMost.
+    // Pixels: a layer 30 times as high as the usual one.
+    static constexpr int kMost = 512;
+    // Rows of pixels along y around a column: bit y + margin_ of a row of words.
     class Window {
     public:
         Window(const PlanBits& bits, std::size_t i, std::size_t j, std::span<const std::uint32_t> below, int most);
         double distance2(int x, int y) const;
 
     private:
-        std::uint64_t& at(int x) { return rows_[static_cast<std::size_t>(x) + kMost]; }
-        std::uint64_t at(int x) const { return rows_[static_cast<std::size_t>(x) + kMost]; }
+        std::uint64_t* row(int x) { return rows_.data() + static_cast<std::size_t>(x + margin_) * words_; }
+        const std::uint64_t* row(int x) const { return rows_.data() + static_cast<std::size_t>(x + margin_) * words_; }
+        int steps(const std::uint64_t* row, int y) const;
 
-        int most_;
-        std::array<std::uint64_t, 8 + 2 * kMost> rows_{};
+        int most_, margin_;  // pixels; the margin is whole columns
+        std::size_t words_;
+        std::vector<std::uint64_t> rows_;
     };
 
     std::size_t columns_i_, columns_j_;

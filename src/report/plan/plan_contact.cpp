@@ -2,6 +2,7 @@
 
 #include "base/parallel_for.h"
 #include "report/plan/plan_bits.h"
+#include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
 
@@ -260,8 +261,9 @@ private:
 
 }  // namespace
 
-PlanContact measureContact(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack,
+PlanContact measureContact(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                            const voxelize::Lattice& lattice) {
+    const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection, voxelize::LayersBy::plane_and_number);
     return Measurement(toolpath, stack, lattice).run();
 }
 

@@ -3,10 +3,10 @@
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
-#include "voxelize/beads/layer_stack.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace stratum::report {
@@ -34,9 +34,9 @@ struct PlanContact {
 
 /// Areas are sums over pixels of a quarter to a half of a layer height, each covered in part by what a straight edge at
 /// its distance leaves; those beyond a cone
-/// are shares of them, counted in whole pixels. Layers rest on layers whose top plane is their bottom
-/// plane (LayerStack::welds). Parallel; the same areas for any number of threads.
-PlanContact measureContact(const gcode::Toolpath& toolpath, const voxelize::LayerStack& stack,
+/// are shares of them, counted in whole pixels. Layers of one plane count apart by their numbers. Layers rest on layers
+/// whose top plane is their bottom plane (LayerStack::welds). Parallel; the same areas for any number of threads.
+PlanContact measureContact(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
                            const voxelize::Lattice& lattice);
 
 }  // namespace stratum::report

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace stratum::voxelize {
 namespace {
 
-// Center plane and radius in whole nanometres, so that accumulated rounding of relative moves doesn't split a layer.
-using LayerKey = std::pair<std::int64_t, std::int64_t>;
+// Center plane and radius in whole nanometres, so that accumulated rounding of relative moves doesn't split a layer;
+// and the layer's number, if it counts.
+using LayerKey = std::tuple<std::int64_t, std::int64_t, std::uint32_t>;
 
 constexpr std::uint32_t kDirect = 0xffffffff;
 
@@ -23,8 +25,8 @@ void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::
     for (const auto& [key, group] : groups) {
         layer_of_group[group] = static_cast<std::uint32_t>(stack.layers.size());
         Layer layer;
-        layer.center_z = static_cast<double>(key.first) * 1e-6;
-        const double half_height = static_cast<double>(key.second) * 1e-6;
+        layer.center_z = static_cast<double>(std::get<0>(key)) * 1e-6;
+        const double half_height = static_cast<double>(std::get<1>(key)) * 1e-6;
         layer.radius = deposit.cornerRadius(2 * half_height);
         layer.half_side = half_height - layer.radius;
         layer.inset = flatInset(2 * half_height, layer.radius);
@@ -87,7 +89,7 @@ void findWelds(LayerStack& stack) {
 
 }  // namespace
 
-LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
+LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection, LayersBy by) {
     LayerStack stack;
     std::map<LayerKey, std::uint32_t> groups;
     std::vector<std::uint32_t> group_of;
@@ -103,7 +105,8 @@ LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uin
             group_of.push_back(kDirect);
             continue;
         }
-        const LayerKey key{std::llround((bead.z0 - section.drop) * 1e6), std::llround(section.halfHeight() * 1e6)};
+        const LayerKey key{std::llround((bead.z0 - section.drop) * 1e6), std::llround(section.halfHeight() * 1e6),
+                           by == LayersBy::plane_and_number ? toolpath.runOf(bead).layer : 0};
         if (last_group == kDirect || key != last_key) {
             last_group = groups.try_emplace(key, static_cast<std::uint32_t>(groups.size())).first->second;
             last_key = key;

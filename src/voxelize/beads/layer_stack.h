@@ -59,7 +59,13 @@ struct LayerStack {
     const Extent& extentOf(std::uint32_t rank) const { return extents[rank - first_direct]; }
 };
 
+enum class LayersBy : std::uint8_t {
+    plane,
+    plane_and_number,  ///< Run::layer: objects that are printed one after another have layers of their own
+};
+
 /// Groups the beads of `selection` (indices into toolpath.beads, ascending). Single-threaded.
-LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
+LayerStack stackLayers(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,
+                       LayersBy by = LayersBy::plane);
 
 }  // namespace stratum::voxelize

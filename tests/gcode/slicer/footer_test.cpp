@@ -38,6 +38,17 @@ TEST(Footer, Volumes) {
     EXPECT_EQ(footerOf("EXTRUDER_TRAIN.1.MATERIAL.VOLUME_USED:12034").volume, (List{0, 12034}));
 }
 
+// By the words that other slicers state lengths by.
+TEST(Footer, GramsAreNoLengths) {
+    for (const auto* comment : {"Filament used: 0.40g", "Filament used: 0.40 g", "filament used [mm] = 0.40 g",
+                                "filament used = 22.6 g, 1.2 g", "Filament length: 0.40 g",
+                                "--- filament used: 0.4 g ---", "Ext 1 = 0.40 g", "Material#1 Used: 0.4 kg",
+                                "filament used = 22.6g (1.2 $)", "Filament used: 12 cm3", "Filament used: 3 mm3, 1 g"})
+        EXPECT_TRUE(footerOf(comment).empty()) << comment;
+    EXPECT_EQ(footerOf("Filament used: 40 cm, 5 mm, 0.1 m").length, (List{400, 5, 100}));
+    EXPECT_EQ(footerOf("Filament used: 1.234m 9.8g").length, (List{1234}));
+}
+
 TEST(Footer, NonsenseIsNotTaken) {
     for (const auto* comment :
          {"filament used [mm] = much", "Filament used: -1m", "Material#0 Used: 4", "Material# Used: 4",

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace stratum::report {
 namespace {
@@ -16,8 +18,7 @@ using test::layeredLattice;
 
 PlanContact contactOf(const gcode::Toolpath& toolpath, double height, int voxels) {
     const auto beads = allBeads(toolpath);
-    const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, beads);
-    return measureContact(toolpath, stack, layeredLattice(height, voxels));
+    return measureContact(toolpath, beads, layeredLattice(height, voxels));
 }
 
 // Lines along x, above lines along y: a layer rests on the other where they cross.
@@ -98,6 +99,41 @@ TEST(PlanContact, ALeaningWall) {
     }
 }
 
+// The same anywhere on the lattice, and along whatever direction.
+TEST(PlanContact, ALeaningWallAnywhere) {
+    constexpr double kHeight = 0.2;
+    constexpr double kLength = 40;
+    constexpr double kStep = 0.45;
+    double worst_free = 0;
+    double worst_cone = 0;
+    for (const double turned : {0.0, 0.3, 0.7853981633974483})
+        for (const double offset : {0.0, 0.011, 0.023, 0.037}) {
+            gcode::Toolpath toolpath;
+            const double x = std::cos(turned);
+            const double y = std::sin(turned);
+            for (int n = 0; n < 10; ++n) {
+                const double across = kStep * n + offset;
+                addBead(toolpath, -y * across, x * across, kHeight * (n + 1), kLength * x - y * across,
+                        kLength * y + x * across, kHeight * (n + 1), 0.6, kHeight, static_cast<std::uint32_t>(n + 1));
+            }
+            const PlanContact contact = contactOf(toolpath, kHeight, 4);
+            const double r = 0.3;
+            const double lens =
+                2 * r * r * std::acos(kStep / (2 * r)) - kStep / 2 * std::sqrt(4 * r * r - kStep * kStep);
+            const double free = kLength * kStep + std::numbers::pi * r * r - lens;
+            const double wide = kStep - kHeight * std::tan(kConeAngles[1] * std::numbers::pi / 180);
+            for (std::size_t n = 2; n <= 10; ++n) {
+                const LayerContact& layer = contact.layers[n];
+                worst_free = std::max(worst_free, std::abs((layer.area - layer.supported) / free - 1));
+                worst_cone = std::max(worst_cone, std::abs(layer.beyond_cone[1] / (kLength * wide) - 1));
+            }
+        }
+    RecordProperty("free", std::to_string(worst_free));
+    RecordProperty("cone", std::to_string(worst_cone));
+    EXPECT_LT(worst_free, 0.02);
+    EXPECT_LT(worst_cone * (kStep - kHeight * std::sqrt(3.0)), 0.03);
+}
+
 // A bridge between two towers: nothing below it, out to the middle.
 TEST(PlanContact, ABridge) {
     gcode::Toolpath toolpath;
@@ -118,6 +154,43 @@ TEST(PlanContact, FloatingLayersRestOnNothing) {
     const PlanContact contact = contactOf(toolpath, 0.2, 4);
     EXPECT_EQ(contact.layers[2].supported, 0);
     EXPECT_NEAR(contact.layers[2].beyond_cone[2], contact.layers[2].area, 0.02 * contact.layers[2].area);
+}
+
+// Layers of 0.2 mm, and one of 0.8: its cones reach beyond what a cone of the usual layer needs.
+TEST(PlanContact, ConesOfAHighLayer) {
+    const double far = 0.8 * std::tan(75 * std::numbers::pi / 180);
+    for (const double beyond : {-0.4, 0.5}) {
+        gcode::Toolpath toolpath;
+        for (std::uint32_t layer = 1; layer <= 8; ++layer)
+            addBead(toolpath, 0, 0, 0.2 * layer, 0, 20, 0.2 * layer, 1, 0.2, layer);
+        const double out = far + beyond;
+        addBead(toolpath, 0, 0, 2.4, 0, 20, 2.4, 1 + 2 * out, 0.8, 9);
+        const PlanContact contact = contactOf(toolpath, 0.2, 4);
+        const LayerContact& high = contact.layers[9];
+        EXPECT_GT(high.area - high.supported, 2 * 20 * out);
+        // Both sides, and rings at the ends, to a pixel of their width.
+        const double around = 40 + std::numbers::pi * (2 * (0.5 + far) + beyond);
+        EXPECT_NEAR(high.beyond_cone[2], std::max(beyond, 0.0) * around, beyond < 0 ? 0.01 : 0.05 * around) << beyond;
+    }
+}
+
+// Two objects, one after the other: each has its layers, and the second rests on its own.
+TEST(PlanContact, ObjectsPrintedOneAfterAnother) {
+    gcode::Toolpath toolpath;
+    for (std::uint32_t object = 0; object < 2; ++object)
+        for (std::uint32_t layer = 1; layer <= 3; ++layer) {
+            const double z = 0.2 * layer;
+            const double length = object == 0 || layer < 3 ? 5 : 10;
+            addBead(toolpath, 20.0 * object, 0, z, 20.0 * object + length, 0, z, 0.5, 0.2, 3 * object + layer);
+        }
+    const PlanContact contact = contactOf(toolpath, 0.2, 4);
+    ASSERT_EQ(contact.layers.size(), 7U);
+    for (std::size_t n = 1; n <= 6; ++n) {
+        EXPECT_GT(contact.layers[n].area, 2.4) << n;
+        EXPECT_EQ(contact.layers[n].on_bed, n == 1 || n == 4) << n;
+    }
+    EXPECT_NEAR(contact.layers[3].supported, contact.layers[3].area, 1e-3);
+    EXPECT_NEAR(contact.layers[6].supported / contact.layers[6].area, 0.52, 0.03);
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace stratum::report {
 namespace {
@@ -47,6 +49,35 @@ TEST(Roughness, OfStackedStadiums) {
             EXPECT_LT(rz, 500 * height * 1.001);
             EXPECT_GT(rz, 500 * height * (voxels == 4 ? 0.8 : 0.86));
         }
+    }
+}
+
+// Wherever the wall lies on the lattice, and along whatever direction.
+TEST(Roughness, OfAWallAnywhere) {
+    const double exact = 1e3 * stadiumRa(0.2);
+    for (const int voxels : {4, 8}) {
+        double worst = 0;
+        double highest = 0;
+        double lowest = 1;
+        for (const double turned : {0.0, 0.3, 0.7853981633974483})
+            for (const double offset : {0.0, 0.13, 0.29, 0.5, 0.71, 0.87}) {
+                gcode::Toolpath toolpath;
+                const double across = offset * 0.2 / voxels;
+                const double x = std::cos(turned);
+                const double y = std::sin(turned);
+                for (int n = 1; n <= 24; ++n)
+                    addBead(toolpath, -y * across, x * across, n * 0.2, 20 * x - y * across, 20 * y + x * across,
+                            n * 0.2, 0.5, 0.2, static_cast<std::uint32_t>(n));
+                const PrintReport report = reportOfAll(toolpath, layeredLattice(0.2, voxels));
+                worst = std::max(worst, std::abs(numberOf(report, "roughness_ra") / exact - 1));
+                highest = std::max(highest, numberOf(report, "roughness_rz") / 100);
+                lowest = std::min(lowest, numberOf(report, "roughness_rz") / 100);
+            }
+        RecordProperty("worst_ra_" + std::to_string(voxels), std::to_string(worst));
+        RecordProperty("rz_" + std::to_string(voxels), std::to_string(lowest) + " " + std::to_string(highest));
+        EXPECT_LT(worst, voxels == 4 ? 0.085 : 0.04);
+        EXPECT_LT(highest, 1.02);
+        EXPECT_GT(lowest, voxels == 4 ? 0.8 : 0.86);
     }
 }
 
