@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "shade/post/exposure.h"
+#include "shade/scene/paper_tone.h"
 
 #include <utility>
 
@@ -25,6 +26,7 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
     }();
     stage.scene.objects = objects.materials;
     stage.scene.labels = objects.labels;
+    shade::matchPaper(stage.scene, seen.bed_surface);
     const trace::Box box = seen.frame.value_or(objects.intersector->bounds());
     stage.middle = 0.5 * (box.min + box.max);
     const bool studio = seen.env == "studio" && seen.lights.empty();  // bright enough as it is

@@ -42,6 +42,20 @@ TEST(ReadyScene, APrintIsAPicture) {
     EXPECT_GT(most->rgb.b, 2 * least->rgb.b);  // a white bed, an orange print
 }
 
+TEST(ReadyScene, ThePaperMindsTheFilament) {
+    PictureOptions options = smallPicture();
+    const auto paper = [&](const char* material) {
+        options.scene.brdf = material;
+        return readyScene(kTilePrint, options).scene.bed->texture.mean().g;
+    };
+    const float light = shade::BedTexture(shade::BedSurface::paper).mean().g;
+    EXPECT_EQ(paper("#101010"), light);
+    EXPECT_EQ(paper("#d8563b"), light);
+    for (const char* pale : {"#f4f4f4", "#c0c0c0", "clear-petg"}) EXPECT_LT(paper(pale), 0.5f * light) << pale;
+    options.scene.bed_surface = shade::BedSurface::grid;
+    EXPECT_EQ(paper("#f4f4f4"), shade::BedTexture(shade::BedSurface::grid).mean().g);
+}
+
 TEST(ReadyScene, VoxelsAreAsFineAsPixelsAsk) {
     PictureOptions options = smallPicture();
     options.tracing.prints.print.lattice.voxel_size.reset();

@@ -124,6 +124,16 @@ def refused(status, words, *options):
 
 
 refused(3, "gcode2vdb --grids width", "tile.vdb", "--color-by", "width")
+# One material is written: not a default that nothing has, and not one of several.
+reds = scene("reds.json", objects=[{"sdf": {"sphere": {"radius": 2}}, "material": "lambert:0.8,0.1,0.1"}])
+refused(2, "and the objects have 2", scene("several.json", objects=[
+    {"sdf": {"sphere": {"radius": 2}}, "material": "lambert:0.8,0.1,0.1"},
+    {"sdf": {"sphere": {"center": [6, 0, 0], "radius": 2}}, "material": "lambert:0.1,0.1,0.8"}]),
+    "--write-brdf", path("several.binary"))
+refused(2, "each place has a colour of its own", "tile.vdb", "--color-by", "layer", "--write-brdf", path("layer.binary"))
+trace("reds.png", reds, "--write-brdf", path("reds.binary"))
+trace("asked.png", "tile.vdb", "--brdf", "lambert:0.8,0.1,0.1", "--write-brdf", path("asked.binary"))
+check(bytes_of("reds.binary") == bytes_of("asked.binary"), "the only object's material is written")
 refused(2, "has a colour of its own", "tile.vdb", "--color-by", "tool", "--brdf", "pla-blue")
 refused(2, "--focus needs a lens", "tile.vdb", "--focus", "10")
 refused(2, "a scene stands alone", both, "tile.vdb")

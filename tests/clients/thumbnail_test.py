@@ -365,6 +365,15 @@ packed = io.BytesIO()
 with zipfile.ZipFile(packed, "w") as archive:
     archive.writestr("Metadata/plate_1.gcode", TEXT)
 write("bare.gcode.3mf", packed.getvalue())
+packed = io.BytesIO()
+with zipfile.ZipFile(packed, "w") as archive:
+    archive.writestr("Metadata/plate_1.gcode", TEXT)
+    archive.writestr("Metadata/plate_1.png", b"old")
+write("one.gcode.3mf", packed.getvalue())
+done = call("one.gcode.3mf", "--thumbnail", "30x30,16x16/QOI,20x20", "-o", "some.gcode.3mf", "--stats", "report.json")
+check(done.returncode == 0 and "not written: 16x16/QOI, 20x20/PNG" in done.stderr.decode(),
+      f"pictures that a container has no place for: {done.stderr.decode().strip()[-200:]}")
+check(json.loads(content("report.json"))["left_out"] == ["16x16/QOI", "20x20/PNG"], "  and in the report")
 refused(["bare.gcode.3mf", "--thumbnail", "30x30", "-o", "refused.3mf"], 3, "has no Metadata/plate_1.png to replace")
 check(not os.path.exists(path("refused.3mf")), "  leaves no file behind")
 
