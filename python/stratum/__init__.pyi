@@ -36,6 +36,11 @@ class Hits(NamedTuple):
     normals: NDArray[np.float64]
     attributes: dict[str, NDArray[Any]]
 
+class Mesh(NamedTuple):
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    colors: NDArray[np.uint8] | None
+
 class Toolpath:
     @property
     def beads(self) -> NDArray[np.void]: ...
@@ -96,6 +101,8 @@ class Toolpath:
         arcs: NDArray[np.void] | None = ..., objects: Sequence[str] | None = ...,
     ) -> Toolpath: ...
     def __len__(self) -> int: ...
+    def __getstate__(self) -> bytes: ...
+    def __setstate__(self, state: bytes) -> None: ...
 
 class LevelSet:
     @staticmethod
@@ -104,6 +111,7 @@ class LevelSet:
         self, path: _Path, *, precision: Literal["float", "half"] | None = ...,
         compression: Literal["blosc", "zip", "none"] | None = ..., overwrite: bool | None = ...,
     ) -> None: ...
+    def mesh(self, *, mesh_error: float = ..., outside_only: bool = ...) -> Mesh: ...
     def dense(self, box: _Box | None = ...) -> Block: ...
     def sample(self, points: ArrayLike, *, progress: _Progress | None = ...) -> NDArray[np.float32]: ...
     def attribute(self, name: str, points: ArrayLike) -> NDArray[Any]: ...
@@ -193,8 +201,8 @@ def read(
         "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
-    section: str | None = ..., flow_lag: float | None = ..., pressure_advance: float | None = ...,
-    sag: float | None = ...,
+    section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,
+    pressure_advance: float | None = ..., sag: float | None = ...,
 ) -> Toolpath: ...
 def make_toolpath(
     beads: NDArray[np.void], runs: NDArray[np.void], arcs: NDArray[np.void] | None = ...,
@@ -215,6 +223,9 @@ def report(
     memory_budget: str | None = ..., half_width: float | None = ..., layers: str | None = ...,
     features: str | Sequence[str] | None = ..., objects: str | Sequence[str] | None = ...,
     tools: int | Sequence[int] | None = ..., interior: Literal["keep", "cull"] | None = ...,
+    interior_distance: bool | None = ..., grids: str | Sequence[str] | None = ...,
+    unit: Literal["mm", "cm", "m"] | None = ..., up: Literal["z", "y"] | None = ...,
+    origin: Literal["bed", "center", "min"] | None = ...,
 ) -> dict[str, Any]: ...
 def compare(
     toolpath: Toolpath, model: _Path, *, progress: _Progress | None = ..., at: Literal["fit", "bed"] | None = ...,
@@ -267,8 +278,8 @@ def render(
         "auto", "jerk", "slicer-jerk", "plan-jerk", "junction-deviation", "corner-velocity", "marlin-jerk", "reprap-jerk"
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
-    section: str | None = ..., flow_lag: float | None = ..., pressure_advance: float | None = ...,
-    sag: float | None = ..., voxel_size: float | Literal["auto"] | None = ..., voxels_per_layer: int | None = ...,
+    section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,
+    pressure_advance: float | None = ..., sag: float | None = ..., voxel_size: float | Literal["auto"] | None = ..., voxels_per_layer: int | None = ...,
     tolerance: float | None = ..., memory_budget: str | None = ..., half_width: float | None = ...,
     layers: str | None = ..., features: str | Sequence[str] | None = ..., objects: str | Sequence[str] | None = ...,
     tools: int | Sequence[int] | None = ...,

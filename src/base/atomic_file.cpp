@@ -164,7 +164,7 @@ void Replacement::check(const std::filesystem::path& destination) {
     if (!isOwnFile(destination))
         throw UsageError(fmt::format(
             "{}: is there already, and was not written by this program; give another name, or replace it by "
-            "--force (in Python: overwrite=True)",
+            "--force",
             destination.string()));
 }
 

@@ -1,7 +1,9 @@
-// The parallel loop of the project: TBB's, with a join that ThreadSanitizer recognizes.
+// The parallel loop of the project: TBB's, with a join that ThreadSanitizer recognizes. It ends early where the work
+// was asked to stop.
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
 
 #if defined(STRATUM_THREAD_SANITIZER)
 #include <algorithm>
@@ -17,11 +19,44 @@
 
 namespace stratum {
 
+/// Ends the work that was asked to stop. No std::exception: nobody may take it for a fault of the input.
+struct Stopped {};
+
+/// While it lives, this thread works for whoever has the source of the token, and so do the bodies of its
+/// parallelFor().
+class StopScope {
+public:
+    /// The token must outlive the scope. Null: nobody can ask.
+    explicit StopScope(const std::stop_token* token) : before_(current_) { current_ = token; }
+    StopScope(const StopScope&) = delete;
+    StopScope& operator=(const StopScope&) = delete;
+    ~StopScope() { current_ = before_; }
+
+    /// The token of this thread's work; null: none.
+    static const std::stop_token* current() { return current_; }
+
+private:
+    static inline constinit thread_local const std::stop_token* current_ = nullptr;
+    const std::stop_token* before_;
+};
+
+/// Throws Stopped if this thread's work was asked to.
+inline void stopIfAsked() {
+    const std::stop_token* const token = StopScope::current();
+    if (token != nullptr && token->stop_requested()) throw Stopped();
+}
+
 /// Calls body(first, last) for parts of [0, count) that cover it once, on the threads that tbb::global_control allows.
 /// Parts have about `grain` items. Writes of the bodies are visible after the return. The first exception ends the loop
-/// and is rethrown. Results must not depend on the parts: items are independent.
+/// and is rethrown; Stopped is one, if the work of the calling thread is asked to stop (StopScope). Results must not
+/// depend on the parts: items are independent.
 template <typename Body>
 void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
+    const auto part = [&body, stop = StopScope::current()](std::size_t first, std::size_t last) {
+        const StopScope scope(stop);
+        stopIfAsked();
+        body(first, last);
+    };
 #if defined(STRATUM_THREAD_SANITIZER)
     // Debian's TBB is not built for ThreadSanitizer, which then reports races between code before, in and after a loop.
     // With plain threads it sees the real order, so its reports are about this project.
@@ -31,7 +66,7 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
     const auto work = [&] {
         try {
             for (std::size_t first = next.fetch_add(grain); first < count; first = next.fetch_add(grain))
-                body(first, std::min(first + grain, count));
+                part(first, std::min(first + grain, count));
         } catch (...) {
             const std::scoped_lock lock(failure_mutex);
             failure = std::current_exception();
@@ -45,7 +80,7 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
 #else
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, grain),
-        [&body](const tbb::blocked_range<std::size_t>& part) { body(part.begin(), part.end()); },
+        [&part](const tbb::blocked_range<std::size_t>& range) { part(range.begin(), range.end()); },
         tbb::simple_partitioner());
 #endif
 }

@@ -3,6 +3,7 @@
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
 #include "python/options/print_options.h"
+#include "python/options/signature.h"
 #include "python/point_loop.h"
 
 #include "base/error.h"
@@ -266,13 +267,18 @@ py::object occluded(const IntersectorObject& self, const py::object& origins, co
 
 void bindPrintField(py::module_& module) {
     py::class_<PrintFieldObject>(module, "PrintField",
-                                 "PrintField(toolpath, **options): a print that is evaluated where it is asked, "
-                                 "without a grid. Options: voxel_size (mm; of rays and attributes), voxels_per_layer, "
-                                 "tolerance, memory_budget, half_width (voxels); layers, features, objects, tools.")
-        .def(py::init(&makeField), "toolpath"_a)
+                                 documented(fmt::format("PrintField(toolpath, *, {})", kPrintParameters),
+                                            "A print that is evaluated where it is asked, without a grid. voxel_size "
+                                            "(mm) is that of rays and attributes.")
+                                     .c_str())
+        .def(py::init(&makeField),
+             documented(fmt::format("__init__(self, toolpath, *, {})", kPrintParameters), "As the class says.").c_str(),
+             "toolpath"_a)
         .def("distance", &distanceOf,
-             "distance(points, *, progress=None) -> float64 (N,): exact signed distance to the beads, mm, at points "
-             "(N, 3) of print space; negative but a bound inside; farther away than reach it is reach.",
+             documented("distance(self, points, *, progress=None)",
+                        "float64 (N,): exact signed distance to the beads, mm, at points "
+                        "(N, 3) of print space; negative but a bound inside; farther away than reach it is reach.")
+                 .c_str(),
              "points"_a, py::kw_only(), "progress"_a = py::none())
         .def(
             "attribute",
@@ -280,9 +286,12 @@ void bindPrintField(py::module_& module) {
                 const voxelize::Attribute attribute = ondemand::attributeNamed(name);
                 return lookUp(*ondemand::makePrintAttribute(self.field, attribute), valueKind(attribute), points);
             },
-            "attribute(name, points): of the bead nearest to each point's nearest voxel in the band: int32 (N,) with "
-            "-1 where there is none, float32 (N,) with NaN, or linear colors float32 (N, 3) with NaN. Names as in "
-            "gcode2vdb --grids.",
+            documented(
+                "attribute(self, name, points)",
+                "Of the bead nearest to each point's nearest voxel in the band: int32 (N,) with "
+                "-1 where there is none, float32 (N,) with NaN, or linear colors float32 (N, 3) with NaN. Names as in "
+                "gcode2vdb --grids.")
+                .c_str(),
             "name"_a, "points"_a)
         .def_property_readonly(
             "voxel_size", [](const PrintFieldObject& self) { return self.field->layout().lattice.voxel_size; },
@@ -301,22 +310,33 @@ void bindPrintField(py::module_& module) {
 }
 
 void bindIntersector(py::module_& module) {
+    constexpr std::string_view kParameters =
+        "source, attributes=(), *, smooth_normals=None, brick_values=None, grid=None";
     defineNamedTuple(module, "Hits", "t hit positions normals attributes", "The nearest hits of rays, one a row.");
     py::class_<IntersectorObject>(
         module, "Intersector",
-        "Intersector(source, attributes=(), *, smooth_normals=False, brick_values='int16', grid=''): rays through a "
-        "PrintField, a LevelSet, or the .vdb of that path. brick_values 'float' keeps all bits of the samples.")
-        .def(py::init(&makeIntersector), "source"_a, "attributes"_a = std::vector<std::string>())
+        documented(fmt::format("Intersector({})", kParameters),
+                   "Rays through a PrintField, a LevelSet, or the .vdb of that path, of which grid is the name. "
+                   "brick_values 'float' keeps all bits of the samples, 'int16' (default) those of a hundredth of a "
+                   "voxel.")
+            .c_str())
+        .def(py::init(&makeIntersector),
+             documented(fmt::format("__init__(self, {})", kParameters), "As the class says.").c_str(), "source"_a,
+             "attributes"_a = std::vector<std::string>())
         .def("trace", &traceRays,
-             "trace(origins, directions, *, t_min=0.0, t_max=inf, progress=None) -> Hits: the nearest hit of each ray, "
-             "(N, 3) and (N, 3) of world space, of any length. t is in world "
-             "units along the unit direction, inf where nothing is hit; positions and normals (N, 3) are then NaN; "
-             "attributes is a dict of arrays.",
+             documented(
+                 "trace(self, origins, directions, *, t_min=0.0, t_max=1e999, progress=None)",
+                 "Hits: the nearest hit of each ray, "
+                 "(N, 3) and (N, 3) of world space, of any length. t is in world "
+                 "units along the unit direction, inf where nothing is hit; positions and normals (N, 3) are then NaN; "
+                 "attributes is a dict of arrays.")
+                 .c_str(),
              "origins"_a, "directions"_a, py::kw_only(), "t_min"_a = 0.0, "t_max"_a = trace::kInfinity,
              "progress"_a = py::none())
         .def("occluded", &occluded,
-             "occluded(origins, directions, *, t_min=0.0, t_max=inf, progress=None) -> bool (N,): whether each ray "
-             "hits anything.",
+             documented("occluded(self, origins, directions, *, t_min=0.0, t_max=1e999, progress=None)",
+                        "bool (N,): whether each ray hits anything.")
+                 .c_str(),
              "origins"_a, "directions"_a, py::kw_only(), "t_min"_a = 0.0, "t_max"_a = trace::kInfinity,
              "progress"_a = py::none())
         .def_property_readonly(

@@ -1,13 +1,16 @@
 #include "python/arrays.h"
 #include "python/conversion.h"
 #include "python/dense_block.h"
+#include "python/level_set_mesh.h"
 #include "python/level_set_object.h"
 #include "python/named_tuple.h"
 #include "python/options/print_options.h"
+#include "python/options/signature.h"
 #include "python/point_loop.h"
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "march/file/level_set_file.h"
 
 #include <fmt/format.h>
@@ -27,9 +30,8 @@ using Kind = trace::AttributeSummary::Kind;
 
 namespace {
 
-constexpr const char* kVoxelize = R"(voxelize(toolpath, *, progress=None, **options) -> LevelSet
-
-The level set of a print in memory, with the grids of its attributes. Options as those of gcode2vdb: voxel_size (mm),
+constexpr const char* kVoxelize =
+    R"(The level set of a print in memory, with the grids of its attributes. Options as those of gcode2vdb: voxel_size (mm),
 voxels_per_layer, tolerance (mm), memory_budget ("4GB"), half_width (voxels); layers, features, objects, tools;
 interior ("keep", "cull"), interior_distance, grids (names), unit ("mm", "cm", "m"), up ("z", "y"), origin ("bed",
 "center", "min").
@@ -37,22 +39,21 @@ interior ("keep", "cull"), interior_distance, grids (names), unit ("mm", "cm", "
 Raises UsageError for options that don't fit the print or the memory.)";
 
 constexpr const char* kBlock =
-    R"(voxelize_block(toolpath, box=None, *, progress=None, **options) -> Block
-
-The samples of a print in one dense float32 array, values[x, y, z], mm: negative inside, the background (half_width
+    R"(A Block: the samples of a print in one dense float32 array, values[x, y, z], mm: negative inside, the background (half_width
 voxels) far outside. origin is the place of values[0, 0, 0], mm. box: two corners, mm; None is all that is selected.
 Only what the box meets is made, and no sparse grid. Options: voxel_size (mm), voxels_per_layer, tolerance (mm),
 memory_budget, half_width (voxels); layers, features, objects, tools.)";
 
-constexpr const char* kWrite = R"(write_vdb(toolpath, path, *, progress=None, **options) -> None
-
-Writes the file that gcode2vdb writes with these options, leaf by leaf while they are made if nothing needs the grid.
+constexpr const char* kWrite =
+    R"(Writes the file that gcode2vdb writes with these options, leaf by leaf while they are made if nothing needs the grid.
 Options of voxelize(), and precision ("float", "half"), compression ("blosc", "zip", "none"), overwrite (False): whether
 a file that this program did not write may be replaced; else UsageError.
 
 Raises OutputError; an old file of that name then stays.)";
 
 using Matrix = py::array_t<double>;
+
+constexpr std::size_t kPlanes = 8;  // of a dense block, that one thread copies at a time
 
 constexpr std::array<std::pair<std::string_view, exporter::Compression>, 3> kCompressions = {
     {{"blosc", exporter::Compression::blosc},
@@ -109,10 +110,8 @@ py::object voxelizeBlock(const ToolpathObject& print, const py::object& box, con
     keywords.finish();
     const bool all = box.is_none();
     const voxelize::Bounds wanted = all ? voxelize::Bounds() : boxOf(box);
-    const exporter::LevelSetPlan plan = [&] {
-        const py::gil_scoped_release release;
-        return exporter::LevelSetPlan(*print.toolpath, std::move(choices));
-    }();
+    const exporter::LevelSetPlan plan = callLong(
+        py::none(), [&](const Report&) { return exporter::LevelSetPlan(*print.toolpath, std::move(choices)); });
     const voxelize::Lattice& lattice = plan.lattice();
     const openvdb::CoordBBox samples = all ? samplesAround(plan.bounds(), lattice) : samplesIn(wanted, lattice);
     py::array_t<float> values = emptyBlock(samples);
@@ -185,8 +184,19 @@ py::object denseOf(const LevelSetObject& self, const py::object& box) {
     const openvdb::FloatGrid& grid = self.surface();
     const openvdb::CoordBBox samples = samplesOf(self, box);
     py::array_t<float> values = emptyBlock(samples);
-    openvdb::tools::Dense<float, openvdb::tools::LayoutZYX> dense(samples, values.mutable_data());
-    runLong(py::none(), [&](const Report&) { openvdb::tools::copyToDense(grid, dense); });
+    float* const to = values.mutable_data();
+    const auto plane = static_cast<std::size_t>(samples.dim()[1]) * static_cast<std::size_t>(samples.dim()[2]);
+    const auto planes = static_cast<std::size_t>(samples.dim()[0]);
+    // A few planes of constant x at a time, which are one run of memory.
+    runLong(py::none(), [&](const Report&) {
+        parallelFor(planes, kPlanes, [&](std::size_t first, std::size_t last) {
+            openvdb::CoordBBox part = samples;
+            part.min()[0] = samples.min()[0] + static_cast<int>(first);
+            part.max()[0] = samples.min()[0] + static_cast<int>(last) - 1;
+            openvdb::tools::Dense<float, openvdb::tools::LayoutZYX> dense(part, to + first * plane);
+            openvdb::tools::copyToDense(grid, dense, true);
+        });
+    });
     return namedTuple("Block", values, vectorOf(grid.transform().indexToWorld(samples.min())), grid.voxelSize()[0]);
 }
 
@@ -275,32 +285,50 @@ py::array lookUp(const march::AttributeSource& source, Kind kind, const py::obje
     return arrayOf(std::move(integers), {count});
 }
 
-void bindLevelSet(py::module_& module) {
-    defineNamedTuple(module, "Block", "values origin voxel_size",
-                     "A box of samples: float32 values[x, y, z], the place of values[0, 0, 0], the distance of two.");
-    py::class_<LevelSetObject>(module, "LevelSet",
-                               "A sparse level set in memory, and the grids of its attributes. It never changes.")
-        .def_static("read", &readLevelSet,
-                    "read(path, grid='', attributes=()): a .vdb; grid '' is \"surface\", or the only level set.",
+namespace {
+
+void addMethods(py::class_<LevelSetObject>& type) {
+    type.def_static("read", &readLevelSet,
+                    documented("read(path, grid='', attributes=())",
+                               "The level set of a .vdb; grid '' is \"surface\", or the only level set.")
+                        .c_str(),
                     "path"_a, "grid"_a = "", "attributes"_a = std::vector<std::string>())
         .def("write", &writeLevelSet,
-             "write(path, *, precision='float', compression='blosc', overwrite=False): a .vdb of all grids. overwrite: "
-             "files that this program did not write are replaced, too. Raises OutputError.",
+             documented(fmt::format("write(self, path, *, {})", kFileParameters),
+                        "A .vdb of all grids: precision 'float' (default) or 'half', compression 'blosc' (default), "
+                        "'zip' or 'none'. overwrite: files that this program did not write are replaced, too. Raises "
+                        "OutputError.")
+                 .c_str(),
              "path"_a)
         .def("dense", &denseOf,
-             "dense(box=None) -> Block: the samples in a box (two corners, world space), or "
-             "all that are active, as float32 values[x, y, z] along the axes of the grid; origin is the place of "
-             "values[0, 0, 0].",
+             documented("dense(self, box=None)",
+                        "A Block: the samples in a box (two corners, world space), or all that are active, as float32 "
+                        "values[x, y, z] along the axes of the grid; origin is the place of values[0, 0, 0].")
+                 .c_str(),
              "box"_a = py::none())
+        .def("mesh", &meshOf,
+             documented("mesh(self, *, mesh_error=0.25, outside_only=False)",
+                        "A Mesh: the surface as triangles, closed, counter-clockwise from outside, in world space. "
+                        "mesh_error: how far faces may be merged, voxels; 0 keeps all. outside_only: without the "
+                        "surfaces of cavities. colors are there if the level set has the grid color.")
+                 .c_str(),
+             py::kw_only(), "mesh_error"_a = 0.25, "outside_only"_a = false)
         .def("sample", &sample,
-             "sample(points, *, progress=None) -> float32 (N,): the distance at points (N, 3) of world space, "
-             "trilinear between samples, world units; the background far outside, minus it deep inside.",
+             documented("sample(self, points, *, progress=None)",
+                        "float32 (N,): the distance at points (N, 3) of world space, trilinear between samples, world "
+                        "units; the background far outside, minus it deep inside.")
+                 .c_str(),
              "points"_a, py::kw_only(), "progress"_a = py::none())
         .def("attribute", &attributeAt,
-             "attribute(name, points): of the nearest active voxel around each point: int32 (N,) with -1 where there "
-             "is none, float32 (N,) with NaN, or linear colors float32 (N, 3) with NaN.",
-             "name"_a, "points"_a)
-        .def_property_readonly(
+             documented("attribute(self, name, points)",
+                        "Of the nearest active voxel around each point: int32 (N,) with -1 where there "
+                        "is none, float32 (N,) with NaN, or linear colors float32 (N, 3) with NaN.")
+                 .c_str(),
+             "name"_a, "points"_a);
+}
+
+void addFacts(py::class_<LevelSetObject>& type) {
+    type.def_property_readonly(
             "attributes",
             [](const LevelSetObject& self) {
                 std::vector<std::string> names;
@@ -339,10 +367,32 @@ void bindLevelSet(py::module_& module) {
             return fmt::format("<stratum.LevelSet: {} active voxels of {:g}>", self.surface().activeVoxelCount(),
                                self.surface().voxelSize()[0]);
         });
-    module.def("voxelize", &voxelizePrint, kVoxelize, "toolpath"_a, py::kw_only(), "progress"_a = py::none());
-    module.def("voxelize_block", &voxelizeBlock, kBlock, "toolpath"_a, "box"_a = py::none(), py::kw_only(),
-               "progress"_a = py::none());
-    module.def("write_vdb", &writeVdb, kWrite, "toolpath"_a, "path"_a, py::kw_only(), "progress"_a = py::none());
+}
+
+}  // namespace
+
+void bindLevelSet(py::module_& module) {
+    defineNamedTuple(module, "Block", "values origin voxel_size",
+                     "A box of samples: float32 values[x, y, z], the place of values[0, 0, 0], the distance of two.");
+    defineNamedTuple(module, "Mesh", "vertices faces colors",
+                     "Triangles: vertices float32 (N, 3), faces uint32 (M, 3) of indices, and colors of the vertices, "
+                     "uint8 (N, 3), sRGB, or None.");
+    py::class_<LevelSetObject> type(module, "LevelSet",
+                                    "A sparse level set in memory, and the grids of its attributes. It never changes.");
+    addMethods(type);
+    addFacts(type);
+    const auto options = [](std::string_view call, std::string_view more, std::string_view text) {
+        return documented(fmt::format("{}progress=None, {}{})", call, kPrintParameters, more), text);
+    };
+    const std::string choices = fmt::format(", {}", kLevelSetParameters);
+    module.def("voxelize", &voxelizePrint, options("voxelize(toolpath, *, ", choices, kVoxelize).c_str(), "toolpath"_a,
+               py::kw_only(), "progress"_a = py::none());
+    module.def("voxelize_block", &voxelizeBlock, options("voxelize_block(toolpath, box=None, *, ", "", kBlock).c_str(),
+               "toolpath"_a, "box"_a = py::none(), py::kw_only(), "progress"_a = py::none());
+    module.def(
+        "write_vdb", &writeVdb,
+        options("write_vdb(toolpath, path, *, ", fmt::format("{}, {}", choices, kFileParameters), kWrite).c_str(),
+        "toolpath"_a, "path"_a, py::kw_only(), "progress"_a = py::none());
 }
 
 }  // namespace stratum::python

@@ -1,8 +1,10 @@
 #include "python/bind_measures.h"
 
 #include "python/conversion.h"
+#include "python/errors.h"
 #include "python/long_call.h"
 #include "python/options/keywords.h"
+#include "python/options/signature.h"
 #include "python/toolpath_object.h"
 
 #include "compare/comparison_report.h"
@@ -12,6 +14,7 @@
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 
+#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -26,19 +29,17 @@ using namespace py::literals;
 
 namespace {
 
-constexpr const char* kReport = R"(report(toolpath, *, density=None, price=None, progress=None, **options) -> dict
-
-Numbers of a print, as gcode2vdb --report writes them: each with its title, value, unit and definition; columns by layer
+constexpr const char* kReport =
+    R"(A dict: numbers of a print, as gcode2vdb --report writes them: each with its title, value, unit and definition; columns by layer
 and by height; and what could not be told, with the reason. density in g/cm3 and price of a kg replace the file's. Options
 of voxelize(). A toolpath that was read with timed=True has its time in it.
 
 Raises UsageError for options that don't fit the print or the memory.)";
 
-constexpr const char* kCompare = R"(compare(toolpath, model, *, at="fit", progress=None, **options) -> dict
-
-How far a print is from its model (.stl, .3mf, .obj), and the model from the print, as gcode2vdb --compare tells: mean, RMS,
-what 95 % stay within, extremes and their places, in mm, by the side that the model's surface looks to. at: "fit" places
-the model where it fits best, "bed" as its file has it. Options: voxel_size (mm), voxels_per_layer, tolerance (mm),
+constexpr const char* kCompare =
+    R"(A dict: how far a print is from its model (.stl, .3mf, .obj), and the model from the print, as gcode2vdb --compare tells: mean, RMS,
+what 95 % stay within, extremes and their places, in mm, by the side that the model's surface looks to. at: "fit"
+(default) places the model where it fits best, "bed" as its file has it. Options: voxel_size (mm), voxels_per_layer, tolerance (mm),
 memory_budget, half_width (voxels); layers, features, objects, tools.
 
 Raises InputError for a model that is open or inside out.)";
@@ -46,7 +47,9 @@ Raises InputError for a model that is open or inside out.)";
 constexpr std::array<std::pair<std::string_view, compare::ModelPlacement>, 2> kPlacements = {
     {{"fit", compare::ModelPlacement::fit}, {"bed", compare::ModelPlacement::bed}}};
 
-py::object dictOf(const nlohmann::ordered_json& json) { return py::module_::import("json").attr("loads")(json.dump()); }
+py::object dictOf(const nlohmann::ordered_json& json) {
+    return py::module_::import("json").attr("loads")(inPython(json.dump()));
+}
 
 py::object reportPrint(const ToolpathObject& print, const py::object& progress, const py::kwargs& given) {
     Keywords keywords("report", given);
@@ -95,8 +98,17 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
 }  // namespace
 
 void bindMeasures(py::module_& module) {
-    module.def("report", &reportPrint, kReport, "toolpath"_a, py::kw_only(), "progress"_a = py::none());
-    module.def("compare", &comparePrint, kCompare, "toolpath"_a, "model"_a, py::kw_only(), "progress"_a = py::none());
+    module.def("report", &reportPrint,
+               documented(fmt::format("report(toolpath, *, progress=None, density=None, price=None, {}, {})",
+                                      kPrintParameters, kLevelSetParameters),
+                          kReport)
+                   .c_str(),
+               "toolpath"_a, py::kw_only(), "progress"_a = py::none());
+    module.def(
+        "compare", &comparePrint,
+        documented(fmt::format("compare(toolpath, model, *, progress=None, at=None, {})", kPrintParameters), kCompare)
+            .c_str(),
+        "toolpath"_a, "model"_a, py::kw_only(), "progress"_a = py::none());
 }
 
 }  // namespace stratum::python

@@ -3,6 +3,7 @@
 #include "python/arrays.h"
 #include "python/long_call.h"
 #include "python/options/picture_options.h"
+#include "python/options/signature.h"
 #include "python/toolpath_object.h"
 
 #include "assemble/finished_picture.h"
@@ -28,9 +29,8 @@ using namespace py::literals;
 
 namespace {
 
-constexpr const char* kRender = R"(render(source, *, progress=None, **options) -> Picture
-
-Ray-traces a Toolpath, or the file of that path: G-code in any container, or a .vdb with a level set. Of G-code only the
+constexpr const char* kRender =
+    R"(A Picture: ray-traces a Toolpath, or the file of that path: G-code in any container, or a .vdb with a level set. Of G-code only the
 voxels that rays meet are made. The options are those of vdbtrace, with its defaults: size (width, height), spp, noise,
 seconds, seed, crop, aov, denoise, exposure (stops), legend; view, eye, look_at, up, fov (degrees), f_number, aperture,
 focus, frame, zoom; integrator, bounces, phong, environment_rows, ao_distance; brdf, color, color_by, normals; env,
@@ -198,14 +198,20 @@ void bindPicture(py::module_& module) {
             },
             "World space: eye; unit forward and up; fov, vertical, degrees.")
         .def("write", &writePicture,
-             "write(path, *, overwrite=False): .png, .jpg or .webp as srgb, or a linear .exr with its layers. "
-             "overwrite: "
-             "a file that this program did not write is replaced, too. Raises OutputError.",
+             documented("write(self, path, *, overwrite=False)",
+                        ".png, .jpg or .webp as srgb, or a linear .exr with its layers. overwrite: a file that this "
+                        "program did not write is replaced, too. Raises OutputError.")
+                 .c_str(),
              "path"_a, py::kw_only(), "overwrite"_a = false)
         .def("__repr__", [](const PictureObject& self) {
             return fmt::format("<stratum.Picture: {} x {}>", self.film.width(), self.film.height());
         });
-    module.def("render", &render, kRender, "source"_a, py::kw_only(), "progress"_a = py::none());
+    module.def("render", &render,
+               documented(fmt::format("render(source, *, progress=None, {}, {}, {})", kPictureParameters,
+                                      kReadParameters, kPrintParameters),
+                          kRender)
+                   .c_str(),
+               "source"_a, py::kw_only(), "progress"_a = py::none());
 }
 
 }  // namespace stratum::python

@@ -1,9 +1,12 @@
 #include "python/arrays.h"
+#include "python/errors.h"
 #include "python/long_call.h"
 #include "python/make_toolpath.h"
 #include "python/options/keywords.h"
 #include "python/options/print_options.h"
+#include "python/options/signature.h"
 #include "python/toolpath_object.h"
+#include "python/toolpath_state.h"
 
 #include "base/checksum.h"
 #include "base/error.h"
@@ -26,22 +29,19 @@ using namespace py::literals;
 
 namespace {
 
-constexpr const char* kRead = R"(read(source, *, timed=False, progress=None, **options) -> Toolpath
-
-Reads one G-code program: a path, or bytes; plain text or any container (gzip, .bgcode, .gcode.3mf, .ufp, .gx).
+constexpr const char* kRead =
+    R"(Reads one G-code program: a path, or bytes; plain text or any container (gzip, .bgcode, .gcode.3mf, .ufp, .gx).
 
 timed: plan the motion of the machine, for Toolpath.timing and Toolpath.times; takes about twice as long.
 progress: called with the fraction done, 0..1.
-The options are those of the tools: plate, filament_diameter (mm, one or by tool), filament_colors (one or
+Returns a Toolpath. The options are those of the tools: plate, filament_diameter (mm, one or by tool), filament_colors (one or
 by tool, as --color), layer_height (mm), belt (degrees), planar, e_mode, firmware,
-planner, printer, beads, section, flow_lag (s), pressure_advance (s), sag.
+planner, printer, beads, section, flow (per cent), flow_lag (s), pressure_advance (s), sag.
 
 Raises InputError for what is no G-code, UsageError for options out of range.)";
 
 constexpr const char* kMake =
-    R"(make_toolpath(beads, runs, arcs=None, objects=None, *, filament_diameter=1.75, layer_height=0.0) -> Toolpath
-
-A toolpath of arrays: beads (bead_dtype, mm, in print order), the runs they refer to (run_dtype), arcs (arc_dtype), and
+    R"(A toolpath of arrays: beads (bead_dtype, mm, in print order), the runs they refer to (run_dtype), arcs (arc_dtype), and
 names of objects, of which the first is "". The arrays are copied.
 
 Raises UsageError, with the index and the remedy, for records that nothing can be made of.)";
@@ -170,8 +170,8 @@ py::array selectBeads(const ToolpathObject& self, const py::kwargs& given) {
 py::list warningsOf(const gcode::Toolpath& toolpath) {
     py::list warnings;
     for (const gcode::Warning& warning : toolpath.warnings)
-        warnings.append(
-            py::dict("text"_a = warning.text, "first_line"_a = warning.first_line, "count"_a = warning.count));
+        warnings.append(py::dict("text"_a = inPython(warning.text), "first_line"_a = warning.first_line,
+                                 "count"_a = warning.count));
     return warnings;
 }
 
@@ -212,38 +212,39 @@ void addArrays(py::class_<ToolpathObject>& type) {
             [](const ToolpathObject& self) {
                 return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).layer; });
             },
-            "The layer of each bead: 1, 2, ...; 0 is what comes before the first.")
+            documented("bead_layers(self)", "The layer of each bead: 1, 2, ...; 0 is what comes before the first.")
+                .c_str())
         .def(
             "bead_features",
             [](const ToolpathObject& self) {
                 return perBead<std::uint8_t>(
                     self, [](const Path& t, const Bead& b) { return static_cast<std::uint8_t>(t.runOf(b).feature); });
             },
-            "The feature of each bead, an index into stratum.features.")
+            documented("bead_features(self)", "The feature of each bead, an index into stratum.features.").c_str())
         .def(
             "bead_tools",
             [](const ToolpathObject& self) {
                 return perBead<std::uint8_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).tool; });
             },
-            "The T number of each bead.")
+            documented("bead_tools(self)", "The T number of each bead.").c_str())
         .def(
             "bead_objects",
             [](const ToolpathObject& self) {
                 return perBead<std::uint16_t>(self, [](const Path& t, const Bead& b) { return t.runOf(b).object; });
             },
-            "The object of each bead, an index into objects; 0 is none.")
+            documented("bead_objects(self)", "The object of each bead, an index into objects; 0 is none.").c_str())
         .def(
             "bead_lines",
             [](const ToolpathObject& self) {
                 return perBead<std::uint32_t>(self, [](const Path& t, const Bead& b) { return t.lineOf(b); });
             },
-            "The line of each bead in its file, from 1.")
+            documented("bead_lines(self)", "The line of each bead in its file, from 1.").c_str())
         .def(
             "bead_lengths",
             [](const ToolpathObject& self) {
                 return perBead<double>(self, [](const Path& t, const Bead& b) { return gcode::beadLength(t, b); });
             },
-            "The length of each bead's path, mm, its climb included.")
+            documented("bead_lengths(self)", "The length of each bead's path, mm, its climb included.").c_str())
         .def(
             "bead_volumes",
             [](const ToolpathObject& self) {
@@ -251,7 +252,7 @@ void addArrays(py::class_<ToolpathObject>& type) {
                     return gcode::laidVolume(t, static_cast<std::uint32_t>(&b - t.beads.data()));
                 });
             },
-            "What each bead lays, mm^3.");
+            documented("bead_volumes(self)", "What each bead lays, mm^3.").c_str());
 }
 
 void addFacts(py::class_<ToolpathObject>& type) {
@@ -282,8 +283,22 @@ void addFacts(py::class_<ToolpathObject>& type) {
                                "unless read with timed=True or flow_lag.")
         .def_readonly("source", &ToolpathObject::source, "Name of its file without folders; empty if it has none.")
         .def(
-            "summary", [](const ToolpathObject& self) { return gcode::summarize(*self.toolpath); },
-            "What the file holds, in lines of text.")
+            "summary", [](const ToolpathObject& self) { return inPython(gcode::summarize(*self.toolpath)); },
+            documented("summary(self)", "What the file holds, in lines of text.").c_str())
+        .def(py::pickle(
+            [](const ToolpathObject& self) {
+                std::string state;
+                {
+                    const py::gil_scoped_release release;
+                    state = stateOf(self);
+                }
+                return py::bytes(state);
+            },
+            [](const py::bytes& state) {
+                const auto bytes = static_cast<std::string_view>(state);
+                const py::gil_scoped_release release;
+                return toolpathOf(bytes);
+            }))
         .def("__len__", [](const ToolpathObject& self) { return self.toolpath->beads.size(); })
         .def("__repr__", [](const ToolpathObject& self) {
             return fmt::format("<stratum.Toolpath: {} beads in {} layers>", self.toolpath->beads.size(),
@@ -300,9 +315,13 @@ void bindToolpath(py::module_& module) {
     addArrays(type);
     addFacts(type);
     type.def("select", &selectBeads,
-             "select(*, layers=None, features=None, objects=None, tools=None) -> array of indices into beads, "
-             "ascending; as the tools' options of those names")
-        .def("replace", &replaced, "Another toolpath with these arrays instead; they are checked and copied.",
+             documented(fmt::format("select(self, *, {})", kSelectionParameters),
+                        "Array of indices into beads, ascending; as the tools' options of those names.")
+                 .c_str())
+        .def("replace", &replaced,
+             documented("replace(self, *, beads=None, runs=None, arcs=None, objects=None)",
+                        "Another toolpath with these arrays instead; they are checked and copied.")
+                 .c_str(),
              py::kw_only(), "beads"_a = py::none(), "runs"_a = py::none(), "arcs"_a = py::none(),
              "objects"_a = py::none());
     module.def(
@@ -310,9 +329,15 @@ void bindToolpath(py::module_& module) {
         [](const py::object& source, const py::object& progress, const py::kwargs& options) {
             return readProgram(source, progress, options);
         },
-        kRead, "source"_a, py::kw_only(), "progress"_a = py::none());
-    module.def("make_toolpath", &makeToolpath, kMake, "beads"_a, "runs"_a, "arcs"_a = py::none(),
-               "objects"_a = py::none(), py::kw_only(), "filament_diameter"_a = 1.75, "layer_height"_a = 0.0);
+        documented(fmt::format("read(source, *, timed=None, progress=None, {})", kReadParameters), kRead).c_str(),
+        "source"_a, py::kw_only(), "progress"_a = py::none());
+    module.def("make_toolpath", &makeToolpath,
+               documented("make_toolpath(beads, runs, arcs=None, objects=None, *, filament_diameter=1.75, "
+                          "layer_height=0.0)",
+                          kMake)
+                   .c_str(),
+               "beads"_a, "runs"_a, "arcs"_a = py::none(), "objects"_a = py::none(), py::kw_only(),
+               "filament_diameter"_a = 1.75, "layer_height"_a = 0.0);
     module.attr("bead_dtype") = recordType<gcode::Bead>();
     module.attr("run_dtype") = recordType<gcode::Run>();
     module.attr("arc_dtype") = recordType<gcode::Arc>();

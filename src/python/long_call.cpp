@@ -1,12 +1,13 @@
 #include "python/long_call.h"
 
-#include "base/error.h"
+#include "base/parallel_for.h"
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 namespace stratum::python {
@@ -17,15 +18,12 @@ namespace {
 
 constexpr auto kPatience = std::chrono::milliseconds(50);
 
-// Ends the work; nobody sees it.
-struct Interrupted {};
-
 // What the two threads tell each other.
 struct Shared {
     std::mutex mutex;
     std::condition_variable over;
     bool done = false;
-    std::atomic<bool> stop{false};
+    std::stop_source stop;
     std::atomic<double> fraction{-1};
 };
 
@@ -58,7 +56,7 @@ private:
             tell();
         } catch (...) {
             failure_ = std::current_exception();
-            shared_.stop = true;
+            shared_.stop.request_stop();
         }
     }
 
@@ -84,12 +82,13 @@ void runLong(const py::object& progress, const std::function<void(const Report&)
     std::exception_ptr failure;
     const Report report = [&shared](double fraction) {
         shared.fraction = fraction;
-        if (shared.stop) throw Interrupted();
+        if (shared.stop.stop_requested()) throw Stopped();
     };
-    std::thread worker([&] {
+    std::thread worker([&, token = shared.stop.get_token()] {
+        const StopScope scope(&token);
         try {
             work(report);
-        } catch (const Interrupted&) {
+        } catch (const Stopped&) {
         } catch (...) {
             failure = std::current_exception();
         }

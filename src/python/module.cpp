@@ -13,6 +13,9 @@
 
 PYBIND11_MODULE(_stratum, module) {
     using namespace stratum::python;
+    // Docstrings begin with signatures of their own: documented().
+    pybind11::options docstrings;
+    docstrings.disable_function_signatures();
     module.attr("__version__") = STRATUM_VERSION;
     openvdb::initialize();
     stratum::Replacement::guard(true);

@@ -1,5 +1,7 @@
 #include "python/threads.h"
 
+#include "python/options/signature.h"
+
 #include "base/error.h"
 
 #include <tbb/global_control.h>
@@ -39,12 +41,14 @@ void setThreads(const py::object& count) {
 
 void bindThreads(py::module_& module) {
     module.def("set_threads", &setThreads,
-               "set_threads(count): how many threads calls of this process may use; None is all processors. Results "
-               "don't depend on it.",
+               documented("set_threads(count)",
+                          "How many threads calls of this process may use; None is all processors. Results don't "
+                          "depend on it.")
+                   .c_str(),
                py::arg("count"));
     module.def(
         "threads", [] { return Limit::active_value(Limit::max_allowed_parallelism); },
-        "How many threads calls may use.");
+        documented("threads()", "How many threads calls of this process may use, see set_threads().").c_str());
 }
 
 }  // namespace stratum::python

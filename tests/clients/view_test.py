@@ -165,6 +165,49 @@ def clicking():
     check(bead["time_s"] > 0 and bead["speed_mm_s"] > 0, "its time and speed")
 
 
+def saving():
+    """What is saved is the view that was asked for, whatever is looked at meanwhile."""
+    wanted = traced()
+    js("window.vdbviewSaved = null; document.getElementById('save').click()")
+    drag(60, 10)
+    until(lambda: js("return Boolean(window.vdbviewSaved)"), "the saved picture")
+    check(fetched("vdbviewSaved") == wanted, "the saved picture is that of the command that the page showed")
+    check(final("the picture after turning") != wanted, "the page went on")
+    # A view that is finished while another picture is being saved is shown.
+    js("document.getElementById('save-size').value = document.getElementById('save-size').options[1].value")
+    drag(-60, -10)
+    js("document.getElementById('save').click()")
+    final("the finished picture of the view beside the one that is saved")
+    js("document.getElementById('save').click()")
+    until(lambda: js("return document.getElementById('save').textContent") == "Save picture", "saving is given up")
+
+
+def measuring():
+    """Distances are in mm, whatever the file's unit."""
+    metres = os.path.join(FOLDER, "metres.vdb")
+    run(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "-o", metres, "--unit", "m", "--voxel-size", "0.2", "--quiet")
+    process = subprocess.Popen([VDBVIEW, metres, "--quiet"], stdout=subprocess.PIPE, text=True)
+    try:
+        page.get(process.stdout.readline().strip() + '#{"camera":{"view":"top"}}')
+        final("the picture of a level set")
+        js("document.getElementById('measure').click()")
+        places = []
+        for x in (0.45, 0.55):
+            js("window.vdbviewFound = null; const c = document.getElementById('picture'), b = c.getBoundingClientRect();"
+               "c.setPointerCapture = () => {};"
+               "for (const type of ['pointerdown', 'pointerup']) c.dispatchEvent(new PointerEvent(type, { pointerId: 1,"
+               " clientX: b.left + b.width * arguments[0], clientY: b.top + b.height * 0.5, button: 0, bubbles: true }));", x)
+            found = until(lambda: js("return window.vdbviewFound"), "the answer to a click")
+            check(found["hit"], "a click meets the print")
+            places.append(found["position"])
+        told = until(lambda: re.search(r"Distance([\d.]+) mm", js("return document.querySelector('#answer dl').textContent")),
+                     "the distance")
+        wanted = 1000 * sum((a - b) ** 2 for a, b in zip(*places)) ** 0.5
+        check(1 < wanted < 60 and abs(float(told.group(1)) - wanted) < 0.002, f"{told.group(1)} mm, {wanted:.3f} expected")
+    finally:
+        process.kill()
+
+
 def changing():
     js("window.vdbviewLog.length = 0")
     with open(gcode("tile_arcs.gcode"), "rb") as file:
@@ -234,9 +277,11 @@ try:
     turning(first)
     sliding()
     clicking()
+    saving()
     changing()
     strangers()
     losing()
+    measuring()
 finally:
     page.quit()
     if server.poll() is None:

@@ -15,6 +15,7 @@ from common import SOURCE, gcode
 STUB = os.path.join(SOURCE, "python", "stratum", "__init__.pyi")
 with open(STUB, encoding="utf-8") as _file:
     TREE = ast.parse(_file.read())
+TUPLES = ("Block", "Hits", "Mesh")
 
 
 def name_of(node):
@@ -45,7 +46,7 @@ class Stub(unittest.TestCase):
 
     def test_every_member(self):
         for name, node in members(TREE.body).items():
-            if not isinstance(node, ast.ClassDef) or name in ("Block", "Hits") or name.endswith("Error"):
+            if not isinstance(node, ast.ClassDef) or name in TUPLES or name.endswith("Error"):
                 continue
             told = {member for member in members(node.body) if not member.startswith("__")}
             there = {member for member in vars(getattr(stratum, name)) if not member.startswith("_")}
@@ -54,7 +55,7 @@ class Stub(unittest.TestCase):
                 real = inspect.getattr_static(getattr(stratum, name), member)
                 decorators = [getattr(d, "id", "") for d in said.decorator_list]
                 self.assertEqual("property" in decorators, isinstance(real, property), f"{name}.{member}")
-        for name in ("Block", "Hits"):
+        for name in TUPLES:
             self.assertEqual(tuple(members(members(TREE.body)[name].body)), getattr(stratum, name)._fields)
 
     def test_bases_of_errors(self):
@@ -73,6 +74,8 @@ class Stub(unittest.TestCase):
                 (top["voxelize_block"], lambda **o: stratum.voxelize_block(toolpath, **o)),
                 (top["write_vdb"], lambda **o: stratum.write_vdb(toolpath, "/nowhere/a.vdb", **o)),
                 (top["render"], lambda **o: stratum.render(toolpath, **o)),
+                (top["report"], lambda **o: stratum.report(toolpath, **o)),
+                (top["compare"], lambda **o: stratum.compare(toolpath, "/nowhere/a.stl", **o)),
                 (of["Toolpath"]["select"], toolpath.select),
                 (of["LevelSet"]["write"], lambda **o: level_set.write("/nowhere/a.vdb", **o)),
                 (of["PrintField"]["__init__"], lambda **o: stratum.PrintField(toolpath, **o)),
@@ -81,13 +84,44 @@ class Stub(unittest.TestCase):
             self.assertEqual(len(names), len(set(names)))
             self.assertEqual(set(names) - {"progress"}, options_of(call), told.name)
 
+    def test_every_signature(self):
+        """inspect.signature() and the stub say the same of every function, class and method."""
+        top = members(TREE.body)
+        functions = {name: (node, getattr(stratum, name)) for name, node in top.items()
+                     if isinstance(node, ast.FunctionDef)}
+        for name, node in top.items():
+            if not isinstance(node, ast.ClassDef) or name in TUPLES or name.endswith("Error"):
+                continue
+            for member, said in members(node.body).items():
+                if "property" in [getattr(d, "id", "") for d in said.decorator_list]:
+                    continue
+                if member == "__init__":
+                    functions[f"{name}()"] = (said, getattr(stratum, name))
+                elif not member.startswith("__"):
+                    functions[f"{name}.{member}"] = (said, getattr(getattr(stratum, name), member))
+        self.assertGreater(len(functions), 25)
+        for name, (said, real) in functions.items():
+            parameters = inspect.signature(real).parameters
+            plain = [a.arg for a in said.args.args]
+            if name.endswith("()"):
+                plain.remove("self")
+            self.assertEqual([p for p in parameters if parameters[p].kind is not inspect.Parameter.KEYWORD_ONLY], plain, name)
+            self.assertEqual({p for p in parameters if parameters[p].kind is inspect.Parameter.KEYWORD_ONLY},
+                             {a.arg for a in said.args.kwonlyargs}, name)
+            optional = len([p for p in parameters.values()
+                            if p.default is not inspect.Parameter.empty and p.kind is not inspect.Parameter.KEYWORD_ONLY])
+            self.assertEqual(optional, len(said.args.defaults), name)
+        path = stratum.read(gcode("tile.gcode"))
+        self.assertEqual(list(inspect.signature(path.select).parameters), ["layers", "features", "objects", "tools"])
+        self.assertNotIn("-->", stratum.voxelize.__doc__)
+
     def test_everything_is_explained(self):
         for name in stratum.__all__:
             thing = getattr(stratum, name)
             if isinstance(thing, type):
                 self.assertTrue(thing.__doc__, name)
                 for member, value in vars(thing).items():
-                    if not member.startswith("_") and name not in ("Block", "Hits"):
+                    if not member.startswith("_") and name not in TUPLES:
                         self.assertGreater(len(value.__doc__ or ""), 3, f"{name}.{member}")
             elif callable(thing):
                 self.assertGreater(len(thing.__doc__), 40, name)

@@ -1,14 +1,17 @@
 """stratum.Toolpath: what it reads, views without a copy, and toolpaths of arrays."""
 
+import copy
 import gc
 import gzip
 import os
 import pathlib
+import pickle
 import sys
 import tempfile
 import threading
 import time
 import unittest
+import zlib
 
 import numpy as np
 
@@ -65,6 +68,14 @@ class Reading(unittest.TestCase):
         lagging = stratum.read(path, flow_lag=0.05, printer="ideal")
         self.assertEqual(len(lagging.flow), len(lagging))
         self.assertEqual(stratum.read(path).flow, None)
+
+    def test_flow(self):
+        path = gcode("tile.gcode")
+        plain = stratum.read(path)
+        self.assertAlmostEqual(stratum.read(path, flow=90).extruded_mm3 / plain.extruded_mm3, 0.9, places=6)
+        for bad in (0, 1001):
+            with self.assertRaisesRegex(stratum.UsageError, "flow=.*from 1 to 1000"):
+                stratum.read(path, flow=bad)
 
     def test_facts(self):
         toolpath = stratum.read(gcode("hull.gcode"))
@@ -222,6 +233,63 @@ class Arrays(unittest.TestCase):
         self.assertTrue(np.array_equal(toolpath.beads, beads[::-2]))
 
 
+FIELDS = ("objects", "slicer", "firmware", "format", "filament_diameter", "layer_height", "layer_count", "extrusion_rule",
+          "cut_short", "filament_mm", "prime_mm", "extruded_mm3", "warnings", "stated", "times", "source")
+
+
+class Pickles(unittest.TestCase):
+    def same(self, toolpath, again):
+        for name in ("beads", "runs", "arcs", "timing", "flow"):
+            one, other = getattr(toolpath, name), getattr(again, name)
+            if one is None:
+                self.assertIsNone(other)
+            else:
+                self.assertEqual(one.dtype, other.dtype)
+                self.assertTrue(np.array_equal(one, other), name)
+        for name in FIELDS:
+            self.assertEqual(getattr(toolpath, name), getattr(again, name), name)
+        self.assertEqual(toolpath.summary(), again.summary())
+        self.assertEqual(toolpath.__getstate__(), again.__getstate__())  # what has no name, too
+
+    def test_every_field(self):
+        everything = {"timed": True, "flow_lag": 0.02, "sag": 0.1, "beads": "settled", "section": "50%",
+                      "filament_colors": "#ff8000"}
+        for name, options in (("tile.gcode", {}), ("tile_arcs.gcode", everything), ("two_tone.gcode", {"timed": True}),
+                              ("hull.gcode", {"planner": "jerk", "timed": True})):
+            toolpath = stratum.read(gcode(name), **options)
+            for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+                self.same(toolpath, pickle.loads(pickle.dumps(toolpath, protocol)))
+            self.same(toolpath, copy.deepcopy(toolpath))
+        beads, runs = box_of_beads(100)
+        self.same(stratum.make_toolpath(beads, runs), copy.copy(stratum.make_toolpath(beads, runs)))
+
+    def test_gives_the_same_file(self):
+        toolpath = stratum.read(gcode("two_tone.gcode"), timed=True)
+        files = [os.path.join(FOLDER, name) for name in ("plain.vdb", "pickled.vdb")]
+        for path, of in zip(files, (toolpath, pickle.loads(pickle.dumps(toolpath)))):
+            stratum.write_vdb(of, path, voxel_size=0.3, grids="color,time,tool")
+        self.assertEqual(read_bytes(files[0]), read_bytes(files[1]))
+
+    def test_bytes_are_stable(self):
+        path = gcode("tile_arcs.gcode")
+        states = {stratum.read(path, timed=True).__getstate__() for _ in range(3)}
+        self.assertEqual(len(states), 1)
+
+    def test_damage_and_versions(self):
+        toolpath = stratum.read(gcode("tile.gcode"))
+        state = toolpath.__getstate__()
+        empty = stratum.Toolpath.__new__(stratum.Toolpath)
+        for bad in (b"", b"stratum", state[:-1], state[:100], state + b"x", state[:50] + b"?" + state[51:]):
+            with self.assertRaisesRegex(stratum.InputError, "damaged; read the G-code again"):
+                empty.__setstate__(bad)
+        at = state.index(b"stratum.Toolpath") + 16
+        other = state[:at] + (99).to_bytes(4, "little") + state[at + 4:-4]
+        with self.assertRaisesRegex(stratum.InputError, "version 99; this stratum reads version 1"):
+            empty.__setstate__(other + zlib.crc32(other).to_bytes(4, "little"))
+        empty.__setstate__(state)
+        self.same(toolpath, empty)
+
+
 class Errors(unittest.TestCase):
     def test_input(self):
         for source, text in (("/nowhere/part.gcode", "/nowhere/part.gcode"), (b"", "empty|no G-code"), (b"\0" * 100, "")):
@@ -234,8 +302,22 @@ class Errors(unittest.TestCase):
             stratum.read(path, filament_diametre=2)
         with self.assertRaisesRegex(stratum.UsageError, r"read\(\): filament_colors bluu.*did you mean"):
             stratum.read(path, filament_colors="bluu")
-        with self.assertRaisesRegex(stratum.UsageError, "--tool 4: the print has no such tool; all of it is by tool 0"):
+        with self.assertRaisesRegex(stratum.UsageError, "^tools 4: the print has no such tool; all of it is by tool 0"):
             stratum.voxelize(stratum.read(path), tools=4, voxel_size=0.4)
+        for options, words in (({"layers": "9:3"}, "^layers 9:3: the first"), ({"features": "x"}, "^features x: expected"),
+                               ({"objects": "cube"}, "^objects cube: "), ({"grids": "x"}, "^grids x: "),
+                               ({"tolerance": -1}, "^tolerance -1: ")):
+            with self.assertRaisesRegex(stratum.UsageError, words) as caught:
+                stratum.voxelize(stratum.read(path), **options)
+            self.assertNotIn("--", str(caught.exception))
+        with self.assertRaisesRegex(stratum.InputError, "left by layers, features, objects and tools"):
+            stratum.voxelize(stratum.read(path), layers="800:900")
+        for options, words in (({"spp": 99999999}, "^spp 99999999"), ({"view": "x"}, "^view x"), ({"env": "x"}, "^env x"),
+                               ({"seconds": -1}, "^seconds -1"), ({"lights": "x"}, "^lights x"),
+                               ({"ao_distance": -1, "integrator": "ao"}, ""), ({"f_number": -1}, "^f_number -1")):
+            with self.assertRaisesRegex(stratum.UsageError, words) as caught:
+                stratum.render(path, size=(16, 16), voxel_size=0.4, **options)
+            self.assertNotRegex(str(caught.exception), r"(^|[ (])--[a-z]")
         with self.assertRaisesRegex(stratum.UsageError, "did you mean 'klipper'"):
             stratum.read(path, firmware="kliper")
         with self.assertRaisesRegex(TypeError, "plate: expected a whole number, not 1.5"):

@@ -219,6 +219,40 @@ class Sampling(unittest.TestCase):
             field.distance([[0, 0, 0]])
 
 
+class Meshes(unittest.TestCase):
+    def test_is_that_of_the_tool(self):
+        path = path_of("tile.stl")
+        for error in (0, 0.25):
+            tool("gcode2vdb", gcode("tile.gcode"), "-o", path, "--quiet", "--voxel-size", "0.2", "--interior", "keep",
+                 "--mesh-error", error)
+            stl = np.frombuffer(read_bytes(path)[84:], [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("none", "<u2")])
+            mesh = stratum.voxelize(stratum.read(gcode("tile.gcode")), voxel_size=0.2).mesh(mesh_error=error)
+            self.assertEqual((mesh.vertices.dtype, mesh.faces.dtype, mesh.colors), (np.float32, np.uint32, None))
+            np.testing.assert_array_equal(mesh.vertices[mesh.faces], stl["corners"])
+
+    def test_is_closed(self):
+        level_set = stratum.voxelize(stratum.read(gcode("vase.gcode")), voxel_size=0.2)
+        mesh = level_set.mesh()
+        corners = mesh.vertices.astype(float)[mesh.faces]
+        volume = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+        self.assertGreater(volume, 100)
+        edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]]).astype(np.int64)
+        there, back = (np.sort(edges[:, a] << 32 | edges[:, 1 - a]) for a in (0, 1))
+        np.testing.assert_array_equal(there, back)
+        self.assertEqual(set(np.unique(mesh.faces)), set(range(len(mesh.vertices))))
+        self.assertLessEqual(len(level_set.mesh(outside_only=True).faces), len(mesh.faces))
+
+    def test_colors(self):
+        level_set = stratum.voxelize(stratum.read(gcode("two_tone.gcode")), voxel_size=0.2)
+        self.assertIn("color", level_set.attributes)
+        mesh = level_set.mesh()
+        self.assertEqual((mesh.colors.dtype, mesh.colors.shape), (np.uint8, mesh.vertices.shape))
+        self.assertEqual(len(np.unique(mesh.colors, axis=0)), 2)
+        for bad in (-1, 2.5, np.nan):
+            with self.assertRaisesRegex(stratum.UsageError, "mesh_error=.*from 0 to 2"):
+                level_set.mesh(mesh_error=bad)
+
+
 class OpenVdb(unittest.TestCase):
     def test_same_values(self):
         sys.path.append("/usr/lib/python3/dist-packages")

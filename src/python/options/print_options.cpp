@@ -39,6 +39,7 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
     assign(read.corner_rule, options.choice("planner", gcode::kCornerRules));
     assign(read.deposit.beads, options.choice("beads", gcode::kBeadModels));
     if (const auto section = options.text("section")) deposit::parseSection(*section, read.deposit);
+    assign(read.flow_percent, options.number("flow", 1, gcode::kMostFlow));
     if (const auto lag = options.number("flow_lag", 0, deposit::kLongestLag)) read.deposit.flow_lag = *lag;
     if (const auto advance = options.number("pressure_advance", 0, gcode::kLongestAdvance))
         read.deposit.pressure_advance = *advance;

@@ -5,12 +5,52 @@
 #include <openvdb/tools/FastSweeping.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>
+#include <tbb/task_group.h>
+
+#include <functional>
+#include <stop_token>
 
 namespace stratum::voxelize {
+namespace {
+
+using Sweeping = openvdb::tools::FastSweeping<openvdb::FloatGrid>;
+
+// OpenVDB's loops don't ask whether they shall stop, but they run in the caller's group of TBB, which can be cancelled:
+// the loop that runs then ends, and those after it do nothing. What is left of the grid is thrown away, and so is what
+// OpenVDB says of it.
+void stoppable(const std::function<void()>& work) {
+    const std::stop_token* const stop = StopScope::current();
+    if (stop == nullptr) return work();
+    tbb::task_group_context context;
+    tbb::task_group group(context);
+    const std::stop_callback cancel(*stop, [&context] { context.cancel_group_execution(); });
+    try {
+        group.run_and_wait(work);
+    } catch (const openvdb::Exception&) {
+        stopIfAsked();
+        throw;
+    }
+    stopIfAsked();
+}
+
+void sweep(Sweeping& sweeping, const openvdb::FloatGrid& grid) {
+#ifdef NDEBUG
+    stoppable([&] {
+        if (sweeping.initSdf(grid, 0, true)) sweeping.sweep();
+    });
+#else
+    // Between the loops of the preparations is an assertion, which what a cancelled loop leaves would break.
+    if (sweeping.initSdf(grid, 0, true)) stoppable([&] { sweeping.sweep(); });
+#endif
+}
+
+}  // namespace
 
 void sweepInterior(openvdb::FloatGrid& grid) {
     const float background = grid.background();
-    const openvdb::FloatGrid::Ptr swept = openvdb::tools::sdfToSdf(grid);
+    Sweeping sweeping;
+    sweep(sweeping, grid);
+    const openvdb::FloatGrid::Ptr swept = sweeping.sdfGrid();
     const openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
     parallelFor(leaves.leafCount(), 64, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n != last; ++n) {

@@ -7,7 +7,8 @@ namespace stratum::voxelize {
 
 /// Replaces the negative values, which are a bound, by distances to the surface: OpenVDB's fast sweeping from the zero
 /// crossings. Voxels deeper than the background become inactive. Values outside don't change. Parallel; needs the
-/// memory of a second grid meanwhile. (Zhao, Math. Comp. 74, 2005; openvdb/tools/FastSweeping.h)
+/// memory of a second grid meanwhile. Work that is asked to stop (StopScope) ends within the sweep and leaves the grid
+/// partly changed. (Zhao, Math. Comp. 74, 2005; openvdb/tools/FastSweeping.h)
 void sweepInterior(openvdb::FloatGrid& grid);
 
 }  // namespace stratum::voxelize
