@@ -137,11 +137,13 @@ private:
 
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
-    auto& [seconds, model_seconds, grams, materials, nozzles, densities, prices, printer, layer, first_layer] = facts;
+    auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer,
+           first_layer] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
     archive.value(materials);
+    archive.value(profiles);
     archive.value(nozzles);
     archive.value(densities);
     archive.value(prices);

@@ -1,8 +1,8 @@
 // libFuzzer: any bytes as a measured material, of whichever kind they look like. Only InputError may come out of
 // reading them, and what is read must be a BRDF: finite and not negative.
 //
-// How to build and run it stands in scripts/fuzz.sh. MERL tables have 35 MB, always; the bytes behind their head are repeated up
-// to that.
+// How to build and run it stands in scripts/fuzz.sh. MERL tables have 35 MB, always; the bytes behind their head are
+// repeated up to that.
 #include "base/error.h"
 #include "fuzz/memory_file.h"
 #include "shade/measured/brdf_file.h"

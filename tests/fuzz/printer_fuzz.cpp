@@ -1,7 +1,8 @@
 // libFuzzer: any text as the file of a printer. Only InputError may come out of reading it, and what is read must be
 // limits that a planner can work with.
 //
-// How to build and run it stands in scripts/fuzz.sh. Includes of Klipper are read, too: of files that happen to be there.
+// How to build and run it stands in scripts/fuzz.sh. Includes of Klipper are read, too: of files that happen to be
+// there.
 #include "base/error.h"
 #include "deposit/printer.h"
 #include "fuzz/memory_file.h"

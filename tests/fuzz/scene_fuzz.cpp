@@ -1,8 +1,8 @@
 // libFuzzer: any text as a scene. Only InputError and UsageError may come out of reading it, and what is read must make
 // shapes without a NaN, cameras, lamps and placements.
 //
-// How to build and run it stands in scripts/fuzz.sh. Materials and environments that name files are left out: they have a target
-// of their own.
+// How to build and run it stands in scripts/fuzz.sh. Materials and environments that name files are left out: they have
+// a target of their own.
 #include "assemble/scene_file.h"
 #include "base/error.h"
 #include "fuzz/memory_file.h"
