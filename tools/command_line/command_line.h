@@ -39,8 +39,8 @@ void addVersion(CLI::App& app);
 /// more. To be called before anything else is done.
 void useHugePages(char** argv);
 
-/// For tools that make many pictures or passes of the same size and then end: the C library keeps freed memory for the next
-/// pass. Otherwise it gives each pass's memory back to the system and asks for it again.
+/// For tools that make many pictures or passes of the same size and then end: the C library keeps freed memory for the
+/// next pass. Otherwise it gives each pass's memory back to the system and asks for it again.
 void keepFreedMemory();
 
 /// What an exception says, and the exit status that it means.
