@@ -34,6 +34,7 @@ trace::Placement upright(const trace::Placement& placement) {
 
 std::vector<glm::dvec3> cornersOf(const trace::Box& box) {
     std::vector<glm::dvec3> corners;
+    corners.reserve(8);
     for (int corner = 0; corner < 8; ++corner)
         corners.emplace_back((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
                              (corner & 4) != 0 ? box.max.z : box.min.z);
