@@ -87,8 +87,8 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
                     column.evaluate(evaluated);
                     column.owners(owners);
                 }
-                const std::uint32_t rank = owners[static_cast<std::size_t>(((e.i - i) * kLeafDim + e.j - j) * kLeafDim +
-                                                                           (e.k & (kLeafDim - 1)))];
+                const int place = ((e.i - i) * kLeafDim + e.j - j) * kLeafDim + (e.k & (kLeafDim - 1));
+                const std::uint32_t rank = owners[static_cast<std::size_t>(place)];
                 if (rank != kNobody) e.bead = stack.beads[rank];
             }
         }
