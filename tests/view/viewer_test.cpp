@@ -6,11 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -93,15 +96,22 @@ TEST(Viewer, ShowsChangesAndFailures) {
     std::ofstream(path) << "this is no G-code\n";
     viewer.changed({path});
     EXPECT_FALSE(page->shown.waitFor("failed").is_null());
-    viewer.received(page, R"({"type":"shown"})");
-    viewer.received(page, R"({"type":"shown"})");
     page->shown.clear();
     std::filesystem::copy_file(test::dataDir() / "gcode/tile_arcs.gcode", path,
                                std::filesystem::copy_options::overwrite_existing);
     viewer.changed({path});
     EXPECT_FALSE(page->shown.waitFor("facts").is_null());
-    viewer.received(page, showText(2));
-    EXPECT_FALSE(page->shown.waitFor("picture", 2, "moving").is_null());
+    {
+        // A page tells of every picture that it has shown; the next moving one waits for that.
+        const std::jthread shows([&](const std::stop_token& stop) {
+            while (!stop.stop_requested()) {
+                viewer.received(page, R"({"type":"shown"})");
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            }
+        });
+        viewer.received(page, showText(2));
+        EXPECT_FALSE(page->shown.waitFor("picture", 2, "moving").is_null());
+    }
     viewer.closed(page);
     const std::lock_guard lock(mutex);
     EXPECT_GE(said.size(), 3U);
