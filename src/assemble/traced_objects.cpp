@@ -4,6 +4,7 @@
 #include "assemble/shape/object_materials.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"
+#include "trace/box_corners.h"
 #include "trace/clip_intersector.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -32,29 +34,22 @@ trace::Placement upright(const trace::Placement& placement) {
     return result;
 }
 
-std::vector<glm::dvec3> cornersOf(const trace::Box& box) {
-    std::vector<glm::dvec3> corners;
-    corners.reserve(8);
-    for (int corner = 0; corner < 8; ++corner)
-        corners.emplace_back((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
-                             (corner & 4) != 0 ? box.max.z : box.min.z);
-    return corners;
-}
-
 // Adds a placed shape to the box and the outline of all parts: all of it, if its file doesn't state the part's box.
 void include(std::optional<trace::Box>& parts, std::vector<glm::dvec3>& outline, const Shape& shape,
              const trace::Placement& placement) {
     const trace::Box own = shape.part.value_or(shape.intersector->bounds());
     if (!std::isfinite(glm::dot(own.max - own.min, glm::dvec3(1.0)))) return;  // a shape by formula may have no end
     const auto placed = [&placement](const glm::dvec3& place) { return placement.linear * place + placement.offset; };
-    const std::vector<glm::dvec3> corners = cornersOf(own);
+    const auto corners = trace::cornersOf(own);
     for (const glm::dvec3& corner : corners) {
         const glm::dvec3 world = placed(corner);
         if (!parts) parts = trace::Box{world, world};
         parts->min = glm::min(parts->min, world);
         parts->max = glm::max(parts->max, world);
     }
-    for (const glm::dvec3& point : shape.outline.empty() ? corners : shape.outline) outline.push_back(placed(point));
+    const std::span<const glm::dvec3> points =
+        shape.outline.empty() ? std::span<const glm::dvec3>(corners) : shape.outline;
+    for (const glm::dvec3& point : points) outline.push_back(placed(point));
 }
 
 /// What one object is made of.

@@ -1,6 +1,7 @@
 #include "trace/scene_intersector.h"
 
 #include "base/error.h"
+#include "trace/box_corners.h"
 #include "trace/box_tree.h"
 
 #include <fmt/format.h>
@@ -22,10 +23,8 @@ Box boxOf(const SceneObject& object) {
     const Box own = object.shape->bounds();
     if (!hasEnd(own)) return {glm::dvec3(-kInfinity), glm::dvec3(kInfinity)};
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? own.max.x : own.min.x, (corner & 2) != 0 ? own.max.y : own.min.y,
-                           (corner & 4) != 0 ? own.max.z : own.min.z);
-        const glm::dvec3 world = object.placement.linear * p + object.placement.offset;
+    for (const glm::dvec3& corner : cornersOf(own)) {
+        const glm::dvec3 world = object.placement.linear * corner + object.placement.offset;
         box.min = glm::min(box.min, world);
         box.max = glm::max(box.max, world);
     }

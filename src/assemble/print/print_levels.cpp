@@ -210,9 +210,10 @@ private:
         selection_ = voxelize::selectBeads(*toolpath_, voxelize::selectionOf(request_.print, *toolpath_));
         if (!request_.printed.empty()) cut(selection_, request_.printed, *toolpath_);
         bounds_ = voxelize::boundsOf(*toolpath_, selection_);
-        result_.part = voxelize::partBounds(*toolpath_, selection_);
+        const std::vector<gcode::Purpose> purposes = gcode::purposesOf(*toolpath_);
+        result_.part = voxelize::partBounds(*toolpath_, purposes, selection_);
         if (!request_.outline) return;
-        for (const auto& [x, y, z] : voxelize::partOutline(*toolpath_, selection_, result_.part))
+        for (const auto& [x, y, z] : voxelize::partOutline(*toolpath_, purposes, selection_, result_.part))
             result_.outline.emplace_back(x, y, z);
     }
 

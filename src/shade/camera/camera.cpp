@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "trace/box_corners.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -124,15 +125,6 @@ Camera::Camera(const glm::dvec3& eye, const glm::dvec3& look_at, const glm::dvec
 
 namespace {
 
-std::vector<glm::dvec3> cornersOf(const trace::Box& box) {
-    std::vector<glm::dvec3> corners;
-    corners.reserve(8);
-    for (unsigned n = 0; n < 8; ++n)
-        corners.emplace_back((n & 1u) ? box.max.x : box.min.x, (n & 2u) ? box.max.y : box.min.y,
-                             (n & 4u) ? box.max.z : box.min.z);
-    return corners;
-}
-
 /// Points around all that these pass through when they turn about the vertical axis through `middle`.
 std::vector<glm::dvec3> turnedAround(const std::vector<glm::dvec3>& points, const glm::dvec3& middle) {
     constexpr int kSides = 16;
@@ -189,7 +181,10 @@ Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, std::
     Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
 
     std::vector<glm::dvec3> points(outline.begin(), outline.end());
-    if (points.empty()) points = cornersOf(box);
+    if (points.empty()) {
+        const auto corners = trace::cornersOf(box);
+        points.assign(corners.begin(), corners.end());
+    }
     camera.fit(middle, options.all_around ? turnedAround(points, middle) : points, options.margin);
     return camera;
 }

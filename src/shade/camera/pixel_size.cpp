@@ -1,5 +1,7 @@
 #include "shade/camera/pixel_size.h"
 
+#include "trace/box_corners.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -20,11 +22,8 @@ double leastCosine(const Camera& camera) {
 
 double inOnePicture(const Camera& camera, const trace::Box& box) {
     double depth = std::numeric_limits<double>::infinity();
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
-                           (corner & 4) != 0 ? box.max.z : box.min.z);
-        depth = std::min(depth, glm::dot(p - camera.eye(), camera.forward()));
-    }
+    for (const glm::dvec3& corner : trace::cornersOf(box))
+        depth = std::min(depth, glm::dot(corner - camera.eye(), camera.forward()));
     // Within the frame, depth is at least the distance times the cosine of the farthest corner; points beside or behind
     // the camera are invisible.
     const double distance = glm::length(camera.eye() - glm::clamp(camera.eye(), box.min, box.max));

@@ -1,14 +1,12 @@
 #include "voxelize/beads/part_bounds.h"
 
-#include "gcode/toolpath/purpose.h"
-
 #include <algorithm>
 #include <vector>
 
 namespace stratum::voxelize {
 
-Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection) {
-    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath);
+Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
+                  std::span<const std::uint32_t> selection) {
     std::vector<std::uint32_t> part;
     std::vector<std::uint32_t> brim;
     for (const std::uint32_t bead : selection) {

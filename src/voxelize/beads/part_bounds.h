@@ -1,6 +1,7 @@
 // Bounds of the printed part without skirts, towers and start lines.
 #pragma once
 
+#include "gcode/toolpath/purpose.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/placement.h"
@@ -15,8 +16,10 @@ inline constexpr double kBrimReach = 10;
 
 /// Bounds of the selected beads, mm, without what is printed beside the part (gcode::Purpose); supports count, a brim
 /// only within kBrimReach. If nothing else is selected: bounds of all selected beads.
+/// @param purposes   gcode::purposesOf() of the toolpath
 /// @param selection  indices into `toolpath.beads`, at least one
-Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection);
+Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
+                  std::span<const std::uint32_t> selection);
 
 /// The same box after a placement, world units.
 Bounds placed(const Bounds& bounds, const Placement& placement);

@@ -1,7 +1,5 @@
 #include "voxelize/beads/part_outline.h"
 
-#include "gcode/toolpath/purpose.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -104,9 +102,9 @@ private:
 }  // namespace
 
 std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
+                                               std::span<const gcode::Purpose> purposes,
                                                std::span<const std::uint32_t> selection, const Bounds& bounds) {
-    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath);
-    const auto isPart = [&purposes](std::uint32_t bead) { return purposes[bead] != gcode::Purpose::beside; };
+    const auto isPart = [purposes](std::uint32_t bead) { return purposes[bead] != gcode::Purpose::beside; };
     const bool any = std::any_of(selection.begin(), selection.end(), isPart);
     Outline outline(bounds);
     for (const std::uint32_t bead : selection)

@@ -30,7 +30,7 @@ void addBead(gcode::Toolpath& toolpath, double x0, double x1, double y, gcode::F
 Bounds boundsOfAll(const gcode::Toolpath& toolpath) {
     std::vector<std::uint32_t> all(toolpath.beads.size());
     std::iota(all.begin(), all.end(), 0U);
-    return partBounds(toolpath, all);
+    return partBounds(toolpath, gcode::purposesOf(toolpath), all);
 }
 
 TEST(PartBounds, WhatIsPrintedBesideThePartDoesNotCount) {

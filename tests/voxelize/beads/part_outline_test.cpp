@@ -47,8 +47,8 @@ gcode::Toolpath cone() {
 TEST(PartOutline, HoldsAllBeadsTightly) {
     const gcode::Toolpath toolpath = cone();
     const auto beads = allBeads(toolpath);
-    const Bounds bounds = partBounds(toolpath, beads);
-    const std::vector<Point> outline = partOutline(toolpath, beads, bounds);
+    const Bounds bounds = partBounds(toolpath, gcode::purposesOf(toolpath), beads);
+    const std::vector<Point> outline = partOutline(toolpath, gcode::purposesOf(toolpath), beads, bounds);
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     for (int trial = 0; trial < 200; ++trial) {
@@ -84,22 +84,24 @@ TEST(PartOutline, HoldsAllBeadsTightly) {
 
 TEST(PartOutline, LeavesOutWhatIsBeside) {
     gcode::Toolpath toolpath = cone();
-    const std::vector<Point> alone =
-        partOutline(toolpath, allBeads(toolpath), partBounds(toolpath, allBeads(toolpath)));
+    const std::vector<Point> alone = partOutline(toolpath, gcode::purposesOf(toolpath), allBeads(toolpath),
+                                                 partBounds(toolpath, gcode::purposesOf(toolpath), allBeads(toolpath)));
     addBead(toolpath, 0, 0, 0.2, 100, 0, 0.2, 0.45, 0.2, 1);
     toolpath.runs.push_back(toolpath.runs.back());
     toolpath.runs.back().feature = gcode::Feature::skirt;
     toolpath.beads.back().run = static_cast<std::uint32_t>(toolpath.runs.size() - 1);
     const auto beads = allBeads(toolpath);
-    EXPECT_EQ(partOutline(toolpath, beads, partBounds(toolpath, beads)), alone);
+    EXPECT_EQ(partOutline(toolpath, gcode::purposesOf(toolpath), beads,
+                          partBounds(toolpath, gcode::purposesOf(toolpath), beads)),
+              alone);
 }
 
 TEST(PartOutline, OfOneBeadIsItsBox) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 1, 2, 0.2, 4, 2, 0.2, 0.5, 0.2);
     const auto beads = allBeads(toolpath);
-    const Bounds bounds = partBounds(toolpath, beads);
-    const std::vector<Point> outline = partOutline(toolpath, beads, bounds);
+    const Bounds bounds = partBounds(toolpath, gcode::purposesOf(toolpath), beads);
+    const std::vector<Point> outline = partOutline(toolpath, gcode::purposesOf(toolpath), beads, bounds);
     ASSERT_FALSE(outline.empty());
     for (const Point& p : outline)
         for (int axis = 0; axis < 3; ++axis) {
