@@ -1,6 +1,7 @@
 #include "export/vdb_stream.h"
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
 #include "scratch_folder.h"
