@@ -8,16 +8,49 @@
 #include <tbb/task_group.h>
 
 #include <functional>
+#include <memory>
 #include <stop_token>
 
 namespace stratum::voxelize {
 namespace {
 
-using Sweeping = openvdb::tools::FastSweeping<openvdb::FloatGrid>;
+// A level set that asks whether the work shall stop. FastSweeping's preparations may not be cancelled from outside:
+// they copy trees, and what a cancelled loop leaves of a copy has null pointers, which clearing it follows. Their long
+// loop, over the values, asks for the voxel size every 32 leaves, when all copies are whole; so does the start of each
+// sweep.
+class StoppableGrid : public openvdb::FloatGrid {
+public:
+    using Ptr = std::shared_ptr<StoppableGrid>;
+    using ConstPtr = std::shared_ptr<const StoppableGrid>;
 
-// OpenVDB's loops don't ask whether they shall stop, but they run in the caller's group of TBB, which can be cancelled:
-// the loop that runs then ends, and those after it do nothing. What is left of the grid is thrown away, and so is what
-// OpenVDB says of it.
+    /// Shares the tree.
+    StoppableGrid(openvdb::FloatGrid& grid, const std::stop_token* stop)
+        : openvdb::FloatGrid(grid.treePtr()), stop_(stop) {
+        setTransform(grid.transformPtr());
+    }
+    Ptr deepCopy() const {
+        auto copy = std::make_shared<StoppableGrid>(*this);
+        ask();
+        return copy;
+    }
+    openvdb::Vec3d voxelSize() const {
+        ask();
+        return openvdb::FloatGrid::voxelSize();
+    }
+
+private:
+    // By the token, since TBB's threads have no StopScope of ours.
+    void ask() const {
+        if (stop_ != nullptr && stop_->stop_requested()) throw Stopped();
+    }
+
+    const std::stop_token* stop_;
+};
+
+using Sweeping = openvdb::tools::FastSweeping<StoppableGrid>;
+
+// The sweeps run in the caller's group of TBB, which can be cancelled: the loop that runs then ends, and those after it
+// do nothing. What is left of the grid is thrown away, and so is what OpenVDB says of it.
 void stoppable(const std::function<void()>& work) {
     const std::stop_token* const stop = StopScope::current();
     if (stop == nullptr) return work();
@@ -33,23 +66,13 @@ void stoppable(const std::function<void()>& work) {
     stopIfAsked();
 }
 
-void sweep(Sweeping& sweeping, const openvdb::FloatGrid& grid) {
-#ifdef NDEBUG
-    stoppable([&] {
-        if (sweeping.initSdf(grid, 0, true)) sweeping.sweep();
-    });
-#else
-    // Between the loops of the preparations is an assertion, which what a cancelled loop leaves would break.
-    if (sweeping.initSdf(grid, 0, true)) stoppable([&] { sweeping.sweep(); });
-#endif
-}
-
 }  // namespace
 
 void sweepInterior(openvdb::FloatGrid& grid) {
     const float background = grid.background();
     Sweeping sweeping;
-    sweep(sweeping, grid);
+    if (sweeping.initSdf(StoppableGrid(grid, StopScope::current()), 0, true))
+        stoppable([&sweeping] { sweeping.sweep(); });
     const openvdb::FloatGrid::Ptr swept = sweeping.sdfGrid();
     const openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
     parallelFor(leaves.leafCount(), 64, [&](std::size_t first, std::size_t last) {
