@@ -3,7 +3,8 @@
 # data/gcode/hull.gcode; with `tests` also builds and runs the tests, but those of programs that the release lacks.
 #   scripts/matrix.sh 12|13|14 [clang|gcc] [demo|rooms|tests]
 # demo (the default) is README's first command, tests its second, rooms the tests of the libraries alone. The release is
-# unpacked once, into build/matrix; what is tested is the last commit. Needs root and mmdebstrap.
+# unpacked once, into build/matrix, with a build folder for each compiler; what is tested is the last commit. Needs root
+# and mmdebstrap.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
@@ -13,7 +14,7 @@ release=${1:-}
 compiler=${2:-clang}
 what=${3:-demo}
 if [[ -z "${names[$release]:-}" || ! $compiler =~ ^(clang|gcc)$ || ! $what =~ ^(demo|rooms|tests)$ ]]; then
-    sed -n '2,6s/^# \{0,1\}//p' "$0" >&2
+    sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
     exit 2
 fi
 [[ $(id -u) -eq 0 ]] || { echo "matrix.sh: run this as root: a release is unpacked and entered with chroot" >&2; exit 2; }
@@ -36,12 +37,16 @@ commands="bash scripts/demo.sh"
 [[ $what == tests ]] && commands="bash scripts/demo.sh && bash scripts/test.sh"
 cxx=clang++
 [[ $compiler == gcc ]] && cxx=g++
+# CMake forgets a cache's other variables where the compiler changes.
+export builds=$PWD/build/matrix/builds-$release-$compiler
+mkdir -p "$builds" "$root/stratum/build"
 export root commands cxx corpus=$PWD/${STRATUM_CORPUS:-../shared/corpus}
 [[ ${STRATUM_CORPUS:-} == /* ]] && corpus=$STRATUM_CORPUS
 # Mounts of its own, which end with the shell.
 unshare --mount --propagation private bash -euc '
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
+    mount --bind "$builds" "$root/stratum/build"
     if [[ -d $corpus ]]; then mkdir -p "$root/corpus"; mount --bind "$corpus" "$root/corpus"; fi
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 STRATUM_CXX="$cxx" \
         STRATUM_CORPUS=/corpus bash -euc "cd /stratum && git config --global --add safe.directory /stratum && $commands"'
