@@ -1,6 +1,10 @@
 # The tools with what belongs to them: man pages and completions that the tools write themselves, the tables of
 # materials, the Blender add-on, the documents.
 find_program(GZIP gzip REQUIRED)
+set(bundled_libraries)
+if(STRATUM_BUNDLE)
+  include(cmake/bundle.cmake)
+endif()
 set(manuals)
 foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
   set(man ${PROJECT_BINARY_DIR}/manuals/${tool}.1.gz)
@@ -16,7 +20,7 @@ foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
   if(tool STREQUAL vdbview)
     set(component viewer)
   endif()
-  install(TARGETS ${tool} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+  install(TARGETS ${tool} ${bundled_libraries} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
   install(FILES ${man} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
   install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${tool}
     COMPONENT ${component})
@@ -49,8 +53,17 @@ install(FILES data/desktop/org.stratum.vdbview.svg DESTINATION ${CMAKE_INSTALL_D
   COMPONENT viewer)
 install(FILES data/desktop/stratum.mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages RENAME stratum.xml
   COMPONENT viewer)
+# Neither in a tarball nor in a wheel: most of the size, and what is for the system.
+set(with_system tools)
+if(STRATUM_BUNDLE OR SKBUILD)
+  set(with_system system)
+endif()
+# Thumbnails of all that arrives in a folder (docs/print_farm.md).
+install(PROGRAMS data/print_farm/stratum-thumbnails DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+install(FILES data/print_farm/stratum-thumbnails@.path data/print_farm/stratum-thumbnails@.service
+  DESTINATION lib/systemd/system COMPONENT ${with_system})
 # With all that they link to, as it lies in the sources: pictures, and the pages and tables of the studies.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/stratum-viewer RENAME copyright COMPONENT viewer)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${with_system})

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Runs what README.md says in a bare Debian of another release, with either compiler: installs, builds, and renders
-# data/gcode/hull.gcode; with `tests` also builds and runs the tests, but those of programs that the release lacks.
-#   scripts/matrix.sh 12|13|14 [clang|gcc] [demo|rooms|tests]
-# demo (the default) is README's first command, tests its second, rooms the tests of the libraries alone. The release is
-# unpacked once, into build/matrix, with a build folder for each compiler; what is tested is the last commit. Needs root
-# and mmdebstrap.
+# Tries what README.md says in a bare Debian of another release, with either compiler. What is tried is the last commit.
+#   scripts/matrix.sh 12|13|14 [clang|gcc] [demo|rooms|tests|pip|tarball]
+# demo (the default): README's first command: installs, builds, renders data/gcode/hull.gcode; tests: that, and README's second
+# command, without the tests of programs that the release lacks; rooms: the tests of the libraries alone; pip: `pip install .`
+# in a virtual environment; tarball: what scripts/tarball.sh has made here renders hull.gcode where nothing is installed.
+# The release is unpacked once, into build/matrix, with a build folder for each compiler. Needs root and mmdebstrap.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
@@ -13,41 +13,77 @@ declare -A names=([12]=bookworm [13]=trixie [14]=forky)
 release=${1:-}
 compiler=${2:-clang}
 what=${3:-demo}
-if [[ -z "${names[$release]:-}" || ! $compiler =~ ^(clang|gcc)$ || ! $what =~ ^(demo|rooms|tests)$ ]]; then
+if [[ -z "${names[$release]:-}" || ! $compiler =~ ^(clang|gcc)$ || ! $what =~ ^(demo|rooms|tests|pip|tarball)$ ]]; then
     sed -n '2,7s/^# \{0,1\}//p' "$0" >&2
     exit 2
 fi
 [[ $(id -u) -eq 0 ]] || { echo "matrix.sh: run this as root: a release is unpacked and entered with chroot" >&2; exit 2; }
 install_packages mmdebstrap git
 
-root=$PWD/build/matrix/debian-$release
-if [[ ! -e $root.complete ]]; then
-    rm -rf "$root"
-    mkdir -p "$(dirname "$root")"
-    mmdebstrap --variant=minbase --include=ca-certificates,git,python3 "${names[$release]}" "$root" \
-        "${STRATUM_MIRROR:-http://deb.debian.org/debian}"
-    touch "$root.complete"
-fi
-if [[ ! -d $root/stratum/.git ]]; then git clone -q --no-hardlinks . "$root/stratum"; fi
-git -C "$root/stratum" fetch -q "$PWD" HEAD
-git -C "$root/stratum" checkout -q --detach FETCH_HEAD
+# bare FOLDER PACKAGES: the release with little more than apt.
+bare() {
+    [[ ! -e $1.complete ]] || return 0
+    rm -rf "$1"
+    mkdir -p "$(dirname "$1")"
+    mmdebstrap --variant=minbase --include="$2" "${names[$release]}" "$1" "${STRATUM_MIRROR:-http://deb.debian.org/debian}"
+    touch "$1.complete"
+}
 
-commands="bash scripts/demo.sh"
-[[ $what == rooms ]] && commands="bash scripts/test.sh -LE 'client|slow|study|python'"
-[[ $what == tests ]] && commands="bash scripts/demo.sh && bash scripts/test.sh"
-cxx=clang++
-[[ $compiler == gcc ]] && cxx=g++
-# CMake forgets a cache's other variables where the compiler changes.
-export builds=$PWD/build/matrix/builds-$release-$compiler
-mkdir -p "$builds" "$root/stratum/build"
-export root commands cxx corpus=$PWD/${STRATUM_CORPUS:-../shared/corpus}
-[[ ${STRATUM_CORPUS:-} == /* ]] && corpus=$STRATUM_CORPUS
+export root=$PWD/build/matrix/debian-$release builds="" cxx=clang++ corpus=$PWD/${STRATUM_CORPUS:-../shared/corpus}
+[[ $compiler == clang ]] || cxx=g++
+[[ ${STRATUM_CORPUS:-} != /* ]] || corpus=$STRATUM_CORPUS
+if [[ $what == tarball ]]; then
+    root=$root-empty
+    bare "$root" ca-certificates
+    rm -rf "$root/stratum"
+    mkdir -p "$root/stratum"
+    tar -xzf build/bundle/stratum-*.tar.gz -C "$root/stratum" --strip-components=1
+    cp data/gcode/hull.gcode "$root/stratum/"
+else
+    bare "$root" ca-certificates,git,python3
+    if [[ ! -d $root/stratum/.git ]]; then git clone -q --no-hardlinks . "$root/stratum"; fi
+    git -C "$root/stratum" fetch -q "$PWD" HEAD
+    git -C "$root/stratum" checkout -q --detach FETCH_HEAD
+    # CMake forgets a cache's other variables where the compiler changes.
+    builds=$PWD/build/matrix/builds-$release-$compiler
+    mkdir -p "$builds" "$root/stratum/build"
+    git config --file "$root/root/.gitconfig" safe.directory /stratum
+fi
+
+case $what in
+    demo) commands="bash scripts/demo.sh" ;;
+    rooms) commands="bash scripts/test.sh -LE 'client|slow|study|python'" ;;
+    tests) commands="bash scripts/demo.sh && bash scripts/test.sh" ;;
+    pip) commands='
+        source scripts/packages.sh
+        install_packages "${BUILD_PACKAGES[@]}"
+        install_packages --available python3-pip python3-venv python3-scikit-build-core
+        rm -rf /tmp/environment
+        python3 -m venv --system-site-packages /tmp/environment
+        # Without asking PyPI where Debian has what builds it.
+        isolation=
+        if python3 -c "import scikit_build_core" 2>/dev/null; then isolation=--no-build-isolation; fi
+        /tmp/environment/bin/pip install $isolation --no-deps .
+        cd /tmp
+        cp /stratum/data/gcode/hull.gcode .
+        environment/bin/gcode2vdb hull.gcode -o hull.vdb
+        environment/bin/vdbtrace hull.vdb -o hull.png --size 320x240 --brdf pla-blue
+        environment/bin/python3 -c "import stratum; assert stratum.__file__.startswith(\"/tmp/environment\"), stratum.__file__
+assert stratum.render(\"hull.gcode\", size=(64, 48), spp=1, brdf=\"pla-blue\").srgb.std() > 5"' ;;
+    tarball) commands='
+        for tool in bin/gcode2vdb bin/vdbtrace bin/vdbview bin/vdbmerge bin/vdbstudy; do $tool --version | head -n 1; done
+        bin/gcode2vdb hull.gcode -o hull.vdb
+        bin/vdbtrace hull.vdb -o hull.png --size 320x240 --brdf pla-blue
+        ls -l hull.vdb hull.png' ;;
+esac
+
+export commands
 # Mounts of its own, which end with the shell.
 unshare --mount --propagation private bash -euc '
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
-    mount --bind "$builds" "$root/stratum/build"
+    [[ -z $builds ]] || mount --bind "$builds" "$root/stratum/build"
     if [[ -d $corpus ]]; then mkdir -p "$root/corpus"; mount --bind "$corpus" "$root/corpus"; fi
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 STRATUM_CXX="$cxx" \
-        STRATUM_CORPUS=/corpus bash -euc "cd /stratum && git config --global --add safe.directory /stratum && $commands"'
-echo "Debian $release, $compiler: $what passed at $(git -C "$root/stratum" rev-parse --short HEAD)"
+        STRATUM_CORPUS=/corpus bash -euc "cd /stratum && $commands"'
+echo "Debian $release, $compiler: $what passed at $(git rev-parse --short HEAD)"

@@ -1,0 +1,78 @@
+# The libraries of Debian that everything is built with. What is missing is told in one message, with its package, before
+# anything is compiled.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 14
+    OR CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+  message(FATAL_ERROR "${CMAKE_CXX_COMPILER} is ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}; clang 14 or GCC 12 is "
+    "needed for C++20. Debian: apt-get install clang, and -DCMAKE_CXX_COMPILER=clang++")
+endif()
+
+set(missing_packages)
+# need(DEBIAN-PACKAGE VARIABLE): the package is missing unless the variable is true.
+macro(need package variable)
+  if(NOT ${variable})
+    list(APPEND missing_packages ${package})
+  endif()
+endmacro()
+
+# Debian ships FindOpenVDB.cmake and friends beside the library, outside CMake's default module path. The file tells
+# about Boost by a module that newer CMakes warn of; it is not ours to change.
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
+if(POLICY CMP0167)
+  set(CMAKE_POLICY_DEFAULT_CMP0167 OLD)
+endif()
+find_package(OpenVDB 10.0 QUIET COMPONENTS openvdb)
+need(libopenvdb-dev OpenVDB_FOUND)
+find_package(TBB QUIET)
+need(libtbb-dev TBB_FOUND)
+# By its own config: the OpenVDB module of that name knows no Imath.
+find_package(OpenEXR QUIET CONFIG)
+need(libopenexr-dev OpenEXR_FOUND)
+find_package(PNG QUIET)
+need(libpng-dev PNG_FOUND)
+find_package(JPEG QUIET)
+need(libjpeg62-turbo-dev JPEG_FOUND)
+find_package(OpenSSL QUIET COMPONENTS Crypto)
+need(libssl-dev OPENSSL_FOUND)
+find_package(ZLIB QUIET)
+need(zlib1g-dev ZLIB_FOUND)
+find_package(fmt QUIET)
+need(libfmt-dev fmt_FOUND)
+find_package(nlohmann_json QUIET)
+need(nlohmann-json3-dev nlohmann_json_FOUND)
+find_package(CLI11 QUIET)
+need(libcli11-dev CLI11_FOUND)
+find_package(hwy QUIET)
+need(libhwy-dev hwy_FOUND)
+find_package(PkgConfig QUIET)
+need(pkg-config PkgConfig_FOUND)
+if(PkgConfig_FOUND)
+  # libzip not by its own config: Debian's also names the programs of a package that nobody else needs.
+  pkg_check_modules(LIBZIP QUIET IMPORTED_TARGET libzip)
+  pkg_check_modules(BLOSC QUIET IMPORTED_TARGET blosc)
+  pkg_check_modules(WEBP QUIET IMPORTED_TARGET libwebp)
+  pkg_check_modules(ASSIMP QUIET IMPORTED_TARGET assimp)
+  pkg_check_modules(LIBDEFLATE QUIET IMPORTED_TARGET libdeflate)
+  need(libzip-dev LIBZIP_FOUND)
+  need(libblosc-dev BLOSC_FOUND)
+  need(libwebp-dev WEBP_FOUND)
+  need(libassimp-dev ASSIMP_FOUND)
+  need(libdeflate-dev LIBDEFLATE_FOUND)
+endif()
+# The static one: some of its functions are in no other.
+find_library(LZ4_LIBRARY liblz4.a)
+find_path(LZ4_INCLUDE_DIR lz4.h)
+need(liblz4-dev LZ4_LIBRARY)
+find_path(NANOVDB_INCLUDE_DIR nanovdb/NanoVDB.h)
+need(libnanovdb-dev NANOVDB_INCLUDE_DIR)
+find_path(GLM_INCLUDE_DIR glm/glm.hpp)
+need(libglm-dev GLM_INCLUDE_DIR)
+find_path(STB_INCLUDE_DIR stb/stb_image.h)
+need(libstb-dev STB_INCLUDE_DIR)
+find_path(FAST_FLOAT_INCLUDE_DIR fast_float/fast_float.h)
+need(libfast-float-dev FAST_FLOAT_INCLUDE_DIR)
+
+if(missing_packages)
+  list(JOIN missing_packages " " missing_packages)
+  message(FATAL_ERROR "Libraries are missing, or older than Debian 12's. As root:\n  apt-get install ${missing_packages}\n"
+    "scripts/demo.sh installs all that is needed.")
+endif()
