@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "export/vdb_archive.h"
+#include "voxelize/beads/part_outline.h"
 #include "voxelize/beads/settling.h"
 
 #include <fmt/format.h>
@@ -159,6 +160,7 @@ void describe(openvdb::FloatGrid& grid, const voxelize::Lattice& lattice, const 
         grid.insertMeta("part_bbox_min", openvdb::Vec3DMetadata(openvdb::Vec3d(part->min)));
         grid.insertMeta("part_bbox_max", openvdb::Vec3DMetadata(openvdb::Vec3d(part->max)));
     }
+    text("part_outline", voxelize::textOf(provenance.outline));
     number("voxel_size_mm", lattice.voxel_size);
     number("half_width_voxels", lattice.half_width);
     number("layer_height_mm", lattice.layer_height);

@@ -6,10 +6,12 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stratum::exporter {
 
@@ -26,6 +28,8 @@ struct Provenance {
     /// "part_bbox_min", "part_bbox_max", Vec3d: the part's box in world space, without skirts and towers; see
     /// partBounds(). Left out if empty.
     std::optional<voxelize::Bounds> part;
+    /// "part_outline", text: points around the part, "x y z x y z ..."; see partOutline(). Left out if empty.
+    std::vector<std::array<double, 3>> outline;
     gcode::DepositModel deposit;  ///< "bead_model": the formula of the field
     bool culled = false;          ///< "enclosed": whether enclosed surfaces have been removed
     bool swept = false;           ///< "interior": whether negative values are distances

@@ -14,8 +14,6 @@ GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 GEAR = shutil.copy(gcode("gear.gcode"), os.path.join(FOLDER, "part"))
 SMALL = ["--size", "200x150", "--quiet"]
-# A named view of a print goes by the outline of the beads, which a level set does not state.
-PLACE = ["--eye", "170,-10,70", "--fov", "14"]
 
 
 def path(name):
@@ -38,7 +36,6 @@ def picture(source, name, *options):
 
 def same(label, print_options, vdb_options, *trace_options):
     """One picture of the print, and one of the level set that stands in the same place under the same name."""
-    trace_options = [*([] if "--eye" in trace_options else PLACE), *trace_options]
     late = picture("part", "late.exr", *print_options, *trace_options)
     os.rename(path("part"), path("kept"))
     done = call(GCODE2VDB, path("kept"), "-o", path("eager.vdb"), "--quiet", *vdb_options)

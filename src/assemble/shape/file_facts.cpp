@@ -6,6 +6,7 @@
 #include "base/vdb_magic.h"
 #include "gcode/container/input_bytes.h"
 #include "march/file/grid_axes.h"
+#include "voxelize/beads/part_outline.h"
 
 #include <fmt/format.h>
 
@@ -38,6 +39,13 @@ std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid) {
     const openvdb::Vec3d& b = high->value();
     if (!a.isFinite() || !b.isFinite() || a[0] > b[0] || a[1] > b[1] || a[2] > b[2]) return std::nullopt;
     return trace::Box{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+}
+
+std::vector<glm::dvec3> outlineOf(const openvdb::FloatGrid& grid) {
+    std::vector<glm::dvec3> outline;
+    if (const auto text = grid.getMetadata<openvdb::StringMetadata>("part_outline"))
+        for (const auto& [x, y, z] : voxelize::outlineFromText(text->value())) outline.emplace_back(x, y, z);
+    return outline;
 }
 
 std::string thinBandWarning(const std::string& path, const openvdb::FloatGrid& grid) {

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stratum::assemble {
 
@@ -22,6 +23,9 @@ std::string upOf(const openvdb::FloatGrid& grid);
 
 /// The part's box without what is printed beside it, in the file's world space; empty if the file doesn't state it.
 std::optional<trace::Box> partOf(const openvdb::FloatGrid& grid);
+
+/// Points around the part in the file's world space, closer than its box; none if the file doesn't state them.
+std::vector<glm::dvec3> outlineOf(const openvdb::FloatGrid& grid);
 
 /// A warning if the narrow band is thinner than OpenVDB's tools expect; else empty.
 std::string thinBandWarning(const std::string& path, const openvdb::FloatGrid& grid);

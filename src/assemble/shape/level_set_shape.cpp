@@ -53,6 +53,7 @@ void describe(const ObjectOptions& object, const LevelSet& level_set, Shape& sha
     shape.y_up = upOf(head) == "y";
     shape.mm_per_unit = voxelize::millimetresIn(unitOf(head));
     shape.part = partOf(head);
+    if (shape.part) shape.outline = outlineOf(head);
 }
 
 // Attaches the grid "color" of the file, unless it has only one color: then the lookup is not needed.

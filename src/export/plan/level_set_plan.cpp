@@ -1,6 +1,7 @@
 #include "export/plan/level_set_plan.h"
 
 #include "voxelize/beads/part_bounds.h"
+#include "voxelize/beads/part_outline.h"
 
 #include <fmt/format.h>
 
@@ -42,8 +43,10 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
         const auto& [red, green, blue] = *colors_.front();
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
     }
-    provenance.part =
-        voxelize::placed(voxelize::partBounds(toolpath_, gcode::purposesOf(toolpath_), printed), placement_);
+    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath_);
+    const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes, printed);
+    provenance.part = voxelize::placed(part, placement_);
+    provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes, printed, part), placement_);
     provenance.deposit = toolpath_.deposit;
     provenance.culled = culls();
     provenance.swept = choices_.interior_distance;

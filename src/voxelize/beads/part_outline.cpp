@@ -1,7 +1,11 @@
 #include "voxelize/beads/part_outline.h"
 
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -99,6 +103,34 @@ private:
     std::array<Reach, kSlabs> slabs_{};
 };
 
+// The points that are farthest in one of the directions, in their old order.
+std::vector<std::array<double, 3>> farthest(const std::vector<std::array<double, 3>>& points) {
+    std::vector<bool> kept(points.size(), false);
+    for (std::size_t n = 0; n < kOutlineDirections; ++n) {
+        // Directions that are even over the sphere: heights at even steps, turned by the golden angle.
+        const double z = (2 * static_cast<double>(n) + 1) / kOutlineDirections - 1;
+        const double flat = std::sqrt(1 - z * z);
+        const double angle = static_cast<double>(n) * std::numbers::pi * (3 - std::sqrt(5.0));
+        const double x = flat * std::cos(angle);
+        const double y = flat * std::sin(angle);
+        std::size_t best = 0;
+        double reach = -std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double along = points[k][0] * x + points[k][1] * y + points[k][2] * z;
+            if (along <= reach) continue;
+            reach = along;
+            best = k;
+        }
+        kept[best] = true;
+    }
+    std::vector<std::array<double, 3>> hull;
+    for (std::size_t k = 0; k < points.size(); ++k)
+        if (kept[k])
+            for (double& coordinate : hull.emplace_back(points[k]))
+                coordinate = double{static_cast<float>(coordinate)};  // as in files: the same frame from both
+    return hull;
+}
+
 }  // namespace
 
 std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
@@ -109,7 +141,42 @@ std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
     Outline outline(bounds);
     for (const std::uint32_t bead : selection)
         if (!any || isPart(bead)) outline.add(toolpath, toolpath.beads[bead]);
-    return outline.points();
+    return farthest(outline.points());
+}
+
+std::vector<std::array<double, 3>> placed(std::vector<std::array<double, 3>> outline, const Placement& placement) {
+    for (auto& point : outline) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            point[axis] = (point[axis] + placement.offset[axis]) * placement.unit;
+        if (placement.up_y) point = {point[0], point[2], -point[1]};
+    }
+    return outline;
+}
+
+std::string textOf(std::span<const std::array<double, 3>> outline) {
+    std::string text;
+    for (const auto& [x, y, z] : outline)
+        fmt::format_to(std::back_inserter(text), "{}{} {} {}", text.empty() ? "" : " ", static_cast<float>(x),
+                       static_cast<float>(y), static_cast<float>(z));
+    return text;
+}
+
+std::vector<std::array<double, 3>> outlineFromText(const std::string& text) {
+    std::vector<std::array<double, 3>> points;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (at != end) {
+        if (points.size() == kOutlineDirections) return {};
+        for (double& coordinate : points.emplace_back()) {
+            while (at != end && *at == ' ') ++at;
+            float number = 0;
+            const auto read = fast_float::from_chars(at, end, number);
+            if (read.ec != std::errc{} || !std::isfinite(number)) return {};
+            coordinate = double{number};
+            at = read.ptr;
+        }
+    }
+    return points;
 }
 
 }  // namespace stratum::voxelize

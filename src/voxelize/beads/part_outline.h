@@ -1,24 +1,35 @@
-// Points around the printed part, closer than its box: for cameras.
+// Points around the printed part, closer than its box: for cameras, and as metadata of level sets.
 #pragma once
 
 #include "gcode/toolpath/purpose.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
+#include "voxelize/beads/placement.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace stratum::voxelize {
 
-/// Points, mm, whose convex hull holds the part: the corners of polygons around its slabs. The polygons are 0.5 % too
-/// large at most, for a part of round slabs. A few thousand points for any number of beads. Single-threaded.
+/// Points, mm, whose convex hull is that of the part within 0.5 % of its size: corners of polygons around its slabs,
+/// those that are farthest in one of kOutlineDirections. Some hundred points for any number of beads. Single-threaded.
 /// @param purposes   gcode::purposesOf() of the toolpath
 /// @param selection  indices into `toolpath.beads`, at least one
 /// @param bounds     partBounds() of the same beads; what lies beyond, of a brim, is left out
+inline constexpr std::size_t kOutlineDirections = 1024;
 std::vector<std::array<double, 3>> partOutline(const gcode::Toolpath& toolpath,
                                                std::span<const gcode::Purpose> purposes,
                                                std::span<const std::uint32_t> selection, const Bounds& bounds);
+
+/// The same points after a placement, world units.
+std::vector<std::array<double, 3>> placed(std::vector<std::array<double, 3>> outline, const Placement& placement);
+
+/// Points as text, "x y z x y z ...", for metadata; and back. No points for text that is anything else, is not finite,
+/// or is longer than any that gcode2vdb writes.
+std::string textOf(std::span<const std::array<double, 3>> outline);
+std::vector<std::array<double, 3>> outlineFromText(const std::string& text);
 
 }  // namespace stratum::voxelize

@@ -36,6 +36,12 @@ TEST(FileFacts, ReadsMetadata) {
     EXPECT_EQ(partOf(*grid)->max, glm::dvec3(1, 2, 3));
     grid->insertMeta("part_bbox_max", openvdb::Vec3DMetadata(openvdb::Vec3d(-1, 2, 3)));
     EXPECT_FALSE(partOf(*grid));
+    EXPECT_TRUE(outlineOf(*grid).empty());
+    grid->insertMeta("part_outline", openvdb::StringMetadata("0 0 0 1 2 0.1"));
+    ASSERT_EQ(outlineOf(*grid).size(), 2U);
+    EXPECT_EQ(outlineOf(*grid)[1], glm::dvec3(1, 2, double{0.1F}));
+    grid->insertMeta("part_outline", openvdb::StringMetadata("0 0 0 1 2"));
+    EXPECT_TRUE(outlineOf(*grid).empty());
 }
 
 TEST(FileFacts, IdentifiesAFileByItsBytes) {

@@ -76,7 +76,7 @@ TEST(PartOutline, HoldsAllBeadsTightly) {
                     std::max(beads_reach, x * direction[0] + y * direction[1] + z * direction[2] + 0.1 + 0.125 * flat);
             }
         const double reach = reachOf(outline, direction);
-        EXPECT_GE(reach, beads_reach - 0.13);  // square ends of sections are within the box alone
+        EXPECT_GE(reach, beads_reach - 0.15);  // square ends of sections are within the box alone; directions between
         EXPECT_LE(reach, beads_reach + 0.35);  // a slab of 0.25 mm, and 0.5 % of the radius
         EXPECT_LE(reach, reachOf(cornersOf(bounds), direction) + 1e-6);
     }
@@ -96,6 +96,28 @@ TEST(PartOutline, LeavesOutWhatIsBeside) {
               alone);
 }
 
+TEST(PartOutline, IsTextAndBack) {
+    const gcode::Toolpath toolpath = cone();
+    const auto beads = allBeads(toolpath);
+    const auto purposes = gcode::purposesOf(toolpath);
+    const auto outline = placed(partOutline(toolpath, purposes, beads, partBounds(toolpath, purposes, beads)),
+                                {.unit = 0.001, .offset = {-50, 7, 0}, .up_y = true});
+    const std::vector<Point> read = outlineFromText(textOf(outline));
+    ASSERT_EQ(read.size(), outline.size());
+    ASSERT_LE(read.size(), kOutlineDirections);
+    for (std::size_t n = 0; n < read.size(); ++n)
+        for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(read[n][axis], outline[n][axis], 1e-8);
+    EXPECT_NEAR(reachOf(read, {0, 1, 0}), 8.0e-3, 1e-7);  // the top is along y
+}
+
+TEST(PartOutline, OtherTextIsNoOutline) {
+    for (const char* text : {"", "1 2", "1 2 x", "1 2 3 4", "1 2 nan", "1 2 1e999", "1,2,3", "1 2 3 "})
+        EXPECT_TRUE(outlineFromText(text).empty()) << text;
+    std::string endless;
+    for (int n = 0; n < 100000; ++n) endless += "1 2 3 ";
+    EXPECT_TRUE(outlineFromText(endless).empty());
+}
+
 TEST(PartOutline, OfOneBeadIsItsBox) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 1, 2, 0.2, 4, 2, 0.2, 0.5, 0.2);
@@ -105,8 +127,8 @@ TEST(PartOutline, OfOneBeadIsItsBox) {
     ASSERT_FALSE(outline.empty());
     for (const Point& p : outline)
         for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_GE(p[static_cast<std::size_t>(axis)], bounds.min[axis]);
-            EXPECT_LE(p[static_cast<std::size_t>(axis)], bounds.max[axis]);
+            EXPECT_GE(p[static_cast<std::size_t>(axis)], bounds.min[axis] - 1e-6);  // they are floats
+            EXPECT_LE(p[static_cast<std::size_t>(axis)], bounds.max[axis] + 1e-6);
         }
     EXPECT_NEAR(reachOf(outline, {1, 0, 0}), bounds.max[0], 1e-6);
     EXPECT_NEAR(reachOf(outline, {0, 0, 1}), bounds.max[2], 1e-6);
