@@ -115,6 +115,11 @@ check(True, "  so does the module")
 listed = run(os.path.join(bin_, "vdbtrace"), "--colors", "prusament galaxy").splitlines()
 check(len(listed) == 5, f"names filaments from its own tree: {len(listed)}")
 
+# --- what is missing is told before anything is compiled -----------------------------------------------------------------
+done = subprocess.run(["cmake", "-S", SOURCE, "-B", os.path.join(FOLDER, "missing"), *CONFIGURE, "-DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON",
+                       "-DCMAKE_DISABLE_FIND_PACKAGE_hwy=ON"], capture_output=True, text=True)
+check(done.returncode != 0 and "apt-get install libpng-dev libhwy-dev" in done.stderr, f"missing libraries: {done.stderr[-400:]}")
+
 # --- strangers ---------------------------------------------------------------------------------------------------------
 for name, options in (("find_package", [f"-DCMAKE_PREFIX_PATH={prefix}"]),
                       ("add_subdirectory", [f"-DSTRATUM_SOURCE={SOURCE}"])):
