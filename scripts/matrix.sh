@@ -25,7 +25,9 @@ bare() {
     [[ ! -e $1.complete ]] || return 0
     rm -rf "$1"
     mkdir -p "$(dirname "$1")"
-    mmdebstrap --variant=minbase --include="$2" "${names[$release]}" "$1" "${STRATUM_MIRROR:-http://deb.debian.org/debian}"
+    # A mirror's copy of testing may be some weeks old.
+    mmdebstrap --variant=minbase --include="$2" --aptopt='Acquire::Check-Valid-Until "false"' "${names[$release]}" "$1" \
+        "${STRATUM_MIRROR:-http://deb.debian.org/debian}"
     touch "$1.complete"
 }
 
