@@ -23,7 +23,8 @@ KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "s
 COUNT = int(os.environ.get("STRATUM_MUTATIONS", "10"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
 CPU_SECONDS = 10.0  # of a run beyond its honest twin
-WALL_SECONDS = 120.0
+MOST_CPU_SECONDS = 60.0
+STILL_SECONDS = 300.0  # without any progress: a hang, not a busy machine
 LARGE = 10e6  # bytes: of such a file a twentieth of the mutations
 MEMORY = 256e6  # bytes beyond twice the honest twin's
 TOOL = {name: os.path.join(BIN, name) for name in ("gcode2vdb", "vdbtrace", "vdbmerge")}
@@ -46,16 +47,26 @@ def write(name, data):
         file.write(data)
 
 
+def cpu_seconds(process):
+    """Of a process that was not waited for, and of its children that were."""
+    with open(f"/proc/{process}/stat", encoding="ascii", errors="replace") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return sum(int(field) for field in fields[11:15]) / os.sysconf("SC_CLK_TCK")
+
+
 def run(command):
     """Exit status (negative: a signal), CPU seconds, peak bytes, what was said."""
     with open(path("said"), "wb") as said:
-        begun = time.monotonic()
         process = subprocess.Popen(command, cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=said, stdin=subprocess.DEVNULL)
+        spent, moved = 0.0, time.monotonic()
         while True:
             pid, status, usage = os.wait4(process.pid, os.WNOHANG)
             if pid != 0:
                 break
-            if time.monotonic() - begun > WALL_SECONDS:
+            now = cpu_seconds(process.pid)
+            if now > spent:
+                spent, moved = now, time.monotonic()
+            if spent > MOST_CPU_SECONDS or time.monotonic() - moved > STILL_SECONDS:
                 process.kill()
             time.sleep(0.005)
         process.returncode = os.waitstatus_to_exitcode(status)
