@@ -42,8 +42,8 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
         const auto& [red, green, blue] = *colors_.front();
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
     }
-    provenance.part =
-        voxelize::placed(voxelize::partBounds(toolpath_, gcode::purposesOf(toolpath_), printed), placement_);
+    if (purposes_.empty()) purposes_ = gcode::purposesOf(toolpath_);
+    provenance.part = voxelize::placed(voxelize::partBounds(toolpath_, purposes_, printed), placement_);
     provenance.deposit = toolpath_.deposit;
     provenance.culled = culls();
     provenance.swept = choices_.interior_distance;
