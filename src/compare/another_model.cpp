@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,10 @@ constexpr int kScaleSteps = 4;
 constexpr double kNearUnit = 0.1;
 constexpr double kSameSize = 0.003;
 constexpr double kOrder = 10;
+// Of the residual of the model as it is: a coarse fit of another size that is farther is not refined.
+constexpr double kHopeful = 0.8;
+// Of the distance a step before: a better scale comes nearer.
+constexpr double kNearer = 0.95;
 
 struct Unit {
     double mm;
@@ -31,25 +36,6 @@ constexpr std::array kUnits{Unit{0.001, "micrometres"}, Unit{10, "centimetres"},
 // mm: 95 % of both surfaces are within it of the other one.
 double apart(const Comparison& found) {
     return std::max(found.print_to_model.all.within_95, found.model_to_surface.all.within_95);
-}
-
-double medianOf(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-// Half of the surface is nearer than this to its middle: a point far away changes neither.
-double spreadOf(const TriangleMesh& mesh) {
-    const SurfaceSamples samples = sampleSurface(mesh, kTrialSamples);
-    std::vector<double> values(samples.points.size());
-    glm::dvec3 middle(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        for (std::size_t n = 0; n < values.size(); ++n) values[n] = samples.points[n][axis];
-        middle[axis] = medianOf(values);
-    }
-    for (std::size_t n = 0; n < values.size(); ++n) values[n] = glm::length(samples.points[n] - middle);
-    return medianOf(values);
 }
 
 TriangleMesh changed(const TriangleMesh& model, double scale, bool mirrored) {
@@ -92,7 +78,8 @@ public:
     Trials(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options)
         : print_(print), model_(model), options_(options) {
         options_.samples = std::min(options.samples, kTrialSamples);
-        scale_ = spreadOf(print.mesh()) / spreadOf(model.mesh());
+        scale_ =
+            spreadOf(sampleSurface(print.mesh(), kTrialSamples)) / spreadOf(sampleSurface(model.mesh(), kTrialSamples));
         for (const Unit& unit : kUnits)
             if (std::abs(scale_ / unit.mm - 1) < kNearUnit) scale_ = unit.mm, exact_ = true;
     }
@@ -100,32 +87,50 @@ public:
     /// `found`: of the model as it is.
     Trial best(const Comparison& found) const {
         const bool near = !exact_ && std::abs(scale_ - 1) < kNearUnit;
-        Trial best = run(near ? 1 : scale_, false, near ? &found : nullptr);
+        const SurfaceSamples samples = sampleSurface(print_.mesh(), kTrialSamples);
+        const double as_it_is = roughResidual(model_, samples, found.model_to_print);
+        Trial best =
+            near ? run({1, false, kNever}, found.model_to_print) : place({scale_, false, kNever}, samples, as_it_is);
         if (best.apart <= options_.line_width) return best;
-        const Trial mirrored = run(near ? 1 : scale_, true, nullptr);
+        const Trial mirrored = place({near ? 1 : scale_, true, kNever}, samples, as_it_is);
         return mirrored.apart < 0.5 * best.apart ? mirrored : best;
     }
 
 private:
-    // From a scale, and where the model lies at it, if that is known.
-    Trial run(double scale, bool mirrored, const Comparison* known) const {
-        Trial trial{scale, mirrored, 0};
-        std::optional<Rigid> placement;
+    static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+    // A trial from no known placement. The print is shrunk and mirrored instead of the model, whose tree is there. A
+    // first coarse fit that is hardly better than that of the model as it is decides that nothing else would be.
+    Trial place(const Trial& trial, SurfaceSamples samples, double as_it_is) const {
+        const glm::dvec3 change(trial.mirrored ? -trial.scale : trial.scale, trial.scale, trial.scale);
+        for (glm::dvec3& p : samples.points) p /= change;
+        std::optional<Rigid> placement = roughFit(model_, samples, kHopeful * as_it_is / trial.scale);
+        if (!placement) return trial;
+        if (trial.mirrored) {
+            const glm::dmat3 mirror(glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1));
+            placement->turn = mirror * placement->turn * mirror;
+        }
+        placement->move *= change;
+        return run(trial, *placement);
+    }
+
+    // Towards the scale that fits, while that brings both surfaces nearer.
+    Trial run(Trial trial, Rigid placement) const {
+        Trial best = trial;
         for (int step = 0; step < kScaleSteps; ++step) {
-            const ClosedModel model(changed(model_.mesh(), trial.scale, mirrored), "--compare");
-            const Comparison found =
-                step == 0 && known != nullptr
-                    ? *known
-                    : measureDeviations(print_, model, options_, placement ? &*placement : nullptr);
+            const ClosedModel model(changed(model_.mesh(), trial.scale, trial.mirrored), "--compare");
+            const Comparison found = measureDeviations(print_, model, options_, &placement);
             trial.apart = apart(found);
+            const bool nearer = trial.apart < kNearer * best.apart;
+            if (trial.apart < best.apart) best = trial;
             const double growth = exact_ ? 0 : growthOf(print_, model, found);
-            if (std::abs(growth) < 1e-4 || step + 1 == kScaleSteps) break;
+            if (!nearer || std::abs(growth) < 1e-4) break;
             trial.scale *= 1 + growth;
             // The middle of the print stays where it is.
             placement = found.model_to_print;
-            placement->move += placement->turn * (middleOf(model.mesh()) * -growth);
+            placement.move += placement.turn * (middleOf(model.mesh()) * -growth);
         }
-        return trial;
+        return best;
     }
 
     static glm::dvec3 middleOf(const TriangleMesh& mesh) {

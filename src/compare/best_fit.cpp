@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,9 +26,15 @@ constexpr int kCoarseSteps = 12;
 constexpr int kFineSteps = 60;
 constexpr int kTurns = 24;
 constexpr std::size_t kRefined = 4;
+// A search that is often in vain: of another size of a model, or of its mirror image.
+constexpr int kRoughTurns = 12;
+constexpr int kRoughSteps = 8;
+constexpr std::size_t kRoughRefined = 2;
+constexpr int kRoughFineSteps = 24;
 constexpr int kPatience = 6;  // steps
 // Of the print's size: a smaller residual is that of a model that fits.
 constexpr double kFits = 0.01;
+constexpr double kOtherSize = 2;
 // Samples farther than this count for nothing: of the distance that nine tenths keep, or of the print's size if that is
 // more. A share of the samples instead would be taken from one side when the other is nearer: walls are printed a
 // little inside the model, and a shift would feed itself.
@@ -209,7 +217,7 @@ bool before(const Candidate& a, const Candidate& b, double size) {
 }
 
 // Those to go on with: of the best ones, which are alike, those with the smallest turns.
-std::vector<Candidate> chosen(std::vector<Candidate> candidates, double size) {
+std::vector<Candidate> chosen(std::vector<Candidate> candidates, std::size_t most, double size) {
     double best = candidates.front().residual;
     for (const Candidate& candidate : candidates) best = std::min(best, candidate.residual);
     std::stable_sort(candidates.begin(), candidates.end(), [best, size](const Candidate& a, const Candidate& b) {
@@ -218,9 +226,60 @@ std::vector<Candidate> chosen(std::vector<Candidate> candidates, double size) {
         if (a_best != b_best) return a_best;
         return a_best ? turnOf(a) < turnOf(b) : a.residual < b.residual;
     });
-    candidates.resize(std::min(candidates.size(), kRefined));
+    candidates.resize(std::min(candidates.size(), most));
     return candidates;
 }
+
+// Starts from both middles, and the best of them refined.
+class Placing {
+public:
+    Placing(const ClosedModel& model, const SurfaceSamples& print)
+        : coarse_(thinned(print, kCoarseSamples)),
+          medium_(thinned(print, kMediumSamples)),
+          print_middle_(middleOf(medium_.points)),
+          model_samples_(sampleSurface(model.mesh(), kMediumSamples)),
+          model_middle_(middleOf(model_samples_.points)),
+          size_(sizeOf(coarse_, print_middle_)),
+          rough_(model, coarse_, size_),
+          better_(model, medium_, size_) {}
+
+    double size() const { return size_; }
+    bool alikeInSize() const {
+        const double print = spreadOf(medium_);
+        const double model = spreadOf(model_samples_);
+        return model < kOtherSize * print && print < kOtherSize * model;
+    }
+    Candidate middles() { return rough_.run({{glm::dmat3(1.0), model_middle_ - print_middle_}, 0}, 0); }
+
+    std::vector<Candidate> starts(std::span<const glm::dmat3> sides, int turns, int steps) {
+        std::vector<Candidate> starts;
+        for (const glm::dmat3& side : sides)
+            for (int n = 0; n < turns; ++n) {
+                const glm::dmat3 turn = side * turnBy({0, 0, 2 * std::numbers::pi * n / turns});
+                starts.push_back(rough_.run({{turn, model_middle_ - turn * print_middle_}, 0}, steps));
+            }
+        return starts;
+    }
+
+    /// The best of one that was refined, if there is one, and of further starts.
+    Candidate better(const std::optional<Candidate>& known, std::vector<Candidate> starts, std::size_t most,
+                     int steps) {
+        std::optional<Candidate> best = known;
+        for (const Candidate& start : chosen(std::move(starts), most, size_)) {
+            const Candidate refined = better_.run(start, steps);
+            if (!best || before(refined, *best, size_)) best = refined;
+        }
+        return *best;
+    }
+
+private:
+    const SurfaceSamples coarse_, medium_;
+    const glm::dvec3 print_middle_;
+    const SurfaceSamples model_samples_;
+    const glm::dvec3 model_middle_;
+    const double size_;  // mm, of the print
+    Fitting rough_, better_;
+};
 
 }  // namespace
 
@@ -230,31 +289,36 @@ Fit fitModel(const ClosedModel& model, const SurfaceSamples& print) {
             fmt::format("--compare: {} points of the printed surface are too few to place the model; choose a "
                         "smaller --voxel-size",
                         print.points.size()));
-    const SurfaceSamples coarse = thinned(print, kCoarseSamples);
-    const SurfaceSamples medium = thinned(print, kMediumSamples);
-    const glm::dvec3 print_middle = middleOf(medium.points);
-    const glm::dvec3 model_middle = middleOf(sampleSurface(model.mesh(), kMediumSamples).points);
-    const double size = sizeOf(coarse, print_middle);
-
-    Fitting rough(model, coarse, size);
-    Fitting better(model, medium, size);
-    Candidate best;
-    bool any = false;
-    for (const glm::dmat3& side : sidesDown()) {
-        std::vector<Candidate> starts;
-        for (int n = 0; n < kTurns; ++n) {
-            const glm::dmat3 turn = side * turnBy({0, 0, 2 * std::numbers::pi * n / kTurns});
-            starts.push_back(rough.run({{turn, model_middle - turn * print_middle}, 0}, kCoarseSteps));
-        }
-        for (const Candidate& start : chosen(std::move(starts), size)) {
-            const Candidate refined = better.run(start, kFineSteps);
-            if (!any || before(refined, best, size)) best = refined;
-            any = true;
-        }
-        // As it lies in the file: surfaces of beads are a tenth of a millimetre from the model, and hardly more.
-        if (best.residual < kFits * size) break;
+    Placing placing(model, print);
+    if (!placing.alikeInSize()) {
+        const Candidate middles = placing.middles();
+        return {middles.print_to_model.inverse(), middles.residual, kCoarseSamples, false};
     }
+    const std::vector<glm::dmat3> sides = sidesDown();
+    const std::span all(sides);
+    Candidate best = placing.better({}, placing.starts(all.first(1), kTurns, kCoarseSteps), kRefined, kFineSteps);
+    // As it lies in the file: surfaces of beads are a tenth of a millimetre from the model, and hardly more.
+    if (best.residual >= kFits * placing.size())
+        best = placing.better(best, placing.starts(all.subspan(1), kTurns, kCoarseSteps), kRefined, kFineSteps);
+    // Many samples are for models that fit.
+    if (best.residual >= kFits * placing.size()) return {best.print_to_model.inverse(), best.residual, kMediumSamples};
     return refineFit(model, print, best.print_to_model.inverse());
+}
+
+std::optional<Rigid> roughFit(const ClosedModel& model, const SurfaceSamples& print, double near) {
+    if (print.points.size() < kFewestSamples) return std::nullopt;
+    Placing placing(model, print);
+    std::vector<Candidate> starts = placing.starts(sidesDown(), kRoughTurns, kRoughSteps);
+    const auto hopeful = [near](const Candidate& start) { return start.residual < near; };
+    if (std::none_of(starts.begin(), starts.end(), hopeful)) return std::nullopt;
+    return placing.better({}, std::move(starts), kRoughRefined, kRoughFineSteps).print_to_model.inverse();
+}
+
+double roughResidual(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print) {
+    const SurfaceSamples coarse = thinned(print, kCoarseSamples);
+    return Fitting(model, coarse, sizeOf(coarse, middleOf(coarse.points)))
+        .run({model_to_print.inverse(), 0}, 0)
+        .residual;
 }
 
 Fit refineFit(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print) {

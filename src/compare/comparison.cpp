@@ -17,6 +17,7 @@ namespace stratum::compare {
 namespace {
 
 constexpr std::size_t kGrain = 1024;
+constexpr std::size_t kFarSamples = 5'000;
 const double kDiagonal = std::sqrt(0.5);  // of 45 degrees
 
 // Points and normals in print space.
@@ -190,27 +191,33 @@ PrintedSurface::PrintedSurface(const openvdb::FloatGrid& print) : grid_(print), 
 Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options,
                              const Rigid* model_to_print) {
     SurfaceSamples printed = sampleSurface(print.mesh(), options.samples);
-    const auto all = static_cast<double>(printed.points.size());
     Comparison comparison;
     comparison.model_mm3 = model.volume();
     comparison.model_mm2 = model.area();
     comparison.print_mm2 = printed.area;
     comparison.print_mm3 = volumeOf(print.mesh());
     const bool fits = options.placement == ModelPlacement::fit;
-    if (fits)
-        comparison.model_to_print =
-            (model_to_print != nullptr ? refineFit(model, printed, *model_to_print) : fitModel(model, printed))
-                .model_to_print;
+    if (fits) {
+        comparison.fit =
+            model_to_print != nullptr ? refineFit(model, printed, *model_to_print) : fitModel(model, printed);
+        comparison.model_to_print = comparison.fit->model_to_print;
+    }
+    const double residual = fits ? comparison.fit->residual : roughResidual(model, printed, comparison.model_to_print);
+    // Far places take long to measure, and of a model that does not fit fewer tell as much.
+    const std::size_t samples =
+        residual > options.line_width ? std::min(options.samples, kFarSamples) : options.samples;
+    printed = thinned(printed, samples);
+    const auto all = static_cast<double>(printed.points.size());
     std::vector<Place> places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
     comparison.hidden_share = 1 - static_cast<double>(places.size()) / all;
-    if (fits && printed.points.size() >= kFewestSamples) {
+    if (fits && comparison.fit->converged && printed.points.size() >= kFewestSamples) {
         comparison.fit = refineFit(model, printed, comparison.model_to_print);
         comparison.model_to_print = comparison.fit->model_to_print;
         places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
     }
     comparison.print_to_model = byNormal(places);
-    comparison.model_to_surface = byNormal(fromModel(sampleSurface(model.mesh(), options.samples), model,
-                                                     comparison.model_to_print, print.tree(), print.grid()));
+    comparison.model_to_surface = byNormal(
+        fromModel(sampleSurface(model.mesh(), samples), model, comparison.model_to_print, print.tree(), print.grid()));
     return comparison;
 }
 

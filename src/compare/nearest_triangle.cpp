@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace stratum::compare {
@@ -13,6 +12,11 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;
 constexpr std::size_t kDeepest = 64;  // the median halves 2^32 triangles 32 times
+
+bool joined(const Triangle& a, const Triangle& b) {
+    return std::any_of(a.begin(), a.end(),
+                       [&b](std::uint32_t corner) { return corner == b[0] || corner == b[1] || corner == b[2]; });
+}
 
 float below(double value) {
     const auto near = static_cast<float>(value);
@@ -58,39 +62,70 @@ Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
     return found(p, a + ab * (towards_b / sum) + ac * (towards_c / sum), 1 | 2 | 4);
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    std::vector<glm::vec3> middles;
-    middles.reserve(order_.size());
-    for (const Triangle& t : mesh.triangles)
-        middles.emplace_back((mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3.0);
-    nodes_.reserve(order_.size());
-    if (!order_.empty()) build(middles, 0, static_cast<std::uint32_t>(order_.size()));
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh) {
+    std::vector<Run> all = runs();
+    nodes_.reserve(2 * all.size());
+    if (!all.empty()) build(all);
 }
 
-std::uint32_t TriangleTree::build(std::vector<glm::vec3>& middles, std::uint32_t begin, std::uint32_t end) {
+std::vector<TriangleTree::Run> TriangleTree::runs() const {
+    std::vector<Run> runs;
+    const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    for (std::uint32_t begin = 0; begin < count;) {
+        glm::dvec3 sum(0.0);
+        std::uint32_t end = begin;
+        do {
+            const Triangle& t = mesh_.triangles[end++];
+            sum += mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2);
+        } while (end < count && end - begin < kLeaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
+        runs.push_back({sum / (3.0 * (end - begin)), begin, end});
+        begin = end;
+    }
+    return runs;
+}
+
+// Boxes are made from the leaves up: each triangle is read once.
+std::uint32_t TriangleTree::build(std::span<Run> runs) {
     const auto number = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back(runs.size() == 1 ? leafOf(runs.front()) : Node{});
+    if (runs.size() == 1) return number;
+    glm::vec3 low = runs.front().middle;
+    glm::vec3 high = low;
+    for (const Run& run : runs) {
+        low = glm::min(low, run.middle);
+        high = glm::max(high, run.middle);
+    }
+    const glm::vec3 size = high - low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const std::size_t half = runs.size() / 2;
+    std::nth_element(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(half), runs.end(),
+                     [axis](const Run& a, const Run& b) {
+                         return std::pair(a.middle[axis], a.begin) < std::pair(b.middle[axis], b.begin);
+                     });
+    const std::uint32_t left = build(runs.first(half));
+    const std::uint32_t right = build(runs.subspan(half));
+    Node& node = nodes_[number];
+    node.right = right;
+    for (int n = 0; n < 3; ++n) {
+        node.low[n] = std::min(nodes_[left].low[n], nodes_[right].low[n]);
+        node.high[n] = std::max(nodes_[left].high[n], nodes_[right].high[n]);
+    }
+    return number;
+}
+
+TriangleTree::Node TriangleTree::leafOf(const Run& run) const {
     glm::dvec3 low(std::numeric_limits<double>::infinity());
     glm::dvec3 high(-low);
-    for (std::uint32_t n = begin; n < end; ++n)
-        for (const std::uint32_t corner : mesh_.triangles[order_[n]]) {
+    for (std::uint32_t t = run.begin; t < run.end; ++t)
+        for (const std::uint32_t corner : mesh_.triangles[t]) {
             low = glm::min(low, mesh_.points[corner]);
             high = glm::max(high, mesh_.points[corner]);
         }
-    Node node{{below(low.x), below(low.y), below(low.z)}, {above(high.x), above(high.y), above(high.z)}, begin, end, 0};
-    nodes_.push_back(node);
-    if (end - begin <= kLeaf) return number;
-    const glm::dvec3 size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    const auto at = [this](std::uint32_t n) { return order_.begin() + static_cast<std::ptrdiff_t>(n); };
-    std::nth_element(at(begin), at(middle), at(end), [&middles, axis](std::uint32_t a, std::uint32_t b) {
-        return std::pair(middles[a][axis], a) < std::pair(middles[b][axis], b);
-    });
-    build(middles, begin, middle);
-    const std::uint32_t right = build(middles, middle, end);
-    nodes_[number].right = right;
-    return number;
+    return {{below(low.x), below(low.y), below(low.z)},
+            {above(high.x), above(high.y), above(high.z)},
+            run.begin,
+            run.end,
+            0};
 }
 
 double TriangleTree::distance2(const Node& node, const glm::dvec3& p) {
@@ -127,7 +162,7 @@ Nearest TriangleTree::nearest(const glm::dvec3& p, std::uint32_t hint) const {
         if (next.distance2 > best.distance2) continue;
         const Node& node = nodes_[next.node];
         if (node.right == 0) {
-            for (std::uint32_t n = node.begin; n < node.end; ++n) test(order_[n], p, best);
+            for (std::uint32_t n = node.begin; n < node.end; ++n) test(n, p, best);
             continue;
         }
         Waiting near{next.node + 1, distance2(nodes_[next.node + 1], p)};

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace stratum::compare {
@@ -25,8 +26,8 @@ struct Nearest {
 /// face.
 Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
-/// Immutable; shared by all threads. Boxes are split at the median of the middles along their longest side; leaves have
-/// up to four triangles. The mesh must outlive it.
+/// Immutable; shared by all threads. Boxes are split at the median of the middles along their longest side. A leaf has
+/// up to four triangles that follow one another in the mesh and share corners. The mesh must outlive it.
 class TriangleTree {
 public:
     explicit TriangleTree(const TriangleMesh& mesh);
@@ -34,20 +35,25 @@ public:
     /// @param hint  a triangle that is probably near, e.g. that of a place beside this one: saves most of the search
     Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
     const TriangleMesh& mesh() const { return mesh_; }
-    std::size_t bytes() const { return nodes_.size() * sizeof(Node) + order_.size() * sizeof(std::uint32_t); }
+    std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
 private:
     struct Node {
         float low[3], high[3];     // rounded outward
-        std::uint32_t begin, end;  // of order_; leaves have no children
+        std::uint32_t begin, end;  // triangles; of leaves alone
         std::uint32_t right;       // the left child is the next node; 0 for leaves
     };
-    std::uint32_t build(std::vector<glm::vec3>& middles, std::uint32_t begin, std::uint32_t end);
+    struct Run {
+        glm::vec3 middle;
+        std::uint32_t begin, end;  // triangles
+    };
+    std::vector<Run> runs() const;
+    std::uint32_t build(std::span<Run> runs);
+    Node leafOf(const Run& run) const;
     void test(std::uint32_t triangle, const glm::dvec3& p, Nearest& best) const;
     static double distance2(const Node& node, const glm::dvec3& p);
 
     const TriangleMesh& mesh_;
-    std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };
 

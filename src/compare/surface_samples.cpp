@@ -15,6 +15,12 @@ constexpr double kSecond = 0.5698402909980532;
 
 double fraction(double x) { return x - std::floor(x); }
 
+double medianOf(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 }  // namespace
 
 SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count) {
@@ -54,6 +60,18 @@ SurfaceSamples thinned(const SurfaceSamples& samples, std::size_t count) {
         fewer.triangles.push_back(samples.triangles[at]);
     }
     return fewer;
+}
+
+double spreadOf(const SurfaceSamples& samples) {
+    if (samples.points.empty()) return 0;
+    std::vector<double> values(samples.points.size());
+    glm::dvec3 middle(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t n = 0; n < values.size(); ++n) values[n] = samples.points[n][axis];
+        middle[axis] = medianOf(values);
+    }
+    for (std::size_t n = 0; n < values.size(); ++n) values[n] = glm::length(samples.points[n] - middle);
+    return medianOf(values);
 }
 
 }  // namespace stratum::compare

@@ -21,4 +21,7 @@ SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count);
 /// Every n-th, so that about `count` are left.
 SurfaceSamples thinned(const SurfaceSamples& samples, std::size_t count);
 
+/// mm: half of the surface is nearer than this to its middle; a point far away changes neither.
+double spreadOf(const SurfaceSamples& samples);
+
 }  // namespace stratum::compare

@@ -1,15 +1,13 @@
 """One print in every container, from a pipe, as one plate of several and as single objects: the same toolpath, said so."""
 
 import gzip
-import io
 import json
 import os
 import struct
 import subprocess
 import tempfile
-import zipfile
-import zlib
 
+from packed_gcode import bgcode, gx, zipped
 from run_tools import BIN, check, gcode
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_containers_")
@@ -44,41 +42,6 @@ def refused(arguments, status, *fragments):
     check(not os.path.exists(path("refused.vdb")), "  leaves no file behind")
 
 
-def zipped(entries):
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in entries.items():
-            archive.writestr(name, content)
-    return out.getvalue()
-
-
-def bgcode_block(kind, compression, parameters, data):
-    packed = zlib.compress(data) if compression == 1 else data
-    head = struct.pack("<HHI", kind, compression, len(data))
-    if compression:
-        head += struct.pack("<I", len(packed))
-    block = head + parameters + packed
-    return block + struct.pack("<I", zlib.crc32(block))
-
-
-def bgcode(text, compression):
-    """Prusa's binary G-code: header, the metadata that it must have, and the program in two blocks of whole lines."""
-    ini = struct.pack("<H", 0)
-    half = text.index(b"\n", len(text) // 2) + 1
-    out = b"GCDE" + struct.pack("<IH", 1, 1)
-    for kind in (0, 3, 4, 2):
-        out += bgcode_block(kind, 0, ini, b"key=value\n")
-    for part in (text[:half], text[half:]):
-        out += bgcode_block(1, compression, struct.pack("<H", 0), part)
-    return out
-
-
-def gx(text):
-    bitmap = b"BM" + struct.pack("<I", 54 + 240) + bytes(48) + b"0" * 240
-    head = b"xgcode 1.0\n\0" + struct.pack("<5I", 0, 58, 58 + len(bitmap), 58 + len(bitmap), 100)
-    return head.ljust(58, b"\0") + bitmap + text
-
-
 # --- every container, told apart by content: the names all lie -------------------------------------------------------
 expected_report, expected = convert(gcode("tile.gcode"))
 check(expected.count("\n") > 100, "the tile has beads")
@@ -90,6 +53,8 @@ FILES = {
     "gx": gx(TEXT),
     "bgcode": bgcode(TEXT, 0),
     "bgcode ": bgcode(TEXT, 1),
+    "bgcode  ": bgcode(TEXT, 2),
+    "bgcode   ": bgcode(TEXT, 3, 2),
 }
 for kind, content in FILES.items():
     with open(path("part.stl"), "wb") as out:

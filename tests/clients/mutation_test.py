@@ -4,17 +4,18 @@ STRATUM_MUTATIONS is how many of each kind are run (10), STRATUM_MUTATION_SEED w
 kept, and its command is printed."""
 
 import gzip
-import io
 import json
 import os
 import random
 import re
 import shutil
+import struct
 import subprocess
 import tempfile
 import time
 import zipfile
 
+from packed_gcode import bgcode, gx, zipped
 from run_tools import BIN, SOURCE, check, gcode, write_box
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_mutation_")
@@ -22,7 +23,9 @@ KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "s
 COUNT = int(os.environ.get("STRATUM_MUTATIONS", "10"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
 CPU_SECONDS = 10.0  # of a run beyond its honest twin
-WALL_SECONDS = 120.0
+MOST_CPU_SECONDS = 60.0
+STILL_SECONDS = 300.0  # without any progress: a hang, not a busy machine
+LARGE = 10e6  # bytes: of such a file a twentieth of the mutations
 MEMORY = 256e6  # bytes beyond twice the honest twin's
 TOOL = {name: os.path.join(BIN, name) for name in ("gcode2vdb", "vdbtrace", "vdbmerge")}
 SMALL = ["--size", "24x18", "--spp", "1", "--no-denoise"]
@@ -44,16 +47,26 @@ def write(name, data):
         file.write(data)
 
 
+def cpu_seconds(process):
+    """Of a process that was not waited for, and of its children that were."""
+    with open(f"/proc/{process}/stat", encoding="ascii", errors="replace") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return sum(int(field) for field in fields[11:15]) / os.sysconf("SC_CLK_TCK")
+
+
 def run(command):
     """Exit status (negative: a signal), CPU seconds, peak bytes, what was said."""
     with open(path("said"), "wb") as said:
-        begun = time.monotonic()
         process = subprocess.Popen(command, cwd=FOLDER, stdout=subprocess.DEVNULL, stderr=said, stdin=subprocess.DEVNULL)
+        spent, moved = 0.0, time.monotonic()
         while True:
             pid, status, usage = os.wait4(process.pid, os.WNOHANG)
             if pid != 0:
                 break
-            if time.monotonic() - begun > WALL_SECONDS:
+            now = cpu_seconds(process.pid)
+            if now > spent:
+                spent, moved = now, time.monotonic()
+            if spent > MOST_CPU_SECONDS or time.monotonic() - moved > STILL_SECONDS:
                 process.kill()
             time.sleep(0.005)
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -66,7 +79,7 @@ def mutated(data, other, rng, text):
     for _ in range(rng.choice((1, 1, 1, 2, 4))):
         at = rng.randrange(len(data) + 1)
         length = rng.choice((1, 1, 4, 8, 64, 1000, max(1, len(data) // 4)))
-        what = rng.randrange(9 if text else 7)
+        what = rng.choice((0, 1, 2, 3, 4, 5, 6) + (7, 7, 7, 7, 8) * text)
         if what == 0:
             del data[at:]
         elif what == 1:
@@ -97,19 +110,21 @@ def mutated(data, other, rng, text):
     return bytes(data)
 
 
-def prepare():
-    """Honest files of every kind: (kind, file name, command, whether it is text)."""
+def prepare_files():
+    """Honest files of every kind."""
+    write("merl.binary", struct.pack("<3I", 90, 90, 180) + struct.pack("<d", 100.0) * (3 * 90 * 90 * 180))
     for name, options in (("t.vdb", ["--voxel-size", "0.2", "--grids", "color,feature"]), ("m.3mf", ["--voxel-size", "0.3"]),
                           ("m.obj", ["--voxel-size", "0.4"]), ("m.stl", ["--voxel-size", "0.4"])):
         subprocess.run([TOOL["gcode2vdb"], gcode("tile.gcode"), "-o", path(name), *options], check=True, capture_output=True)
     text = read(gcode("tile.gcode"))
-    write("t.gcode", text)
-    write("t.gcode.gz", gzip.compress(text))
-    archive = io.BytesIO()
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
-        packed.writestr("Metadata/plate_1.gcode", text)
-        packed.writestr("[Content_Types].xml", "<Types/>")
-    write("t.gcode.3mf", archive.getvalue())
+    for name, content in (("t.gcode", text), ("t.gcode.gz", gzip.compress(text)),
+                          ("t.gcode.3mf", zipped({"Metadata/plate_1.gcode": text, "[Content_Types].xml": "<Types/>"})),
+                          ("t.ufp", zipped({"/3D/model.gcode": text, "/Metadata/thumbnail.png": b"\x89PNG"})),
+                          ("t.gx", gx(text)), ("plain.bgcode", bgcode(text, 0)),
+                          ("deflate.bgcode", bgcode(text, 1, checksum=False)),
+                          ("heatshrink.bgcode", bgcode(text, 2, checksum=False)),
+                          ("meatpack.bgcode", bgcode(text, 3, 2, checksum=False))):
+        write(name, content)
     for n in range(2):
         subprocess.run([TOOL["gcode2vdb"], "t.gcode", "-o", "part.vdb", "--shard", f"{n}/2", *COARSE], cwd=FOLDER, check=True,
                        capture_output=True)
@@ -117,61 +132,86 @@ def prepare():
                        cwd=FOLDER, check=True, capture_output=True)
     subprocess.run([TOOL["vdbtrace"], "t.vdb", "-o", "part.png", "--write-brdf", "b.exr", *SMALL], cwd=FOLDER, check=True,
                    capture_output=True)
-    vdbs = sorted(name for name in os.listdir(FOLDER) if name.startswith("part.") and name.endswith(".vdb"))
-    exrs = sorted(name for name in os.listdir(FOLDER) if name.startswith("part.") and name.endswith(".exr"))
     way = {"keys": [{"time": t, "eye": [30 + t, -60, 40], "look_at": [10, 10, 2], "fov": 30} for t in (0, 1)]}
     write("way.json", json.dumps(way, indent=1).encode())
     scene = {"print": "t.vdb", "size": [24, 18], "spp": 1, "bed": True, "camera": {"view": "front"},
              "environment": {"map": "light.exr", "exposure": 1}}
     write("scene.json", json.dumps(scene, indent=1).encode())
-    fuzz = os.path.join(SOURCE, "tests", "fuzz")
-    for name in os.listdir(os.path.join(fuzz, "brdf")):
-        shutil.copy(os.path.join(fuzz, "brdf", name), path("brdf_" + name))
-    maps = [name for name in sorted(os.listdir(os.path.join(fuzz, "map"))) if name.endswith((".exr", ".hdr"))]
-    for name in maps:
-        shutil.copy(os.path.join(fuzz, "map", name), path("map_" + name))
-    shutil.copy(path("map_" + next(name for name in maps if name.endswith(".exr"))), path("light.exr"))
-    write("printer.json", json.dumps({"limits": {"acceleration_mm_s2": [2000, 2000, 100, 5000]}}, indent=1).encode())
+    for folder, endings in (("brdf", ("",)), ("map", (".exr", ".hdr")), ("printer", ("",)), ("vdb", ("",)), ("scene", ("s.json",))):
+        for name in os.listdir(os.path.join(SOURCE, "tests", "fuzz", folder)):
+            if name.endswith(endings):
+                shutil.copy(os.path.join(SOURCE, "tests", "fuzz", folder, name), path(f"{folder}_{name}"))
+    shutil.copy(path("map_map_c0.exr"), path("light.exr"))
     write_box(path("box.stl"), 20, 20, 4)
-    convert = lambda name: [TOOL["gcode2vdb"], name, "-o", "out.vdb", *COARSE]
+
+
+def prepare():
+    """(kind, file name, command, whether it is text[, what packs the changed bytes]) of each."""
+    prepare_files()
+    part = lambda ending: sorted(name for name in os.listdir(FOLDER) if name.startswith("part.") and name.endswith(ending))
+    convert = lambda name, *more: [TOOL["gcode2vdb"], name, "-o", "out.vdb", *COARSE, *more]
     trace = lambda name, *more: [TOOL["vdbtrace"], name, "-o", "out.png", "--force", *SMALL, *more]
+    compare = lambda name: convert("t.gcode", "--compare", name)
     kinds = [("G-code", "t.gcode", convert, True), ("G-code, pictured", "t.gcode", lambda name: trace(name, "--voxel-size", "0.4"), True),
-             ("gzip", "t.gcode.gz", convert, False), ("3MF package", "t.gcode.3mf", convert, False),
-             ("level set", "t.vdb", trace, False), ("attributes", "t.vdb", lambda name: trace(name, "--color-by", "feature"), False),
-             ("level set, whole", "t.vdb", lambda name: trace(name, "--march", "vdb"), False),
-             ("part of a level set", vdbs[0], lambda name: [TOOL["vdbmerge"], "out.vdb", name, vdbs[1], "--force"], False),
-             ("camera path", "way.json", lambda name: [TOOL["vdbtrace"], "t.vdb", "--film", "out.png", "--camera-path", name,
-                                                      "--seconds", "1", "--fps", "2", "--force", *SMALL], True),
-             ("scene", "scene.json", lambda name: [TOOL["vdbtrace"], name, "-o", "out.png", "--force"], True),
-             ("printer", "printer.json", lambda name: [TOOL["gcode2vdb"], "t.gcode", "--printer", name, "-o", "out.vdb", *COARSE], True),
-             ("model, STL", "box.stl", lambda name: [TOOL["gcode2vdb"], "t.gcode", "--compare", name, "-o", "out.vdb", *COARSE], True)]
-    for name in ("m.3mf", "m.obj", "m.stl"):
-        kinds.append((f"model, {name}", name, lambda given: [TOOL["gcode2vdb"], "t.gcode", "--compare", given, "-o", "out.vdb", *COARSE],
-                      name.endswith("obj")))
-    if exrs:
-        kinds.append(("part of a picture", exrs[0], lambda name: [TOOL["vdbmerge"], "out.png", name, *exrs[1:], "--force"], False))
+             ("G-code, settled", "t.gcode", lambda name: convert(name, "--beads", "settled"), True),
+             ("G-code, report", "t.gcode", lambda name: convert(name, "--report", "out.json"), True),
+             ("G-code, elements", "t.gcode", lambda name: [TOOL["gcode2vdb"], name, "-o", "out.inp", *COARSE], True),
+             ("G-code, flow", "t.gcode", lambda name: convert(name, "--flow-lag", "0.05", "--sag", "0.1"), True)]
+    kinds += [(name, name, convert, False) for name in ("t.gcode.gz", "t.gcode.3mf", "t.ufp", "t.gx", "plain.bgcode", "deflate.bgcode",
+                                                        "heatshrink.bgcode", "meatpack.bgcode")]
+    kinds += [(f"{name}, thumbnail", name, lambda given, ending=name.split(".", 1)[1]: [
+        TOOL["gcode2vdb"], given, "-o", f"out.{ending}", "--thumbnail", "80x60", "--force"], name == "t.gcode")
+              for name in ("t.gcode", "t.gcode.3mf", "t.ufp", "t.gx", "deflate.bgcode")]
+    kinds += [("level set", "t.vdb", trace, False), ("attributes", "t.vdb", lambda name: trace(name, "--color-by", "feature"), False),
+              ("level set, whole", "t.vdb", lambda name: trace(name, "--march", "vdb"), False),
+              ("camera path", "way.json", lambda name: [TOOL["vdbtrace"], "t.vdb", "--film", "out.png", "--camera-path", name,
+                                                       "--seconds", "1", "--fps", "2", "--force", *SMALL], True),
+              ("scene", "scene.json", lambda name: [TOOL["vdbtrace"], name, "-o", "out.png", "--force"], True),
+              ("printer", "printer_printer.json", lambda name: convert("t.gcode", "--printer", name), True),
+              ("merl.binary", "merl.binary", lambda name: trace("t.vdb", "--brdf", name), False)]
+    kinds += [(f"model, {name}", name, compare, name in ("box.stl", "m.obj")) for name in ("box.stl", "m.3mf", "m.obj", "m.stl")]
+    with zipfile.ZipFile(path("m.3mf")) as package:
+        entries = {name: package.read(name) for name in package.namelist()}
+    inside = next(name for name in entries if name.endswith(".model"))
+    write("inside.3mf", entries[inside])
+    kinds.append(("model, inside of m.3mf", "inside.3mf", compare, True, lambda data: zipped({**entries, inside: data})))
+    vdbs, exrs = part(".vdb"), part(".exr")
+    check(len(vdbs) == 2 and len(exrs) == 2, "there are two parts of each kind")
+    for n in range(2):
+        kinds += [(f"part {n} of a level set", vdbs[n], lambda name, n=n: [TOOL["vdbmerge"], "out.vdb", name, vdbs[1 - n], "--force"], False),
+                  (f"part {n} of a picture", exrs[n], lambda name, n=n: [TOOL["vdbmerge"], "out.png", name, exrs[1 - n], "--force"], False)]
     for name in sorted(os.listdir(FOLDER)):
-        if name.startswith("brdf_") and not name.endswith("merl.binary"):
-            kinds.append((name, name, lambda given: trace("t.vdb", "--brdf", given), not name.endswith((".gz", ".exr"))))
-        if name.startswith("map_"):
+        if name.startswith("brdf_"):
+            kinds.append((name, name, lambda given: trace("t.vdb", "--brdf", given), not name.endswith((".gz", ".exr", ".binary"))))
+        elif name.startswith("map_"):
             kinds.append((name, name, lambda given: trace("t.vdb", "--env", given), False))
+        elif name.startswith("vdb_"):
+            kinds.append((name, name, trace, False))
+        elif name.startswith("scene_"):
+            kinds.append((name, name, lambda given: [TOOL["vdbtrace"], given, "-o", "out.png", "--force", *SMALL], True))
+        elif name.startswith("printer_") and name != "printer_printer.json":
+            kinds.append((name, name, lambda given: convert("t.gcode", "--printer", given), True))
     return kinds
 
 
 def main():
     rng = random.Random(SEED)
     kinds = prepare()
-    everything = [read(name) for _, name, _, _ in kinds]
+    everything = [read(kind[1]) for kind in kinds]
     runs = findings = 0
-    for kind, name, command, text in kinds:
+    for kind, name, command, text, *packing in kinds:
+        data = read(name)
+        pack = packing[0] if packing else bytes
+        write(name, pack(data))
         honest_status, honest_seconds, honest_bytes, said = run(command(name))
         check(honest_status in (0, 3), f"{kind}: the honest file: {honest_status} {said.strip()[-200:]}")
-        data = read(name)
         stem, ending = name.split(".", 1)
         ends = {}
-        for _ in range(COUNT):
+        begun = time.monotonic()
+        count = COUNT if len(data) < LARGE else (COUNT + 19) // 20
+        for _ in range(count):
             bad = f"bad_{stem}.{ending}"
-            write(bad, mutated(data, rng.choice(everything), rng, text))
+            write(bad, pack(mutated(data, rng.choice(everything), rng, text)))
             status, seconds, memory, said = run(command(bad))
             ends[status] = ends.get(status, 0) + 1
             runs += 1
@@ -185,7 +225,7 @@ def main():
             shutil.copy(path(bad), kept)
             print(f"FINDING: {kind}: {status}, {seconds:.1f} s, {memory * 1e-6:.0f} MB ({honest_bytes * 1e-6:.0f}): "
                   f"{' '.join(command(kept))}\n  {said.strip()[-300:]}", flush=True)
-        print(f"{kind}: {COUNT} mutations: {dict(sorted(ends.items()))}", flush=True)
+        print(f"{kind}: {count} mutations in {time.monotonic() - begun:.1f} s: {dict(sorted(ends.items()))}", flush=True)
     shutil.rmtree(FOLDER)
     check(findings == 0, f"{runs} mutated files: {findings} findings")
 

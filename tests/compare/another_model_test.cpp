@@ -110,5 +110,13 @@ TEST(AnotherModel, APointFarAwayTakesNoMinutes) {
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20);
 }
 
+// Queries from afar see all triangles of a small model at about one distance.
+TEST(AnotherModel, AFineModelInInchesTakesSeconds) {
+    const TriangleMesh fine = scaled(test::ellipsoidModel({10, 9, 4}, 200), glm::dvec3(1 / 25.4));
+    const std::clock_t start = std::clock();
+    EXPECT_NE(doubtOf(fine), "");
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 15);
+}
+
 }  // namespace
 }  // namespace stratum::compare

@@ -4,12 +4,12 @@
 #include "assemble/ready_scene.h"
 #include "assemble/thumbnail/bmp_writer.h"
 #include "assemble/thumbnail/qoi_writer.h"
+#include "gcode/toolpath/purpose.h"
 #include "shade/camera/camera.h"
 #include "shade/film/jpeg_writer.h"
 #include "shade/film/png_writer.h"
 #include "shade/post/denoise.h"
 
-#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 
@@ -36,18 +36,23 @@ StageOptions stageOf(int width, int height) {
     return stage;
 }
 
-// What slicers leave out of their thumbnails, too: skirts and prime towers.
-void leaveOutWhatIsBeside(voxelize::PrintOptions& print, const gcode::Toolpath& toolpath) {
-    if (!print.features.empty()) return;
-    bool any = false;
-    for (const gcode::Bead& bead : toolpath.beads) {
-        const gcode::Feature feature = toolpath.runOf(bead).feature;
-        any |= feature != gcode::Feature::skirt && feature != gcode::Feature::wipe_tower;
-        if (any) break;
-    }
-    if (any)
-        print.features = fmt::format("-{},-{}", gcode::featureName(gcode::Feature::skirt),
-                                     gcode::featureName(gcode::Feature::wipe_tower));
+// What slicers leave out of their thumbnails, too: skirts, prime lines and wipe towers.
+std::shared_ptr<const gcode::Toolpath> withoutWhatIsBeside(std::shared_ptr<const gcode::Toolpath> toolpath) {
+    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(*toolpath);
+    const auto beside = [&purposes](std::size_t bead) { return purposes[bead] == gcode::Purpose::beside; };
+    const auto left_out = std::count(purposes.begin(), purposes.end(), gcode::Purpose::beside);
+    if (left_out == 0 || static_cast<std::size_t>(left_out) == purposes.size()) return toolpath;
+    auto part = std::make_shared<gcode::Toolpath>(*toolpath);
+    const auto leaveOut = [&beside](auto& of_beads) {
+        std::size_t kept = 0;
+        for (std::size_t n = 0; n < of_beads.size(); ++n)
+            if (!beside(n)) of_beads[kept++] = of_beads[n];
+        of_beads.resize(kept);
+    };
+    leaveOut(part->beads);
+    leaveOut(part->timing);
+    leaveOut(part->flow);
+    return part;
 }
 
 // RGBA of the print in one size.
@@ -100,8 +105,7 @@ std::vector<gcode::Thumbnail> makeThumbnails(const std::shared_ptr<const gcode::
     tracing.events = options.events;
     tracing.prints.print = options.print;
     tracing.prints.print.voxel_auto = !choosesVoxels(options.print);
-    leaveOutWhatIsBeside(tracing.prints.print, *toolpath);
-    tracing.prints.toolpath = toolpath;
+    tracing.prints.toolpath = options.print.features.empty() ? withoutWhatIsBeside(toolpath) : toolpath;
     tracing.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
                                       std::span<const glm::dvec3> outline) {
         return pixelSpreadOf(sharpest, print, part, outline);

@@ -43,10 +43,10 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
         const auto& [red, green, blue] = *colors_.front();
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
     }
-    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath_);
-    const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes, printed);
+    if (purposes_.empty()) purposes_ = gcode::purposesOf(toolpath_);
+    const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes_, printed);
     provenance.part = voxelize::placed(part, placement_);
-    provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes, printed, part), placement_);
+    provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes_, printed, part), placement_);
     provenance.deposit = toolpath_.deposit;
     provenance.culled = culls();
     provenance.swept = choices_.interior_distance;

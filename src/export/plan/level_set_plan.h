@@ -3,6 +3,7 @@
 
 #include "export/vdb_file.h"
 #include "gcode/slicer/bead_colors.h"
+#include "gcode/toolpath/purpose.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/placement.h"
@@ -50,7 +51,7 @@ public:
     bool streams() const { return !culls() && attributes_.empty() && !choices_.interior_distance; }
 
     voxelize::VoxelizeOptions voxelizeOptions() const;
-    /// Metadata of a level set of these beads of the selection.
+    /// Metadata of a level set of these beads of the selection. From one thread at a time.
     /// @param source_file, source_sha256  of the G-code, as Provenance has them
     Provenance provenance(const std::string& source_file, const std::string& source_sha256,
                           std::span<const std::uint32_t> printed) const;
@@ -64,6 +65,7 @@ private:
     voxelize::Placement placement_;
     std::vector<std::optional<gcode::Rgb>> colors_;
     std::vector<voxelize::Attribute> attributes_;
+    mutable std::vector<gcode::Purpose> purposes_;  // by bead, from the first provenance() on
 };
 
 }  // namespace stratum::exporter

@@ -360,9 +360,11 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     double cells = 1;
     for (const int macro : macros) cells *= macro;
     // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
-    // much less. Where the table is large, half of the free memory is for it and, while bricks are laid out, its copy.
-    constexpr double kFew = 4194304.0;
-    double most = std::min(2147483648.0, kFew + 1024.0 * static_cast<double>(leaves));
+    // much less; 128 take with their copy, while bricks are laid out, about what a brick's samples do. Where the table
+    // is large, half of the free memory is for both.
+    constexpr double kFew = 1048576.0;
+    constexpr double kMostPerLeaf = 128;
+    double most = std::min(2147483648.0, kFew + kMostPerLeaf * static_cast<double>(leaves));
     if (cells > kFew) most = std::min(most, static_cast<double>(availableMemory()) / (4 * sizeof(MacroCell)));
     constexpr std::size_t kMostBricks = 0xff000000;  // slots have 32 bits, and some are left over
     constexpr int kLongest = (1 << 19) - 1;          // macro cells: leaf coordinates are kept in 21 bits an axis

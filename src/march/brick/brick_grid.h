@@ -47,7 +47,7 @@ public:
     static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
     /// Eager: lays out every brick, in parallel. The source is not needed afterwards.
-    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, or 2^22 and 1024
+    /// Throws InputError, with the size, for a level set whose box holds more than 2^31 macro cells, or 2^20 and 128
     /// for each leaf, or more than fit into half of the free memory, or 2^19 along an axis; and, with the position, for
     /// samples that are no finite numbers.
     BrickGrid(const LeafSource& source, BrickValues values);

@@ -43,9 +43,10 @@ private:
         takeTiles(node, file_.lower_[node.origin]);
         forEachOn(node.children, [&](std::size_t leaf) { file_.leaves_.push_back({node.originOf(leaf), 0}); });
     }
-    void takeTiles(const VdbNode& node, std::vector<float>& values) {
-        values.resize(node.active.size() * 8);
-        unpackVdbValues(cursor_, node.values, file_.format_, node.active, file_.background(), values.data());
+    void takeTiles(const VdbNode& node, TileValues& tiles) {
+        values_.resize(node.active.size() * 8);
+        unpackVdbValues(cursor_, node.values, file_.format_, node.active, file_.background(), values_.data());
+        tiles = TileValues(values_);
         forEachOn(node.active, [&](std::size_t tile) {
             file_.active_tiles_.expand(openvdb::CoordBBox::createCube(node.originOf(tile), 1 << node.child_log2));
         });
@@ -53,6 +54,7 @@ private:
 
     LeafFile& file_;
     const VdbCursor& cursor_;
+    std::vector<float> values_;            // of the node that is read
     std::vector<std::string_view> masks_;  // of the leaves below each lower node
 };
 

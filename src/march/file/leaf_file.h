@@ -6,6 +6,7 @@
 
 #include "base/input_file.h"
 #include "march/file/leaf_source.h"
+#include "march/file/tile_values.h"
 #include "march/file/vdb_walker.h"
 #include "trace/intersector.h"
 
@@ -63,7 +64,7 @@ private:
     std::vector<Leaf> leaves_;  // in the file's order
     openvdb::CoordBBox active_tiles_;
     std::map<openvdb::Coord, float> root_tiles_;
-    std::map<openvdb::Coord, std::vector<float>> upper_, lower_;  // values of nodes with 32^3 and 16^3 children
+    std::map<openvdb::Coord, TileValues> upper_, lower_;  // of nodes with 32^3 and 16^3 children
 };
 
 }  // namespace stratum::march

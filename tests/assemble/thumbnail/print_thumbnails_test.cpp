@@ -5,10 +5,13 @@
 #include "gcode/reader.h"
 #include "gcode/thumbnail/png_size.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace stratum::assemble {
 namespace {
@@ -39,6 +42,24 @@ TEST(PrintThumbnails, OneForEachSizeInItsCoding) {
     for (const int c : {0, 1, 2}) EXPECT_EQ(bmp(0, 0, c), 0);
     EXPECT_GT(bmp(40, 30, 2), bmp(40, 30, 0));
     EXPECT_GT(bmp(40, 30, 2), 80);
+}
+
+// Two layers of lines, with a skirt around them if asked for: no tag says what it is.
+std::shared_ptr<const gcode::Toolpath> untagged(bool skirt) {
+    std::string text = "G21\nG90\nM83\n";
+    for (int layer = 0; layer < 4; ++layer) {
+        text += fmt::format("G1 Z{:.1f} F3000\n", 0.2 * (layer + 1));
+        if (skirt && layer == 0) text += "G0 X40 Y40\nG1 X80 E2\nG1 Y80 E2\nG1 X40 E2\nG1 Y40 E2\n";
+        for (int line = 0; line < 12; ++line)
+            text += fmt::format("G0 X55 Y{0:.1f}\nG1 X65 Y{0:.1f} E0.4\n", 57 + 0.4 * line);
+    }
+    return std::make_shared<const gcode::Toolpath>(gcode::readToolpath(text, "untagged.gcode"));
+}
+
+TEST(PrintThumbnails, ASkirtWithoutATagIsLeftOut) {
+    const std::vector<gcode::ThumbnailSize> size{{40, 30, ThumbnailCoding::bmp}};
+    EXPECT_EQ(makeThumbnails(untagged(true), "untagged.gcode", size).front().bytes,
+              makeThumbnails(untagged(false), "untagged.gcode", size).front().bytes);
 }
 
 TEST(PrintThumbnails, SameBytesForAnyNumberOfThreads) {

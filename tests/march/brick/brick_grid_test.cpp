@@ -142,12 +142,12 @@ TEST(BrickGrid, RefusesRoomForFewerBricksThanRaysNeed) {
 TEST(BrickGrid, RefusesLeavesThatAreTooFarApart) {
     const auto grid = openvdb::FloatGrid::create(3.0f);
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    // A diagonal of leaves: a box of 400^3 macro cells for 400 of them.
-    for (int n = 0; n < 400; ++n) grid->tree().setValue(openvdb::Coord(32 * n), -1.0f);
+    // A diagonal of leaves: a box of 150^3 macro cells for 150 of them, 54 MB.
+    for (int n = 0; n < 150; ++n) grid->tree().setValue(openvdb::Coord(32 * n), -1.0f);
     EXPECT_THROW(BrickGrid(*grid, BrickValues::Float32), InputError);
     const auto near = openvdb::FloatGrid::create(3.0f);
     near->setGridClass(openvdb::GRID_LEVEL_SET);
-    for (int n = 0; n < 150; ++n) near->tree().setValue(openvdb::Coord(32 * n), -1.0f);
+    for (int n = 0; n < 100; ++n) near->tree().setValue(openvdb::Coord(32 * n), -1.0f);
     EXPECT_NO_THROW(BrickGrid(*near, BrickValues::Float32));
 }
 

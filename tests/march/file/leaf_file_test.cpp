@@ -49,6 +49,17 @@ constexpr std::uint32_t kMask = openvdb::io::COMPRESS_ACTIVE_MASK;
 constexpr std::uint32_t kBlosc = openvdb::io::COMPRESS_BLOSC;
 constexpr std::uint32_t kZip = openvdb::io::COMPRESS_ZIP;
 
+TEST(TileValues, AreThoseGivenInLittleMemory) {
+    for (const std::size_t different : {1U, 2U, 3U, 200U}) {
+        std::vector<float> values(4096);
+        for (std::size_t n = 0; n < values.size(); ++n) values[n] = 0.5F * static_cast<float>(n * n % different) - 1;
+        const TileValues tiles(values);
+        for (std::size_t n = 0; n < values.size(); ++n) ASSERT_EQ(tiles[n], values[n]) << different << " " << n;
+        if (different == 1) EXPECT_LT(tiles.bytes(), 100U);
+        if (different == 2) EXPECT_LT(tiles.bytes(), 700U);
+    }
+}
+
 TEST_F(LeafFileTest, HasWhatOpenVdbReads) {
     const auto first = withTiles();
     first->setName("other");
