@@ -34,7 +34,6 @@ window.vdbviewCounts = () => own.counts();
 function orbitOf({ eye, look_at, fov }) {
   return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
 }
-
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
 const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
 const own = new OwnPicture(byId("beads"));
@@ -86,6 +85,7 @@ function drawOwn(moving) {
   camera = from;
   aspect = shownSize[0] / shownSize[1];
   picture.classList.add("behind");
+  byId("loading").hidden = true;
   answer.lines = null;
   own.draw(camera, state, shownSize, moving);
   answer.draw(camera, aspect);
@@ -177,7 +177,6 @@ function record(entry) {
 // ---------------------------------------------------------------- what the server says
 
 const say = (text) => (byId("status").textContent = text);
-
 function trouble(text, of = "") {
   byId("trouble-text").textContent = text;
   byId("trouble").dataset.of = of;
@@ -241,6 +240,7 @@ on("look", (detail) => {
   if (own.ready) drawOwn(false);
 });
 on("loading", (detail) => {
+  if (own.ready) return say(`${detail.step} …`); // nothing lies on a picture that is there
   byId("loading").hidden = false;
   byId("step").textContent = `${detail.step[0].toUpperCase()}${detail.step.slice(1)} …`;
   if (detail.done === undefined) byId("done").removeAttribute("value");

@@ -160,7 +160,7 @@ export class OwnPicture extends EventTarget {
     const kinds = KINDS.reduce((bits, [name], n) => bits | (state.also.includes(name) ? 1 << n : 0), 0);
     const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
     this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
-    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 9 * ratio });
+    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio });
     if (lines.sets.has("bed")) lines.set("bed", { layers: [0, 0], end: ALL, kinds: state.also.length > 0 && state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 });
   }
   /** How many moves of each kind are among what is shown; null: not known yet. */
