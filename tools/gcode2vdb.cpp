@@ -111,12 +111,13 @@ void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
     tools::completes(
-        app.add_option("--grids", o.grids,
-                       "Also layer,time,feature,tool,object,width,speed,flow,overfill,color,deviation, as grids of the "
-                       "same voxels; surface alone is no others (default: color if there are several)"),
+        app.add_option(
+            "--grids", o.grids,
+            "Also layer,time,feature,tool,object,width,speed,flow,overfill,layer_time,temperature,fan,color,"
+            "deviation, as grids of the same voxels; surface alone is no others (default: color if there are several)"),
         tools::Completion::list,
-        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "color",
-         "deviation"})
+        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "layer_time",
+         "temperature", "fan", "color", "deviation"})
         ->type_name("LIST")
         ->group(what);
     app.add_option(

@@ -235,9 +235,10 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     addColorList(app, kLight);
     completes(app.add_option("--color-by", o.scene.color_by,
                              "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
-                             "flow, overfill, time, color"),
+                             "flow, overfill, time, layer_time, temperature, fan, color"),
               Completion::word,
-              {"tool", "feature", "layer", "object", "speed", "width", "flow", "overfill", "time", "color"})
+              {"tool", "feature", "layer", "object", "speed", "width", "flow", "overfill", "time", "layer_time",
+               "temperature", "fan", "color"})
         ->type_name("NAME")
         ->group(kLight);
     app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the picture")->group(kLight);

@@ -92,6 +92,20 @@ std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath) {
     return totals;
 }
 
+std::vector<double> layerSeconds(const Toolpath& toolpath) {
+    std::vector<double> layers(toolpath.layer_count + std::size_t{1}, 0.0);
+    double before = toolpath.timing.empty() ? 0.0 : toolpath.timing.front().start;
+    for (std::size_t n = 0; n < toolpath.beads.size(); ++n) {
+        const Bead& bead = toolpath.beads[n];
+        const double end = toolpath.timing.empty()
+                               ? before + beadSeconds(toolpath, bead)
+                               : toolpath.timing[n].start + static_cast<double>(toolpath.timing[n].seconds);
+        layers[toolpath.runOf(bead).layer] += end - before;
+        before = end;
+    }
+    return layers;
+}
+
 std::string summarize(const Toolpath& toolpath) {
     fmt::memory_buffer out;
     const auto totals = featureTotals(toolpath);

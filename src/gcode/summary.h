@@ -23,6 +23,10 @@ std::array<FeatureTotal, kFeatureCount> featureTotals(const Toolpath& toolpath);
 /// By index into Toolpath::objects; [0] are beads without an object.
 std::vector<FeatureTotal> objectTotals(const Toolpath& toolpath);
 
+/// Seconds by layer number: beads, and what the machine does before each of them. What comes before the first bead
+/// isn't counted. By Toolpath::timing; without it, extruding at the programmed speeds.
+std::vector<double> layerSeconds(const Toolpath& toolpath);
+
 /// Statements of the file (time, weight, material, nozzle, printer, layer heights); slicer, container and firmware
 /// rules with their reason; layers, beads, length, volume; filament read and stated, prime lines apart, by tool;
 /// features; objects; warnings with count and first line. Ends with a newline.

@@ -1,6 +1,7 @@
 #include "motion/print_times.h"
 
 #include "gcode/option_names.h"
+#include "gcode/summary.h"
 
 #include <algorithm>
 
@@ -55,9 +56,9 @@ public:
 };
 
 void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
-    times.layers.assign(toolpath.layer_count + std::size_t{1}, 0.0);
-    double before = 0;
+    times.layers = gcode::layerSeconds(toolpath);
     std::size_t layer = 0;
+    double end = 0;
     for (std::size_t i = 0; i < toolpath.timing.size(); ++i) {
         const gcode::BeadTiming& timing = toolpath.timing[i];
         const gcode::Run& run = toolpath.runOf(toolpath.beads[i]);
@@ -65,11 +66,10 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
         times.features[static_cast<std::size_t>(run.feature)] += seconds;
         if (layer == 0 && run.layer > 0) times.before_model = timing.start;
         layer = run.layer;
-        const double end = timing.start + seconds;
-        times.layers[layer] += end - before;
-        before = end;
+        if (i == 0) times.layers[layer] += timing.start;
+        end = timing.start + seconds;
     }
-    times.layers[layer] += times.total - before;
+    times.layers[layer] += times.total - end;
 }
 
 }  // namespace

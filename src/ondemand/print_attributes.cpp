@@ -69,7 +69,8 @@ public:
         return std::make_unique<Lookup>(*field_, values_, attribute_);
     }
     std::size_t bytes() const override {
-        return attribute_ == Attribute::time || attribute_ == Attribute::overfill
+        return attribute_ == Attribute::time || attribute_ == Attribute::overfill ||
+                       attribute_ == Attribute::temperature || attribute_ == Attribute::fan
                    ? field_->layout().toolpath->beads.size() * sizeof(float)
                    : 0;
     }

@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 1;  // changes with every field
+constexpr std::uint32_t kVersion = 2;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -137,8 +137,8 @@ private:
 
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
-    auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer,
-           first_layer] = facts;
+    auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
+           bed] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
@@ -150,6 +150,7 @@ void visitStated(Archive& archive, Facts& facts) {
     archive.value(printer);
     archive.value(layer);
     archive.value(first_layer);
+    archive.value(bed);
 }
 
 template <typename Archive, typename Model>
@@ -194,9 +195,9 @@ void visitTimes(Archive& archive, Times& times) {
 template <typename Archive, typename Path>
 void visitToolpath(Archive& archive, Path& toolpath) {
     auto& [beads, arcs, runs, objects, warnings, slicer, firmware, format, filament_diameter, layer_height, deposit,
-           layer_count, tool_colors, palette_tools, color_changes, timing, flow, filament_by_tool, footer_by_tool,
-           footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm, extruded_mm3] =
-        toolpath;
+           layer_count, tool_colors, palette_tools, color_changes, temperatures, fans, timing, flow, filament_by_tool,
+           footer_by_tool, footer_mm, stated, extrusion_rule, firmware_reason, cut_short, filament_mm, prime_mm,
+           extruded_mm3] = toolpath;
     archive.records(beads);
     archive.each(arcs, [&archive](auto& item) {
         auto& [center_x, center_y, sweep, line] = item;
@@ -229,6 +230,13 @@ void visitToolpath(Archive& archive, Path& toolpath) {
         archive.value(color);
         archive.value(is_stated);
     });
+    for (auto* const values : {&temperatures, &fans})
+        archive.each(*values, [&archive](auto& item) {
+            auto& [line, tool, value] = item;
+            archive.value(line);
+            archive.value(tool);
+            archive.value(value);
+        });
     archive.records(timing);
     archive.records(flow);
     archive.value(filament_by_tool);

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "gcode/summary.h"
 #include "shade/brdf/preset_names.h"
+#include "view/program_lines.h"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,8 @@ namespace {
 using Json = nlohmann::json;
 
 // Attributes that colour a print. Overfill takes seconds of a large print, and is none of a page's.
-constexpr std::array<const char*, 9> kAttributes = {"color", "feature", "layer", "tool", "object",
-                                                    "width", "speed",   "flow",  "time"};
+constexpr std::array<const char*, 10> kAttributes = {"color", "feature", "layer", "tool", "object",
+                                                     "width", "speed",   "flow",  "time", "layer_time"};
 
 Json factsOf(const gcode::Toolpath& toolpath) {
     Json features = Json::array();
@@ -46,7 +47,10 @@ Json factsOf(const gcode::Toolpath& toolpath) {
                {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
                {"height_mm", highest},           {"filament_mm", toolpath.filament_mm},
                {"attributes", kAttributes}};
+    if (!toolpath.temperatures.empty()) facts["attributes"].push_back("temperature");
+    if (!toolpath.fans.empty()) facts["attributes"].push_back("fan");
     // As the file states them.
+    if (!toolpath.stated.bed.empty()) facts["bed"] = toolpath.stated.bed;
     if (toolpath.stated.seconds) facts["seconds"] = *toolpath.stated.seconds;
     if (toolpath.stated.grams) facts["grams"] = *toolpath.stated.grams;
     return facts;
@@ -96,6 +100,27 @@ std::shared_ptr<const gcode::Toolpath> Document::timedToolpath(std::size_t objec
     const assemble::ReadEvents silent;
     assemble::Warnings ignored(silent);
     return assemble::readProgram(path, request, silent, ignored).toolpath;
+}
+
+Json Document::layers() {
+    const auto print = timedToolpath(0);
+    if (!print) throw InputError("the input has no layers: it is no print");
+    std::vector<double> tops(print->layer_count + std::size_t{1}, 0.0);
+    for (const gcode::Bead& bead : print->beads) {
+        double& top = tops[print->runOf(bead).layer];
+        top = std::max({top, static_cast<double>(bead.z0), static_cast<double>(bead.z1)});
+    }
+    return {{"z", std::move(tops)}, {"seconds", gcode::layerSeconds(*print)}, {"generation", generation_}};
+}
+
+Json Document::programAt(std::uint32_t bead) const {
+    const auto print = toolpath(0);
+    if (!print || bead >= print->beads.size()) throw InputError("the message: bead: the print has no such bead");
+    requireFiles();
+    const std::uint32_t line = print->lineOf(print->beads[bead]);
+    return {{"bead", bead},
+            {"line", line},
+            {"lines", linesAround(given_.objects.front().vdb, given_.options.tracing.prints.print, line)}};
 }
 
 Json Document::facts() const {

@@ -37,6 +37,11 @@ public:
     /// InputError.
     std::shared_ptr<const gcode::Toolpath> timedToolpath(std::size_t object);
 
+    /// By layer number the height of its top in mm and the seconds that it takes, which are computed when first asked
+    /// for. Throws InputError, also if the input is no print.
+    nlohmann::json layers();
+    /// The line of a bead, and those around it. Throws InputError.
+    nlohmann::json programAt(std::uint32_t bead) const;
     /// What the page offers: layers, features, objects, tools, attributes. Of the first print, if there is one.
     nlohmann::json facts() const;
 

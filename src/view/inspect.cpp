@@ -75,12 +75,8 @@ Json inspect(Document& document, const ViewScene& scene, const ViewedPicture& pi
     if (!toolpath || *bead >= toolpath->beads.size()) return json;
     json["bead"] = describe(*toolpath, *bead);
     document.requireFiles();
-    Json lines = Json::array();
-    constexpr std::uint32_t kAround = 4;
-    for (const ProgramLine& line : linesAround(objects[hit.object].vdb, document.given().options.tracing.prints.print,
-                                               toolpath->lineOf(toolpath->beads[*bead]), kAround))
-        lines.push_back({{"number", line.number}, {"text", line.text}});
-    json["lines"] = std::move(lines);
+    json["lines"] = linesAround(objects[hit.object].vdb, document.given().options.tracing.prints.print,
+                                toolpath->lineOf(toolpath->beads[*bead]));
     return json;
 }
 

@@ -37,4 +37,12 @@ std::vector<ProgramLine> linesAround(const std::string& path, const voxelize::Pr
     return lines;
 }
 
+nlohmann::json linesAround(const std::string& path, const voxelize::PrintOptions& options, std::uint32_t number) {
+    constexpr std::uint32_t kAround = 4;
+    nlohmann::json lines = nlohmann::json::array();
+    for (const ProgramLine& line : linesAround(path, options, number, kAround))
+        lines.push_back({{"number", line.number}, {"text", line.text}});
+    return lines;
+}
+
 }  // namespace stratum::view

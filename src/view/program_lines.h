@@ -3,6 +3,8 @@
 
 #include "assemble/print/print_levels.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,5 +20,8 @@ struct ProgramLine {
 /// be. Throws InputError.
 std::vector<ProgramLine> linesAround(const std::string& path, const voxelize::PrintOptions& options,
                                      std::uint32_t number, std::uint32_t around);
+
+/// The same as JSON for a page, four lines before and after.
+nlohmann::json linesAround(const std::string& path, const voxelize::PrintOptions& options, std::uint32_t number);
 
 }  // namespace stratum::view

@@ -45,7 +45,11 @@ std::string nameOf(const std::string& path) { return std::filesystem::path(path)
 }  // namespace
 
 Viewport::Viewport(Document& document, Output output)
-    : document_(document), output_(std::move(output)), frame_scale_(kFrameSeconds), beads_(document, output_) {}
+    : document_(document),
+      output_(std::move(output)),
+      frame_scale_(kFrameSeconds),
+      beads_(document, output_),
+      moves_(document, output_) {}
 
 void Viewport::startWith(const ViewScene& scene) {
     scene_.emplace(scene);
@@ -65,6 +69,9 @@ void Viewport::ask(Message message) {
                 if (saves_.size() < kMostQueued) saves_.push_back(std::move(it));
             if constexpr (std::is_same_v<Kind, CancelMessage>) saves_.clear();
             if constexpr (std::is_same_v<Kind, BeadsMessage>) beads_asked_ = true;
+            if constexpr (std::is_same_v<Kind, MovesMessage>) moves_asked_ = true;
+            if constexpr (std::is_same_v<Kind, LayersMessage>) layers_asked_ = true;
+            if constexpr (std::is_same_v<Kind, ProgramMessage>) program_ = it;
             if constexpr (std::is_same_v<Kind, ShownMessage>) on_the_way_ = std::max(0, on_the_way_ - 1);
         },
         message);
@@ -80,9 +87,9 @@ bool Viewport::hasWork(bool urgent) const {
     const std::lock_guard lock(mutex_);
     if (!started_) return false;
     const bool may_send = on_the_way_ < kMostOnTheWay;
-    if ((asked_ && may_send) || !inspects_.empty() || (stage_ == Stage::moving && may_send)) return true;
+    if ((asked_ && may_send) || !inspects_.empty() || program_ || (stage_ == Stage::moving && may_send)) return true;
     if (urgent) return false;
-    if (beads_asked_ && may_send) return true;
+    if (((beads_asked_ || moves_asked_) && may_send) || layers_asked_) return true;
     if (stage_ == Stage::waiting) return Clock::now() >= rest_at_;
     return stage_ == Stage::exact || stage_ == Stage::rough || stage_ == Stage::final || !saves_.empty() || saving_;
 }
@@ -95,7 +102,7 @@ std::optional<Viewport::Clock::time_point> Viewport::worksAt() const {
 
 bool Viewport::overtaken() const {
     const std::lock_guard lock(mutex_);
-    return asked_.has_value() || !inspects_.empty();
+    return asked_.has_value() || !inspects_.empty() || program_;
 }
 
 void Viewport::set(Stage stage) {
@@ -146,8 +153,11 @@ void Viewport::fail(const char* text) {
 
 void Viewport::work(const std::function<void()>& check) {
     std::optional<InspectMessage> inspect;
+    std::optional<ProgramMessage> program;
     Stage stage = Stage::idle;
     bool beads = false;
+    bool moves = false;
+    bool layers = false;
     bool saves = false;
     {
         const std::lock_guard lock(mutex_);
@@ -158,15 +168,24 @@ void Viewport::work(const std::function<void()>& check) {
         if (stage_ == Stage::waiting && Clock::now() >= rest_at_) stage_ = Stage::exact;
         stage = stage_;
         saves = !saves_.empty() || saving_;
-        beads = beads_asked_ && on_the_way_ < kMostOnTheWay && stage != Stage::moving;
-        on_the_way_ += beads ? 1 : 0;
+        program = std::exchange(program_, std::nullopt);
+        const bool may_send = on_the_way_ < kMostOnTheWay && stage != Stage::moving;
+        beads = beads_asked_ && may_send;
+        moves = moves_asked_ && may_send && !beads;
+        layers =
+            !inspect && !program && !beads && !moves && stage != Stage::moving && std::exchange(layers_asked_, false);
+        on_the_way_ += !inspect && !program && (beads || moves) ? 1 : 0;
         if (stage == Stage::moving && on_the_way_ >= kMostOnTheWay) stage = Stage::waiting;
     }
+    if (program) answer("program", [&] { return document_.programAt(program->bead); });
     if (inspect) return answer(*inspect);
-    if (beads) {
-        const bool more = beads_.sendPart();
+    if (program) return;
+    if (layers) return answer("layers", [&] { return document_.layers(); });
+    if (beads || moves) {
+        const bool more = beads ? beads_.sendPart() : moves_.sendPart();
         const std::lock_guard lock(mutex_);
-        beads_asked_ = beads_asked_ && more;
+        bool& asked = beads ? beads_asked_ : moves_asked_;
+        asked = asked && more;
         return;
     }
     switch (stage) {
@@ -298,6 +317,17 @@ void Viewport::workOnSave(const std::function<void()>& check) {
     saving_.reset();
     const std::lock_guard lock(mutex_);
     if (!saves_.empty() && saves_.front().number == save.number) saves_.pop_front();
+}
+
+// What can't be told spoils no picture.
+void Viewport::answer(const char* type, const std::function<Json()>& of_document) {
+    try {
+        Json answer = of_document();
+        answer["type"] = type;
+        output_.text(answer);
+    } catch (const InputError& error) {
+        output_.text({{"type", "refused"}, {"text", error.what()}});
+    }
 }
 
 void Viewport::answer(const InspectMessage& inspect) {

@@ -3,6 +3,7 @@
 
 #include "view/asked/message.h"
 #include "view/beads/bead_stream.h"
+#include "view/beads/move_stream.h"
 #include "view/document.h"
 #include "view/output.h"
 #include "view/picture/frame_scale.h"
@@ -62,6 +63,7 @@ private:
     void workOnFinal(const std::function<void()>& check);
     void workOnSave(const std::function<void()>& check);
     void answer(const InspectMessage& inspect);
+    void answer(const char* type, const std::function<nlohmann::json()>& of_document);
     void fail(const char* text);
     void send(const char* kind, const char* type, int width, int height, const ViewedPicture& picture,
               const PicturePlan& plan, std::uint64_t number, const std::vector<std::uint8_t>& file);
@@ -76,8 +78,9 @@ private:
     std::optional<ShowMessage> asked_;
     std::deque<InspectMessage> inspects_;
     std::deque<SaveMessage> saves_;
-    bool beads_asked_ = false;
-    int on_the_way_ = 0;  // pictures and parts of beads that the page has not taken yet
+    std::optional<ProgramMessage> program_;
+    bool beads_asked_ = false, moves_asked_ = false, layers_asked_ = false;
+    int on_the_way_ = 0;  // pictures and parts of tables that the page has not taken yet
     bool started_ = false;
     Stage stage_ = Stage::idle;
     Clock::time_point rest_at_;
@@ -91,6 +94,7 @@ private:
         full_;  // of the exact objects in the full size, for the finished picture and inspect()
     FrameScale frame_scale_;
     BeadStream beads_;
+    MoveStream moves_;
 };
 
 }  // namespace stratum::view

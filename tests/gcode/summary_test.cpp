@@ -59,5 +59,13 @@ TEST(Summary, Objects) {
     EXPECT_NE(text.find("  object 1, a.stl: 1 beads, 9.62 mm^3\n"), std::string::npos) << text;
 }
 
+TEST(Summary, SecondsOfLayers) {
+    Toolpath toolpath = readProgram("M83\n;LAYER_CHANGE\nG1 X10 F600 E1\n;LAYER_CHANGE\nG1 X40 E1\nG1 X10 F1200 E1\n");
+    EXPECT_EQ(layerSeconds(toolpath), (std::vector<double>{0, 1, 4.5}));
+    // Travel before a bead is of its layer; what comes before the first one is nobody's.
+    toolpath.timing = {{5, 1}, {8, 3}, {12, 2}};
+    EXPECT_EQ(layerSeconds(toolpath), (std::vector<double>{0, 1, 8}));
+}
+
 }  // namespace
 }  // namespace stratum::gcode

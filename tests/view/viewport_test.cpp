@@ -118,5 +118,56 @@ TEST(Viewport, InspectsThePicture) {
     EXPECT_TRUE(found["hit"]);
 }
 
+// Clicks and lines that are asked for while the beads are on their way take none of the page's places.
+TEST(Viewport, ClicksBetweenPartsOfATableHoldNothingUp) {
+    Document document(test::givenTile(0.2));
+    ViewScene scene(document);
+    std::size_t sent = 0, taken = 0;
+    Viewport viewport(document, {[](const nlohmann::json&) {},
+                                 [&](const nlohmann::json&, const std::vector<std::uint8_t>&) { ++sent; }});
+    viewport.startWith(scene);
+    const auto workUntilIdle = [&] {
+        for (int n = 0; n < 1000 && (viewport.hasWork(false) || viewport.worksAt()); ++n) {
+            if (viewport.hasWork(false)) viewport.step([] {});
+            for (; taken < sent; ++taken) viewport.ask(ShownMessage{});
+        }
+    };
+    viewport.ask(test::show(1, test::smallState()));
+    workUntilIdle();
+    for (int n = 0; n < 3; ++n) {
+        viewport.ask(BeadsMessage{});
+        viewport.ask(MovesMessage{});
+        viewport.ask(InspectMessage{2, 0.5, 0.5});
+        viewport.ask(ProgramMessage{3});
+        workUntilIdle();
+    }
+    const std::size_t before = sent;
+    viewport.ask(test::show(3, test::smallState(80)));
+    workUntilIdle();
+    EXPECT_EQ(sent, before + 3);  // moving, rough, final
+}
+
+// Layers, lines of the program: told once each, and what can't be told spoils no picture.
+TEST(Viewport, TellsOfLayersAndLines) {
+    OnePage page;
+    page.viewport.ask(test::show(1, test::smallState()));
+    page.workUntilIdle();
+    page.viewport.ask(LayersMessage{});
+    page.viewport.ask(ProgramMessage{5});
+    page.workUntilIdle();
+    const auto layers = page.shown.waitFor("layers");
+    const auto program = page.shown.waitFor("program");
+    ASSERT_FALSE(layers.is_null() || program.is_null());
+    ASSERT_EQ(layers["z"].size(), layers["seconds"].size());
+    EXPECT_NEAR(layers["z"][2].get<double>() - layers["z"][1].get<double>(), 0.2, 1e-9);
+    EXPECT_GT(layers["seconds"][2], 0.0);
+    EXPECT_EQ(program["lines"].size(), 9U);
+    EXPECT_EQ(program["lines"][4]["number"], program["line"]);
+    page.viewport.ask(ProgramMessage{4000000000U});
+    page.workUntilIdle();
+    EXPECT_NE(page.shown.waitFor("refused")["text"].get<std::string>().find("no such bead"), std::string::npos);
+    EXPECT_TRUE(page.shown.kinds().back() == "final");
+}
+
 }  // namespace
 }  // namespace stratum::view

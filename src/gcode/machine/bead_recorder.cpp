@@ -71,6 +71,20 @@ void BeadRecorder::changeFilament(std::uint32_t line) {
                   line);
 }
 
+void BeadRecorder::heat(double tool, double temperature, std::uint32_t line) {
+    constexpr double kHottest = 1000;
+    if (!(tool >= 0 && tool < 255 && temperature > 0 && temperature <= kHottest)) return;  // 0: off
+    toolpath_.temperatures.push_back(
+        {.line = line, .tool = static_cast<std::uint8_t>(tool), .value = static_cast<float>(temperature)});
+}
+
+void BeadRecorder::blow(double speed, std::uint32_t line) {
+    if (!(speed >= 0)) return;
+    const auto value = static_cast<float>(std::min(speed, 100.0));
+    if (toolpath_.fans.empty() || toolpath_.fans.back().value != value)
+        toolpath_.fans.push_back({.line = line, .tool = 0, .value = value});
+}
+
 void BeadRecorder::changeMix(ToolMix mix, std::uint32_t line) {
     const auto here = static_cast<std::uint32_t>(toolpath_.beads.size());
     // Machines set up many tools before they print, and gradients mix anew for every layer.

@@ -37,6 +37,11 @@ public:
     void renameObject(std::string_view name, std::uint32_t line);
     /// M600: a manual change of filament. Warns if no tag has stated the new color, which is then left open.
     void changeFilament(std::uint32_t line);
+    /// The nozzle of a tool shall have this temperature, in degrees Celsius, from this line on. Nothing is printed by
+    /// one that is off.
+    void heat(double tool, double temperature, std::uint32_t line);
+    /// The fan of the part shall have this speed, in per cent.
+    void blow(double speed, std::uint32_t line);
     /// A tool lays another mix of filaments from here on.
     void changeMix(ToolMix mix, std::uint32_t line);
     const std::vector<MixChange>& mixes() const { return mixes_; }

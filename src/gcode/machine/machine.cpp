@@ -206,6 +206,11 @@ void Machine::executeM(const Command& command) {
         case 103:
             motor_on_ = command.code == 101;
             return;
+        case 104:
+        case 106:
+        case 107:
+        case 109:
+            return setHeatOrFan(command);
         case 108:
         case 135:
             // MakerBot's machines and FlashForge's. Elsewhere these have no T.
@@ -254,7 +259,7 @@ void Machine::useNumberedTool(double number) {
 }
 
 void Machine::useTool(std::size_t tool) {
-    if (moves_ != nullptr) moves_->changeTool(tool_, tool);
+    if (moves_ != nullptr) moves_->changeTool(tool_, tool, line_);
     tool_ = tool;
     recorder_.setTool(static_cast<std::uint8_t>(tool));
     // PrusaSlicer and its derivatives subtract a nozzle's offset from the coordinates. Offsets that the firmware
@@ -274,6 +279,8 @@ double Machine::coordinateOf(const Command& command, char letter) const {
 
 void Machine::setOffsets(const Command& command) {
     // Without L a retraction, or with P a tool's offsets and temperatures: never a bead.
+    if (command.hasValue('P') && command.hasValue('S') && !command.hasValue('L'))
+        recorder_.heat(command.value('P'), command.value('S'), line_);
     if (!command.hasValue('L')) return;
     const double kind = command.value('L');
     if (kind != 2 && kind != 20) return;

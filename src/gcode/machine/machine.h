@@ -96,6 +96,7 @@ private:
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
     void warnUnreadable(const Line& line);
+    void setHeatOrFan(const Command& command);
     void setHomeOffset(const Command& command);
     void setVolumetric(const Command& command);
     void setSpeedFactor(const Command& command);

@@ -29,4 +29,17 @@ void Machine::setFlow(const Command& command) {
     flow_[tool] = percent / 100 * all_flow_;
 }
 
+void Machine::setHeatOrFan(const Command& command) {
+    if (command.code == 104 || command.code == 109) {
+        if (!command.hasValue('S') && !command.hasValue('R')) return;
+        return recorder_.heat(command.hasValue('T') ? command.value('T') : static_cast<double>(tool_),
+                              command.value(command.hasValue('S') ? 'S' : 'R'), line_);
+    }
+    // Fan 1 is that of the part on Bambu's machines; those behind it cool other things.
+    if (command.hasValue('P') && command.value('P') >= 2) return;
+    const double speed = command.code == 107 ? 0 : command.hasValue('S') ? command.value('S') : 255;
+    // RepRapFirmware takes shares, too.
+    recorder_.blow(firmware_ == Firmware::reprap && speed <= 1 ? 100 * speed : speed / 2.55, line_);
+}
+
 }  // namespace stratum::gcode

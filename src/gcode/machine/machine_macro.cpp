@@ -82,6 +82,13 @@ void Machine::executeMacro(const Command& command) {
         useNumberedTool(tool ? *tool : numberArgument(command.text, "TOOL").value_or(-1));
     } else if (same(name, "SET_DUAL_CARRIAGE")) {
         carriages_.setMode(argument(command.text, "MODE").value_or(""), line_);
+    } else if (same(name, "SET_HEATER_TEMPERATURE")) {
+        const std::string_view heater = argument(command.text, "HEATER").value_or("");
+        if (heater.starts_with("extruder"))
+            recorder_.heat(static_cast<double>(trailingNumber(heater)),
+                           numberArgument(command.text, "TARGET").value_or(0), line_);
+    } else if (moves_ != nullptr && same(name, "PAUSE")) {
+        moves_->pause(line_);
     } else if (moves_ != nullptr && same(name, "SET_VELOCITY_LIMIT")) {
         setVelocityLimit(command.text);
     } else if (moves_ != nullptr && same(name, "SET_RETRACTION")) {

@@ -64,6 +64,7 @@ struct MachineLimits {
 struct Move {
     static constexpr std::uint32_t kNoBead = 0xffffffff;
 
+    std::array<double, 3> start{};            ///< mm, in print space; of a machine with a belt, before it is tilted
     std::array<double, kMotionAxes> delta{};  ///< mm; E in mm of filament, flow factor (M221) included
     double speed = 0;                         ///< mm/s, programmed along the path, or of E if nothing else moves
     double filament_area = 0;                 ///< mm^2, section of the filament
@@ -71,6 +72,13 @@ struct Move {
     PlanPoint center{};                       ///< mm from the start; of an arc
     std::uint32_t bead = kNoBead;             ///< index into Toolpath::beads of its bead, or kNoBead
     std::uint32_t line = 0;                   ///< 1-based line in the source
+};
+
+/// What interrupts a print.
+enum class Stop : std::uint8_t {
+    tool_change,
+    pause,            ///< M0, M1, M25, M226, M601, M400 U1, PAUSE
+    filament_change,  ///< M600
 };
 
 class LimitOrigins;  // limit_origins.h
@@ -88,6 +96,8 @@ public:
     virtual void move(const Move& move) = 0;
     /// The machine stops and waits for `seconds` (>= 0): G4, a change of tool, homing (its time is unknown: 0).
     virtual void wait(double seconds) = 0;
+    /// What it is that the machine stops for, where people may want to know it; waits are told by themselves.
+    virtual void stop(Stop kind, std::uint32_t line) { static_cast<void>(kind), static_cast<void>(line); }
     /// Once, at the end of the program: where the limits are from. Needed for reports only.
     virtual void origin(const LimitOrigins& origins) { static_cast<void>(origins); }
 };

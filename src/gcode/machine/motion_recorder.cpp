@@ -33,6 +33,23 @@ bool rests(const Command& command) {
     }
 }
 
+std::optional<Stop> stopOf(const Command& command) {
+    switch (command.code) {
+        case 0:
+        case 1:
+        case 25:
+        case 226:
+        case 601:
+            return Stop::pause;
+        case 400:  // Bambu's pause for the user
+            return command.hasValue('U') ? std::optional(Stop::pause) : std::nullopt;
+        case 600:
+            return Stop::filament_change;
+        default:
+            return std::nullopt;
+    }
+}
+
 }  // namespace
 
 MotionRecorder::MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings)
@@ -129,6 +146,7 @@ void MotionRecorder::retraction(const RetractionChange& change) {
 void MotionRecorder::runRetraction(const Retraction& retraction, double sign, std::uint32_t line) {
     if (!(retraction.length > 0)) return;
     Move move;
+    move.start = {place_.x, place_.y, place_.z};
     move.delta[3] = sign * retraction.length;
     move.filament_area = filament_area_;
     move.speed = retraction.speed > 0 ? std::max(retraction.speed, kSlowest) : kDefaultSpeed;
@@ -166,6 +184,7 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
         return;
     }
     if (command.letter != 'M') return;
+    if (const auto stop = stopOf(command)) sink_.stop(*stop, line);
     const double per_second = settings_.feedrate_per_minute ? 1.0 / 60 : 1;
     if (isKlipper() && (command.code == 201 || command.code == 203 || command.code == 205 || command.code == 207 ||
                         command.code == 208 || command.code == 566))
@@ -225,11 +244,13 @@ void MotionRecorder::velocityLimit(const VelocityLimit& limit, std::uint32_t lin
     sink_.limits(limits_);
 }
 
-void MotionRecorder::changeTool(std::size_t from, std::size_t to) {
+void MotionRecorder::changeTool(std::size_t from, std::size_t to, std::uint32_t line) {
     const auto at = [](const std::vector<double>& times, std::size_t tool) {
         return times.empty() ? 0.0 : times[std::min(tool, times.size() - 1)];
     };
-    if (from != to) sink_.wait(at(settings_.unload, from) + at(settings_.load, to) + settings_.change);
+    if (from == to) return;
+    sink_.stop(Stop::tool_change, line);
+    sink_.wait(at(settings_.unload, from) + at(settings_.load, to) + settings_.change);
 }
 
 void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std::uint32_t line) {
@@ -247,6 +268,8 @@ void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std:
 void MotionRecorder::move(const Point& from, const Point& to, const std::optional<Arc>& arc, double filament,
                           double filament_area, double speed, std::uint32_t bead, std::uint32_t line) {
     Move move;
+    move.start = {from.x, from.y, from.z};
+    place_ = to;
     move.filament_area = filament_area_ = filament_area;
     move.delta = {to.x - from.x, to.y - from.y, to.z - from.z, filament};
     if (arc) {

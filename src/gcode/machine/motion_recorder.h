@@ -42,7 +42,8 @@ public:
     void command(const Command& command, double unit, std::uint32_t line);
     void velocityLimit(const VelocityLimit& limit, std::uint32_t line);
     void retraction(const RetractionChange& change);
-    void changeTool(std::size_t from, std::size_t to);
+    void changeTool(std::size_t from, std::size_t to, std::uint32_t line);
+    void pause(std::uint32_t line) { sink_.stop(Stop::pause, line); }
     /// `seconds`: as `what` has it in the file, M900 K or the like.
     void pressureAdvance(std::string_view what, double seconds, std::uint32_t line);
 
@@ -77,6 +78,7 @@ private:
     MachineLimits limits_;
     WarningLog& warnings_;
     double filament_area_ = 0;  // mm^2, of the last move
+    Point place_;               // where it ended
     Retraction retract_;
     Retraction recover_;
     bool retracted_ = false;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace stratum::gcode {
 namespace {
@@ -58,6 +59,23 @@ std::vector<Point> offsets(std::string_view text) {
         values.push_back(point);
     }
     return any ? values : std::vector<Point>{};
+}
+
+// The corners of the bed that Cura's settings of the machine state; empty if they don't.
+std::vector<std::array<double, 2>> curaBed(std::span<const CuraSetting> settings) {
+    constexpr double kWidest = 1e5;  // mm
+    double x = 0;
+    double y = 0;
+    bool centered = false;
+    for (const auto& [extruder, key, value] : settings) {
+        if (key == "machine_width") x = positiveNumber(value, kWidest).value_or(0);
+        if (key == "machine_depth") y = positiveNumber(value, kWidest).value_or(0);
+        if (key == "machine_center_is_zero") centered = value == "True";
+    }
+    if (!(x > 0 && y > 0)) return {};
+    const double left = centered ? -x / 2 : 0;
+    const double front = centered ? -y / 2 : 0;
+    return {{left, front}, {left + x, front}, {left + x, front + y}, {left, front + y}};
 }
 
 // The firmware of a flavour's name. PrusaSlicer's and Slic3r's "reprap" means RepRap/Sprinter, Marlin's forebear;
@@ -158,6 +176,7 @@ private:
             std::replace(diameters.begin(), diameters.end(), 0.0, diameters.front());
             if (diameters.front() > 0) settings.filament_diameters = std::move(diameters);
         }
+        if (settings.stated.bed.empty()) settings.stated.bed = curaBed(changed);
         const auto by = [this](std::string_view slicer) { return settings.slicer.find(slicer) != std::string::npos; };
         if (!by("Cura") && !by("Creality Print V")) return;
         settings.slicer_limits.limits = limits;

@@ -17,6 +17,7 @@ namespace {
 constexpr double kLongest = 1e9;  // s, thirty years
 constexpr double kDensest = 25;   // g/cm^3
 constexpr double kDearest = 1e9;  // a kg
+constexpr double kWidest = 1e5;   // mm, of a bed
 
 // Each part of a list, with its number.
 template <typename Take>
@@ -126,6 +127,10 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
         setNumbers(value, kDensest, facts_.densities);
     } else if (key == "filament_cost") {
         setNumbers(value, kDearest, facts_.prices);
+    } else if (key == "bed_shape" || key == "printable_area") {  // PrusaSlicer's, OrcaSlicer's
+        setBed(value);
+    } else if (key == "bed_size_x_mm" || key == "bed_size_y_mm") {  // KISSlicer's
+        setBedSide(key[9] == 'x' ? 0 : 1, value);
     } else if (key == "printer_model" || key == "printer_name") {
         if (!value.empty()) facts_.printer = value;
     } else if (key == "printer_settings_id") {
@@ -178,6 +183,8 @@ void StatedReader::setting(std::string_view key, std::string_view value) {
         setNumbers(value, kDensest, facts_.densities);
     } else if (key == "filamentPricesPerKg") {
         setNumbers(value, kDearest, facts_.prices);
+    } else if (key == "strokeXoverride" || key == "strokeYoverride") {
+        setBedSide(key[6] == 'X' ? 0 : 1, value);
     } else if (key == "profileName") {
         profile_ = value;
     } else if (key == "layerHeight") {
@@ -185,6 +192,29 @@ void StatedReader::setting(std::string_view key, std::string_view value) {
     } else if (key == "firstLayerHeightPercentage") {
         if (const auto share = positiveNumber(value, 1000)) first_share_ = *share / 100;
     }
+}
+
+// "0x0,250x0,250x210,0x210"; OrcaSlicer states both forms, PrusaSlicer's without corners that are cut off.
+void StatedReader::setBed(std::string_view outline) {
+    std::vector<std::array<double, 2>> corners;
+    for (const std::string_view part : partsOf(outline, ",")) {
+        const char* p = part.data();
+        const char* const end = p + part.size();
+        std::array<double, 2> corner{};
+        if (!parseNumber(p, end, corner[0]) || p == end || *p != 'x' || !parseNumber(++p, end, corner[1])) return;
+        if (!(std::max(std::abs(corner[0]), std::abs(corner[1])) <= kWidest)) return;
+        corners.push_back(corner);
+    }
+    if (corners.size() >= 3) facts_.bed = std::move(corners);
+}
+
+// Of a rectangle from the origin.
+void StatedReader::setBedSide(std::size_t axis, std::string_view length) {
+    const auto side = positiveNumber(length, kWidest);
+    if (!side) return;
+    bed_sides_[axis] = *side;
+    const auto [x, y] = bed_sides_;
+    if (x > 0 && y > 0) facts_.bed = {{0, 0}, {x, 0}, {x, y}, {0, y}};
 }
 
 void StatedReader::setMaterial(std::size_t tool, std::string_view name) {

@@ -3,12 +3,13 @@
 // Sources: PrusaSlicer, SuperSlicer, OrcaSlicer and BambuStudio GCode.cpp ("estimated printing time (normal mode) =",
 // "total filament used [g] =", "model printing time: ...; total estimated time:", their settings); Cura's ";TIME:" and
 // Griffin headers ("PRINT.TIME:"); Simplify3D ("Build time:", "Plastic weight:", its settings with commas:
-// filamentDensities, filamentPricesPerKg); ideaMaker
+// filamentDensities, filamentPricesPerKg, strokeXoverride); ideaMaker
 // ("Print Time:"); KISSlicer ("Estimated Build Time: 332.83 minutes"); Kiri:Moto ("--- print time: 806s ---");
 // FlashPrint ("machine_type:", "right_extruder_material:") and the header of its .gx; Snapmaker Luban
 // ("estimated_time(s):", "Extruder 0 Material:"); Creality Print ("Machine Name:", "Material Type:").
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,7 @@ struct StatedFacts {
     std::string printer;                       ///< the model, or else the name of its profile
     std::optional<double> layer_height;        ///< mm
     std::optional<double> first_layer_height;  ///< mm
+    std::vector<std::array<double, 2>> bed;    ///< mm, corners of the printable area; empty, or at least three
 
     bool empty() const;
 };
@@ -45,6 +47,8 @@ private:
     void pair(std::string_view key, std::string_view value);
     void sentence(std::string_view key, std::string_view value);
     void setting(std::string_view key, std::string_view value);
+    void setBed(std::string_view outline);
+    void setBedSide(std::size_t axis, std::string_view length);
     void setMaterial(std::size_t tool, std::string_view name);
     static void setNumbers(std::string_view list, double most, std::vector<double>& numbers);
     void setNozzle(std::size_t tool, std::string_view diameter);
@@ -52,6 +56,7 @@ private:
     StatedFacts facts_;
     std::string profile_;                // the printer's settings, where no model is named
     std::optional<double> first_share_;  // of the layer height
+    std::array<double, 2> bed_sides_{};  // mm; 0: not stated
     bool total_grams_ = false;           // the sum is stated, not only its parts
 };
 

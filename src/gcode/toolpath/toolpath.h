@@ -92,6 +92,13 @@ struct ColorChange {
     bool stated = true;  ///< by the file; else the color is one of kCategoryColors
 };
 
+/// A value that holds from a line of the program on, of a tool or of all of them.
+struct SetValue {
+    std::uint32_t line = 0;  ///< 1-based
+    std::uint8_t tool = 0;
+    float value = 0;
+};
+
 /// Time and speeds of a bead, as the motion planner computes them (src/motion).
 struct BeadTiming {
     double start = 0;   ///< s since the program's begin
@@ -128,6 +135,8 @@ struct Toolpath {
     std::vector<std::optional<Rgb>> tool_colors;
     std::vector<std::uint8_t> palette_tools;  ///< those of kCategoryColors, for want of a statement: colorUnstated()
     std::vector<ColorChange> color_changes;   ///< in print order
+    std::vector<SetValue> temperatures;       ///< degrees Celsius of the nozzles, as the program asks for them
+    std::vector<SetValue> fans;               ///< per cent, of the fan that cools the part
     std::vector<BeadTiming> timing;           ///< by bead; empty unless its motion was planned
     std::vector<BeadFlow> flow;               ///< by bead; empty unless it was simulated
     std::vector<double> filament_by_tool;     ///< mm as the file counts it, by T number; may be short

@@ -50,7 +50,9 @@ std::string titleOf(const Legend& legend) {
 std::string unitOfAttribute(const std::string& attribute) {
     if (attribute == "width" || attribute == "deviation") return "mm";
     if (attribute == "speed") return "mm/s";
-    if (attribute == "time") return "s";
+    if (attribute == "time" || attribute == "layer_time") return "s";
+    if (attribute == "temperature") return "C";  // the font is ASCII
+    if (attribute == "fan") return "%";
     if (attribute == "flow") return "mm^3/s";
     return {};
 }

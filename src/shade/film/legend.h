@@ -22,7 +22,8 @@ struct Legend {
     double least = 0.0, most = 0.0;
 };
 
-/// The unit of a print's attribute: "mm" of width and deviation, "mm/s" of speed, "s" of time; nothing for others.
+/// The unit of a print's attribute: "mm" of width and deviation, "mm/s" of speed, "s" of time and layer_time, "C" of
+/// temperature, "%" of fan; nothing for others.
 std::string unitOfAttribute(const std::string& attribute);
 
 /// Draws it into the upper left corner of an 8-bit sRGB picture, on a light panel, in a size relative to the picture's

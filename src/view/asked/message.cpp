@@ -45,6 +45,15 @@ Message parseMessage(std::string_view text) {
         message = ShownMessage{};
     } else if (type == "beads") {
         message = BeadsMessage{};
+    } else if (type == "moves") {
+        message = MovesMessage{};
+    } else if (type == "layers") {
+        message = LayersMessage{};
+    } else if (type == "program") {
+        ProgramMessage program;
+        if (section.find("bead") == nullptr) section.fail("bead", "the number of a bead");
+        section.readInteger("bead", program.bead);
+        message = program;
     } else if (type == "open") {
         OpenMessage open;
         std::uint32_t file = 0;
@@ -52,7 +61,7 @@ Message parseMessage(std::string_view text) {
         open.file = file;
         message = open;
     } else {
-        section.fail("type", "show, inspect, save, cancel, shown, beads or open");
+        section.fail("type", "show, inspect, save, cancel, shown, beads, moves, layers, program or open");
     }
     section.finish();
     return message;

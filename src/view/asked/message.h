@@ -33,13 +33,21 @@ struct CancelMessage {};
 struct ShownMessage {};
 /// Send the beads of the print, for pages that draw them.
 struct BeadsMessage {};
+/// Send its travels, retractions, seams and stops, for pages that draw them.
+struct MovesMessage {};
+/// Send heights and times of its layers.
+struct LayersMessage {};
+/// Send the lines of the program around that of a bead.
+struct ProgramMessage {
+    std::uint32_t bead = 0;
+};
 /// Look at another of the inputs.
 struct OpenMessage {
     std::size_t file = 0;
 };
 
-using Message =
-    std::variant<ShowMessage, InspectMessage, SaveMessage, CancelMessage, ShownMessage, BeadsMessage, OpenMessage>;
+using Message = std::variant<ShowMessage, InspectMessage, SaveMessage, CancelMessage, ShownMessage, BeadsMessage,
+                             MovesMessage, LayersMessage, ProgramMessage, OpenMessage>;
 
 /// Throws InputError for anything else.
 Message parseMessage(std::string_view text);

@@ -67,6 +67,10 @@ private:
             prints.printed = fmt::format("{}{}%", state_.by_time ? "time:" : "", *state_.printed);
             say("--printed", prints.printed);
         }
+        if (state_.beads) {
+            prints.printed = fmt::format("bead:{}", *state_.beads);
+            say("--printed", prints.printed);
+        }
         if (state_.clip) {
             plan_.options.tracing.clip.push_back(*state_.clip);
             say(fmt::format("--clip={},{}", vectorText(state_.clip->normal), state_.clip->offset).c_str());

@@ -23,6 +23,7 @@ using Json = nlohmann::json;
 constexpr int kLeastSide = 16, kMostSide = 8192;
 constexpr double kMostPixels = 40e6;
 constexpr double kMostLength = 1e7;  // world units
+constexpr double kMostBeads = 4294967295.0;
 constexpr std::size_t kMostText = 200, kMostNumbers = 1000;
 
 constexpr std::array<std::pair<std::string_view, shade::View>, 7> kViews = {{{"iso", shade::View::iso},
@@ -116,6 +117,11 @@ void readSelection(JsonSection& section, ViewState& state) {
     }
     state.printed = optionalNumber(section, "printed", 1e-6, 100.0);
     if (state.printed == 100.0) state.printed.reset();
+    if (const auto beads = optionalNumber(section, "beads", 1, kMostBeads)) {
+        if (*beads != std::floor(*beads)) section.fail("beads", "a whole number");
+        if (state.printed) section.fail("beads", "nothing beside printed: a share or a number of beads");
+        state.beads = static_cast<std::uint32_t>(*beads);
+    }
     section.read("by_time", state.by_time);
     if (const Json* features = listOf(section, "hidden_features"))
         for (const Json& feature : *features) {
@@ -235,6 +241,7 @@ Json toJson(const ViewState& state) {
               {"integrator", state.integrator},
               {"spp", state.spp}};
     if (state.printed) json["printed"] = *state.printed;
+    if (state.beads) json["beads"] = *state.beads;
     if (state.exposure) json["exposure"] = *state.exposure;
     if (state.bed) json["bed"] = *state.bed;
     if (state.bed_surface) json["bed_surface"] = nameOf(kSurfaces, *state.bed_surface);

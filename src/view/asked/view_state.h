@@ -32,6 +32,7 @@ struct ViewState {
 
     std::uint32_t first_layer = 0, last_layer = 0;  ///< 0: as given
     std::optional<double> printed;                  ///< per cent; empty: all
+    std::optional<std::uint32_t> beads;             ///< that are printed, instead of a share; empty: all
     bool by_time = false;                           ///< of the time; else of the volume
     std::vector<std::string> hidden_features;       ///< names
     std::vector<std::uint32_t> objects;             ///< numbers; empty: all

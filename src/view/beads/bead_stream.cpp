@@ -26,9 +26,9 @@ std::vector<std::uint8_t> bytesOf(const std::vector<Value>& values) {
 
 }  // namespace
 
-std::string BeadStream::refusal() const {
-    const GivenInput& given = document_.given();
-    if (given.objects.size() != 1 || !document_.toolpath(0)) return "the input is not a print alone";
+std::string whyNoBeads(const Document& document) {
+    const GivenInput& given = document.given();
+    if (given.objects.size() != 1 || !document.toolpath(0)) return "the input is not a print alone";
     if (!given.objects.front().placement.isIdentity()) return "the print is moved by its scene";
     const assemble::PrintRequest& request = given.options.tracing.prints;
     if (!request.print.layers.empty() || !request.print.features.empty() || !request.print.objects.empty() ||
@@ -40,7 +40,7 @@ std::string BeadStream::refusal() const {
 bool BeadStream::sendPart() {
     if (!table_ || generation_ != document_.generation()) {
         table_.reset();
-        std::string why = refusal();
+        std::string why = whyNoBeads(document_);
         if (why.empty()) {
             try {
                 table_ = std::make_unique<const BeadTable>(document_.toolpath(0));

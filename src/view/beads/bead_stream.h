@@ -14,6 +14,9 @@
 
 namespace stratum::view {
 
+/// Why a page can't draw this input; empty if it can.
+std::string whyNoBeads(const Document& document);
+
 /// For one page and one thread. Messages: "beads" with the runs, then "bead-part" with texels, or "no-beads" with the
 /// reason; "look" (bead_look.h), and "colors" with 16 bits a texel if they have changed.
 class BeadStream {
@@ -26,9 +29,6 @@ public:
     void sendLook(const ViewedPicture& picture, const PicturePlan& plan, ViewScene& scene, std::uint64_t number);
 
 private:
-    /// Why a page can't draw this input; empty if it can.
-    std::string refusal() const;
-
     Document& document_;
     const Output& output_;
     std::unique_ptr<const BeadTable> table_;

@@ -25,9 +25,25 @@ function rowsOf(found, mm) {
   return rows;
 }
 
+/** Lines of G-code as a list, one of them marked by its number. */
+export function linesOf(lines, here) {
+  const list = document.createElement("ol");
+  list.setAttribute("aria-label", "Lines of G-code");
+  for (const line of lines) {
+    const item = document.createElement("li");
+    const number = document.createElement("span");
+    number.textContent = line.number;
+    item.append(number, line.text);
+    if (line.number === here) item.className = "this";
+    list.append(item);
+  }
+  return list;
+}
+
 export class Answer {
   points = []; // that are marked, of the print
   mm = 1; // a unit of the input's lengths
+  lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
   measuring = false;
 
   constructor(place, marks) {
@@ -66,7 +82,7 @@ export class Answer {
       list.append(term, text);
     }
     this.place.replaceChildren(head, list);
-    if (found.lines && !this.measuring) this.place.append(this.#lines(found));
+    if (found.lines && !this.measuring) this.place.append(linesOf(found.lines, found.bead.line));
     this.place.hidden = false;
   }
 
@@ -78,28 +94,15 @@ export class Answer {
     return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(mm(this.points[0]))], ["To", point(mm(this.points[1]))]];
   }
 
-  #lines(found) {
-    const list = document.createElement("ol");
-    list.setAttribute("aria-label", "Lines of G-code");
-    for (const line of found.lines) {
-      const item = document.createElement("li");
-      const number = document.createElement("span");
-      number.textContent = line.number;
-      item.append(number, line.text);
-      if (line.number === found.bead.line) item.className = "this";
-      list.append(item);
-    }
-    return list;
-  }
-
   /** On top of the picture that this camera of the server shows. */
   draw(camera, aspect) {
     const canvas = this.marks;
     const ratio = devicePixelRatio || 1;
     canvas.width = Math.round(canvas.clientWidth * ratio);
     canvas.height = Math.round(canvas.clientHeight * ratio);
-    if (!camera || !this.points.length) return;
     const context = canvas.getContext("2d");
+    if (this.lines) context.drawImage(this.lines, 0, 0, canvas.width, canvas.height);
+    if (!camera || !this.points.length) return;
     const places = this.points.map((p) => project(camera, aspect, p)).filter((p) => p !== null).map(([x, y]) => [x * canvas.width, y * canvas.height]);
     const stroke = (path) => {
       for (const [width, color] of [[5 * ratio, "rgba(0,0,0,.65)"], [2.5 * ratio, "#ffd23f"]]) {

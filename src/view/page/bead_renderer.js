@@ -1,10 +1,11 @@
 // Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it.
-import { ROW_BITS, beadFragments, beadVertices } from "./bead_shaders.js";
+import { beadFragments, beadVertices } from "./bead_shaders.js";
 import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
+import { LineRenderer } from "./line_renderer.js";
+import { ROW, fillTable, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
 import { dot, sub } from "./camera.js";
 
-const ROW = 1 << ROW_BITS;
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
 
 export class BeadRenderer {
@@ -20,20 +21,20 @@ export class BeadRenderer {
     this.visible = new VisibleBeads(table.texels);
     const kinds = table.kinds;
     const defines = ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}`).join("\n");
-    this.beads = this.#program(beadVertices(defines), beadFragments(defines));
-    this.light = this.#program(screenVertices, lightFragments(`${defines}\n#define FINE`));
-    this.plain = this.#program(screenVertices, lightFragments(defines));
-    this.back = this.#program(backVertices, backFragments);
+    this.beads = makeProgram(gl, beadVertices(defines), beadFragments(defines));
+    this.light = makeProgram(gl, screenVertices, lightFragments(`${defines}\n#define FINE`));
+    this.plain = makeProgram(gl, screenVertices, lightFragments(defines));
+    this.back = makeProgram(gl, backVertices, backFragments);
     this.textures = {
-      beads: this.#table(gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, table.words, 4),
-      runs: this.#table(gl.RGBA32UI, gl.RGBA_INTEGER, gl.UNSIGNED_INT, table.runs, 4),
-      shown: this.#table(gl.R8UI, gl.RED_INTEGER, gl.UNSIGNED_BYTE, new Uint8Array(table.runs.length / 4).fill(1), 1),
-      list: this.#table(gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, new Uint32Array(ROW), 1),
-      colors: this.#table(gl.R16UI, gl.RED_INTEGER, gl.UNSIGNED_SHORT, new Uint16Array(1), 1),
-      palette: this.#texture(),
-      light: this.#texture(gl.LINEAR),
-      ids: this.#texture(),
-      depths: this.#texture(),
+      beads: makeTable(gl, table.words, 4),
+      runs: makeTable(gl, table.runs, 4),
+      shown: makeTable(gl, new Uint8Array(table.runs.length / 4).fill(1), 1),
+      list: makeTable(gl, new Uint32Array(ROW), 1),
+      colors: makeTable(gl, new Uint16Array(1), 1),
+      palette: makeTexture(gl),
+      light: makeTexture(gl, gl.LINEAR),
+      ids: makeTexture(gl),
+      depths: makeTexture(gl),
     };
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
@@ -45,70 +46,13 @@ export class BeadRenderer {
     this.size = [0, 0];
     this.range = [0, table.texels];
     this.look = null;
+    this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
-  }
-
-  #program(vertices, fragments) {
-    const gl = this.gl;
-    const program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertices], [gl.FRAGMENT_SHADER, fragments]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`its shader: ${gl.getShaderInfoLog(shader)}`);
-      gl.attachShader(program, shader);
-    }
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`its shaders: ${gl.getProgramInfoLog(program)}`);
-    const places = {};
-    for (let n = 0; n < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); ++n) {
-      const { name, type } = gl.getActiveUniform(program, n);
-      places[name] = [gl.getUniformLocation(program, name), type];
-    }
-    return { program, places };
-  }
-
-  /** Sets what the program has of these. */
-  #set({ places }, values) {
-    const gl = this.gl;
-    const setters = { [gl.FLOAT]: "uniform1f", [gl.FLOAT_VEC2]: "uniform2fv", [gl.FLOAT_VEC3]: "uniform3fv", [gl.FLOAT_VEC4]: "uniform4fv", [gl.UNSIGNED_INT]: "uniform1ui", [gl.UNSIGNED_INT_VEC2]: "uniform2uiv" };
-    for (const [name, value] of Object.entries(values))
-      if (places[name]) gl[setters[places[name][1]] ?? "uniform1i"](places[name][0], value);
-  }
-
-  #texture(filter = this.gl.NEAREST) {
-    const gl = this.gl;
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-    return texture;
-  }
-
-  /** A texture of whole rows. */
-  #table(kind, format, type, values, each) {
-    const texture = this.#texture();
-    this.#fill(texture, kind, format, type, values, each);
-    return texture;
-  }
-  #fill(texture, kind, format, type, values, each) {
-    const gl = this.gl;
-    const rows = Math.max(1, Math.ceil(values.length / each / ROW));
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.texImage2D(gl.TEXTURE_2D, 0, kind, ROW, rows, 0, format, type, null);
-    const whole = Math.floor(values.length / each / ROW);
-    if (whole > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ROW, whole, format, type, values.subarray(0, whole * ROW * each));
-    const rest = values.length / each - whole * ROW;
-    if (rest > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, format, type, values.subarray(whole * ROW * each));
   }
 
   /** By run, which are shown; and the texels from, to that are printed. */
   show(shown, range) {
-    const gl = this.gl;
-    this.#fill(this.textures.shown, gl.R8UI, gl.RED_INTEGER, gl.UNSIGNED_BYTE, shown, 1);
+    fillTable(this.gl, this.textures.shown, shown, 1);
     this.range = range;
   }
 
@@ -117,7 +61,7 @@ export class BeadRenderer {
     const gl = this.gl;
     this.colored = places !== null;
     if (!places) return;
-    this.#fill(this.textures.colors, gl.R16UI, gl.RED_INTEGER, gl.UNSIGNED_SHORT, places, 1);
+    fillTable(gl, this.textures.colors, places, 1);
     const values = new Float32Array(4 * 1024 * Math.ceil(palette.length / 1024));
     palette.forEach((color, n) => values.set(color, 4 * n));
     gl.bindTexture(gl.TEXTURE_2D, this.textures.palette);
@@ -174,7 +118,7 @@ export class BeadRenderer {
     });
     gl.activeTexture(gl.TEXTURE0 + 31);
     gl.useProgram(program);
-    this.#set(this.beads, view);
+    setUniforms(gl, this.beads, view);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.viewport(0, 0, ...this.size);
     gl.enable(gl.DEPTH_TEST);
@@ -191,6 +135,7 @@ export class BeadRenderer {
       this.#drawBeads(false, ...part);
     }
     this.#lit(view, state, camera);
+    this.lines.draw({ ...view, eye: camera.eye }, this.textures.depths);
     return this.visible.partsLeft === 0;
   }
 
@@ -200,7 +145,7 @@ export class BeadRenderer {
     const rows = Math.ceil(visible.count / ROW);
     if (rows > this.listRows) {
       this.listRows = 2 * rows;
-      this.#fill(this.textures.list, gl.R32UI, gl.RED_INTEGER, gl.UNSIGNED_INT, new Uint32Array(this.listRows * ROW), 1);
+      fillTable(gl, this.textures.list, new Uint32Array(this.listRows * ROW), 1);
       visible.changedFrom = 0;
       gl.activeTexture(gl.TEXTURE0 + this.units.list);
       gl.bindTexture(gl.TEXTURE_2D, this.textures.list);
@@ -218,7 +163,7 @@ export class BeadRenderer {
   #drawBeads(from_list, first, count) {
     const gl = this.gl;
     for (let n = 0; n < count; n += DRAW) {
-      this.#set(this.beads, { from_list, first: first + n });
+      setUniforms(gl, this.beads, { from_list, first: first + n });
       gl.drawElements(gl.TRIANGLES, 6 * Math.min(DRAW, count - n), gl.UNSIGNED_SHORT, 0);
     }
   }
@@ -240,12 +185,12 @@ export class BeadRenderer {
     if (normals) gl.clear(gl.COLOR_BUFFER_BIT);
     else {
       gl.useProgram(this.back.program);
-      this.#set(this.back, values);
+      setUniforms(gl, this.back, values);
       gl.drawArrays(gl.TRIANGLES, 0, 6 * GRID[0] * GRID[1]);
     }
     const light = this.fine ? this.light : this.plain;
     gl.useProgram(light.program);
-    this.#set(light, { ...values, colored: Number(this.colored ?? false), normals: Number(normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
+    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), normals: Number(normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.SCISSOR_TEST);

@@ -2,9 +2,7 @@
 //
 // The shape of a bead is that of the level set (src/voxelize/beads/bead_field.h). Lengths are mm; points are relative
 // to the eye, so that floats are fine near the surface. Depth is along the viewing direction.
-
-/** 2^11 texels a row in all tables. */
-export const ROW_BITS = 11;
+import { ROW_BITS } from "./webgl.js";
 
 export const NEAR = "0.05"; // mm, of depth 1
 
@@ -12,7 +10,8 @@ export const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
 precision highp usampler2D;
-precision highp sampler2D;`;
+precision highp sampler2D;
+uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 << ROW_BITS) - 1}u, n >> ${ROW_BITS}u), 0); }`;
 
 // What the programs share: a bead of the table, and where a ray meets it.
 export const BEAD = `
@@ -36,8 +35,6 @@ struct Bead {
   float sweep;
 #endif
 };
-
-uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 << ROW_BITS) - 1}u, n >> ${ROW_BITS}u), 0); }
 
 Bead beadAt(uint n) {
   uvec4 w = row(beads, n);

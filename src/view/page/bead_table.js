@@ -82,8 +82,9 @@ export class BeadTable {
     return result;
   }
 
-  /** Texels from, to of what the state says is printed. */
+  /** Texels from, to of what the state says is printed: a number of beads, or a share. */
   range(state) {
+    if (state.beads !== null) return [0, this.texelOf(state.beads)];
     const moments = state.by_time ? this.printed.time : this.printed.volume;
     const end = state.printed >= 100 ? this.texels : this.texelOf(moments[Math.max(1, Math.round(state.printed * 2)) - 1]);
     return [0, end];

@@ -49,6 +49,7 @@ export class Connection extends EventTarget {
     const length = new DataView(data).getUint32(0, true);
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     const file = head.media ? new Blob([new Uint8Array(data, 4 + length)], { type: head.media }) : data.slice(4 + length);
+    if (!head.media) this.send({ type: "shown" }); // a picture is shown later
     this.#tell(head.type, { ...head, file });
   }
 

@@ -49,8 +49,8 @@ export class Controls {
       byId("objects-group").hidden = print.objects.length < 2;
       byId("tools-group").hidden = print.tools.length < 2;
     }
-    const attributes = print ? print.attributes : ["color", "feature", "layer", "tool", "object", "width", "speed", "flow", "time"];
-    byId("color-by").replaceChildren(option("", "the material"), ...attributes.map((name) => option(name, name === "color" ? "the file's colours" : name)));
+    const attributes = print ? print.attributes : ["color", "feature", "layer", "tool", "object", "width", "speed", "flow", "time", "layer_time", "temperature", "fan"];
+    byId("color-by").replaceChildren(option("", "the material"), ...attributes.map((name) => option(name, name === "color" ? "the file's colours" : name.replace("_", " "))));
     this.show();
   }
 
@@ -120,6 +120,7 @@ export class Controls {
     const count = this.layerCount;
     low = Math.max(1, Math.min(count, Math.round(low) || 1));
     high = Math.max(low, Math.min(count, Math.round(high) || count));
+    this.state().beads = null;
     this.state().layers = [low === 1 && high === count ? 0 : low, high === count ? 0 : high];
     this.hold();
     this.show();
@@ -145,6 +146,7 @@ export class Controls {
   #bindProgress() {
     const set = (value, moving) => {
       this.state().printed = Math.round(value * 2) / 2;
+      this.state().beads = null;
       this.hold();
       this.show();
       this.changed(moving);

@@ -1,17 +1,20 @@
 // The page of vdbview: the picture, and what changes it.
 import { Answer, clock } from "./answer.js";
-import { OrbitCamera, handleInput } from "./camera.js";
+import { OrbitCamera, handleInput, sub, unit } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { MotionPanel } from "./motion_panel.js";
+import { KINDS } from "./move_table.js";
 import { OwnPicture, cameraOf } from "./own_picture.js";
-import { showLegend } from "./legend.js";
+import { Legend } from "./legend.js";
+import { Saving } from "./saving.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
 const byId = (id) => document.getElementById(id);
 const picture = byId("picture");
 const context = picture.getContext("2d");
 
-let { state, file } = fromFragment(location.hash);
+let { state, file, wrong } = fromFragment(location.hash);
 let orbit = state.camera.eye ? orbitOf(state.camera) : null;
 let camera = null; // of the last picture
 let aspect = 16 / 9;
@@ -23,20 +26,21 @@ let viewFrom = 0; // the first number that the named view has
 let generation; // of the input's file
 let latest = 0; // the number that the last picture answers
 let shownSize = [0, 0]; // of the last view that was asked for
-/** For measurements and tests: one entry a picture, and the number of the last view. */
+/** For measurements and tests: one entry a picture, the number of the last view, and of each kind of moves how many are shown. */
 const log = (window.vdbviewLog = []);
 window.vdbviewAsked = () => number;
+window.vdbviewCounts = () => own.counts();
 
 function orbitOf({ eye, look_at, fov }) {
-  const way = [0, 1, 2].map((n) => look_at[n] - eye[n]);
-  const length = Math.hypot(...way) || 1;
-  return OrbitCamera.from({ eye, forward: way.map((v) => v / length), up: [0, 0, 1], fov }, look_at);
+  return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
 }
-
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
 const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
 const own = new OwnPicture(byId("beads"));
 const streamed = new URLSearchParams(location.search).has("stream"); // as if there were no WebGL2
+const legend = new Legend(byId("legend"), { hidden: () => state.hidden_features, toggle: (name) => controls.toggleFeature(name) });
+const motion = new MotionPanel({ state: () => state, changed: (moving) => ask(moving), hold, own, send: (message) => connection.send(message) });
+let movesAsked = false;
 const answer = new Answer(byId("answer"), byId("marks"));
 
 // ---------------------------------------------------------------- asking
@@ -58,11 +62,20 @@ function sendAsked() {
   asked = null;
   if (orbit) state.camera = orbit.toJSON();
   shownSize = pixels();
+  askMoves();
   if (own.ready) drawOwn(moving);
+  motion.show();
   if (!connection.ready) return;
   sentAt.set(++number, performance.now());
   if (!own.ready || !moving) connection.send({ type: "show", number, moving, own: own.table?.complete && !own.why, state: toMessage(state, shownSize) });
   if (!moving) history.replaceState(null, "", location.pathname + location.search + toFragment(state, file));
+}
+
+/** Travels and marks come when they are first wanted. */
+function askMoves() {
+  if (movesAsked || !own.table?.complete || !KINDS.some(([name]) => state.also.includes(name))) return;
+  movesAsked = true;
+  connection.send({ type: "moves" });
 }
 
 /** The beads in front of the camera, at once; a named view waits for the server, which fits it. */
@@ -72,13 +85,22 @@ function drawOwn(moving) {
   camera = from;
   aspect = shownSize[0] / shownSize[1];
   picture.classList.add("behind");
+  byId("loading").hidden = true;
+  answer.lines = null;
   own.draw(camera, state, shownSize, moving);
   answer.draw(camera, aspect);
   record({ kind: "own", number, at: performance.now(), width: shownSize[0], height: shownSize[1], bytes: 0 });
   if (moving) say(`${shownSize[0]} × ${shownSize[1]}`);
 }
 
+own.addEventListener("complete", () => {
+  answer.lines = own.lines();
+  answer.draw(camera, aspect);
+});
+own.addEventListener("moves", () => ask(false));
 own.addEventListener("changed", () => {
+  if (!own.table) movesAsked = false;
+  motion.show();
   const reason = streamed ? "as the address asks" : own.why;
   byId("mover").textContent = own.ready ? "drawn by this browser" : `streamed by the server${reason ? `: ${reason}` : ""}`;
   document.body.dataset.moving = own.ready ? "own" : "stream";
@@ -115,7 +137,7 @@ connection.addEventListener("picture", async ({ detail }) => {
   const arrived = performance.now();
   if (detail.kind === "saved") {
     connection.send({ type: "shown" });
-    return download(detail);
+    return saving.take(detail.file);
   }
   const order = ++shownKind;
   const bitmap = await createImageBitmap(detail.file);
@@ -152,21 +174,9 @@ function record(entry) {
   if (log.length > 20000) log.splice(0, 10000);
 }
 
-function download({ file: blob }) {
-  setSaving(false);
-  window.vdbviewSaved = blob;
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = `${byId("file").selectedOptions[0]?.textContent.replace(/\.[^.]*$/, "") || "picture"}.png`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  say("saved");
-}
-
 // ---------------------------------------------------------------- what the server says
 
 const say = (text) => (byId("status").textContent = text);
-
 function trouble(text, of = "") {
   byId("trouble-text").textContent = text;
   byId("trouble").dataset.of = of;
@@ -174,6 +184,7 @@ function trouble(text, of = "") {
   byId("loading").hidden = true;
 }
 
+const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail));
 connection.addEventListener("open", () => {
   if (byId("trouble").dataset.of === "connection") byId("trouble").hidden = true;
   document.body.dataset.connection = "open";
@@ -183,11 +194,13 @@ connection.addEventListener("gone", () => {
   trouble("The server does not answer. It may have ended: start vdbview again. Trying to reconnect …", "connection");
 });
 connection.addEventListener("stranger", () => trouble("The server was started anew, and its page has another address: open the one that it prints.", "connection"));
-connection.addEventListener("hello", ({ detail }) => {
+on("hello", (detail) => {
+  if (wrong) trouble(wrong);
+  wrong = "";
   const files = byId("file");
   files.replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
   files.parentElement.hidden = false;
-  setSaving(false);
+  saving.forget();
   file = Math.min(file, detail.files.length - 1);
   files.value = String(file);
   document.title = `${detail.files[file]} · vdbview`;
@@ -196,26 +209,28 @@ connection.addEventListener("hello", ({ detail }) => {
   askBeads();
 });
 function askBeads() {
+  movesAsked = false;
   if (streamed) own.refuse("");
   else connection.send({ type: "beads" });
 }
-connection.addEventListener("beads", ({ detail }) => {
-  connection.send({ type: "shown" });
-  own.begin(detail, detail.file);
+on("beads", (detail) => own.begin(detail, detail.file));
+on("bead-part", (detail) => own.add(detail, detail.file));
+on("no-beads", (detail) => own.refuse(detail.text));
+on("colors", (detail) => own.paint(detail.palette, detail.file));
+on("moves", (detail) => own.beginMoves(detail));
+on("move-part", (detail) => own.addMoves(detail, detail.file));
+on("no-moves", (detail) => {
+  movesAsked = false;
+  state.also = [];
+  motion.show();
+  trouble(detail.text, "view");
 });
-connection.addEventListener("bead-part", ({ detail }) => {
-  connection.send({ type: "shown" });
-  own.add(detail, detail.file);
+on("layers", (detail) => {
+  motion.setLayers(detail);
+  tellFacts();
 });
-connection.addEventListener("no-beads", ({ detail }) => {
-  connection.send({ type: "shown" });
-  own.refuse(detail.text);
-});
-connection.addEventListener("colors", ({ detail }) => {
-  connection.send({ type: "shown" });
-  own.paint(detail.palette, detail.file);
-});
-connection.addEventListener("look", ({ detail }) => {
+on("program", (detail) => motion.setProgram(detail));
+on("look", (detail) => {
   byId("command").textContent = `${detail.command} -o picture.png`;
   if (detail.number !== number) return own.illuminate(detail);
   if (!orbit) camera = detail.camera;
@@ -224,51 +239,52 @@ connection.addEventListener("look", ({ detail }) => {
   own.illuminate(detail);
   if (own.ready) drawOwn(false);
 });
-connection.addEventListener("loading", ({ detail }) => {
+on("loading", (detail) => {
+  if (own.ready) return say(`${detail.step} …`); // nothing lies on a picture that is there
   byId("loading").hidden = false;
   byId("step").textContent = `${detail.step[0].toUpperCase()}${detail.step.slice(1)} …`;
   if (detail.done === undefined) byId("done").removeAttribute("value");
   else byId("done").value = detail.done;
 });
-connection.addEventListener("facts", ({ detail: { facts } }) => {
-  controls.setFacts(facts);
-  const print = facts.print;
-  const all = print?.features.reduce((sum, each) => sum + each.volume_mm3, 0);
-  shares = new Map(print?.features.map((each) => [each.name, each.volume_mm3 / all]));
+let print = null; // what is known of it
+function tellFacts() {
+  const seconds = print?.seconds ? clock(print.seconds) : motion.planned && `${clock(motion.planned)} planned`;
   byId("facts").textContent = print
-    ? [print.seconds && clock(print.seconds), print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(1)} mm high`, print.slicer].filter(Boolean).join(" · ")
+    ? [seconds, print.grams && `${print.grams.toFixed(1)} g`, `${(print.filament_mm / 1000).toFixed(2)} m of filament`, `${print.layers} layers`, `${print.height_mm.toFixed(1)} mm high`, print.slicer].filter(Boolean).join(" · ")
     : "";
+}
+on("facts", ({ facts }) => {
+  controls.setFacts(facts);
+  if (generation !== facts.generation || !print) motion.setFacts(facts);
+  print = facts.print;
+  own.setBed(print?.bed ?? null);
+  motion.show();
+  tellFacts();
+  legend.setFeatures(print?.features ?? []);
   byId("loading").hidden = latest > 0;
   if (generation !== undefined && generation !== facts.generation) askBeads();
   generation = facts.generation;
 });
-connection.addEventListener("scene", ({ detail }) => {
+on("scene", (detail) => {
   box = detail.box;
   answer.mm = detail.mm_per_unit;
   controls.setBox(box);
-  // A feature that is hidden stays in the legend, to be shown again.
-  const gone = (legend) => legends.flatMap((old) => old.entries).filter((e) => legend.title === "feature" && state.hidden_features.includes(e.name) && !legend.entries.some((o) => o.name === e.name));
-  legends = detail.legends.map((legend) => ({ ...legend, entries: [...legend.entries, ...gone(legend)] }));
-  explain();
+  legend.setLegends(detail.legends);
 });
-let legends = [];
-let shares = new Map();
-function explain() {
-  showLegend(byId("legend"), legends, { shares, hidden: state.hidden_features, toggle: (name) => controls.toggleFeature(name) });
-}
-connection.addEventListener("progress", ({ detail }) => {
+on("progress", (detail) => {
   if (detail.number === number) say(`finishing … ${Math.round(detail.done * 100)} %`);
 });
-connection.addEventListener("saving", ({ detail }) => {
-  if (saving) say(`saving … ${Math.round(detail.done * 100)} %`);
-});
-connection.addEventListener("failed", ({ detail }) => {
+on("saving", (detail) => saving.progress(detail));
+on("failed", (detail) => {
   trouble(detail.text, "view");
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
 });
-connection.addEventListener("refused", ({ detail }) => trouble(detail.text, "view"));
-connection.addEventListener("inspected", ({ detail }) => {
+on("refused", (detail) => {
+  motion.setProgram(null); // that may be what was asked for
+  trouble(detail.text, "view");
+});
+on("inspected", (detail) => {
   window.vdbviewFound = detail;
   answer.show(detail);
   answer.draw(camera, aspect);
@@ -305,15 +321,15 @@ handleInput(picture, {
   },
   key: (event) => {
     const views = ["iso", "front", "back", "left", "right", "top", "bottom"];
+    const [low, high] = [state.layers[0] || 1, state.layers[1] || controls.layerCount];
+    const keys = {
+      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+      t: () => motion.toggle("travels"), s: () => motion.toggle("seams"), l: () => byId("one-layer").click(), p: () => byId("play").click(),
+      "[": () => controls.setLayers(low, high - 1, false), "]": () => controls.setLayers(low, high + 1, false),
+      ",": () => motion.step(-1), ".": () => motion.step(1),
+    };
     if (event.key in views) setView(views[event.key]);
-    else if (event.key === "f" || event.key === "F") fit();
-    else if (event.key === "m" || event.key === "M") setMeasuring(!answer.measuring);
-    else if (event.key === "Escape") answer.clear();
-    else if (event.key === "?") byId("keys").showModal();
-    else if (event.key === "[" || event.key === "]") {
-      const [low, high] = [state.layers[0] || 1, state.layers[1] || controls.layerCount];
-      controls.setLayers(low, high + (event.key === "[" ? -1 : 1), false);
-    }
+    else keys[event.key.toLowerCase()]?.();
   },
 });
 
@@ -331,23 +347,15 @@ byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring))
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
 byId("copy-link").addEventListener("click", () => copy(location.href, "link"));
-let saving = false;
-let saves = 0; // how often: numbers of their own, since the view that was asked for last stays that
-function setSaving(on) {
-  saving = on;
-  byId("save").textContent = on ? "Cancel saving" : "Save picture";
-}
-byId("save").addEventListener("click", () => {
-  if (saving) {
-    connection.send({ type: "cancel" });
-    setSaving(false);
-    return say("not saved");
-  }
-  setSaving(true);
-  const chosen = byId("save-size").value;
-  if (orbit) state.camera = orbit.toJSON();
-  say("saving …");
-  connection.send({ type: "save", number: ++saves, state: toMessage(state, chosen ? chosen.split("x").map(Number) : pixels()) });
+const saving = new Saving(byId("save"), {
+  ask: () => {
+    if (orbit) state.camera = orbit.toJSON();
+    const chosen = byId("save-size").value;
+    return toMessage(state, chosen ? chosen.split("x").map(Number) : pixels());
+  },
+  send: (message) => connection.send(message),
+  say,
+  name: () => byId("file").selectedOptions[0]?.textContent ?? "",
 });
 byId("file").addEventListener("change", () => {
   file = Number(byId("file").value);
@@ -369,7 +377,8 @@ function showPanels(shown) {
 byId("panels").addEventListener("click", () => showPanels(byId("side").classList.contains("closed")));
 if (matchMedia("(max-width: 760px)").matches) showPanels(false); // the picture first
 window.addEventListener("hashchange", () => {
-  ({ state } = fromFragment(location.hash));
+  ({ state, wrong } = fromFragment(location.hash));
+  if (wrong) trouble(wrong);
   orbit = state.camera.eye ? orbitOf(state.camera) : null;
   controls.show();
   ask(false);

@@ -1,6 +1,8 @@
 // The picture that this browser draws itself while anything moves; the server's finished one fades in over it.
 import { BeadRenderer } from "./bead_renderer.js";
 import { BeadTable } from "./bead_table.js";
+import { TINTS, bedLines } from "./bed.js";
+import { KINDS, MoveTable } from "./move_table.js";
 import { cross, sub, unit } from "./camera.js";
 
 /** The camera of a state with an eye, as the server makes it. */
@@ -10,18 +12,27 @@ export function cameraOf({ eye, look_at, fov }) {
   return { eye, forward, right, up: cross(right, forward), fov };
 }
 
+const ALL = 0xffffffff;
+const tints = KINDS.map(([, hex]) => [1, 3, 5].map((n) => parseInt(hex.slice(n, n + 2), 16) / 255));
+
 export class OwnPicture extends EventTarget {
   table = null;
+  moves = null; // the MoveTable
+  bed = null;
   why = "the beads are not here yet"; // there is no own picture
   #renderer = null;
   #look = null;
   #colors = null;
   #key = ""; // of the selection that the renderer has
+  #range = [0, 0]; // of its texels
+  #shown = null; // of the lines: layers, end
+  #counted = {};
   #frame = 0;
   #resting = null; // camera, state and size of a picture that is not complete yet
   #frames = 0;
 
-  /** Events: "changed" when `ready` or `why` have changed; "complete" when a picture at rest has all its beads. */
+  /** Events: "changed" when `ready` or `why` have changed; "complete" when a picture at rest has all its beads; "moves"
+   * when `moves` has become complete. */
   constructor(canvas) {
     super();
     this.canvas = canvas;
@@ -41,6 +52,7 @@ export class OwnPicture extends EventTarget {
   begin(head, runs) {
     this.#stop("the beads are on their way");
     this.table = new BeadTable(head, runs);
+    this.moves = null;
     this.#look = this.#colors = null;
   }
   add({ generation }, bytes) {
@@ -50,8 +62,28 @@ export class OwnPicture extends EventTarget {
   }
   /** There will be none. */
   refuse(why) {
-    this.table = null;
+    this.table = this.moves = null;
     this.#stop(why);
+  }
+  /** Of the program: travels and marks. */
+  beginMoves(head) {
+    this.moves = this.table?.complete && head.generation === this.table.generation ? new MoveTable(head, this.table) : null;
+    if (head.count === 0) this.#takeMoves();
+  }
+  addMoves({ generation }, bytes) {
+    if (this.moves?.generation !== generation) return;
+    this.moves.add(bytes);
+    if (this.moves.complete) this.#takeMoves();
+  }
+  #takeMoves() {
+    if (!this.moves?.complete) return;
+    if (this.moves.count) this.#renderer?.lines.set("moves", { table: this.moves.words, tints });
+    this.#tell("moves");
+  }
+  /** Corners of the printer's bed, or null. */
+  setBed(corners) {
+    this.bed = corners;
+    this.#renderer?.lines.set("bed", corners && { table: bedLines(corners, 0), tints: TINTS });
   }
   paint(palette, bytes) {
     if (!this.table) return;
@@ -87,6 +119,8 @@ export class OwnPicture extends EventTarget {
     this.why = "";
     if (this.#colors) this.#renderer.paint(...this.#colors);
     if (this.#look) this.#renderer.illuminate(this.#look);
+    if (this.bed) this.setBed(this.bed);
+    this.#takeMoves();
     this.#tell("changed");
   }
 
@@ -99,12 +133,13 @@ export class OwnPicture extends EventTarget {
     this.#frame = 0;
     renderer.resize(...size);
     this.#select(state);
+    this.#selectLines(state);
     renderer.fine = !moving;
     const done = renderer.draw(camera, state, 1, true);
     if (!moving || this.#frames++ % 2 === 0) renderer.note();
     this.#resting = { camera, state };
-    if (done) return this.#tell("complete");
-    if (!moving) this.#frame = requestAnimationFrame(() => this.#goOn());
+    if (done && !moving) return this.#tell("complete");
+    if (!done && !moving) this.#frame = requestAnimationFrame(() => this.#goOn());
   }
   #goOn() {
     this.#frame = 0;
@@ -115,16 +150,38 @@ export class OwnPicture extends EventTarget {
     this.#tell("complete");
   }
 
+  /** The lines of the last picture alone, see LineRenderer. */
+  lines() {
+    return this.#renderer?.lines.alone() ?? null;
+  }
+  #selectLines(state) {
+    const { lines } = this.#renderer;
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    const kinds = KINDS.reduce((bits, [name], n) => bits | (state.also.includes(name) ? 1 << n : 0), 0);
+    const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
+    this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
+    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio });
+    if (lines.sets.has("bed")) lines.set("bed", { layers: [0, 0], end: ALL, kinds: state.also.length > 0 && state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 });
+  }
+  /** How many moves of each kind are among what is shown; null: not known yet. */
+  counts() {
+    if (!this.moves?.complete || !this.#shown) return null;
+    const key = JSON.stringify(this.#shown);
+    if (this.#counted.key !== key || this.#counted.of !== this.moves)
+      this.#counted = { key, of: this.moves, counts: this.moves.counts(this.#shown.layers, this.#shown.end) };
+    return this.#counted.counts;
+  }
+
   #select(state) {
-    const key = JSON.stringify([state.layers, state.printed, state.by_time, state.hidden_features, state.objects, state.tools]);
+    const key = JSON.stringify([state.layers, state.printed, state.beads, state.by_time, state.hidden_features, state.objects, state.tools]);
     if (key === this.#key) return;
     this.#key = key;
     const { table } = this;
     const renderer = this.#renderer;
-    const range = table.range(state);
+    const range = (this.#range = table.range(state));
     renderer.show(table.shown(state), range);
     // What is at the ends of the selection was hidden until now.
-    const last = state.printed < 100 ? table.layerOf(Math.max(0, range[1] - 1)) : state.layers[1];
+    const last = range[1] < table.texels ? table.layerOf(Math.max(0, range[1] - 1)) : state.layers[1];
     for (const [low, high] of [[last - 2, last], state.layers[0] ? [state.layers[0], state.layers[0] + 1] : [0, -1]])
       for (const [first, end] of last || state.layers[0] ? table.ofLayers(low, high) : []) renderer.visible.expect(first, end);
   }

@@ -5,6 +5,7 @@ export const initial = () => ({
   camera: { view: "iso", fov: 28 },
   layers: [0, 0],
   printed: 100,
+  beads: null,
   by_time: false,
   hidden_features: [],
   objects: [],
@@ -20,12 +21,14 @@ export const initial = () => ({
   clip: null,
   integrator: "",
   spp: 0,
+  also: [], // what the browser draws besides beads; the server knows nothing of it
 });
 
 /** For the server: without what is left open. */
 export function toMessage(state, size) {
   const message = { ...state, size };
-  for (const key of ["exposure", "bed", "clip"]) if (message[key] === null) delete message[key];
+  delete message.also;
+  for (const key of ["exposure", "bed", "clip", "beads"]) if (message[key] === null) delete message[key];
   return message;
 }
 
@@ -44,6 +47,8 @@ function fits(key, value, first) {
   if (key === "camera") return isCamera(value);
   if (key === "clip") return value === null || (Array.isArray(value) && value.length === 4 && value.every(Number.isFinite));
   if (key === "layers") return Array.isArray(value) && value.length === 2 && value.every(Number.isInteger);
+  if (["hidden_features", "also"].includes(key)) return Array.isArray(value) && value.every((each) => typeof each === "string");
+  if (key === "beads") return value === null || (Number.isInteger(value) && value > 0);
   if (first === null) return value === null || typeof value === (key === "bed" ? "boolean" : "number");
   return typeof value === typeof first && Array.isArray(value) === Array.isArray(first);
 }
@@ -53,16 +58,21 @@ function isCamera(value) {
   return value.eye === undefined ? typeof value.view === "string" : point(value.eye) && point(value.look_at);
 }
 
-/** The state of a fragment; what is of no use is left out, and the server checks the values. */
+/** The state of a fragment, and in words what of it is of no use and left out; the server checks the values. */
 export function fromFragment(fragment) {
   const state = initial();
   let file = 0;
+  let changed = {};
+  const wrong = [];
   try {
-    const changed = JSON.parse(decodeURIComponent(fragment.slice(1)) || "{}");
-    for (const key of Object.keys(state)) if (key in changed && fits(key, changed[key], state[key])) state[key] = changed[key];
-    if (Number.isInteger(changed.file) && changed.file >= 0) file = changed.file;
+    changed = JSON.parse(decodeURIComponent(fragment.slice(1)) || "{}");
   } catch {
-    // Not ours, or cut short.
+    wrong.push("it is cut short, or not of this page");
   }
-  return { state, file };
+  if (changed === null || typeof changed !== "object") changed = {};
+  for (const [key, value] of Object.entries(changed))
+    if (key === "file" && Number.isInteger(value) && value >= 0) file = value;
+    else if (key in state && fits(key, value, state[key])) state[key] = value;
+    else wrong.push(key.slice(0, 40));
+  return { state, file, wrong: wrong.length ? `What the address says of the view is left out: ${wrong.slice(0, 5).join(", ")}.` : "" };
 }

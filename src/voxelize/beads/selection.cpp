@@ -75,7 +75,7 @@ std::vector<double> endsOfBeads(const gcode::Toolpath& toolpath) {
 
 /// A snapshot whose label is not yet padded to the length of the others.
 struct Cut {
-    enum class Kind { percent, layer, seconds, minutes, hours, time_share, count_ } kind;
+    enum class Kind { percent, layer, bead, seconds, minutes, hours, time_share, count_ } kind;
     double value;
     std::size_t bead_count;
 };
@@ -105,6 +105,8 @@ std::vector<Snapshot> labelled(const std::vector<Cut>& cuts, std::uint32_t layer
                 return number(cut, 3) + "pct";
             case Cut::Kind::layer:
                 return "layer" + number(cut, layer_digits);
+            case Cut::Kind::bead:
+                return "bead" + number(cut, 9);
             case Cut::Kind::seconds:
                 return number(cut, 6) + "s";
             case Cut::Kind::minutes:
@@ -260,9 +262,9 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
     for (const std::string_view part : split(text, ',')) {
         const auto bad = [&] {
             return UsageError(
-                fmt::format("{} {}: expected N% (0 to 100), layer:N, every:N, time:MINUTES, time:SECONDSs "
-                            "or time:N%, separated by commas; the print has layers 1 to {}",
-                            option, part, toolpath.layer_count));
+                fmt::format("{} {}: expected N% (0 to 100), layer:N, bead:N, every:N, time:MINUTES, time:SECONDSs "
+                            "or time:N%, separated by commas; the print has layers 1 to {} and {} beads",
+                            option, part, toolpath.layer_count, toolpath.beads.size()));
         };
         if (part.ends_with('%') && !part.starts_with("time:")) {
             const auto percent = parseNumber<double>(part.substr(0, part.size() - 1));
@@ -272,6 +274,10 @@ std::vector<Snapshot> parseSnapshots(std::string_view text, const gcode::Toolpat
             const auto layer = parseNumber<std::uint32_t>(part.substr(6));
             if (!layer || *layer > toolpath.layer_count) throw bad();
             cuts.push_back({Cut::Kind::layer, static_cast<double>(*layer), endOfLayer(*layer)});
+        } else if (part.starts_with("bead:")) {
+            const auto count = parseNumber<std::uint32_t>(part.substr(5));
+            if (!count || *count == 0 || *count > toolpath.beads.size()) throw bad();
+            cuts.push_back({Cut::Kind::bead, static_cast<double>(*count), *count});
         } else if (part.starts_with("every:")) {
             const auto step = parseNumber<std::uint32_t>(part.substr(6));
             if (!step || *step == 0) throw bad();

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "gcode/slicer/bead_colors.h"
+#include "gcode/summary.h"
 #include "voxelize/beads/bead_field.h"
 
 #include <fmt/format.h>
@@ -18,8 +19,9 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::array<std::string_view, 10> kNames{"layer", "time",  "feature", "tool",     "object",
-                                                  "width", "speed", "flow",    "overfill", "color"};
+constexpr std::array<std::string_view, 13> kNames{"layer",       "time",  "feature", "tool",     "object",
+                                                  "width",       "speed", "flow",    "overfill", "layer_time",
+                                                  "temperature", "fan",   "color"};
 constexpr float kGrey = 0.8f;
 
 // IEC 61966-2-1, by a table, because every voxel needs a color.
@@ -57,6 +59,29 @@ std::vector<openvdb::Vec3f> colorsOfBeads(const gcode::Toolpath& toolpath) {
     return colors;
 }
 
+// By bead: the value of its tool, or of all tools, that was set last. A tool that is used before its own was set has
+// the first one that is set.
+std::vector<float> valuesOfBeads(const gcode::Toolpath& toolpath, const std::vector<gcode::SetValue>& set, bool by_tool,
+                                 std::string_view what) {
+    if (set.empty())
+        throw InputError(
+            fmt::format("the program never sets {}; print start macros may do so where no file tells it; "
+                        "choose another attribute",
+                        what));
+    std::array<float, 256> of_tool{};
+    of_tool.fill(by_tool ? set.front().value : 0);
+    for (auto first = set.rbegin(); by_tool && first != set.rend(); ++first) of_tool[first->tool] = first->value;
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    auto next = set.begin();
+    for (const gcode::Bead& bead : toolpath.beads) {
+        const std::uint32_t line = toolpath.lineOf(bead);
+        for (; next != set.end() && next->line <= line; ++next) of_tool[next->tool] = next->value;
+        values.push_back(of_tool[by_tool ? toolpath.runOf(bead).tool : 0]);
+    }
+    return values;
+}
+
 // mm^2, of the bead's section.
 float areaOf(const gcode::Toolpath& toolpath, std::uint32_t index) {
     const gcode::Bead& bead = toolpath.beads[index];
@@ -91,6 +116,9 @@ AttributeKind attributeKind(Attribute attribute) {
         case Attribute::speed:
         case Attribute::flow:
         case Attribute::overfill:
+        case Attribute::layer_time:
+        case Attribute::temperature:
+        case Attribute::fan:
             return AttributeKind::number;
         case Attribute::color:
             return AttributeKind::color;
@@ -120,7 +148,8 @@ std::vector<Attribute> parseGrids(std::string_view text) {
 }
 
 bool usesTiming(Attribute attribute) {
-    return attribute == Attribute::time || attribute == Attribute::speed || attribute == Attribute::flow;
+    return attribute == Attribute::time || attribute == Attribute::speed || attribute == Attribute::flow ||
+           attribute == Attribute::layer_time;
 }
 
 BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
@@ -135,6 +164,11 @@ BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const 
             width_.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
     }
     if (wanted(Attribute::color) && !toolpath.color_changes.empty()) color_ = colorsOfBeads(toolpath);
+    if (wanted(Attribute::layer_time))
+        for (const double seconds : gcode::layerSeconds(toolpath)) layer_time_.push_back(static_cast<float>(seconds));
+    if (wanted(Attribute::temperature))
+        temperature_ = valuesOfBeads(toolpath, toolpath.temperatures, true, "a temperature of a nozzle");
+    if (wanted(Attribute::fan)) fan_ = valuesOfBeads(toolpath, toolpath.fans, false, "a fan");
     if (!wanted(Attribute::time)) return;
     start_.reserve(toolpath.beads.size());
     for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
@@ -164,6 +198,9 @@ float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
     if (attribute == Attribute::time) return start_[bead];
     if (attribute == Attribute::width) return width_[bead];
     if (attribute == Attribute::overfill) return overfill_[bead];
+    if (attribute == Attribute::layer_time) return layer_time_[toolpath_.runOf(toolpath_.beads[bead]).layer];
+    if (attribute == Attribute::temperature) return temperature_[bead];
+    if (attribute == Attribute::fan) return fan_[bead];
     if (attribute == Attribute::flow && !toolpath_.flow.empty()) return toolpath_.flow[bead].rate;
     const float per_mm = attribute == Attribute::flow ? areaOf(toolpath_, bead) : 1;
     const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;

@@ -24,7 +24,10 @@ enum class Attribute : std::uint8_t {
     speed,     ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
     flow,      ///< float: mm^3/s, mean of the simulated flow (Toolpath::flow); without it, section times speed
     overfill,  ///< float: share of the bead's plastic that has no place in its layer: overfillOfBeads()
-    color,     ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
+    layer_time,   ///< float: seconds that its layer takes, see gcode::layerSeconds()
+    temperature,  ///< float: degrees Celsius of the nozzle, as the program asks for them
+    fan,          ///< float: per cent, of the fan that cools the part
+    color,        ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
 };
 
 /// Parses "surface,layer,tool". The surface is always written and may be named. Throws UsageError with the names.
@@ -40,7 +43,8 @@ AttributeKind attributeKind(Attribute attribute);
 /// A value of every bead for every attribute; made once, read by all threads.
 class BeadAttributes {
 public:
-    /// `overfill`: overfillOfBeads(); only with Attribute::overfill.
+    /// `overfill`: overfillOfBeads(); only with Attribute::overfill. Throws InputError if the program never sets a
+    /// temperature or a fan that is asked for.
     BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
                    std::vector<float> overfill = {});
 
@@ -53,6 +57,9 @@ private:
     std::vector<float> start_;  // by bead, seconds; only with Attribute::time
     std::vector<float> width_;  // by bead, mm; only with Attribute::width
     std::vector<float> overfill_;
+    std::vector<float> layer_time_;      // by layer, seconds; only with Attribute::layer_time
+    std::vector<float> temperature_;     // by bead; only with Attribute::temperature
+    std::vector<float> fan_;             // by bead; only with Attribute::fan
     std::vector<openvdb::Vec3f> color_;  // by bead; only with Attribute::color, if filaments change
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace stratum::gcode {
@@ -238,6 +239,40 @@ TEST(MachineSettings, NonsenseIsNoLimit) {
     EXPECT_EQ(read.limits.jerk, usual.jerk);
     EXPECT_EQ(read.limits.printing, usual.printing);
     EXPECT_TRUE(read.load.empty());
+}
+
+TEST(MotionRecorder, SaysWhereMovesBeginAndWhatStopsThem) {
+    class Stops : public Log {
+    public:
+        void stop(Stop kind, std::uint32_t line) override { stops.emplace_back(kind, line); }
+        std::vector<std::pair<Stop, std::uint32_t>> stops;
+    } log;
+    record("M83\nG1 X10 Y5 Z.2\nG1 X20 E1\nT1\nT1\nM0\nM400\nM400 U1\nM600\nPAUSE\nM601\nG92 X0\nG1 X5 E1\n", log);
+    ASSERT_EQ(log.moves.size(), 3U);
+    EXPECT_EQ(log.moves[1].start, (std::array<double, 3>{10, 5, 0.2}));
+    EXPECT_EQ(log.moves[2].start, (std::array<double, 3>{20, 5, 0.2}));
+    const std::vector<std::pair<Stop, std::uint32_t>> wanted{{Stop::tool_change, 4}, {Stop::pause, 6},
+                                                             {Stop::pause, 8},       {Stop::filament_change, 9},
+                                                             {Stop::pause, 10},      {Stop::pause, 11}};
+    EXPECT_EQ(log.stops, wanted);
+}
+
+TEST(Machine, RemembersTemperaturesAndTheFan) {
+    const Toolpath toolpath = readProgram(
+        "M83\nM104 S215\nM109 R200 T1\nM106 S127.5\nG1 X10 E1\nM106 P2 S255\nM106\nG10 P0 S190\n"
+        "SET_HEATER_TEMPERATURE HEATER=extruder1 TARGET=230\nSET_HEATER_TEMPERATURE HEATER=heater_bed TARGET=60\n"
+        "G1 X20 E1\nM107\nM104 S-5\n");
+    ASSERT_EQ(toolpath.temperatures.size(), 4U);
+    EXPECT_EQ(toolpath.temperatures[1].tool, 1);
+    EXPECT_EQ(toolpath.temperatures[1].value, 200.0F);
+    EXPECT_EQ(toolpath.temperatures[2].value, 190.0F);
+    EXPECT_EQ(toolpath.temperatures[2].line, 8U);
+    EXPECT_EQ(toolpath.temperatures[3].value, 230.0F);
+    ASSERT_EQ(toolpath.fans.size(), 3U);
+    EXPECT_NEAR(toolpath.fans[0].value, 50.0F, 1e-4F);
+    EXPECT_EQ(toolpath.fans[1].value, 100.0F);
+    EXPECT_EQ(toolpath.fans[1].line, 7U);
+    EXPECT_EQ(toolpath.fans[2].value, 0.0F);
 }
 
 }  // namespace

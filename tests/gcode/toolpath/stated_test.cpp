@@ -3,9 +3,12 @@
 #include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/program.h"
+#include "gcode/slicer/settings.h"
 #include "gcode/summary.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
 
 #include <string>
 
@@ -77,6 +80,23 @@ TEST(Stated, NamesOfFilamentProfiles) {
     EXPECT_EQ(factsOf({"filament_settings_id = \"Prusament PLA Galaxy Black @MK4\";\"Generic PLA, Silk\""}).profiles,
               (std::vector<std::string>{"Prusament PLA Galaxy Black @MK4", "Generic PLA, Silk"}));
     EXPECT_EQ(factsOf({"filament_settings_id = MyFilament"}).profiles, std::vector<std::string>{"MyFilament"});
+}
+
+TEST(Stated, TheBed) {
+    using Corners = std::vector<std::array<double, 2>>;
+    const auto bedOf = [](const std::string& comments) { return readSettings(comments).stated.bed; };
+    EXPECT_EQ(bedOf("; bed_shape = 0x0,250x0,250x210,0x210\n"), (Corners{{0, 0}, {250, 0}, {250, 210}, {0, 210}}));
+    EXPECT_EQ(bedOf("; printable_area = -110x-110,110x-110,110x110,-110x110\n")[0], (std::array{-110.0, -110.0}));
+    EXPECT_EQ(bedOf("; bed_size_x_mm = 200\n; bed_size_y_mm = 150\n"),
+              (Corners{{0, 0}, {200, 0}, {200, 150}, {0, 150}}));
+    EXPECT_EQ(bedOf(";   strokeXoverride,145\n;   strokeYoverride,120\n")[2], (std::array{145.0, 120.0}));
+    EXPECT_EQ(bedOf(";SETTING_3 {\"global_quality\": \"[values]\\nmachine_width = 220\\nmachine_depth = 200\\n"
+                    "machine_center_is_zero = True\\n\"}\n"),
+              (Corners{{-110, -100}, {110, -100}, {110, 100}, {-110, 100}}));
+    for (const char* nonsense :
+         {"; bed_shape = \n", "; bed_shape = 0x0,250x0\n", "; bed_shape = 0x0,1e9x0,nanx1\n",
+          "; bed_shape = 0x0,250,250x210\n", "; bed_size_x_mm = 200\n", "; printable_area = 0x0,99999999x0,5x5\n"})
+        EXPECT_TRUE(bedOf(nonsense).empty()) << nonsense;
 }
 
 TEST(Stated, TheSummaryBeginsWithIt) {

@@ -21,15 +21,36 @@ TEST(Message, EveryKindIsRead) {
     EXPECT_EQ(std::get<InspectMessage>(inspect).x, 0.25);
     EXPECT_TRUE(std::holds_alternative<SaveMessage>(parseMessage(R"({"type": "save", "state": {}})")));
     EXPECT_TRUE(std::holds_alternative<ShownMessage>(parseMessage(R"({"type": "shown"})")));
+    EXPECT_TRUE(std::holds_alternative<MovesMessage>(parseMessage(R"({"type": "moves"})")));
+    EXPECT_TRUE(std::holds_alternative<LayersMessage>(parseMessage(R"({"type": "layers"})")));
+    EXPECT_EQ(std::get<ProgramMessage>(parseMessage(R"({"type": "program", "bead": 12})")).bead, 12U);
     EXPECT_EQ(std::get<OpenMessage>(parseMessage(R"({"type": "open", "file": 2})")).file, 2U);
 }
 
 TEST(Message, OthersAreRefused) {
-    for (const char* text :
-         {"", "{", "null", "[]", "{}", R"({"type": "quit"})", R"({"type": 3})", R"({"type": "show"})",
-          R"({"type": "show", "state": {"size": [1, 1]}})", R"({"type": "shown", "more": 1})",
-          R"({"type": "inspect", "x": 2})", R"({"type": "inspect", "y": -1})", R"({"type": "open", "file": -1})",
-          R"({"type": "open", "file": 1e30})", R"({"type": "show", "number": -1, "state": {}})"}) {
+    for (const char* text : {"",
+                             "{",
+                             "null",
+                             "[]",
+                             "{}",
+                             R"({"type": "quit"})",
+                             R"({"type": 3})",
+                             R"({"type": "show"})",
+                             R"({"type": "show", "state": {"size": [1, 1]}})",
+                             R"({"type": "shown", "more": 1})",
+                             R"({"type": "inspect", "x": 2})",
+                             R"({"type": "inspect", "y": -1})",
+                             R"({"type": "open", "file": -1})",
+                             R"({"type": "open", "file": 1e30})",
+                             R"({"type": "program"})",
+                             R"({"type": "program", "bead": -1})",
+                             R"({"type": "program", "bead": 1.5})",
+                             R"({"type": "moves", "kind": 1})",
+                             R"({"type": "show", "state": {"beads": 0}})",
+                             R"({"type": "show", "state": {"beads": 2.5}})",
+                             R"({"type": "show", "state": {"beads": 2, "printed": 50}})",
+                             R"({"type": "show", "state": {"also": []}})",
+                             R"({"type": "show", "number": -1, "state": {}})"}) {
         SCOPED_TRACE(text);
         EXPECT_THROW((void)parseMessage(text), InputError);
     }

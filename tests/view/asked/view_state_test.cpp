@@ -102,5 +102,11 @@ TEST(ViewState, WhatMakesNoPictureIsRefused) {
     EXPECT_THROW((void)parseViewState({{"material", std::string(10000, 'a')}}), InputError);
 }
 
+TEST(ViewState, ANumberOfBeadsIsPrinted) {
+    const ViewState state = parseViewState(Json::parse(R"({"beads": 1234, "printed": 100})"));
+    EXPECT_EQ(state.beads, 1234U);
+    EXPECT_EQ(parseViewState(toJson(state)), state);
+}
+
 }  // namespace
 }  // namespace stratum::view

@@ -233,5 +233,13 @@ TEST(Snapshots, TimesAreThePlans) {
     EXPECT_FALSE(needsTiming("25%,layer:3"));
 }
 
+TEST(Snapshots, ANumberOfBeads) {
+    const gcode::Toolpath toolpath = tenLayers();
+    EXPECT_EQ(parseSnapshots("bead:2", toolpath).front().bead_count, 2U);
+    EXPECT_EQ(parseSnapshots("bead:2", toolpath).front().label, "bead000000002");
+    for (const char* text : {"bead:0", "bead:21", "bead:", "bead:1.5", "bead:-1"})
+        EXPECT_THROW((void)parseSnapshots(text, toolpath), UsageError) << text;
+}
+
 }  // namespace
 }  // namespace stratum::voxelize

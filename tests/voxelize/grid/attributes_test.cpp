@@ -172,5 +172,32 @@ TEST(VoxelChoice, TheBudgetIsKeptAndUsed) {
     }
 }
 
+// Temperatures are of the bead's tool, and before a tool's own is set, the first one that it gets.
+TEST(Attributes, ValuesThatTheProgramSets) {
+    gcode::Toolpath toolpath = twoTone();
+    const std::vector<Attribute> both = parseGrids("temperature,fan");
+    EXPECT_THROW((void)BeadAttributes(toolpath, both), InputError);
+    toolpath.temperatures = {{1, 0, 210}, {2, 2, 240}, {9, 1, 190}};
+    toolpath.fans = {{2, 0, 50}};
+    for (std::uint32_t n = 0; n < 3; ++n) toolpath.beads[n].arc = -static_cast<std::int32_t>(n + 1);
+    const BeadAttributes values(toolpath, both);
+    EXPECT_EQ(values.number(Attribute::temperature, 0), 210.0F);
+    EXPECT_EQ(values.number(Attribute::temperature, 1), 190.0F);
+    EXPECT_EQ(values.number(Attribute::temperature, 2), 240.0F);
+    EXPECT_EQ(values.number(Attribute::fan, 0), 0.0F);
+    EXPECT_EQ(values.number(Attribute::fan, 1), 50.0F);
+}
+
+TEST(Attributes, TimesOfLayers) {
+    gcode::Toolpath toolpath = twoTone();
+    toolpath.layer_count = 3;
+    toolpath.timing = {{0, 2}, {3, 4}, {7, 1}};
+    const std::vector<Attribute> wanted = parseGrids("layer_time");
+    const BeadAttributes values(toolpath, wanted);
+    EXPECT_EQ(values.number(Attribute::layer_time, 0), 2.0F);
+    EXPECT_EQ(values.number(Attribute::layer_time, 1), 5.0F);
+    EXPECT_EQ(values.number(Attribute::layer_time, 2), 1.0F);
+}
+
 }  // namespace
 }  // namespace stratum::voxelize

@@ -1,0 +1,144 @@
+// Beside the picture: what the machine does besides beads, the layer's height and time, and its moves with their lines.
+import { clock, linesOf } from "./answer.js";
+import { KINDS } from "./move_table.js";
+
+const byId = (id) => document.getElementById(id);
+
+export class MotionPanel {
+  #layers = null; // of the server: heights and times
+  #asked = false; // for them
+  #bead = -1; // whose line was asked for last
+  #waits = false; // for its answer
+  #parts = { layer: 0, list: [] }; // beads of the layer, [first, end]
+
+  /** own: the browser's own picture; send(message): to the server. The others as those of Controls. */
+  constructor({ state, changed, hold, own, send }) {
+    Object.assign(this, { state, changed, hold, own, send });
+    byId("also").replaceChildren(...[...KINDS, ["bed and grid of 10 mm", "#1973cc"]].map(([name, color]) => {
+      const label = document.createElement("label");
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", value: name });
+      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
+      swatch.style.background = color;
+      box.addEventListener("change", () => this.toggle(name, box.checked));
+      label.append(box, swatch, name, document.createElement("output"));
+      return label;
+    }));
+    byId("layers-group").addEventListener("focusin", () => this.#askLayers());
+    byId("layers-group").addEventListener("input", () => this.#askLayers());
+    byId("moves-group").addEventListener("toggle", () => this.show());
+    const slider = byId("moves");
+    slider.addEventListener("input", () => this.#move(Number(slider.value), true));
+    slider.addEventListener("change", () => this.#move(Number(slider.value), false));
+  }
+
+  /** The file was read, perhaps anew. */
+  setFacts(facts) {
+    this.facts = facts.print;
+    this.#layers = null;
+    this.#asked = false;
+    this.#bead = -1;
+    this.#parts = { layer: 0, list: [] };
+    byId("also").lastChild.hidden = !facts.print?.bed;
+    this.show();
+  }
+  get planned() {
+    return this.#layers?.seconds.reduce((sum, each) => sum + each, 0);
+  }
+  setLayers(layers) {
+    this.#layers = layers;
+    this.show();
+  }
+  setProgram(program) {
+    this.#waits = false;
+    if (program) byId("program").replaceChildren(linesOf(program.lines, program.line));
+    this.#follow();
+  }
+
+  toggle(name, on = !this.state().also.includes(name)) {
+    this.state().also = this.state().also.filter((each) => each !== name).concat(on ? [name] : []);
+    this.changed(false);
+  }
+
+  #askLayers() {
+    if (this.#asked || !this.facts) return;
+    this.#asked = true;
+    this.send({ type: "layers" });
+  }
+
+  get #layer() {
+    return this.state().layers[1] || this.facts?.layers || 0;
+  }
+  /** Beads of the layer in front, as parts of all. */
+  #beads() {
+    const { table } = this.own;
+    const layer = this.#layer;
+    if (!table?.complete) return [];
+    if (this.#parts.layer !== layer || this.#parts.table !== table)
+      this.#parts = { layer, table, list: table.ofLayers(layer, layer).map((part) => part.map((texel) => table.beadOf(texel))) };
+    return this.#parts.list;
+  }
+  get moveCount() {
+    return this.#beads().reduce((sum, [first, end]) => sum + end - first, 0);
+  }
+  /** The bead of a move, from 1. */
+  #beadOf(move) {
+    for (const [first, end] of this.#beads()) {
+      if (move <= end - first) return first + move - 1;
+      move -= end - first;
+    }
+    return -1;
+  }
+  /** The last move of the layer that is printed. */
+  get move() {
+    const { beads } = this.state();
+    if (beads === null) return this.moveCount;
+    return this.#beads().reduce((sum, [first, end]) => sum + Math.max(0, Math.min(end, beads) - first), 0);
+  }
+  step(by) {
+    byId("moves-group").open = true;
+    this.#move(this.move + by, false);
+  }
+
+  #move(move, moving) {
+    const count = this.moveCount;
+    if (!count) return;
+    move = Math.max(1, Math.min(count, move));
+    this.state().beads = move === count ? null : this.#beadOf(move) + 1;
+    this.state().printed = 100;
+    this.hold();
+    this.changed(moving);
+  }
+
+  // The newest line that is wanted; one answer at a time.
+  #follow() {
+    const bead = this.#beadOf(Math.max(1, this.move));
+    if (this.#waits || bead < 0 || bead === this.#bead || !byId("moves-group").open) return;
+    this.#bead = bead;
+    this.#waits = true;
+    this.send({ type: "program", bead });
+  }
+
+  /** The state in the panel. */
+  show() {
+    const { also } = this.state();
+    const needs = KINDS.some(([name]) => also.includes(name));
+    const counts = needs ? this.own.counts() : null;
+    [...byId("also").children].forEach((label, n) => {
+      const box = label.querySelector("input");
+      box.checked = also.includes(box.value);
+      box.disabled = !this.own.ready;
+      if (counts && n < KINDS.length) label.hidden = !this.own.moves.totals[n];
+      label.querySelector("output").textContent = counts && box.checked && n < KINDS.length ? counts[n] : "";
+    });
+    byId("also-none").hidden = this.own.ready;
+    const layer = this.#layer;
+    const times = this.#layers?.seconds;
+    byId("layer-info").textContent = times && layer ? `Layer ${layer}: z ${this.#layers.z[layer].toFixed(2)} mm, takes ${clock(times[layer])}, done after ${clock(times.slice(0, layer + 1).reduce((a, b) => a + b, 0))}` : "";
+    const count = this.moveCount;
+    byId("moves-group").hidden = !count;
+    byId("moves").max = count;
+    byId("moves").value = this.move;
+    byId("moves-value").textContent = `move ${this.move} of ${count} in layer ${layer}`;
+    this.#follow();
+  }
+}

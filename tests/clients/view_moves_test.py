@@ -1,0 +1,307 @@
+"""Travels, marks, layers and single moves on the viewer's page, in headless Chromium, against the program itself."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from urllib.parse import quote
+
+from run_tools import BIN, check, gcode, skip_without
+
+skip_without(("chromium", "chromedriver"), ("selenium",))
+
+from chromium import browser
+from program_counts import Program
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_moves_")
+# Counts messages of web sockets by type.
+COUNT = """window.told = {}; window.asked = {};
+const Plain = WebSocket;
+window.WebSocket = class extends Plain {
+  constructor(url) { super(url); this.addEventListener("message", ({ data }) => {
+    const text = typeof data === "string" ? data : new TextDecoder().decode(new Uint8Array(data, 4, new DataView(data).getUint32(0, true)));
+    const { type } = JSON.parse(text);
+    window.told[type] = (window.told[type] ?? 0) + 1;
+  }); }
+  send(data) { const { type } = JSON.parse(data); window.asked[type] = (window.asked[type] ?? 0) + 1; super.send(data); }
+};
+window.WebSocket.OPEN = 1;"""
+# Whether the picture that the page draws has a colour within a pixel of each of these places, 0 to 1.
+COLORS = """
+const [places, wanted, done] = arguments;
+const image = new Image();
+image.src = window.vdbviewDrawn();
+image.decode().then(() => {
+  const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+  context.drawImage(image, 0, 0);
+  done(places.map(([x, y]) => {
+    const { data } = context.getImageData(Math.round(x * image.width) - 2, Math.round(y * image.height) - 2, 4, 4);
+    for (let n = 0; n < data.length; n += 4)
+      if (wanted.every((value, k) => Math.abs(data[n + k] - value) < 40)) return true;
+    return false;
+  }));
+});"""
+
+
+def js(text, *arguments):
+    return page.execute_script(text, *arguments)
+
+
+def until(condition, text, seconds=150):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        value = js(f"return {condition}")
+        if value:
+            return value
+        time.sleep(0.05)
+    print(js("return [window.vdbviewLog?.slice(-5), window.told, document.body.innerText]"), page.get_log("browser"))
+    sys.exit(f"FAILED: {text}: not within {seconds} s")
+
+
+class Server:
+    """A vdbview, whose page is open and draws."""
+
+    def __init__(self, path, view=None):
+        self.process = subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", "--voxel-size", "0.2"],
+                                        stdout=subprocess.PIPE, text=True)
+        page.get(self.process.stdout.readline().strip() + "#" + quote(json.dumps(view or {})))
+        until("document.body.dataset.moving === 'own'", "the page draws what moves")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        page.get("about:blank")
+        self.process.terminate()
+        self.process.wait()
+
+
+def toggle(name, on=True):
+    js("""const box = document.querySelector(`#also input[value="${arguments[0]}"]`);
+          if (box.checked !== arguments[1]) box.click();""", name, on)
+
+
+def set_slider(name, value):
+    js("""const s = document.getElementById(arguments[0]); s.value = arguments[1];
+          for (const type of ["input", "change"]) s.dispatchEvent(new Event(type, { bubbles: true }));""", name, value)
+
+
+def counted(name):
+    """What the page says beside a toggle that is on."""
+    until("window.vdbviewCounts()", "the moves have come")
+    js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    text = js("return document.querySelector(`#also input[value='${arguments[0]}']`).parentElement.querySelector('output').textContent", name)
+    return int(text)
+
+
+def counts(name):
+    """Numbers beside the toggles are those of the program, for all layers, some of them, and a part of the print."""
+    program = Program(gcode(name))
+    kinds = [kind for kind in ("travels", "retractions", "recoveries", "seams", "pauses", "filament changes")
+             if program.count(kind)]
+    with Server(gcode(name)):
+        check(js("return [window.asked.moves, window.told.moves, window.asked.layers, window.asked.program]") == [None] * 4,
+              "what nobody asked for is not sent")
+        for kind in kinds:
+            toggle(kind)
+        told = [counted(kind) for kind in kinds]
+        check(told == [program.count(kind) for kind in kinds],
+              f"{name}: the page has {told}, the program {', '.join(f'{program.count(kind)} {kind}' for kind in kinds)}")
+        check(js("return [window.asked.moves, window.told.moves]") == [1, 1], "they come once")
+        for layer in (1, program.layers // 2, program.layers - 1):
+            set_slider("layer-high", layer)
+            check([counted(kind) for kind in kinds] == [program.count(kind, high=layer) for kind in kinds], f"up to layer {layer}")
+        set_slider("layer-low", program.layers // 2)
+        set_slider("layer-high", program.layers // 2 + 1)
+        low = program.layers // 2
+        check([counted(kind) for kind in kinds] == [program.count(kind, low, low + 1) for kind in kinds], "of two layers")
+        check(js("return window.asked.moves") == 1, "and nothing is asked again")
+
+
+def single_moves():
+    """The slider of the moves of a layer: how many there are, what is drawn, and the line of each."""
+    program = Program(gcode("tile.gcode"))
+    with Server(gcode("tile.gcode")):
+        toggle("travels")
+        set_slider("layer-high", 3)
+        js("document.getElementById('moves-group').open = true")
+        beads = program.of_layer(3)
+        until(f"document.getElementById('moves-value').textContent === 'move {len(beads)} of {len(beads)} in layer 3'",
+              f"layer 3 has {len(beads)} moves")
+        for move in (1, 7, len(beads) // 2, len(beads) - 1, len(beads)):
+            set_slider("moves", move)
+            line = program.beads[beads[move - 1]][0]
+            until(f"document.querySelector('#program .this span')?.textContent === '{line}'", f"move {move} is line {line}")
+            end = beads[move - 1] + 1 if move < len(beads) else 10**9
+            check(counted("travels") == program.count("travels", high=3, beads=end), "travels up to there")
+        # The server's finished picture is of the same beads.
+        set_slider("moves", 7)
+        until(f"document.getElementById('command').textContent.includes('--printed bead:{beads[6] + 1}')",
+              "the command line has the number of beads")
+        text = js("return document.querySelector('#program .this').textContent")
+        with open(gcode("tile.gcode"), encoding="utf-8") as file:
+            check(file.read().split("\n")[program.beads[beads[6]][0] - 1] in text, f"the line's text: {text}")
+        js("document.getElementById('picture').dispatchEvent(new KeyboardEvent('keydown', { key: '.' }))")
+        line = program.beads[beads[7]][0]
+        until(f"document.querySelector('#program .this span')?.textContent === '{line}'", "a key goes on by one")
+
+
+def layers():
+    """The layer's height and time, when the slider is used; the print's time and weight in the head."""
+    program = Program(gcode("tile.gcode"))
+    with Server(gcode("tile.gcode")):
+        set_slider("layer-high", 2)
+        until("document.getElementById('layer-info').textContent", "the layer's facts")
+        total = 0.0
+        for layer in range(1, program.layers + 1):
+            set_slider("layer-high", layer)
+            info = until(f"""(() => {{ const text = document.getElementById('layer-info').textContent;
+                          return text.startsWith('Layer {layer}:') && text; }})()""", f"facts of layer {layer}")
+            check(f"z {program.tops[layer]:.2f} mm" in info, f"its height: {info}")
+            hours, minutes, seconds = map(int, info.split("takes ")[1].split(",")[0].split(":"))
+            took = 3600 * hours + 60 * minutes + seconds
+            least = sum(program.beads[n][5] for n in program.of_layer(layer))
+            check(took >= least - 1 and took < 2.5 * least + 5, f"its time, of which {least:.0f} s at the programmed speeds")
+            total += took
+        with open(gcode("tile.gcode"), encoding="utf-8") as file:
+            stated = file.read().split("estimated printing time (normal mode) = ")[1].split("\n")[0]
+        minutes, seconds = (int(part[:-1]) for part in stated.split())
+        check(abs(total - 60 * minutes - seconds) < 0.2 * total, f"{total} s of all layers; the slicer says {stated}")
+        facts = js("return document.getElementById('facts').textContent")
+        check(f"0:{minutes:02}:{seconds:02}" in facts and " g " in facts, f"the head: {facts}")
+
+
+def screen(point, camera, aspect):
+    """Where a camera sees a point."""
+    eye, look = camera["eye"], camera["look_at"]
+    unit = lambda v: [c / sum(d * d for d in v) ** 0.5 for c in v]
+    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    dot = lambda a, b: sum(p * q for p, q in zip(a, b))
+    forward = unit([b - a for a, b in zip(eye, look)])
+    right = unit(cross(forward, [0, 0, 1]))
+    up = cross(right, forward)
+    way = [b - a for a, b in zip(eye, point)]
+    from math import radians, tan
+    scale = 2 * dot(way, forward) * tan(radians(camera["fov"]) / 2)
+    return [0.5 + dot(way, right) / (scale * aspect), 0.5 - dot(way, up) / scale]
+
+
+def places():
+    """Travels and seams are drawn where the program has them, in front of beads and not through them."""
+    program = Program(gcode("tile.gcode"))
+    camera = {"eye": [100, 60, 250], "look_at": [100, 100, 0], "fov": 10}
+    with Server(gcode("tile.gcode"), {"camera": camera, "layers": [1, 4], "bed": False, "spp": 1}):
+        aspect = js("const c = document.getElementById('picture'); return c.clientWidth / c.clientHeight")
+        middle = lambda m: [(a + b) / 2 for a, b in zip(m[1], m[2])]
+        long = lambda m: sum((a - b) ** 2 for a, b in zip(m[1], m[2])) > 4
+        of = lambda kind, layer: [m for m in program.moves if m[0] == kind and m[3] == layer]
+        shown = [screen(middle(m), camera, aspect) for m in of("travels", 4) if long(m)]
+        seams = [screen(m[1], camera, aspect) for m in of("seams", 4)]
+        check(len(shown) >= 3 and len(seams) >= 1, f"{len(shown)} long travels and {len(seams)} seams in layer 4")
+        colored = lambda where, color: page.execute_async_script(COLORS, where, color)
+        blue, white = [0x4f, 0x86, 0xc6], [0xf2, 0xf2, 0xf2]
+        check(not any(colored(shown, blue)), "travels are off at first")
+        toggle("travels")
+        counted("travels")
+        check(all(colored(shown, blue)), "where travels are, their colour is")
+        toggle("seams")
+        counted("seams")
+        check(all(colored(seams, white)), "and that of seams")
+        until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "the finished picture")
+        check(js("""const c = document.getElementById('marks'), [[x, y]] = arguments[0];
+                    return c.getContext('2d').getImageData(Math.round(x * c.width), Math.round(y * c.height), 1, 1).data[3]""",
+                 seams) > 200, "over the finished picture, too")
+        set_slider("layer-high", 3)
+        check(not any(colored([p for p, m in zip(seams, of("seams", 4)) if all(
+            abs(m[1][0] - o[1][0]) + abs(m[1][1] - o[1][1]) > 1 for o in of("seams", 3))], white)), "not those of hidden layers")
+        # From below, the first layer hides them.
+        below = {"eye": [100, 60, -250], "look_at": [100, 100, 0], "fov": 10}
+        js("location.hash = arguments[0]", quote(json.dumps({"camera": below, "bed": False, "spp": 1, "also": ["travels"]})))
+        until("window.vdbviewLog.at(-1).kind === 'final' && window.vdbviewLog.at(-1).number === window.vdbviewAsked()", "from below")
+        inner = [screen(middle(m), below, aspect) for m in of("travels", 4)
+                 if all(91.5 < c < 108.5 for c in middle(m)[:2])]
+        seen = sum(colored(inner, blue))
+        check(len(inner) > 3 and seen <= len(inner) // 4, f"from below {seen} of {len(inner)} travels of layer 4 are seen")
+
+
+def looks():
+    """Colours by what the program sets, with legends as people write them."""
+    program = Program(gcode("tile.gcode"))
+    printed = [n for n, bead in enumerate(program.beads) if bead[1] > 0]
+    ends = lambda values: [f"{round(edge([values[n] for n in printed]), 4):.4g}" for edge in (min, max)]
+    with Server(gcode("tile.gcode")):
+        for name, title, wanted in (("temperature", "temperature, °C", ends(program.heat)), ("fan", "fan, %", ends(program.fan)),
+                                    ("flow", "flow, mm³/s", None), ("layer_time", "layer time, h:min:s", None)):
+            js("const s = document.getElementById('color-by'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", name)
+            until(f"document.querySelector('#legend h2')?.textContent === '{title}'", f"the legend says {title}")
+            least, most = js("return [...document.querySelectorAll('#legend .ends span')].map((e) => e.textContent)")
+            check(not wanted or [least, most] == wanted, f"from {least} to {most}")
+            check(name != "layer_time" or (least.count(":") == 2 and most.count(":") == 2), "times as a clock has them")
+    with Server(gcode("vase.gcode")):
+        check(js("return [...document.getElementById('color-by').options].some((o) => o.value === 'layer_time')"), "layer times are offered")
+
+
+def bed():
+    """The file's bed: its outline, where the file says it is."""
+    camera = {"eye": [90, -250, 300], "look_at": [100, 100, 0], "fov": 40}
+    with open(gcode("tile.gcode"), encoding="utf-8") as file:
+        text = file.read().split("; bed_shape = ")[1].split("\n")[0]
+    corners = [[float(c) for c in corner.split("x")] + [0.0] for corner in text.split(",")]
+    with Server(gcode("tile.gcode"), {"camera": camera, "bed": False}):
+        aspect = js("const c = document.getElementById('picture'); return c.clientWidth / c.clientHeight")
+        at = [screen([a + (b - a) * t for a, b in zip(corners[n], corners[(n + 1) % len(corners)])], camera, aspect)
+              for n in range(len(corners)) for t in (0.13, 0.37, 0.61, 0.89)]
+        at = [p for p in at if 0.01 < min(p) and max(p) < 0.99]
+        check(len(at) > 8, f"{len(at)} places on the outline {text}")
+        check(not any(page.execute_async_script(COLORS, at, [26, 115, 204])), "it is off at first")
+        toggle("bed and grid of 10 mm")
+        check(all(page.execute_async_script(COLORS, at, [26, 115, 204])), "and drawn on the outline when it is on")
+        check(js("return window.asked.moves") is None, "which asks for no moves")
+    with Server(gcode("tile_cura.gcode")):
+        check(js("return document.querySelector('#also').lastChild.hidden"), "a file without a bed offers none")
+
+
+def phone():
+    """At a width of 390 all that is touched is 44 pixels high, and nothing lies beside the page."""
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})
+    with Server(gcode("tile.gcode"), {"color_by": "feature"}):
+        until("document.querySelectorAll('#legend li').length", "the legend")
+        js("document.getElementById('panels').click(); for (const d of document.querySelectorAll('details')) d.open = true;")
+        small = js("""const targets = [...document.querySelectorAll('button, select, summary, input:not([type=checkbox]), label:has(input[type=checkbox]), [role=checkbox]')];
+            return targets.filter((e) => e.checkVisibility()).map((e) => [e, e.getBoundingClientRect()])
+              .filter(([, b]) => b.height < 44 || b.width < 44).map(([e, b]) => `${e.tagName} ${e.id} ${e.textContent.slice(0, 20)} ${b.width}x${b.height}`)""")
+        check(small == [], f"targets are large enough: {small}")
+        check(js("return document.documentElement.scrollWidth") <= 390, "the page is no wider than the phone")
+        check(js("return document.getElementById('facts').checkVisibility()"), "time and weight are there")
+        js("document.getElementById('help').click()")
+        keys = js("return document.getElementById('keys').open && [...document.querySelectorAll('#keys dt')].map((e) => e.textContent).join(' ')")
+        check(all(key in keys.split() for key in ("F", "[", "]", "L", ",", ".", "P", "T,", "S", "M,", "Esc", "?")), f"the keys: {keys}")
+    page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def refusals():
+    """What an address says wrongly is told, and messages that nobody understands."""
+    with Server(gcode("tile.gcode"), {"layers": "all", "also": [3], "beads": -1, "file": "x", "color_by": "feature"}):
+        text = until("!document.getElementById('trouble').hidden && document.getElementById('trouble-text').textContent", "a word of it")
+        check(all(key in text for key in ("layers", "also", "beads", "file")) and "color_by" not in text, f"the keys: {text}")
+        check("--color-by feature" in until("document.getElementById('command').textContent", "the rest holds"), "color_by holds")
+
+
+page = browser(f"{FOLDER}/profile", 760, 560, 400)
+page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
+try:
+    counts("tile.gcode")
+    counts("hull.gcode")
+    single_moves()
+    layers()
+    places()
+    looks()
+    bed()
+    phone()
+    refusals()
+finally:
+    page.quit()
+    shutil.rmtree(FOLDER, ignore_errors=True)
