@@ -57,7 +57,6 @@ void refuseOthers(const TraceCommand& o) {
         refuse("--checkpoint", "is for one picture; a film keeps its finished frames by itself");
     if (!o.write_brdf.empty()) refuse("--write-brdf", "is for pictures");
     if (o.scene.transparent) refuse("--background none", "is for pictures; films have no alpha");
-    if (!o.bricks.picture.empty()) refuse("--brick-picture", "is for pictures");
     if (!o.film.camera_path.empty() && o.film.turn) refuse("--camera-path", "and --turntable move the same camera");
     if (o.prints.print.voxel_auto && !o.film.camera_path.empty())
         refuse("--voxel-size auto", "follows from one camera, and that of --camera-path moves; give a number");

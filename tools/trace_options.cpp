@@ -295,11 +295,14 @@ void addShardOptions(CLI::App& app, TraceCommand& o) {
                "slurm/N its number. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
             ->type_name("I/N|slurm|slurm/N")
             ->group(machines);
-    app.add_option("--shard-by", o.shard.by,
-                   "tiles: a piece of each picture, samples: some of the samples of all its pixels, or frames: whole "
-                   "pictures of "
-                   "a series (default: frames of a series, tiles of one picture)")
-        ->check(oneOf({"tiles", "samples", "frames"}))
+    app.add_option(
+           "--shard-by", o.shard.by,
+           "tiles: a piece of each picture, or frames: whole pictures of a series (default: frames of a series, "
+           "tiles of one picture)")
+        ->check([](const std::string& text) {
+            return text == "samples" ? "samples are no longer shared; use tiles, which have the same bytes" : "";
+        })
+        ->check(oneOf({"tiles", "frames"}))
         ->needs(shard)
         ->type_name("NAME")
         ->group(machines);
@@ -338,7 +341,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addLightOptions(app, o);
     addTracingOptions(app, o);
     addShardOptions(app, o);
-    addTracePrintOptions(app, o.prints, o.bricks);
+    addTracePrintOptions(app, o.prints, o.brick_cache);
     addFilmOptions(app, o.film, o.nozzle);
     addCommonOptions(app, o.common,
                      {"--output",  "--size",      "--spp",   "--noise",      "--denoise", "--view",     "--eye",

@@ -23,20 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void refuse(const TraceCommand& o, bool pieces) {
-    if (!o.bricks.picture.empty())
-        throw UsageError("--brick-picture shows the rays of a whole run; leave it out with --shard");
     if (pieces && o.render.seconds > 0.0)
         throw UsageError(
-            "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise with "
-            "--shard-by tiles, or --shard-by frames");
-    if (o.shard.samples && o.render.noise > 0.0)
-        throw UsageError(
-            "--shard-by samples: --noise decides by all samples of a tile whether it needs more, and a shard has only "
-            "some of them; use --spp, or --shard-by tiles");
-    if (o.shard.samples && !o.render.checkpoint.empty())
-        throw UsageError(
-            "--shard-by samples: --checkpoint keeps finished pixels, and a shard has only sums of them; use more "
-            "shards and --resume, or --shard-by tiles");
+            "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise, "
+            "or --shard-by frames");
     if (!pieces && !o.shard.resume) return;
     if (isStandardOutput(o.output))
         throw UsageError("--shard: a part can't go to standard output, nor be resumed there; name a file by -o");
@@ -115,7 +105,6 @@ void divide(std::vector<TraceCommand>& commands) {
     const auto [first, last] = pieces ? std::pair<std::size_t, std::size_t>() : shade::chunkOf(count, shard);
     std::size_t number = 0;
     for (TraceCommand& o : commands) {
-        o.shard.samples = given.by == "samples";
         refuse(o, pieces);
         o.shard.shard = shard;
         o.shard.pieces = pieces;
@@ -142,8 +131,8 @@ void identify(TraceCommand& o) {
         if (!o.shard.made[n]) continue;
         const std::string output = outputOf(o, n);
         const std::string& scene = o.shard.scenes[n];
-        const bool there = record ? record->has(output, scene)
-                                  : shade::isPartOf(output, STRATUM_VERSION, scene, *o.shard.shard, o.shard.samples);
+        const bool there =
+            record ? record->has(output, scene) : shade::isPartOf(output, STRATUM_VERSION, scene, *o.shard.shard);
         if (!there) continue;
         o.shard.made[n] = false;
         say(o.common, fmt::format("  {}: is this shard of this scene already, skipped", output));
@@ -168,10 +157,6 @@ void recordPicture(const TraceCommand& o, std::size_t n) {
 shade::RenderOptions renderOptionsOf(const TraceCommand& o) {
     shade::RenderOptions options = o.render;
     if (!o.shard.pieces) return options;
-    if (o.shard.samples) {
-        options.samples = shade::samplesOf(o.render.spp, *o.shard.shard);
-        return options;
-    }
     options.crop =
         shade::piecesOf(o.render.region(), o.shard.shard->count).at(static_cast<std::size_t>(o.shard.shard->index));
     options.margin = 0;  // the denoiser's is among the pieces
@@ -192,16 +177,12 @@ void writePiece(shade::PictureFile& file, const TraceCommand& o, std::size_t n, 
                   o.tone.exposure,
                   legend ? std::optional(*legend) : std::nullopt,
                   o.shard.shard->count,
-                  o.shard.samples ? o.render.spp : 0,
                   result.film.transparent() ? std::optional(result.film.bareBed()) : std::nullopt};
     part.index = o.shard.shard->index;
     part.samples = result.samples;
     part.pixels = result.pixels;
     part.metadata = metadata;
-    if (o.shard.samples)
-        shade::writePart(file, result.film, result.sums, std::move(part));
-    else
-        shade::writePart(file, result.film, std::move(part));
+    shade::writePart(file, result.film, std::move(part));
 }
 
 }  // namespace stratum::tools

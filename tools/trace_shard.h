@@ -37,7 +37,7 @@ std::string recordOf(const TraceCommand& command);
 /// Notes there that picture n is written. Throws OutputError.
 void recordPicture(const TraceCommand& command, std::size_t n);
 
-/// The render options of this process: of its piece or its samples, if it traces some.
+/// The render options of this process: of its piece, if it traces one.
 shade::RenderOptions renderOptionsOf(const TraceCommand& command);
 
 /// Writes the part of picture n with all that a merge needs.

@@ -111,13 +111,10 @@ def prepare():
         packed.writestr("[Content_Types].xml", "<Types/>")
     write("t.gcode.3mf", archive.getvalue())
     for n in range(2):
-        subprocess.run([TOOL["gcode2vdb"], "t.gcode", "-o", "part.vdb", "--shard", f"{n}/2", *COARSE], cwd=FOLDER, check=True,
-                       capture_output=True)
         subprocess.run([TOOL["vdbtrace"], "t.vdb", "-o", "part.png", "--shard", f"{n}/2", "--size", "200x150", "--spp", "1"],
                        cwd=FOLDER, check=True, capture_output=True)
     subprocess.run([TOOL["vdbtrace"], "t.vdb", "-o", "part.png", "--write-brdf", "b.exr", *SMALL], cwd=FOLDER, check=True,
                    capture_output=True)
-    vdbs = sorted(name for name in os.listdir(FOLDER) if name.startswith("part.") and name.endswith(".vdb"))
     exrs = sorted(name for name in os.listdir(FOLDER) if name.startswith("part.") and name.endswith(".exr"))
     way = {"keys": [{"time": t, "eye": [30 + t, -60, 40], "look_at": [10, 10, 2], "fov": 30} for t in (0, 1)]}
     write("way.json", json.dumps(way, indent=1).encode())
@@ -139,7 +136,6 @@ def prepare():
              ("gzip", "t.gcode.gz", convert, False), ("3MF package", "t.gcode.3mf", convert, False),
              ("level set", "t.vdb", trace, False), ("attributes", "t.vdb", lambda name: trace(name, "--color-by", "feature"), False),
              ("level set, whole", "t.vdb", lambda name: trace(name, "--march", "vdb"), False),
-             ("part of a level set", vdbs[0], lambda name: [TOOL["vdbmerge"], "out.vdb", name, vdbs[1], "--force"], False),
              ("camera path", "way.json", lambda name: [TOOL["vdbtrace"], "t.vdb", "--film", "out.png", "--camera-path", name,
                                                       "--seconds", "1", "--fps", "2", "--force", *SMALL], True),
              ("scene", "scene.json", lambda name: [TOOL["vdbtrace"], name, "-o", "out.png", "--force"], True),

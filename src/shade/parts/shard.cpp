@@ -79,14 +79,4 @@ std::pair<std::size_t, std::size_t> chunkOf(std::size_t count, const Shard& shar
     return {count * index / shards, count * (index + 1) / shards};
 }
 
-SampleRange samplesOf(int spp, const Shard& shard) {
-    if (shard.count > spp)
-        throw UsageError(
-            fmt::format("--shard: {} shards, but {} samples a pixel; use at most as many shards, a larger --spp, or "
-                        "--shard-by tiles",
-                        shard.count, spp));
-    const auto at = [&](std::int64_t n) { return static_cast<int>(spp * n / shard.count); };
-    return {at(shard.index), at(shard.index + 1)};
-}
-
 }  // namespace stratum::shade

@@ -3,7 +3,6 @@
 
 #include "base/shard.h"
 #include "shade/film/film.h"
-#include "shade/integrator/render.h"
 
 #include <cstddef>
 #include <utility>
@@ -17,8 +16,5 @@ std::vector<PixelBox> piecesOf(const PixelBox& region, int count);
 
 /// The share of a shard of `count` things in a row: first and end. Throws UsageError if there are fewer than shards.
 std::pair<std::size_t, std::size_t> chunkOf(std::size_t count, const Shard& shard);
-
-/// The share of a shard of the samples of a pixel. Throws UsageError if there are fewer than shards.
-SampleRange samplesOf(int spp, const Shard& shard);
 
 }  // namespace stratum::shade
