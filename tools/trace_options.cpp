@@ -190,10 +190,10 @@ void addClipOption(CLI::App& app, TraceCommand& o) {
 
 void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--integrator", o.render.integrator.name,
-                             "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, "
+                             "path, direct, phong, ao, normal, depth, position, mask, layer, tool, "
                              "feature (default path)"),
               Completion::word,
-              {"path", "direct", "environment-sum", "phong", "ao", "normal", "depth", "position", "mask", "layer",
+              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer",
                "tool", "feature"})
         ->type_name("NAME")
         ->group(kLight);
@@ -203,10 +203,7 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
         ->type_name("KA,KD,KS,SHININESS,KR")
         ->group(kLight);
-    app.add_option("--environment-rows", o.render.integrator.environment_rows,
-                   "environment-sum: rows of its map, twice as many columns (default 32)")
-        ->type_name("N")
-        ->group(kLight);
+    addGone(app, "--environment-rows", "it was of --integrator environment-sum; direct has the same light, without bias");
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(kLight);

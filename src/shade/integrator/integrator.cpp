@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "shade/integrator/ambient_occlusion.h"
-#include "shade/integrator/environment_sum.h"
 #include "shade/integrator/geometry_integrators.h"
 #include "shade/integrator/path.h"
 #include "shade/integrator/phong.h"
@@ -18,9 +17,8 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 12> kIntegratorNames = {"path",   "direct", "environment-sum", "phong", "ao",
-                                                               "normal", "depth",  "position",        "mask",  "layer",
-                                                               "tool",   "feature"};
+constexpr std::array<std::string_view, 11> kIntegratorNames = {
+    "path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"};
 
 }  // namespace
 
@@ -35,8 +33,6 @@ void IntegratorOptions::validate() const {
         !within(phong.shininess, 1e6f) || !within(phong.reflective, 1.0f))
         throw UsageError(
             "--phong KA,KD,KS,SHININESS,KR: weights from 0 to 100, an exponent to 1e6, a mirror's share to 1");
-    if (environment_rows < 2 || environment_rows > 512)
-        throw UsageError(fmt::format("--environment-rows {}: must be from 2 to 512", environment_rows));
     if (!(ao_distance > 0.0))
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
 }
@@ -83,8 +79,6 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "layer" || options.name == "tool" || options.name == "feature")
         return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
     if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
-    if (options.name == "environment-sum")
-        return std::make_unique<EnvironmentSum>(scene, print, options.environment_rows);
     return std::make_unique<PathIntegrator>(scene, print, options.bounces);
 }
 

@@ -46,11 +46,9 @@ struct PhongOptions {
 };
 
 struct IntegratorOptions {
-    std::string name = "path";  ///< path, direct, environment-sum, phong, ao, normal, depth, position, mask,
-                                ///< layer, tool, feature
+    std::string name = "path";  ///< path, direct, phong, ao, normal, depth, position, mask, layer, tool, feature
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
     PhongOptions phong;
-    int environment_rows = 32;  ///< environment-sum: rows of its map, 2 to 512; twice as many columns
     double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther surfaces don't occlude
 
     /// Throws UsageError.

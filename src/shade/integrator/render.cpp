@@ -121,11 +121,11 @@ std::string Renderer::identity() const {
     std::string text = fmt::format(
         "{}x{} region {},{},{},{} spp {} noise {} seed {} march {} voxel {} box {},{},{},{},{},{} integrator {} {} {} "
         "{} "
-        "{} {} {} {} {} layers",
+        "{} {} {} {} layers",
         options_.width, options_.height, region_.x0, region_.y0, region_.x1, region_.y1, options_.spp, options_.noise,
         options_.seed, print_.name(), print_.voxelSize(), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
         box.max.z, i.name, i.bounces, i.phong.ambient, i.phong.diffuse, i.phong.specular, i.phong.shininess,
-        i.phong.reflective, i.environment_rows, i.ao_distance);
+        i.phong.reflective, i.ao_distance);
     for (const FilmLayer& layer : state_.film.layers()) text += " " + layer.name;
     return text + fmt::format(" look {:08x} source {}", look, options_.source);
 }
