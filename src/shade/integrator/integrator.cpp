@@ -17,8 +17,8 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 11> kIntegratorNames = {
-    "path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"};
+constexpr std::array<std::string_view, 11> kIntegratorNames = {"path",     "direct", "phong", "ao",   "normal", "depth",
+                                                               "position", "mask",   "layer", "tool", "feature"};
 
 }  // namespace
 
@@ -45,12 +45,6 @@ bool needsLight(const IntegratorOptions& options) {
 
 bool catchesShadows(const IntegratorOptions& options) { return options.name == "path" || options.name == "direct"; }
 
-Pixel Integrator::radiance(const trace::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
-}
-
 void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                                 RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
     counts.primary += rays.size();
@@ -58,9 +52,9 @@ void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> s
     seenStream(rays, points, samplers, tracer, counts, pixels);
 }
 
-void Integrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
-                            std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
-                            std::span<Pixel> pixels) const {
+void RayIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                               std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+                               std::span<Pixel> pixels) const {
     for (std::size_t n = 0; n < rays.size(); ++n) {
         TraceContext context{tracer, samplers[n], counts};
         pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);
