@@ -17,7 +17,7 @@ VDBMERGE = os.path.join(BIN, "vdbmerge")
 TILE = gcode("tile.gcode")
 COARSE = ["--voxel-size", "0.2"]
 SMALL = ["--size", "64x48", "--spp", "1"]
-TRIALS = int(os.environ.get("STRATUM_HOSTILE_TRIALS", "12"))
+TRIALS = int(os.environ.get("STRATUM_HOSTILE_TRIALS", "8"))
 
 
 def path(name):

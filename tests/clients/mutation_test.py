@@ -1,6 +1,6 @@
 """Mutated files of every kind through the real tools: they end by themselves with 0, 1, 2 or 3, in bounded time and memory.
 
-STRATUM_MUTATIONS is how many of each kind are run (10), STRATUM_MUTATION_SEED where the random numbers begin; a finding is
+STRATUM_MUTATIONS is how many of each kind are run (6), STRATUM_MUTATION_SEED where the random numbers begin; a finding is
 kept, and its command is printed."""
 
 import gzip
@@ -19,7 +19,7 @@ from run_tools import BIN, SOURCE, check, gcode, write_box
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_mutation_")
 KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "stratum_findings"))
-COUNT = int(os.environ.get("STRATUM_MUTATIONS", "10"))
+COUNT = int(os.environ.get("STRATUM_MUTATIONS", "6"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
 CPU_SECONDS = 10.0  # of a run beyond its honest twin
 WALL_SECONDS = 120.0
