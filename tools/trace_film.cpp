@@ -1,7 +1,6 @@
 #include "trace_film.h"
 
 #include "progress.h"
-#include "shard_option.h"
 #include "trace_frame.h"
 #include "trace_series.h"
 #include "trace_shard.h"
@@ -276,7 +275,7 @@ private:
     int threads_;
     animate::FilmFormat format_;
     animate::KeptFrames kept_;
-    std::optional<Shard> shard_;
+    std::optional<shade::Shard> shard_;
     std::size_t first_ = 0, last_ = 0;
     std::optional<animate::MovingScene> scene_;
     Stopwatch watch_;

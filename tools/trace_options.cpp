@@ -124,7 +124,7 @@ void addPictureOptions(CLI::App& app, TraceCommand& o) {
 void addCameraOptions(CLI::App& app, TraceCommand& o) {
     const char* camera = "Camera";
     completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
-              Completion::word, {"iso", "front", "back", "left", "right", "top", "bottom"})
+              Completion::word, wordsOf(shade::kViews))
         ->type_name("NAME")
         ->group(camera);
     const auto vector = [&](const char* name, std::string& value, const char* help) {
@@ -193,8 +193,7 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
                              "path, direct, phong, ao, normal, depth, position, mask, layer, tool, "
                              "feature (default path)"),
               Completion::word,
-              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer",
-               "tool", "feature"})
+              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"})
         ->type_name("NAME")
         ->group(kLight);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
@@ -203,7 +202,8 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
         ->type_name("KA,KD,KS,SHININESS,KR")
         ->group(kLight);
-    addGone(app, "--environment-rows", "it was of --integrator environment-sum; direct has the same light, without bias");
+    addGone(app, "--environment-rows",
+            "it was of --integrator environment-sum; direct has the same light, without bias");
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(kLight);
@@ -271,7 +271,7 @@ void addLightOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(kLight);
     app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
-        ->check(oneOf({"paper", "pei", "grid"}))
+        ->check(oneOf(shade::kBedSurfaces))
         ->type_name("NAME")
         ->group(kLight);
     app.add_option_function<std::string>(

@@ -26,7 +26,7 @@ namespace stratum::tools {
 struct ShardCommand {
     std::string text, by;  // as given
     bool resume = false;
-    std::optional<Shard> shard;
+    std::optional<shade::Shard> shard;
     bool pieces = false;              // traces a piece of each picture; else whole pictures
     std::vector<bool> made;           // which pictures are this process's; empty: all
     std::vector<std::string> scenes;  // hashes of what each picture is of, for pieces and resume

@@ -1,26 +1,43 @@
 #include "trace_shard.h"
 
-#include "shard_option.h"
 #include "trace_frame.h"
 
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "gcode/container/input_bytes.h"
 #include "shade/parts/frame_record.h"
 #include "shade/parts/shard.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace stratum::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread
+    return value ? value : "";
+}
+
+/// A hash of a file's contents; empty for what is no file: a preset, whose name is among the options.
+std::string contentHash(const std::string& path) {
+    std::error_code missing;
+    if (!std::filesystem::is_regular_file(path, missing)) return {};
+    return sha256Hex(InputFile(path).bytes());
+}
 
 void refuse(const TraceCommand& o, bool pieces) {
     if (pieces && o.render.seconds > 0.0)
@@ -83,13 +100,36 @@ std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
 
 }  // namespace
 
+shade::Shard givenShard(const std::string& text) {
+    constexpr std::string_view kSlurm = "slurm";
+    const std::string_view count = std::string_view(text).substr(std::min(kSlurm.size(), text.size()));
+    if (!text.starts_with(kSlurm) || (!count.empty() && count.front() != '/')) return shade::parseShard(text);
+    if (!count.empty()) return shade::parseShard(environment("SLURM_ARRAY_TASK_ID") + std::string(count));
+    return shade::shardOf({environment("SLURM_ARRAY_TASK_ID"), environment("SLURM_ARRAY_TASK_MIN"),
+                           environment("SLURM_ARRAY_TASK_MAX"), environment("SLURM_ARRAY_TASK_COUNT")});
+}
+
+std::string saidOf(const CLI::App& app) {
+    // Where the output goes, what is reported, on how many threads and machines changes nothing of it.
+    constexpr std::array<std::string_view, 12> kOther = {"output",   "film",   "checkpoint", "threads",
+                                                         "stats",    "quiet",  "IN",         "shard",
+                                                         "shard-by", "resume", "summary",    "force"};
+    std::string said;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_single_name();
+        if (option->count() == 0 || std::find(kOther.begin(), kOther.end(), name) != kOther.end()) continue;
+        said += fmt::format("{} {}\n", name, fmt::join(option->results(), " "));
+    }
+    return said;
+}
+
 std::size_t pictures(const TraceCommand& o) {
     return o.inputs.size() * static_cast<std::size_t>(o.prints.series) * static_cast<std::size_t>(o.turntable);
 }
 
 std::string outputOf(const TraceCommand& o, std::size_t n) {
     const std::string name = numbered(o.output, n, pictures(o));
-    return o.shard.pieces ? shardName(name, *o.shard.shard, ".exr").string() : name;
+    return o.shard.pieces ? shade::shardName(name, *o.shard.shard, ".exr").string() : name;
 }
 
 bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() || o.shard.made[n]; }
@@ -97,7 +137,7 @@ bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() |
 void divide(std::vector<TraceCommand>& commands) {
     if (commands.empty() || commands.front().shard.text.empty()) return;
     const ShardCommand& given = commands.front().shard;
-    const Shard shard = givenShard(given.text);
+    const shade::Shard shard = givenShard(given.text);
     std::size_t count = 0;
     for (const TraceCommand& o : commands) count += pictures(o);
     const bool series = count > 1 || commands.front().each;
@@ -109,7 +149,7 @@ void divide(std::vector<TraceCommand>& commands) {
         o.shard.shard = shard;
         o.shard.pieces = pieces;
         if (pieces) {
-            if (!o.render.checkpoint.empty()) o.render.checkpoint = shardName(o.render.checkpoint, shard);
+            if (!o.render.checkpoint.empty()) o.render.checkpoint = shade::shardName(o.render.checkpoint, shard);
             continue;
         }
         for (std::size_t n = 0; n < pictures(o); ++n, ++number)
@@ -146,7 +186,7 @@ std::string filmIdentity(const TraceCommand& o) {
 
 std::string recordOf(const TraceCommand& o) {
     if (!o.shard.resume || o.shard.pieces) return {};
-    return shardName(o.output, *o.shard.shard, ".done").string();
+    return shade::shardName(o.output, *o.shard.shard, ".done").string();
 }
 
 void recordPicture(const TraceCommand& o, std::size_t n) {

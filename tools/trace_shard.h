@@ -12,6 +12,13 @@
 
 namespace stratum::tools {
 
+/// "I/N", or "slurm": a task of an array, which says so in its environment; or "slurm/N": its number is that of the
+/// task, of N, so that an array of some numbers makes some of the shards. Throws UsageError.
+shade::Shard givenShard(const std::string& text);
+
+/// The options that were given and may change what is made, as text for hashes: the same for any order of them.
+std::string saidOf(const CLI::App& app);
+
 /// Pictures that a command makes.
 std::size_t pictures(const TraceCommand& command);
 

@@ -3,7 +3,6 @@
 #include "command_line.h"
 #include "output_names.h"
 #include "run_files.h"
-#include "shard_option.h"
 #include "trace_film.h"
 #include "trace_options.h"
 #include "trace_series.h"

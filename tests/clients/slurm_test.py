@@ -1,5 +1,5 @@
 """The job scripts on a real Slurm of two nodes on this machine: tasks are killed and requeued, a node is drained, and the
-merged picture, the film and the merged print have the bytes of one process."""
+merged picture and the film have the bytes of one process."""
 
 import getpass
 import os
@@ -31,7 +31,6 @@ VDBMERGE = os.path.join(BIN, "vdbmerge")
 TILE = gcode("tile.gcode")
 PICTURE = ["--size", "256x192", "--voxels-per-layer", "2", "--spp", "64"]
 FILM = ["--size", "96x72", "--voxels-per-layer", "2", "--spp", "32", "--turntable", "12"]
-PRINT = ["--voxel-size", "0.05"]
 TASKS = 8
 LONGEST = 180  # seconds that anything is waited for; it takes a tenth of that
 # A requeued job waits for as long as a credential of its first run is valid: two minutes, if nothing is said.

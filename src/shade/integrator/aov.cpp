@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/split.h"
 #include "shade/frame.h"
 
 #include <fmt/format.h>
@@ -51,9 +52,7 @@ bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
 
 std::vector<Aov> parseAovs(std::string_view text) {
     std::vector<Aov> aovs;
-    while (!text.empty()) {
-        const std::string_view word = text.substr(0, text.find(','));
-        text.remove_prefix(std::min(text.size(), word.size() + 1));
+    for (const std::string_view word : splitList(text)) {
         const auto found =
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
         if (found == kinds().end()) {

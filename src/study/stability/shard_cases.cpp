@@ -1,6 +1,6 @@
 // Work that is divided among processes: what is no part of a whole is refused.
 #include "base/error.h"
-#include "base/shard.h"
+#include "shade/parts/shard.h"
 #include "study/stability/stability_case.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ std::vector<StabilityCase> shardCases() {
         cases.push_back({"shards", fmt::format("--shard, {}", name), "accepted (1) or refused with a message (0)", 0,
                          "what is no part of a whole is refused", [text = text] {
                              try {
-                                 (void)parseShard(text);
+                                 (void)shade::parseShard(text);
                              } catch (const UsageError&) {
                                  return 0.0;
                              }
