@@ -4,10 +4,8 @@
   /usr/bin/python3 bench/many_machines.py table FILE.json ...
   /usr/bin/python3 bench/many_machines.py plot OUT.svg FILE.json ...        (needs python3-matplotlib)
 
-A CASE is NAME=KIND:SHARDS:COMMAND, e.g. "spot 0.1 mm=print:2,8:spot.gcode --voxel-size 0.1", of a KIND
-  print    gcode2vdb COMMAND -o w.vdb, shards, vdbmerge
-  picture  vdbtrace COMMAND -o w.png, shards by tiles, vdbmerge
-  samples  the same with --shard-by samples
+A CASE is NAME=KIND:SHARDS:COMMAND, e.g. "picture=picture:2,16:hull.gcode --size 1280x960", of a KIND
+  picture  vdbtrace COMMAND -o w.png, shards, vdbmerge
   film     vdbtrace COMMAND -o w.png, which must make a series; nothing is merged
 Each turn runs one process, then all shards of each number and their merge, compares the results, and runs a shard that
 has (almost) nothing to do. Times are those of the processor, user and system, with --threads 1: what a node of one core
@@ -16,7 +14,7 @@ takes, whatever else this machine does.
 The model: n nodes take  again + longest * work / n + merge.  `again` is what each shard does anew: it starts, loads,
 and makes bricks that another one makes too. `longest` is the longest share of the work by the mean one. All are those of
 the largest number of shards that was measured; up to that number `longest` grows from 1 with the logarithm of n. More
-nodes than pieces (blocks, tiles, samples, pictures) are of no use.
+nodes than pieces (tiles, pictures) are of no use.
 """
 
 import argparse
@@ -58,45 +56,38 @@ def same_file(one, other):
 
 
 def measure_case(binaries, name, kind, counts, options, turns):
-    tool = os.path.join(binaries, "gcode2vdb" if kind == "print" else "vdbtrace")
+    tool = os.path.join(binaries, "vdbtrace")
     merge = os.path.join(binaries, "vdbmerge")
-    ending = "vdb" if kind == "print" else "png"
-    part = "vdb" if kind == "print" else "exr"
     base = [tool, *options, "--threads", "1", "--quiet"]
-    by = ["--shard-by", "samples"] if kind == "samples" else []
-    nothing = ["--shard", "1/1000000"] if kind == "print" else ["--crop", "0,0,1,1", "--no-denoise"]
+    nothing = ["--crop", "0,0,1,1", "--no-denoise"]
     case = {"name": name, "kind": kind, "command": shlex.join([os.path.basename(tool), *map(os.path.basename, options)]),
             "one": [], "start": [], "shards": {str(count): [] for count in counts}}
     for _ in range(turns):
-        case["one"].append(seconds([*base, "-o", f"w.{ending}"]))
+        case["one"].append(seconds([*base, "-o", "w.png"]))
         if kind != "film":
-            case["start"].append(seconds([*base, "-o", f"e.{ending}", *nothing]))
+            case["start"].append(seconds([*base, "-o", "e.png", *nothing]))
         for count in counts:
-            each = [seconds([*base, "-o", f"p.{ending}", *by, "--shard", f"{n}/{count}"]) for n in range(count)]
+            each = [seconds([*base, "-o", "p.png", "--shard", f"{n}/{count}"]) for n in range(count)]
             joined = 0.0
             if kind == "film":
                 same = same_files(glob.glob("w_*.png"), glob.glob("p_*.png"))
             else:
-                joined = seconds([merge, f"m.{ending}", *glob.glob(f"p.*of{count}.{part}"), "--quiet", "--threads", "1"])
-                same = same_file(f"m.{ending}", f"w.{ending}")
+                joined = seconds([merge, "m.png", *glob.glob(f"p.*of{count}.exr"), "--quiet", "--threads", "1"])
+                same = same_file("m.png", "w.png")
             if not same:
                 raise SystemExit(f"{name}: {count} shards: other bytes than one process")
             case["shards"][str(count)].append({"each": each, "merge": joined})
-            remove(f"p*.{part}", f"m.{ending}")
+            remove("p*.exr", "m.png")
             remove("p_*.png")
         if kind == "film":
             case["pieces"] = len(glob.glob("w_*.png"))
         remove("w*", "e*")
     if kind != "film":
-        case["pieces"] = pieces_of(kind, options)
+        case["pieces"] = pieces_of(options)
     return case
 
 
-def pieces_of(kind, options):
-    if kind == "print":
-        return None  # as many blocks as the print has
-    if kind == "samples":
-        return int(options[options.index("--spp") + 1]) if "--spp" in options else None
+def pieces_of(options):
     width, height = map(int, options[options.index("--size") + 1].split("x"))
     return -(-width // TILE) * -(-height // TILE)
 
@@ -137,7 +128,7 @@ def parts_of(case):
     start = statistics.median(case["start"]) if case["start"] else None
     all_shards = statistics.median(sum(run["each"]) for run in runs)
     # One process does the denoising itself, which shards leave to the merge.
-    end = merge if case["kind"] in ("picture", "samples") else 0.0
+    end = merge if case["kind"] == "picture" else 0.0
     lasting = one - end
     # all = n again + work, one = again + work
     again = max((all_shards - lasting) / (count - 1), 0.0)
@@ -150,8 +141,8 @@ def parts_of(case):
 def modelled(case, nodes):
     p = parts_of(case)
     if nodes == 1:
-        return p["again"] + p["work"] + (p["merge"] if case["kind"] in ("picture", "samples") else 0.0)
-    pieces = min(nodes, case["pieces"] or nodes)
+        return p["again"] + p["work"] + (p["merge"] if case["kind"] == "picture" else 0.0)
+    pieces = min(nodes, case["pieces"])
     uneven = 1 + (p["uneven"] - 1) * min(math.log(pieces) / math.log(p["count"]), 1.0)
     return p["again"] + uneven / pieces * p["work"] + p["merge"]
 

@@ -37,7 +37,7 @@ PICTURE = {
     "translucent plastic": r"RandomWalk|random_walk|TranslucentBrdf|RoughInterface",
     "transparent pictures (--background none)": r"catchShadows|addBare|toDisplayWithAlpha|bareBed",
     "films": r"stratum::animate::",
-    "shards of pictures": r"shade::(mergePicture|mergeParts|isPartOf|writePart|readPart|shardRegion|PartSums)|parseShard",
+    "shards of pictures": r"shade::(mergePicture|mergeParts|isPartOf|writePart|readPart|piecesOf)|parseShard",
     "reading G-code": r"gcode::readToolpath|gcode::Lexer|motion::Planner|deposit::",
 }
 STRAIGHT = PICTURE | {
@@ -56,7 +56,6 @@ CONVERSION = {
     "comparison with a model": r"stratum::compare::",
     "elements": r"stratum::mechanics::",
     "thumbnails": r"[tT]humbnail",
-    "shards of prints": r"shareOf|PartOfPrint|mergePrint|parseShard",
     "attribute grids": r"voxelize::.*[aA]ttribute",
     "meshes": r"exporter::.*[sS]urfaceMesh|meshSurface|simplif",
     "NanoVDB": r"[nN]ano",

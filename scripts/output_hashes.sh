@@ -35,7 +35,7 @@ run gcode2vdb meshes/gear.obj "$prints/gear.gcode" "${two[@]}" --mesh-error 0
 
 run vdbtrace pictures/default.png "$prints/hull.gcode" --size 160x120
 run vdbtrace pictures/series.png "$prints/tile.gcode" "${two[@]}" "${small[@]}" --progress-series 3
-for integrator in path direct environment-sum phong ao normal depth position mask; do
+for integrator in path direct phong ao normal depth position mask; do
     run vdbtrace "pictures/$integrator.exr" grids/hull.vdb "${small[@]}" --integrator "$integrator"
 done
 for march in brick sphere vdb; do

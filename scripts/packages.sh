@@ -37,8 +37,8 @@ compiler_choice() {
 # What the tools are built with. Why clang: docs/benchmarks.md, "Compilers".
 BUILD_PACKAGES=(clang lld ccache cmake ninja-build libopenvdb-dev libnanovdb-dev libboost-dev libboost-iostreams-dev libtbb-dev libblosc-dev liblz4-dev
     libopenexr-dev libglm-dev libpng-dev libssl-dev libcli11-dev libfmt-dev nlohmann-json3-dev libfast-float-dev
-    libassimp-dev libhwy-dev libdeflate-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libzip-dev libstb-dev pkg-config
-    pybind11-dev python3-dev python3-numpy)
+    libassimp-dev libhwy-dev libdeflate-dev libjpeg62-turbo-dev libwebp-dev zlib1g-dev libzip-dev libstb-dev libeigen3-dev libqoi-dev
+    pkg-config     pybind11-dev python3-dev python3-numpy)
 [[ ${STRATUM_CXX:-} != g++ ]] || BUILD_PACKAGES+=(g++)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
 # are started by their test, not as services of the machine. GCC compiles the programs of others that use our libraries.

@@ -4,7 +4,6 @@
 #include "color_options.h"
 #include "command_line.h"
 #include "convert/conversion.h"
-#include "convert/convert_shard.h"
 #include "convert/elements_output.h"
 #include "convert/mesh_output.h"
 #include "convert/model_comparison.h"
@@ -12,7 +11,6 @@
 #include "output_names.h"
 #include "print_options.h"
 #include "run_files.h"
-#include "shard_option.h"
 
 #include "assemble/print/tool_colors.h"
 #include "base/atomic_file.h"
@@ -56,7 +54,6 @@ Examples:
   gcode2vdb part.gcode --report part.html --density 1.24    mass, porosity, walls, bonding ... as a page
   gcode2vdb part.gcode --thumbnail 300x300,16x16 -o new.gcode   the print with new pictures for the printer's screen
   zcat part.gcode.gz | gcode2vdb - -o part.vdb      from standard input
-  gcode2vdb part.gcode -o part.vdb --shard 0/8      part.0of8.vdb, an eighth of it; vdbmerge joins all eight
   gcode2vdb part.gcode --stats - --quiet            a JSON report on standard output)";
 
 void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
@@ -84,20 +81,6 @@ void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
     app.add_flag("--summary", o.summary, "Print what the file holds: layers, features, filament per tool")
         ->group(writing);
-}
-
-void addShardOptions(CLI::App& app, tools::ConvertCommand& o) {
-    const char* machines = "Several machines";
-    auto* shard =
-        app.add_option("--shard", o.shard.text,
-                       "The share I of N, I from 0, of a level set; slurm takes both from a task of its array, "
-                       "slurm/N its number. "
-                       "vdbmerge puts the parts, OUT.IofN.vdb, together")
-            ->type_name("I/N|slurm|slurm/N")
-            ->group(machines);
-    app.add_flag("--resume", o.shard.resume, "Skips a part that is there and says that it is of this scene and shard")
-        ->needs(shard)
-        ->group(machines);
 }
 
 void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
@@ -162,7 +145,7 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     addWritingOptions(app, o);
     tools::addCompareOptions(app, o.compare);
     tools::addElementOptions(app, o.elements);
-    addShardOptions(app, o);
+    tools::addGone(app, "--shard", "one process writes the level set of a print of any size; leave it out");
     tools::addReportOptions(app, o.report);
     tools::addThumbnailOptions(app, o.thumbnail);
     tools::addCommonOptions(app, o.common, {"--output",
@@ -225,8 +208,6 @@ void check(const tools::ConvertCommand& o, const std::vector<fs::path>& outputs)
     if (nano && standard)
         throw UsageError(fmt::format("-o {}: NanoVDB can't be a stream; name a file", output.string()));
     if (nano && o.usda) throw UsageError(fmt::format("--usda: names the .vdb of volumes, not {}", output.string()));
-    if (nano && !o.shard.text.empty())
-        throw UsageError(fmt::format("--shard: parts are of a .vdb, not of {}; vdbmerge joins them", output.string()));
     if (mesh && o.usda) throw UsageError(fmt::format("--usda: is for volumes; write a .vdb, not {}", output.string()));
     if (mesh) tools::checkMeshGrids(o, output);
     if (standard && (o.usda || !o.snapshots.empty()))
@@ -254,12 +235,11 @@ void chooseElementSize(tools::ConvertCommand& o, const fs::path& output) {
 }
 
 void run(tools::ConvertCommand& o) {
-    std::vector<fs::path> outputs = outputsOf(o);
+    const std::vector<fs::path> outputs = outputsOf(o);
     o.compare.grid = tools::takeDeviation(o);
     check(o, outputs);
     chooseElementSize(o, outputs.front());
     const bool folder = !o.output.empty() && outputs.front() != o.output;
-    tools::divide(o, outputs);
     refuseEqualNames(o, outputs);
     tools::RunFiles files;
     for (const std::string& input : o.inputs) files.reads(input);
@@ -302,7 +282,6 @@ int main(int argc, char** argv) {
             return tools::writeThumbnails(options);
         }
         tools::useHugePages(argv);
-        options.shard.said = tools::saidOf(app);
         return run(options);
     });
 }

@@ -17,14 +17,6 @@ namespace stratum::tools {
 
 namespace {
 
-// The check for a table of names.
-template <typename Value, std::size_t N>
-CLI::Validator namesOf(const gcode::OptionNames<Value, N>& names) {
-    std::vector<std::pair<std::string, int>> values;
-    for (const auto& [name, value] : names) values.emplace_back(name, static_cast<int>(value));
-    return enumeration(std::move(values));
-}
-
 void addLatticeOptions(CLI::App& app, voxelize::PrintOptions& options, bool pictures) {
     const char* lattice = kLattice;
     const auto take_size = [&options, pictures](const std::string& text) {
@@ -116,7 +108,7 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
            "What overlapping beads do: capsule: nothing, they are united (default); settled: what two neighbours "
            "both claim fills the groove between them, and what has no room there presses the outlines beside it out; "
            "grooves: only the first of both")
-        ->transform(namesOf(gcode::kBeadModels))
+        ->transform(enumeration(gcode::kBeadModels))
         ->type_name("MODEL")
         ->group(plastic);
     completes(
@@ -171,18 +163,18 @@ void addReadingOptions(CLI::App& app, voxelize::PrintOptions& options) {
                  "Reads programs that turn the part or the nozzle (axes A, B, C) by X, Y and Z alone")
         ->group(reading);
     app.add_option("--e-mode", options.read.extruder_mode, "How E counts at the start: auto, absolute, relative")
-        ->transform(namesOf(gcode::kExtruderModes))
+        ->transform(enumeration(gcode::kExtruderModes))
         ->type_name("MODE")
         ->group(reading);
     app.add_option(
            "--planner", options.read.corner_rule,
            "How print times are planned: auto, jerk, slicer-jerk, plan-jerk, junction-deviation, corner-velocity, "
            "marlin-jerk, reprap-jerk")
-        ->transform(namesOf(gcode::kCornerRules))
+        ->transform(enumeration(gcode::kCornerRules))
         ->type_name("RULE")
         ->group(reading);
     app.add_option("--firmware", options.read.firmware, "Whose rules hold: auto, marlin, klipper, reprap")
-        ->transform(namesOf(gcode::kFirmwares))
+        ->transform(enumeration(gcode::kFirmwares))
         ->type_name("NAME")
         ->group(reading);
 }

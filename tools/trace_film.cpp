@@ -1,7 +1,6 @@
 #include "trace_film.h"
 
 #include "progress.h"
-#include "shard_option.h"
 #include "trace_frame.h"
 #include "trace_series.h"
 #include "trace_shard.h"
@@ -57,7 +56,6 @@ void refuseOthers(const TraceCommand& o) {
         refuse("--checkpoint", "is for one picture; a film keeps its finished frames by itself");
     if (!o.write_brdf.empty()) refuse("--write-brdf", "is for pictures");
     if (o.scene.transparent) refuse("--background none", "is for pictures; films have no alpha");
-    if (!o.bricks.picture.empty()) refuse("--brick-picture", "is for pictures");
     if (!o.film.camera_path.empty() && o.film.turn) refuse("--camera-path", "and --turntable move the same camera");
     if (o.prints.print.voxel_auto && !o.film.camera_path.empty())
         refuse("--voxel-size auto", "follows from one camera, and that of --camera-path moves; give a number");
@@ -277,7 +275,7 @@ private:
     int threads_;
     animate::FilmFormat format_;
     animate::KeptFrames kept_;
-    std::optional<Shard> shard_;
+    std::optional<shade::Shard> shard_;
     std::size_t first_ = 0, last_ = 0;
     std::optional<animate::MovingScene> scene_;
     Stopwatch watch_;

@@ -157,10 +157,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
 
     const shade::RayCounts& rays = result.rays;
     std::string piece;
-    if (options.samples)
-        piece = fmt::format("samples {} to {} of ", options.samples->first, options.samples->end - 1);
-    else if (o.shard.pieces)
-        piece = fmt::format("{} x {} of ", result.film.width(), result.film.height());
+    if (o.shard.pieces) piece = fmt::format("{} x {} of ", result.film.width(), result.film.height());
     say(o.common,
         fmt::format("  {}: {}{} x {} at {:.4g} spp, {} rays, {:.1f} Mrays/s, {:.2f} s in all", output, piece,
                     o.render.width, o.render.height, result.mean_spp, humanCount(static_cast<double>(rays.total())),

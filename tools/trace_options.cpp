@@ -124,7 +124,7 @@ void addPictureOptions(CLI::App& app, TraceCommand& o) {
 void addCameraOptions(CLI::App& app, TraceCommand& o) {
     const char* camera = "Camera";
     completes(app.add_option("--view", o.view, "iso, front, back, left, right, top, bottom (default iso)"),
-              Completion::word, {"iso", "front", "back", "left", "right", "top", "bottom"})
+              Completion::word, wordsOf(shade::kViews))
         ->type_name("NAME")
         ->group(camera);
     const auto vector = [&](const char* name, std::string& value, const char* help) {
@@ -190,11 +190,10 @@ void addClipOption(CLI::App& app, TraceCommand& o) {
 
 void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     completes(app.add_option("--integrator", o.render.integrator.name,
-                             "path, direct, environment-sum, phong, ao, normal, depth, position, mask, layer, tool, "
+                             "path, direct, phong, ao, normal, depth, position, mask, layer, tool, "
                              "feature (default path)"),
               Completion::word,
-              {"path", "direct", "environment-sum", "phong", "ao", "normal", "depth", "position", "mask", "layer",
-               "tool", "feature"})
+              {"path", "direct", "phong", "ao", "normal", "depth", "position", "mask", "layer", "tool", "feature"})
         ->type_name("NAME")
         ->group(kLight);
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
@@ -203,10 +202,8 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
         ->type_name("KA,KD,KS,SHININESS,KR")
         ->group(kLight);
-    app.add_option("--environment-rows", o.render.integrator.environment_rows,
-                   "environment-sum: rows of its map, twice as many columns (default 32)")
-        ->type_name("N")
-        ->group(kLight);
+    addGone(app, "--environment-rows",
+            "it was of --integrator environment-sum; direct has the same light, without bias");
     app.add_option("--ao-distance", o.render.integrator.ao_distance, "ao: farther things don't occlude")
         ->type_name("LENGTH")
         ->group(kLight);
@@ -275,7 +272,7 @@ void addLightOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
     app.add_flag("--bed,!--no-bed", o.scene.bed, "A seamless bed under the print (the default)")->group(kLight);
     app.add_option("--bed-surface", o.bed_surface, "paper, pei, or grid of 10 mm (default paper)")
-        ->check(oneOf({"paper", "pei", "grid"}))
+        ->check(oneOf(shade::kBedSurfaces))
         ->type_name("NAME")
         ->group(kLight);
     app.add_option_function<std::string>(
@@ -296,11 +293,14 @@ void addShardOptions(CLI::App& app, TraceCommand& o) {
                "slurm/N its number. vdbmerge puts the parts of a picture, OUT.IofN.exr, together")
             ->type_name("I/N|slurm|slurm/N")
             ->group(machines);
-    app.add_option("--shard-by", o.shard.by,
-                   "tiles: a piece of each picture, samples: some of the samples of all its pixels, or frames: whole "
-                   "pictures of "
-                   "a series (default: frames of a series, tiles of one picture)")
-        ->check(oneOf({"tiles", "samples", "frames"}))
+    app.add_option(
+           "--shard-by", o.shard.by,
+           "tiles: a piece of each picture, or frames: whole pictures of a series (default: frames of a series, "
+           "tiles of one picture)")
+        ->check([](const std::string& text) {
+            return text == "samples" ? "samples are no longer shared; use tiles, which have the same bytes" : "";
+        })
+        ->check(oneOf({"tiles", "frames"}))
         ->needs(shard)
         ->type_name("NAME")
         ->group(machines);
@@ -339,7 +339,7 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addLightOptions(app, o);
     addTracingOptions(app, o);
     addShardOptions(app, o);
-    addTracePrintOptions(app, o.prints, o.bricks);
+    addTracePrintOptions(app, o.prints, o.brick_cache);
     addFilmOptions(app, o.film, o.nozzle);
     addCommonOptions(app, o.common,
                      {"--output",  "--size",      "--spp",   "--noise",      "--denoise", "--view",     "--eye",

@@ -26,9 +26,8 @@ namespace stratum::tools {
 struct ShardCommand {
     std::string text, by;  // as given
     bool resume = false;
-    std::optional<Shard> shard;
-    bool pieces = false;              // traces a part of each picture; else whole pictures
-    bool samples = false;             // that part is a share of the samples; else a piece of the picture
+    std::optional<shade::Shard> shard;
+    bool pieces = false;              // traces a piece of each picture; else whole pictures
     std::vector<bool> made;           // which pictures are this process's; empty: all
     std::vector<std::string> scenes;  // hashes of what each picture is of, for pieces and resume
 };
@@ -55,7 +54,7 @@ struct TraceCommand {
     std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;
     assemble::PrintRequest prints;
-    BrickCommand bricks;
+    std::string brick_cache;  // as given; empty: no bound
     FilmCommand film;
     ShardCommand shard;
     std::vector<assemble::ObjectOptions> objects;  // of a scene file; empty: the inputs

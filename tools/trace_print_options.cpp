@@ -1,5 +1,6 @@
 #include "trace_print_options.h"
 
+#include "command_line.h"
 #include "print_options.h"
 
 #include "base/error.h"
@@ -13,17 +14,14 @@
 
 namespace stratum::tools {
 
-void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, BrickCommand& bricks) {
+void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, std::string& brick_cache) {
     app.add_option(
-           "--brick-cache", bricks.cache,
+           "--brick-cache", brick_cache,
            "brick: no more than this of samples at once, e.g. 200MB; what no ray came to lately makes room, and "
            "the picture stays the same. Of each print, and of each large level set (default: no bound)")
         ->type_name("SIZE")
         ->group("Tracing");
-    app.add_option("--brick-picture", bricks.picture,
-                   "brick: also write which of a print's bricks rays came to, from the front and from above")
-        ->type_name("FILE.png")
-        ->group("Tracing");
+    addGone(app, "--brick-picture", "--stats has how many bricks rays came to, bricks_made of bricks_listed");
     addPrintOptions(app, request.print, true);
     app.add_option("--printed", request.printed,
                    "G-code: what is printed by then: 25%, layer:40, time:90 (minutes; 5400s, 1.5h), or time:50%")
@@ -45,8 +43,7 @@ std::vector<std::string> givenPrintOptions(const CLI::App& app) {
     std::vector<std::string> given;
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_name();
-        const bool of_prints = std::find(kGroups.begin(), kGroups.end(), option->get_group()) != kGroups.end() ||
-                               name == "--brick-picture";
+        const bool of_prints = std::find(kGroups.begin(), kGroups.end(), option->get_group()) != kGroups.end();
         if (of_prints && option->count() > 0) given.push_back(name);
     }
     return given;
@@ -56,14 +53,11 @@ void refusePrintOptions(const std::vector<std::string>& given, const std::string
     if (given.empty()) return;
     const std::string& first = given.front();
     const bool in_time = first == "--printed" || first == "--progress-series";
-    const bool of_rays = first == "--brick-picture";
-    throw UsageError(fmt::format(
-        "{}: needs G-code, and {} is a level set, whose voxels are made; {}give vdbtrace the "
-        "print itself",
-        fmt::join(given, ", "), vdb,
-        of_rays
-            ? ""
-            : fmt::format("make it anew with gcode2vdb {}, or ", in_time ? "--snapshots" : fmt::format("{}", first))));
+    throw UsageError(
+        fmt::format("{}: needs G-code, and {} is a level set, whose voxels are made; make it anew with gcode2vdb {}, "
+                    "or give vdbtrace "
+                    "the print itself",
+                    fmt::join(given, ", "), vdb, in_time ? "--snapshots" : first));
 }
 
 }  // namespace stratum::tools

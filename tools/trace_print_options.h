@@ -10,13 +10,8 @@
 
 namespace stratum::tools {
 
-/// How bricks are kept, and a picture of them.
-struct BrickCommand {
-    std::string cache;    ///< --brick-cache, also of large level sets; empty: no bound
-    std::string picture;  ///< --brick-picture: a file, or empty
-};
-
-void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, BrickCommand& bricks);
+/// `brick_cache`: --brick-cache, also of large level sets; empty: no bound.
+void addTracePrintOptions(CLI::App& app, assemble::PrintRequest& request, std::string& brick_cache);
 
 /// Options on this command line that are of G-code alone, "--printed".
 std::vector<std::string> givenPrintOptions(const CLI::App& app);

@@ -34,10 +34,10 @@ assemble::TracingOptions readingOf(const TraceCommand& o) {
     reading.finishes = o.finishes;
     reading.hash = !o.render.checkpoint.empty();
     reading.events = terminalEvents(o.common.quiet);
-    if (!o.bricks.cache.empty()) {
+    if (!o.brick_cache.empty()) {
         if (o.march != "auto" && o.march != "brick")
             throw UsageError(fmt::format("--brick-cache: --march {} has no bricks", o.march));
-        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.bricks.cache), 1e18));
+        reading.brick_cache = static_cast<std::size_t>(std::min(voxelize::parseSize(o.brick_cache), 1e18));
     }
     return assemble::tracingFor(o.scene, o.render, std::move(reading));
 }
@@ -91,8 +91,6 @@ public:
         assemble::TracedObjects objects = assemble::readTracedObjects(objectsOf(o_, n), reading_);
         if (o_.prints.series > 1 && !assemble::growingPrint(objects))
             throw UsageError("--progress-series needs G-code: level sets don't know what was printed when");
-        if (!o_.bricks.picture.empty() && objects.prints.empty())
-            throw UsageError("--brick-picture needs G-code: level sets have no bricks that rays could leave out");
         for (const std::string& line : objects.lines) say(o_.common, line);
         if (o_.legend && objects.legends.empty()) say(o_.common, "  no legend: nothing is coloured by an attribute");
         Stopwatch watch;
@@ -102,8 +100,6 @@ public:
         scene_->labels = objects.labels;
         if (o_.nozzle) hot_end_.emplace(objects, *scene_);
         frames(n, objects, watch);
-        if (!o_.bricks.picture.empty() && n == 0)
-            objects.prints.back()->writeBrickPicture(o_.bricks.picture, {{"Software", "vdbtrace " STRATUM_VERSION}});
     }
 
     const Json& reports() const { return reports_; }

@@ -1,20 +1,25 @@
 #include "trace_shard.h"
 
-#include "shard_option.h"
 #include "trace_frame.h"
 
 #include "base/atomic_file.h"
 #include "base/checksum.h"
 #include "base/error.h"
+#include "base/input_file.h"
 #include "gcode/container/input_bytes.h"
 #include "shade/parts/frame_record.h"
 #include "shade/parts/shard.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace stratum::tools {
@@ -22,21 +27,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): before any thread
+    return value ? value : "";
+}
+
+/// A hash of a file's contents; empty for what is no file: a preset, whose name is among the options.
+std::string contentHash(const std::string& path) {
+    std::error_code missing;
+    if (!std::filesystem::is_regular_file(path, missing)) return {};
+    return sha256Hex(InputFile(path).bytes());
+}
+
 void refuse(const TraceCommand& o, bool pieces) {
-    if (!o.bricks.picture.empty())
-        throw UsageError("--brick-picture shows the rays of a whole run; leave it out with --shard");
     if (pieces && o.render.seconds > 0.0)
         throw UsageError(
-            "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise with "
-            "--shard-by tiles, or --shard-by frames");
-    if (o.shard.samples && o.render.noise > 0.0)
-        throw UsageError(
-            "--shard-by samples: --noise decides by all samples of a tile whether it needs more, and a shard has only "
-            "some of them; use --spp, or --shard-by tiles");
-    if (o.shard.samples && !o.render.checkpoint.empty())
-        throw UsageError(
-            "--shard-by samples: --checkpoint keeps finished pixels, and a shard has only sums of them; use more "
-            "shards and --resume, or --shard-by tiles");
+            "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise, "
+            "or --shard-by frames");
     if (!pieces && !o.shard.resume) return;
     if (isStandardOutput(o.output))
         throw UsageError("--shard: a part can't go to standard output, nor be resumed there; name a file by -o");
@@ -93,13 +100,36 @@ std::string sceneOf(const TraceCommand& o, std::size_t n, Contents& contents) {
 
 }  // namespace
 
+shade::Shard givenShard(const std::string& text) {
+    constexpr std::string_view kSlurm = "slurm";
+    const std::string_view count = std::string_view(text).substr(std::min(kSlurm.size(), text.size()));
+    if (!text.starts_with(kSlurm) || (!count.empty() && count.front() != '/')) return shade::parseShard(text);
+    if (!count.empty()) return shade::parseShard(environment("SLURM_ARRAY_TASK_ID") + std::string(count));
+    return shade::shardOf({environment("SLURM_ARRAY_TASK_ID"), environment("SLURM_ARRAY_TASK_MIN"),
+                           environment("SLURM_ARRAY_TASK_MAX"), environment("SLURM_ARRAY_TASK_COUNT")});
+}
+
+std::string saidOf(const CLI::App& app) {
+    // Where the output goes, what is reported, on how many threads and machines changes nothing of it.
+    constexpr std::array<std::string_view, 12> kOther = {"output",   "film",   "checkpoint", "threads",
+                                                         "stats",    "quiet",  "IN",         "shard",
+                                                         "shard-by", "resume", "summary",    "force"};
+    std::string said;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_single_name();
+        if (option->count() == 0 || std::find(kOther.begin(), kOther.end(), name) != kOther.end()) continue;
+        said += fmt::format("{} {}\n", name, fmt::join(option->results(), " "));
+    }
+    return said;
+}
+
 std::size_t pictures(const TraceCommand& o) {
     return o.inputs.size() * static_cast<std::size_t>(o.prints.series) * static_cast<std::size_t>(o.turntable);
 }
 
 std::string outputOf(const TraceCommand& o, std::size_t n) {
     const std::string name = numbered(o.output, n, pictures(o));
-    return o.shard.pieces ? shardName(name, *o.shard.shard, ".exr").string() : name;
+    return o.shard.pieces ? shade::shardName(name, *o.shard.shard, ".exr").string() : name;
 }
 
 bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() || o.shard.made[n]; }
@@ -107,7 +137,7 @@ bool makes(const TraceCommand& o, std::size_t n) { return o.shard.made.empty() |
 void divide(std::vector<TraceCommand>& commands) {
     if (commands.empty() || commands.front().shard.text.empty()) return;
     const ShardCommand& given = commands.front().shard;
-    const Shard shard = givenShard(given.text);
+    const shade::Shard shard = givenShard(given.text);
     std::size_t count = 0;
     for (const TraceCommand& o : commands) count += pictures(o);
     const bool series = count > 1 || commands.front().each;
@@ -115,12 +145,11 @@ void divide(std::vector<TraceCommand>& commands) {
     const auto [first, last] = pieces ? std::pair<std::size_t, std::size_t>() : shade::chunkOf(count, shard);
     std::size_t number = 0;
     for (TraceCommand& o : commands) {
-        o.shard.samples = given.by == "samples";
         refuse(o, pieces);
         o.shard.shard = shard;
         o.shard.pieces = pieces;
         if (pieces) {
-            if (!o.render.checkpoint.empty()) o.render.checkpoint = shardName(o.render.checkpoint, shard);
+            if (!o.render.checkpoint.empty()) o.render.checkpoint = shade::shardName(o.render.checkpoint, shard);
             continue;
         }
         for (std::size_t n = 0; n < pictures(o); ++n, ++number)
@@ -142,8 +171,8 @@ void identify(TraceCommand& o) {
         if (!o.shard.made[n]) continue;
         const std::string output = outputOf(o, n);
         const std::string& scene = o.shard.scenes[n];
-        const bool there = record ? record->has(output, scene)
-                                  : shade::isPartOf(output, STRATUM_VERSION, scene, *o.shard.shard, o.shard.samples);
+        const bool there =
+            record ? record->has(output, scene) : shade::isPartOf(output, STRATUM_VERSION, scene, *o.shard.shard);
         if (!there) continue;
         o.shard.made[n] = false;
         say(o.common, fmt::format("  {}: is this shard of this scene already, skipped", output));
@@ -157,7 +186,7 @@ std::string filmIdentity(const TraceCommand& o) {
 
 std::string recordOf(const TraceCommand& o) {
     if (!o.shard.resume || o.shard.pieces) return {};
-    return shardName(o.output, *o.shard.shard, ".done").string();
+    return shade::shardName(o.output, *o.shard.shard, ".done").string();
 }
 
 void recordPicture(const TraceCommand& o, std::size_t n) {
@@ -168,10 +197,6 @@ void recordPicture(const TraceCommand& o, std::size_t n) {
 shade::RenderOptions renderOptionsOf(const TraceCommand& o) {
     shade::RenderOptions options = o.render;
     if (!o.shard.pieces) return options;
-    if (o.shard.samples) {
-        options.samples = shade::samplesOf(o.render.spp, *o.shard.shard);
-        return options;
-    }
     options.crop =
         shade::piecesOf(o.render.region(), o.shard.shard->count).at(static_cast<std::size_t>(o.shard.shard->index));
     options.margin = 0;  // the denoiser's is among the pieces
@@ -192,16 +217,12 @@ void writePiece(shade::PictureFile& file, const TraceCommand& o, std::size_t n, 
                   o.tone.exposure,
                   legend ? std::optional(*legend) : std::nullopt,
                   o.shard.shard->count,
-                  o.shard.samples ? o.render.spp : 0,
                   result.film.transparent() ? std::optional(result.film.bareBed()) : std::nullopt};
     part.index = o.shard.shard->index;
     part.samples = result.samples;
     part.pixels = result.pixels;
     part.metadata = metadata;
-    if (o.shard.samples)
-        shade::writePart(file, result.film, result.sums, std::move(part));
-    else
-        shade::writePart(file, result.film, std::move(part));
+    shade::writePart(file, result.film, std::move(part));
 }
 
 }  // namespace stratum::tools

@@ -12,6 +12,13 @@
 
 namespace stratum::tools {
 
+/// "I/N", or "slurm": a task of an array, which says so in its environment; or "slurm/N": its number is that of the
+/// task, of N, so that an array of some numbers makes some of the shards. Throws UsageError.
+shade::Shard givenShard(const std::string& text);
+
+/// The options that were given and may change what is made, as text for hashes: the same for any order of them.
+std::string saidOf(const CLI::App& app);
+
 /// Pictures that a command makes.
 std::size_t pictures(const TraceCommand& command);
 
@@ -37,7 +44,7 @@ std::string recordOf(const TraceCommand& command);
 /// Notes there that picture n is written. Throws OutputError.
 void recordPicture(const TraceCommand& command, std::size_t n);
 
-/// The render options of this process: of its piece or its samples, if it traces some.
+/// The render options of this process: of its piece, if it traces one.
 shade::RenderOptions renderOptionsOf(const TraceCommand& command);
 
 /// Writes the part of picture n with all that a merge needs.

@@ -1,11 +1,10 @@
-// vdbmerge: the parts of a picture or of a level set -> the whole.
+// vdbmerge: the parts of a picture -> the whole.
 #include "command_line.h"
 #include "run_files.h"
 
 #include "base/atomic_file.h"
-#include "base/human_text.h"
+#include "base/error.h"
 #include "base/stopwatch.h"
-#include "export/parts/merge_prints.h"
 #include "shade/parts/merge.h"
 
 #include <fmt/format.h>
@@ -23,7 +22,6 @@ constexpr const char* kExamples = R"(
 Examples:
   vdbmerge part.png part.*of8.exr                   what vdbtrace -o part.png --shard 0/8 ... 7/8 wrote
   vdbmerge part.exr part.*of8.exr                   the same of vdbtrace -o part.exr
-  vdbmerge part.vdb part.*of8.vdb                   what gcode2vdb -o part.vdb --shard 0/8 ... 7/8 wrote
   vdbmerge - part.*of8.exr --quiet > part.png       to standard output)";
 
 struct MergeCommand {
@@ -32,7 +30,17 @@ struct MergeCommand {
     std::vector<std::string> parts;
 };
 
-void mergePicture(const MergeCommand& o) {
+void run(MergeCommand& o) {
+    if (fs::path(o.output).extension() == ".vdb" || o.output == "-.vdb")
+        throw UsageError(fmt::format(
+            "{}: a level set has no parts; one process of gcode2vdb writes it whole (name a .png, .jpg, .webp or .exr)",
+            o.output));
+    const tools::ThreadLimit limit(o.common.threads);
+    o.common.output_on_stdout = isStandardOutput(o.output);
+    tools::RunFiles files;
+    for (const std::string& part : o.parts) files.reads(part);
+    files.writes(o.output, "OUT");
+    files.writes(o.common.stats, "--stats");
     Stopwatch watch;
     const shade::MergedPicture merged =
         shade::mergeParts(o.output, std::vector<fs::path>(o.parts.begin(), o.parts.end()));
@@ -49,50 +57,17 @@ void mergePicture(const MergeCommand& o) {
                                  {"peak_rss_bytes", tools::peakRssBytes()}});
 }
 
-void mergePrint(const MergeCommand& o) {
-    Stopwatch watch;
-    const exporter::MergedPrint merged =
-        exporter::mergePrint(o.output, std::vector<fs::path>(o.parts.begin(), o.parts.end()));
-    const double seconds = watch.lap();
-    const exporter::GridStatistics& counted = merged.written.statistics;
-    tools::say(o.common, fmt::format("  {}: {} active voxels of {} parts, {:.2f} s", o.output,
-                                     humanCount(static_cast<double>(counted.active_voxels)), merged.parts, seconds));
-    tools::writeStats(o.common, {{"output", o.output},
-                                 {"active_voxels", counted.active_voxels},
-                                 {"leaves", merged.written.leaves},
-                                 {"parts", merged.parts},
-                                 {"seconds", seconds},
-                                 {"peak_rss_bytes", tools::peakRssBytes()}});
-}
-
-void run(MergeCommand& o) {
-    const tools::ThreadLimit limit(o.common.threads);
-    o.common.output_on_stdout = isStandardOutput(o.output);
-    tools::RunFiles files;
-    for (const std::string& part : o.parts) files.reads(part);
-    files.writes(o.output, "OUT");
-    files.writes(o.common.stats, "--stats");
-    if (fs::path(o.output).extension() == ".vdb" || o.output == "-.vdb")
-        mergePrint(o);
-    else
-        mergePicture(o);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app(
-        "Merges the parts of a picture that vdbtrace --shard traced, or of a level set that gcode2vdb --shard made.",
-        "vdbmerge");
+    CLI::App app("Merges the parts of a picture that vdbtrace --shard traced.", "vdbmerge");
     MergeCommand command;
     app.add_option("OUT", command.output,
                    "The picture, of the ending that vdbtrace -o had: .png, .jpg or .webp, denoised and exposed as one "
-                   "process would, or .exr; or the level set, a .vdb. The bytes are those of one process")
+                   "process would, or .exr. The bytes are those of one process")
         ->required()
         ->type_name("FILE");
-    app.add_option("PART", command.parts, "All parts, each once, in any order")
-        ->required()
-        ->type_name("FILE.exr|FILE.vdb");
+    app.add_option("PART", command.parts, "All parts, each once, in any order")->required()->type_name("FILE.exr");
     tools::addCommonOptions(app, command.common);
     app.footer(kExamples);
     return tools::runTool(app, argc, argv, [&command] { run(command); });

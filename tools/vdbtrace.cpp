@@ -3,7 +3,6 @@
 #include "command_line.h"
 #include "output_names.h"
 #include "run_files.h"
-#include "shard_option.h"
 #include "trace_film.h"
 #include "trace_options.h"
 #include "trace_series.h"
@@ -77,8 +76,6 @@ void check(tools::TraceCommand& o, const std::vector<std::string>& given_of_prin
     checkNozzle(o);
     if (const std::string given = tools::givenFilmOptions(o.film); !given.empty())
         throw UsageError(fmt::format("{}: of films alone; name one, e.g. --film part.mp4", given));
-    if (!o.bricks.picture.empty() && !o.bricks.picture.ends_with(".png"))
-        throw UsageError(fmt::format("--brick-picture {}: expected a .png", o.bricks.picture));
     if (o.legend && o.linear)
         throw UsageError(fmt::format("--legend is drawn into pictures to look at, e.g. a .png, not {}", o.output));
     checkPrints(o, given_of_prints);
@@ -109,7 +106,6 @@ void listFiles(tools::RunFiles& files, const tools::TraceCommand& o, const std::
     files.writes(tools::recordOf(o), "--resume");
     files.writes(o.render.checkpoint, "--checkpoint");
     files.writes(o.write_brdf, "--write-brdf");
-    files.writes(o.bricks.picture, "--brick-picture");
 }
 
 // The scene, if the input is one, and everything that is kept as text.

@@ -260,7 +260,7 @@ def render(
     look_at: _Point | None = ..., up: _Point | None = ..., fov: float | None = ..., f_number: float | None = ...,
     aperture: float | None = ..., focus: float | _Point | None = ..., frame: Literal["part", "all"] | None = ...,
     zoom: float | None = ..., integrator: str | None = ..., bounces: int | None = ...,
-    phong: Sequence[float] | None = ..., environment_rows: int | None = ..., ao_distance: float | None = ...,
+    phong: Sequence[float] | None = ..., ao_distance: float | None = ...,
     brdf: str | PathLike[str] | None = ..., color: str | Sequence[str] | None = ..., color_by: str | None = ...,
     normals: Literal["geometric", "smooth"] | None = ..., env: str | PathLike[str] | None = ...,
     env_rotation: float | None = ..., env_exposure: float | None = ..., lights: str | Sequence[str] | None = ...,

@@ -154,7 +154,6 @@ void readIntegrator(const Json& integrator, const std::string& name, shade::Inte
     JsonSection section(integrator, "integrator", name);
     section.read("name", options.name);
     section.readInteger("bounces", options.bounces);
-    section.readInteger("environment_rows", options.environment_rows);
     section.read("ao_distance", options.ao_distance);
     if (const auto p = section.numbers("phong", 5); !p.empty()) {
         const auto at = [&](std::size_t i) { return static_cast<float>(p[i]); };

@@ -11,9 +11,6 @@ namespace stratum {
 /// Of what was before (0: nothing) and of these bytes.
 std::uint32_t checksumOf(std::string_view bytes, std::uint32_t before = 0);
 
-/// Of two runs of bytes, from the checksums of both and the length of the second.
-std::uint32_t checksumOfBoth(std::uint32_t first, std::uint32_t second, std::uint64_t second_bytes);
-
 /// checksumOf() of `count` values in memory.
 template <typename T>
 std::uint32_t checksumOf(const T* values, std::size_t count, std::uint32_t before = 0) {

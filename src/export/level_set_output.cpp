@@ -1,9 +1,5 @@
 #include "export/level_set_output.h"
 
-#include "base/checksum.h"
-#include "base/input_file.h"
-#include "export/parts/checksum.h"
-
 #include <openvdb/io/io.h>
 
 #include <string_view>
@@ -12,40 +8,24 @@
 namespace stratum::exporter {
 
 LevelSetOutput::LevelSetOutput(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path,
-                               std::uint32_t compression, const voxelize::NodeBounds& bounds,
-                               std::optional<PartOfPrint> part)
+                               std::uint32_t compression, const voxelize::NodeBounds& bounds)
     : output_(path),
       file_(output_.temporary(), path),
       archive_(compression),
       grid_(std::move(grid)),
       format_(archive_.formatOf(*grid_)),
-      part_(std::move(part)),
       list_(format_) {
-    // Statistics have their final size already, and what is said of a part its largest.
+    // Statistics have their final size already.
     insertStatistics(*grid_, {}, format_);
-    if (part_) {
-        PartOfPrint most = *part_;
-        most.signs.resize(bounds.lower_nodes);
-        insertPart(*grid_, most);
-    }
     places_.head = archive_.header(1, {}).size();
     places_.leaves = places_.head + headBytes(archive_, *grid_, grid_->getName(), LeafList::mostBytes(bounds.leaves)) +
                      LevelSetNodes::mostBytes(format_, bounds.leaves, bounds.lower_nodes, bounds.upper_nodes);
     places_.end = places_.leaves;
 }
 
-void LevelSetOutput::add(LowerNode&& node) {
-    if (part_) part_->signs.push_back(node.ends);
-    nodes_.add(std::move(node));
-}
-
 void LevelSetOutput::append(std::span<iovec> leaves) {
     std::uint64_t bytes = 0;
-    for (const iovec& piece : leaves) {
-        bytes += piece.iov_len;
-        if (part_)
-            part_->checksum = checksumOf({static_cast<const char*>(piece.iov_base), piece.iov_len}, part_->checksum);
-    }
+    for (const iovec& piece : leaves) bytes += piece.iov_len;
     file_.write(places_.end, leaves);
     file_.startFlush(places_.end, places_.end + bytes);
     places_.end += bytes;
@@ -60,7 +40,6 @@ WrittenGrid LevelSetOutput::finish() {
     nodes_.flood();
     statistics_.memory_bytes = nodes_.memoryBytes();
     insertStatistics(*grid_, statistics_, format_);
-    if (part_) insertPart(*grid_, *part_);
     const float background = grid_->background();
     // Without leaves there is no list to take the room that is left.
     if (list_.leaves() == 0)
@@ -74,17 +53,10 @@ WrittenGrid LevelSetOutput::finish() {
     topology.writeOut();
     const std::string listed = list_.bytes();
     writeHead(file_, archive_, *grid_, grid_->getName(), places_, listed);
-    file_.write(0, archive_.header(1, identity(listed)));
+    file_.write(0, archive_.header(1, identityOf(*grid_, listed)));
     file_.finish(places_.end);
     output_.commit();
     return {statistics_, nodes_.leafCount()};
-}
-
-// That of a part is a checksum of all that stands before its leaves.
-std::string LevelSetOutput::identity(std::string_view listed) const {
-    if (!part_) return identityOf(*grid_, listed);
-    const InputFile written(output_.temporary());
-    return identityOfPart(written.bytes().substr(places_.head, places_.leaves - places_.head));
 }
 
 }  // namespace stratum::exporter

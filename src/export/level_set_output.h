@@ -3,7 +3,6 @@
 
 #include "base/atomic_file.h"
 #include "export/level_set_nodes.h"
-#include "export/parts/part_of_print.h"
 #include "export/positioned_file.h"
 #include "export/vdb_archive.h"
 #include "voxelize/grid/leaf_stream.h"
@@ -13,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,15 +28,15 @@ struct WrittenGrid {
 /// the old file stays.
 class LevelSetOutput {
 public:
-    /// `compression`: openvdb::io::COMPRESS_*. `bounds`: no more will come. `part`: what the file is a part of.
+    /// `compression`: openvdb::io::COMPRESS_*. `bounds`: no more will come.
     LevelSetOutput(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, std::uint32_t compression,
-                   const voxelize::NodeBounds& bounds, std::optional<PartOfPrint> part = {});
+                   const voxelize::NodeBounds& bounds);
 
     const LeafFormat& format() const { return format_; }
     /// The next leaf of the list.
     void add(PackedLeaf leaf) { list_.add(leaf); }
     /// The next lower node; its leaves are the next ones of those added.
-    void add(LowerNode&& node);
+    void add(LowerNode&& node) { nodes_.add(std::move(node)); }
     /// The next bytes of leaves; changes the list.
     void append(std::span<iovec> leaves);
     /// More voxels, for the statistics.
@@ -47,14 +45,11 @@ public:
     WrittenGrid finish();
 
 private:
-    std::string identity(std::string_view listed) const;
-
     AtomicFile output_;
     PositionedFile file_;
     VdbArchive archive_;
     openvdb::FloatGrid::Ptr grid_;
     LeafFormat format_;
-    std::optional<PartOfPrint> part_;
     LeafList list_;
     LevelSetNodes nodes_;
     GridStatistics statistics_;

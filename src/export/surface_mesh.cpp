@@ -1,6 +1,8 @@
 #include "export/surface_mesh.h"
 
 #include "base/parallel_for.h"
+#include "base/srgb.h"
+#include "base/union_find.h"
 #include "export/mesh_simplify.h"
 
 #include <fmt/format.h>
@@ -28,27 +30,6 @@ void clearSurface(openvdb::FloatGrid& grid) {
     });
 }
 
-// Merges the ends of edges of length 0: union-find with path halving; the lowest index is the representative.
-class Merging {
-public:
-    explicit Merging(std::size_t points) : leader_(points) { std::iota(leader_.begin(), leader_.end(), 0U); }
-    std::uint32_t find(std::uint32_t p) {
-        while (leader_[p] != p) p = leader_[p] = leader_[leader_[p]];
-        return p;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        if (a < b)
-            leader_[b] = a;
-        else
-            leader_[a] = b;
-    }
-
-private:
-    std::vector<std::uint32_t> leader_;
-};
-
 // Of the tetrahedron between a triangle and a point of the mesh, signed.
 double sixfoldVolume(const SurfaceMesh& mesh, std::uint32_t from, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const openvdb::Vec3d origin(mesh.points[from]);
@@ -72,7 +53,7 @@ bool reduce(SurfaceMesh::Face& face) {
 
 // The surface of a cavity is a connected part of its own, whose faces are oriented towards the cavity.
 void dropCavities(SurfaceMesh& mesh) {
-    Merging parts(mesh.points.size());
+    UnionFind parts(mesh.points.size());
     for (const SurfaceMesh::Face& face : mesh.faces)
         for (const std::uint32_t corner : face)
             if (corner != SurfaceMesh::kNone) parts.join(face[0], corner);
@@ -103,11 +84,10 @@ void dropUnusedPoints(SurfaceMesh& mesh) {
             if (corner != SurfaceMesh::kNone) corner = place[corner];
 }
 
-// IEC 61966-2-1, from linear light.
+// A byte of linear light.
 std::uint32_t srgb(float linear) {
-    const double v = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     return static_cast<std::uint32_t>(
-        std::lround(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055)));
+        std::lround(255 * srgbOfLinear(std::clamp(static_cast<double>(linear), 0.0, 1.0))));
 }
 
 // 0xTTRRGGBB by point, of the nearest active voxel among the eight around it and those beside them; T is the tool.
@@ -184,7 +164,7 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
     for (const openvdb::Vec4I& q : quads) mesh.faces.push_back({q[3], q[2], q[1], q[0]});
     std::vector<openvdb::Vec4I>().swap(quads);
 
-    Merging merging(mesh.points.size());
+    UnionFind merging(mesh.points.size());
     for (const SurfaceMesh::Face& face : mesh.faces) {
         const std::size_t corners = face[3] == SurfaceMesh::kNone ? 3 : 4;
         for (std::size_t n = 0; n < corners; ++n) {

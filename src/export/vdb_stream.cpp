@@ -42,10 +42,10 @@ void append(std::string_view bytes, std::vector<iovec>& parts) {
 }  // namespace
 
 VdbStream::VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
-                     const voxelize::NodeBounds& bounds, const std::optional<PartOfPrint>& part)
+                     const voxelize::NodeBounds& bounds)
     : background_(grid->background()), output_([&] {
           grid->setSaveFloatAsHalf(options.half);
-          return LevelSetOutput(std::move(grid), path, compressionFlags(options.compression), bounds, part);
+          return LevelSetOutput(std::move(grid), path, compressionFlags(options.compression), bounds);
       }()) {}
 
 void VdbStream::open(const openvdb::Coord& origin) {

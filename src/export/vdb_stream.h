@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -25,9 +24,8 @@ namespace stratum::exporter {
 class VdbStream : public voxelize::LeafReceiver {
 public:
     /// `grid`: Voxelizer::emptyGrid() with the metadata of describe(). `bounds`: of the leaves that will come.
-    /// `part`: if they are one shard's, what the file is a part of.
     VdbStream(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path, const FileOptions& options,
-              const voxelize::NodeBounds& bounds, const std::optional<PartOfPrint>& part = {});
+              const voxelize::NodeBounds& bounds);
 
     void open(const openvdb::Coord& origin) override;
     void leaf(std::size_t column, const openvdb::Coord& origin, const float* values,

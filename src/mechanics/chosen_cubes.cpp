@@ -1,7 +1,7 @@
 #include "mechanics/chosen_cubes.h"
 
+#include "base/union_find.h"
 #include "mechanics/cube_neighbors.h"
-#include "mechanics/union_find.h"
 
 #include <tbb/parallel_sort.h>
 

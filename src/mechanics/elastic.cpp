@@ -1,6 +1,7 @@
 #include "mechanics/elastic.h"
 
 #include "base/error.h"
+#include "base/split.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -21,16 +22,12 @@ namespace {
 
 std::vector<double> numbersOf(std::string_view text) {
     std::vector<double> numbers;
-    for (std::string_view rest = text; numbers.size() < 10;) {
-        const std::size_t comma = rest.find(',');
-        const std::string_view word = rest.substr(0, comma);
+    for (const std::string_view word : split(text)) {
         double value = 0;
         const auto [end, error] = fast_float::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
             refuse(text, "is not a list of numbers");
         numbers.push_back(value);
-        if (comma == std::string_view::npos) break;
-        rest.remove_prefix(comma + 1);
     }
     return numbers;
 }

@@ -1,7 +1,7 @@
 #include "mechanics/pieces.h"
 
+#include "base/union_find.h"
 #include "mechanics/cube_neighbors.h"
-#include "mechanics/union_find.h"
 
 #include <algorithm>
 #include <cstdint>

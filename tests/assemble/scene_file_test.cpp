@@ -21,7 +21,7 @@ TEST(SceneFile, ReadsEveryKey) {
       "camera": {"view": "top", "eye": [1, 2, 3], "look_at": [0, 0, 0], "up": [0, 0, 1], "fov": 40},
       "environment": {"map": "map.hdr", "rotation": 90, "exposure": 2},
       "lights": ["ambient:1,1,1", "point:0,0,1,1,1,1"],
-      "integrator": {"name": "phong", "bounces": 5, "ao_distance": 3, "environment_rows": 8, "phong": [1, 2, 3, 4, 0.5]}
+      "integrator": {"name": "phong", "bounces": 5, "ao_distance": 3, "phong": [1, 2, 3, 4, 0.5]}
     })");
     const auto file = readSceneFile(scratch / "s.json");
     EXPECT_EQ(file.print, (scratch / "part.vdb").string());
@@ -51,7 +51,6 @@ TEST(SceneFile, ReadsEveryKey) {
     EXPECT_EQ(file.scene.lights.size(), 2u);
     EXPECT_EQ(file.render.integrator.name, "phong");
     EXPECT_EQ(file.render.integrator.bounces, 5);
-    EXPECT_EQ(file.render.integrator.environment_rows, 8);
     EXPECT_EQ(file.render.integrator.phong.shininess, 4.0f);
 }
 

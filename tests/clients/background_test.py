@@ -74,12 +74,10 @@ check(webp[12:16] == b"VP8X" and webp[20] & 0x10, "WebP says that it has alpha")
 exr = trace("a.exr", "--spp", "8")
 check(exr[:4] == b"\x76\x2f\x31\x01" and b"A\0" in exr[:400], "EXR has a channel A")
 
-for by in ("tiles", "samples"):
-    for n in range(3):
-        run(VDBTRACE, *PICTURE, "-o", path("shard.png"), "--shard", f"{n}/3", "--shard-by", by)
-    run(os.path.join(BIN, "vdbmerge"), path("merged.png"),
-        *[path(f"shard.{n}of3.exr") for n in range(3)], "--quiet")
-    check(png_pixels(content("merged.png")) == png_pixels(content("a.png")), f"--shard-by {by}: the same pixels")
+for n in range(3):
+    run(VDBTRACE, *PICTURE, "-o", path("shard.png"), "--shard", f"{n}/3")
+run(os.path.join(BIN, "vdbmerge"), path("merged.png"), *[path(f"shard.{n}of3.exr") for n in range(3)], "--quiet")
+check(png_pixels(content("merged.png")) == png_pixels(content("a.png")), "--shard: the same pixels")
 
 with open(path("scene.json"), "w", encoding="utf-8") as file:
     json.dump({"print": gcode("tile.gcode"), "size": [80, 60], "background": "none"}, file)

@@ -78,7 +78,7 @@ for tool in TOOLS:
         check(complete("--grids", "layer,ti") == ["layer,time"] and complete("--firmware", "k") == ["klipper"], "  and more")
     if tool == "vdbtrace":
         check(complete("--view", "f") == ["front"] and complete("--view", "=", "f") == ["front"], "  views, also after =")
-        check(complete("--integrator", "env") == ["environment-sum"], "  integrators")
+        check(complete("--integrator", "dir") == ["direct"], "  integrators")
         check("pla-blue" in complete("--brdf", "pla") and "studio" in complete("--env", "stu"), "  presets")
         check(complete("--aov", "normal,de") == ["normal,depth"] and complete("--march", "br") == ["brick"], "  layers")
 

@@ -80,9 +80,10 @@ refused([VDBTRACE, "t.vdb", *SMALL, "--phong", "1,2"], 2, "SHININESS")
 for words in (["--printed", "50%"], ["--layers", "1:2"], ["--features", "-skirt"], ["--object", "1"], ["--voxel-size", "0.1"],
               ["--voxels-per-layer", "2"], ["--tolerance", "0.1"], ["--memory-budget", "1GB"], ["--half-width", "3"],
               ["--plate", "1"], ["--filament-diameter", "1.75"], ["--layer-height", "0.2"], ["--e-mode", "auto"],
-              ["--firmware", "marlin"], ["--progress-series", "3"], ["--brick-picture", "b.png"]):
+              ["--firmware", "marlin"], ["--progress-series", "3"]):
     refused([VDBTRACE, "t.vdb", *SMALL, *words], 2, words[0] + ": needs G-code", "t.vdb is a level set", "the print itself")
 refused([VDBTRACE, "t.vdb", "--printed", "50%"], 2, "gcode2vdb --snapshots")
+refused([VDBTRACE, "t.vdb", "--brick-picture", "b.png"], 2, "--brick-picture: is no option any more", "--stats")
 with open(path("scene.json"), "w", encoding="utf-8") as file:
     file.write('{"print": "t.vdb", "spp": 1, "size": [32, 24]}')
 refused([VDBTRACE, "scene.json", "--layers", "1:2"], 2, "--layers: needs G-code")

@@ -145,10 +145,8 @@ for near, far in zip(levels, levels[1:]):
     check(far["voxel_size_mm"] >= 1.5 * near["voxel_size_mm"] and far["beads"] >= near["beads"], "outwards, coarser")
     check(far["largest_error_pixels"] <= 0.2500001, f"within a quarter of a pixel: {far}")
 several = picture("part", "levels.exr", *AUTO)
-for more in (["--threads", "1"], ["--threads", "8"], ["--brick-cache", "600kB"], ["--brick-cache", "600kB", "--threads", "8"],
-             ["--brick-picture", path("sizes.png")]):
+for more in (["--threads", "1"], ["--threads", "8"], ["--brick-cache", "600kB"], ["--brick-cache", "600kB", "--threads", "8"]):
     check(picture("part", "more.exr", *AUTO, *more) == several, f"levels, {' '.join(more)}: the same bytes")
-check(all(os.path.exists(path(f"sizes_{n}.png")) for n in range(len(levels))), "a picture of the bricks of each")
 for more in (["--color-by", "feature"], ["--aov", "layer,feature"], ["--normals", "smooth"]):
     check(picture("part", "more.exr", *AUTO, *more) not in (None, several), f"levels with {' '.join(more)}")
 done = call(VDBTRACE, "part", "-o", path("film.exr"), *SMALL, *AUTO, "--no-bed", "--progress-series", "3", "--stats", "-")
@@ -161,11 +159,6 @@ with open(path("film_002.exr"), "rb") as file:
 _, found = automatic("a turntable", *CLOSE, "--crop", "0,0,9,9")
 done = call(VDBTRACE, "part", "-o", path("turn.png"), *SMALL, *AUTO, "--crop", "0,0,9,9", "--turntable", "2", "--stats", "-")
 check(done.returncode == 0 and "levels" not in json.loads(done.stdout)[0]["input"]["voxel_auto"], "a turntable has one size")
-
-# --- the bricks that rays came to -----------------------------------------------------------------------------------------
-check(picture("part", "more.exr", "--spp", "2", "--brick-picture", path("bricks.png")) == one, "a picture of bricks beside it")
-with open(path("bricks.png"), "rb") as file:
-    check(file.read(8) == b"\x89PNG\r\n\x1a\n", "is a PNG")
 
 # --- a print that grows: the same as each moment alone, under a camera that doesn't depend on it ---------------------------
 VIEW = ["--eye", "150,-160,120", "--look-at", "100,100,5", "--no-bed", "--spp", "1", *TWO]
@@ -190,7 +183,7 @@ for options, status, text in ((["--printed", "sometimes"], 2, "--printed sometim
                               (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel"),
                               (["--brick-cache", "90kB"], 2, "give 93312 bytes"), (["--brick-cache", "much"], 2, "size"),
                               (["--brick-cache", "1MB", "--march", "vdb"], 2, "no bricks"),
-                              (["--brick-picture", "bricks.exr"], 2, ".png"), (["--voxel-size", "small"], 2, "voxel-size"),
+                              (["--voxel-size", "small"], 2, "voxel-size"),
                               (["--voxel-size", "auto", "--voxels-per-layer", "2"], 2, "voxel"),
                               (["--printed", "layer:100000"], 2, "layer"), (["--printed", "250%"], 2, "%"), (["--printed", "layer:0"], 2, "nothing|expected one")):
     done = call(VDBTRACE, "part", "-o", path("refused.png"), *SMALL, *options)

@@ -112,8 +112,7 @@ for options, status, fragment in (
         (["t.gcode", "--report", "a.md", "--report", "a.md"], 2, "already"),
         (["t.gcode", "--density", "1.2"], 2, "--report"),
         (["t.gcode", "--report", "t.json", "--density", "-1"], 2, "--density"),
-        (["t.gcode", "-o", "p.inp", "--report", "t.json"], 2, "run once for each"),
-        (["t.gcode", "-o", "p.vdb", "--report", "t.json", "--shard", "0/2"], 2, "--shard")):
+        (["t.gcode", "-o", "p.inp", "--report", "t.json"], 2, "run once for each")):
     before = sorted(os.listdir(FOLDER))
     done = call(*options)
     check(done.returncode == status and fragment in done.stderr, f"{' '.join(options)}: {done.stderr.strip()}")

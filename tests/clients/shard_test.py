@@ -1,4 +1,4 @@
-"""Pictures, films and prints in shards: the bytes of one process, whatever is killed, and no half of a picture."""
+"""Pictures and films in shards: the bytes of one process, whatever is killed, and no half of a picture."""
 
 import os
 import re
@@ -102,28 +102,6 @@ for n, (what, name, options) in enumerate(PICTURES):
         for part in parts(stem, count):
             os.remove(path(part))
 
-# --- shares of the samples: the same table ----------------------------------------------------------------------------------
-SAMPLES = (
-    ("path, denoised, shares of the samples", "path.png", [*PLAIN, "--spp", "8"]),
-    ("layers, shares of the samples", "layers.exr",
-     [*PLAIN, "--no-bed", "--spp", "7", "--aov", "normal,depth,albedo,mask,variance,samples,layer,feature"]),
-    ("depth of field, a crop, denoised, shares of the samples", "lens.png",
-     [*PLAIN, "--spp", "9", "--f-number", "2", "--view", "front", "--crop", "30,20,130,100"]),
-    ("depth, shares of the samples", "depth.exr", ["--spp", "7", "--integrator", "depth", "--seed", "3"]),
-)
-for n, (what, name, options) in enumerate(SAMPLES):
-    whole = "whole_" + name
-    trace(whole, *options)
-    for count in COUNTS if n == 0 or LONG_RUN else COUNTS[-1:]:
-        stem, ending = os.path.splitext(name)
-        for index in range(count):
-            trace(name, *options, "--shard-by", "samples", *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
-        does(VDBMERGE, name, *reversed(parts(stem, count)), "--quiet")
-        check(same(name, whole), f"| {what} | {name} | {count} | the same bytes |")
-        os.remove(path(name))
-        for part in parts(stem, count):
-            os.remove(path(part))
-
 # --- many pieces: one tile each -------------------------------------------------------------------------------------------
 SIDE = 8 if LONG_RUN else 4  # tiles of 32 x 32 pixels
 MANY = [VDBTRACE, TILE, "--size", f"{32 * SIDE}x{32 * SIDE}", "--voxels-per-layer", "2", *NOISY, "--spp", "2", "--quiet"]
@@ -177,18 +155,6 @@ refused(2, ["the parts are of an .exr"], VDBMERGE, "no.png", *parts("linear", 3)
 refused(2, ["no.gif"], VDBMERGE, "no.gif", *P)
 refused(2, ["is an input"], VDBMERGE, P[0], *P)
 
-for index in range(2):
-    trace("share.png", *BASE, "--shard-by", "samples", shard=f"{index}/2")
-refused(3, ["p.1of2.exr: is a piece of the picture, not a share of the samples", "shard 1 of 2 is missing"],
-        VDBMERGE, "no.png", "share.0of2.exr", "p.1of2.exr")
-refused(3, ["share.1of2.exr: is a share of the samples, not a piece of the picture"], VDBMERGE, "no.png", "p.0of2.exr",
-        "share.1of2.exr")
-refused(3, ["shard 0 of 2 is missing"], VDBMERGE, "no.png", "share.1of2.exr")
-SHARE = [VDBTRACE, TILE, *SMALL[:-1], "-o", "share.png", *BASE, "--shard", "1/2", "--resume"]
-check("skipped" in does(*SHARE, "--shard-by", "samples").stdout, "a share of the samples that is there is skipped")
-check("skipped" not in does(*SHARE).stdout, "  but is no piece of the picture")
-check("skipped" not in does(*SHARE, "--shard-by", "samples").stdout, "  nor the other way round")
-
 # --- what a shard refuses ---------------------------------------------------------------------------------------------------
 for shard, fragment in (("3/3", "must be from 0 to 2"), ("-1/3", "must be from 0 to 2"), ("0/0", "N must be from 1"),
                         ("1", "expected I/N"), ("a/b", "expected I/N"), ("0/3x", "expected I/N"), ("0/21", "has 20 tiles")):
@@ -196,11 +162,7 @@ for shard, fragment in (("3/3", "must be from 0 to 2"), ("-1/3", "must be from 0
 refused(2, ["series has 5 pictures"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--turntable", "5", "--shard", "0/6")
 refused(2, ["standard output"], VDBTRACE, TILE, *SMALL, "-o", "-", "--shard", "0/2")
 refused(2, ["--time"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--time", "1", "--shard", "0/2")
-BY_SAMPLES = [VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "0/4", "--shard-by", "samples"]
-refused(2, ["--shard-by samples", "--noise decides by all samples"], *BY_SAMPLES, "--noise", "0.2")
-refused(2, ["--shard-by samples", "--checkpoint keeps finished pixels"], *BY_SAMPLES, "--checkpoint", "no.state")
-refused(2, ["--time"], *BY_SAMPLES, "--time", "1")
-refused(2, ["4 shards, but 3 samples a pixel"], *BY_SAMPLES, "--spp", "3")
+refused(2, ["samples are no longer shared; use tiles"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "0/4", "--shard-by", "samples")
 refused(2, ["--resume requires --shard"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--resume")
 refused(2, ["SLURM_ARRAY_TASK_ID"], VDBTRACE, TILE, *SMALL, "-o", "no.png", "--shard", "slurm", env=SLURM)
 GAPS = dict(SLURM, SLURM_ARRAY_TASK_ID="5", SLURM_ARRAY_TASK_MIN="1", SLURM_ARRAY_TASK_MAX="9", SLURM_ARRAY_TASK_COUNT="3")
@@ -217,11 +179,6 @@ for task in range(4, 7):
 check(sorted(name for name in os.listdir(FOLDER) if name.startswith("film_")) == [f"film_00{n}.png" for n in range(3)], "film.sh")
 does(VDBMERGE, "slurm.png", *parts("slurm", 3), "--quiet")
 check(same("slurm.png", "whole.png"), "tasks 4 to 6 of an array are the shards 0 to 2")
-for task in range(2):
-    array = dict(SLURM, SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_MIN="0", SLURM_ARRAY_TASK_MAX="1", SLURM_ARRAY_TASK_COUNT="2")
-    does("bash", os.path.join(SCRIPTS, "picture.sh"), TILE, *SMALL[:-1], "-o", "slurm.png", *BASE, "--shard-by", "samples", env=array)
-does(VDBMERGE, "slurm.png", *parts("slurm", 2), "--quiet")
-check(same("slurm.png", "whole.png"), "picture.sh by samples")
 
 # --- resumed: only what is there, whole, and of this scene is skipped -----------------------------------------------------
 def resumed(*options, shard="1/3"):
@@ -320,75 +277,8 @@ check(call(*SHARDS[1]).returncode == 2, "a picture of somebody else is not made 
 check(does(*SHARDS[1], "--force").stdout.count("skipped") == 2 and same("film_004.png", "again_004.png"), "  unless it may be")
 check(does(*SHARDS[1], "--seed", "4").stdout.count("skipped") == 0, "another scene is made again")
 
-# --- the level set of a print -----------------------------------------------------------------------------------------------
-def convert(output, *options, shard=None, env=None):
-    return does(GCODE2VDB, TILE, "-o", output, *options, *(["--shard", shard] if shard else []), env=env)
-
-
-VOXEL = ["--voxel-size", "0.1", "--quiet"]
-for what, counts, options in (
-        ("a print", (*COUNTS, 64) if LONG_RUN else COUNTS, []),
-        ("`--precision half --compression zip`", (3,), ["--precision", "half", "--compression", "zip"]),
-        ("`--up y --origin center --beads settled`", (3,), ["--up", "y", "--origin", "center", "--beads", "settled"])):
-    convert("whole.vdb", *VOXEL, *options)
-    for count in counts:
-        for index in range(count):
-            convert("part.vdb", *VOXEL, *options, *(["--threads", "1"] if index % 2 else []), shard=f"{index}/{count}")
-        check(not os.path.exists(path("part.vdb")), "a shard writes its part alone")
-        does(VDBMERGE, "part.vdb", *reversed(parts("part", count, "vdb")), "--quiet")
-        check(same("part.vdb", "whole.vdb"), f"| {what} | part.vdb | {count} | the same bytes |")
-        for name in ["part.vdb", *parts("part", count, "vdb")]:
-            os.remove(path(name))
-
-convert("whole.vdb", *VOXEL)
-for index in range(3):
-    convert("part.vdb", *VOXEL, shard=f"{index}/3")
-convert("other.vdb", *VOXEL, "--layers", "1:3", shard="1/3")
-P = parts("part", 3, "vdb")
-refused(3, ["shard 1 of 3 is missing; make it with --shard 1/3"], VDBMERGE, "no.vdb", P[0], P[2])
-refused(3, ["part.0of3.vdb: is shard 0 of 3", "name each once"], VDBMERGE, "no.vdb", *P, P[0])
-refused(3, ["other.1of3.vdb: is of another scene", "shard 1 of 3 is missing"], VDBMERGE, "no.vdb", P[0], "other.1of3.vdb", P[2])
-refused(3, ["whole.vdb: is no part of a print"], VDBMERGE, "no.vdb", *P, "whole.vdb")
-refused(3, ["is no OpenEXR"], VDBMERGE, "no.png", *P)
-refused(2, ["is an input"], VDBMERGE, P[0], *P)
-with open(path(P[1]), "rb") as file:
-    part = file.read()
-with open(path("cut.vdb"), "wb") as file:
-    file.write(part[: len(part) // 2])
-with open(path("leaf.vdb"), "wb") as file:
-    file.write(part[:-5] + bytes([part[-5] ^ 1]) + part[-4:])
-refused(3, ["cut.vdb: is"], VDBMERGE, "no.vdb", P[0], "cut.vdb", P[2])
-refused(3, ["leaf.vdb: is damaged"], VDBMERGE, "no.vdb", P[0], "leaf.vdb", P[2])
-
-SHARE = [GCODE2VDB, TILE, *VOXEL[:-1], "-o", "part.vdb", "--shard", "1/3", "--resume"]
-check("skipped" in does(*SHARE).stdout and "skipped" in does(*SHARE, "--threads", "1").stdout, "a part that is there is skipped")
-for bad in ("cut.vdb", "leaf.vdb", "other.1of3.vdb", P[0]):
-    shutil.copy(path(bad), path(P[1]))
-    check("skipped" not in does(*SHARE).stdout, f"{bad} in its place is made again")
-    with open(path(P[1]), "rb") as file:
-        check(file.read() == part, "  to the same bytes")
-
-for fragment, *options in (("is a mesh", "-o", "no.stl"), ("standard output", "-o", "-"), ("--grids", "--grids", "layer"),
-                           ("--snapshots", "--snapshots", "50%"), ("--interior cull", "--interior", "cull"),
-                           ("--interior-distance", "--interior-distance"), ("--forecast", "--forecast"), ("--usda", "--usda"),
-                           ("--dump-toolpath", "--dump-toolpath", "no.csv")):
-    place = [] if "-o" in options else ["-o", "no.vdb"]
-    refused(2, ["--shard: ", fragment], GCODE2VDB, TILE, *VOXEL, *place, *options, "--shard", "0/2")
-refused(2, ["must be from 0 to 2"], GCODE2VDB, TILE, *VOXEL, "-o", "no.vdb", "--shard", "3/3")
-refused(2, ["--resume requires --shard"], GCODE2VDB, TILE, *VOXEL, "-o", "no.vdb", "--resume")
-
-kills = 0
-for task in range(4, 7):
-    array = dict(SLURM, SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_MIN="4", SLURM_ARRAY_TASK_MAX="6", SLURM_ARRAY_TASK_COUNT="3",
-                 STRATUM_BIN=BIN)
-    command = ["bash", os.path.join(SCRIPTS, "print.sh"), TILE, *VOXEL[:-1], "-o", "killed.vdb"]
-    for delay in (0.02, 0.05, 0.1):
-        process = subprocess.Popen(command, cwd=FOLDER, env=array)
-        time.sleep(delay)
-        process.send_signal(signal.SIGKILL)
-        kills += process.wait() == -signal.SIGKILL
-    does(*command, env=array)
-does(VDBMERGE, "killed.vdb", *parts("killed", 3, "vdb"), "--quiet")
-check(kills > 0 and same("killed.vdb", "whole.vdb"), f"print.sh, tasks 4 to 6 of an array, {kills} kills: the same level set")
+# --- what had shards before ------------------------------------------------------------------------------------------------
+refused(2, ["--shard: is no option any more", "one process"], GCODE2VDB, TILE, "-o", "no.vdb", "--shard", "0/2", "--resume")
+refused(2, ["no.vdb: a level set has no parts"], VDBMERGE, "no.vdb", *P)
 
 shutil.rmtree(FOLDER)

@@ -1,5 +1,5 @@
 """The job scripts on a real Slurm of two nodes on this machine: tasks are killed and requeued, a node is drained, and the
-merged picture, the film and the merged print have the bytes of one process."""
+merged picture and the film have the bytes of one process."""
 
 import getpass
 import os
@@ -28,11 +28,9 @@ os.chmod(FOLDER, 0o755)
 SCRIPTS = os.path.join(SOURCE, "scripts", "slurm")
 VDBTRACE = os.path.join(BIN, "vdbtrace")
 VDBMERGE = os.path.join(BIN, "vdbmerge")
-GCODE2VDB = os.path.join(BIN, "gcode2vdb")
 TILE = gcode("tile.gcode")
 PICTURE = ["--size", "256x192", "--voxels-per-layer", "2", "--spp", "64"]
 FILM = ["--size", "96x72", "--voxels-per-layer", "2", "--spp", "32", "--turntable", "12"]
-PRINT = ["--voxel-size", "0.05"]
 TASKS = 8
 LONGEST = 180  # seconds that anything is waited for; it takes a tenth of that
 # A requeued job waits for as long as a credential of its first run is valid: two minutes, if nothing is said.
@@ -206,14 +204,6 @@ def film():
     print("ok: afterok counts a failure that was repaired, afterany does not")
 
 
-def level_set():
-    """A print in six shares on both nodes, and its merge."""
-    job = submit("--array=0-5", os.path.join(SCRIPTS, "print.sh"), TILE, *PRINT, "-o", "part.vdb")
-    merge = submit(f"--dependency=afterok:{job}", "--wrap", f"{VDBMERGE} merged.vdb part.*of6.vdb --quiet")
-    wait_for("the merged print", lambda: finished(merge))
-    check(same("merged.vdb", "whole.vdb"), "a print of 6 tasks has the bytes of one process")
-
-
 def show_logs():
     for name in sorted(os.listdir(FOLDER)):
         if name.endswith((".log", ".out")):
@@ -229,10 +219,8 @@ try:
     os.mkdir(path("one"))
     run(VDBTRACE, TILE, *PICTURE, "-o", path("whole.png"), "--quiet")
     run(VDBTRACE, TILE, *FILM, "-o", path("one/f.png"), "--quiet")
-    run(GCODE2VDB, TILE, *PRINT, "-o", path("whole.vdb"), "--quiet")
     picture()
     film()
-    level_set()
     done = True
 finally:
     if not done:

@@ -7,6 +7,14 @@
 
 namespace stratum::test {
 
+/// What an integrator sees along one ray: a stream of one.
+inline shade::Pixel radianceOf(const shade::Integrator& integrator, trace::Ray ray, shade::TraceContext& context) {
+    shade::SurfacePoint point;
+    shade::Pixel pixel;
+    integrator.radianceStream({&ray, 1}, {&context.sampler, 1}, context.tracer, context.rays, {&point, 1}, {&pixel, 1});
+    return pixel;
+}
+
 inline shade::Color meanRadiance(const trace::Intersector& print, const shade::Integrator& integrator,
                                  const trace::Ray& ray, std::uint32_t samples, std::uint32_t seed = 1) {
     const auto tracer = print.makeTracer();
@@ -16,7 +24,7 @@ inline shade::Color meanRadiance(const trace::Intersector& print, const shade::I
     glm::dvec3 sum(0.0);
     for (std::uint32_t s = 0; s < samples; ++s) {
         sampler.start(3, 4, s);
-        sum += glm::dvec3(integrator.radiance(ray, context).rgb);
+        sum += glm::dvec3(radianceOf(integrator, ray, context).rgb);
     }
     return shade::Color(sum / double(samples));
 }

@@ -5,6 +5,7 @@
 #include "study/geometry/handmade.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -81,62 +82,87 @@ inline double levelBeadDistance(const gcode::Toolpath& toolpath, const gcode::Be
     return std::hypot(std::max(d, 0.0), z - (bead.z0 - height / 2)) - radius;
 }
 
-/// Minimum over all level beads of a toolpath. Beads are looked at in short blocks whose boxes let most be passed over:
-/// the distance to a box is a lower bound for all beads in it, so the minimum is that of all beads.
+/// Minimum over all level beads of a toolpath. Beads are looked at in short blocks, and blocks in groups, whose boxes
+/// let most be passed over: the distance to a box is a lower bound for all beads in it, so the minimum is that of all
+/// beads.
 class BruteForce {
 public:
     explicit BruteForce(const gcode::Toolpath& toolpath) : toolpath_(toolpath) {
         constexpr std::size_t kBlock = 8;
+        constexpr std::size_t kGroup = 32;
         for (std::size_t first = 0; first < toolpath.beads.size(); first += kBlock) {
-            Block block{first,
-                        std::min(first + kBlock, toolpath.beads.size()),
-                        {1e300, 1e300, 1e300},
-                        {-1e300, -1e300, -1e300}};
-            for (std::size_t i = block.first; i < block.last; ++i) {
-                const gcode::Bead& bead = toolpath.beads[i];
-                const double height = static_cast<double>(toolpath.runOf(bead).height);
-                double side = static_cast<double>(bead.width) / 2;
-                // Generous: an arc stays within its diameter of its start.
-                if (bead.arc >= 0) {
-                    const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-                    side += 2 * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
-                }
-                const double low[3] = {std::min(bead.x0, bead.x1) - side, std::min(bead.y0, bead.y1) - side,
-                                       bead.z0 - height - 1e-6};
-                const double high[3] = {std::max(bead.x0, bead.x1) + side, std::max(bead.y0, bead.y1) + side,
-                                        bead.z0 + 1e-6};
-                for (int axis = 0; axis < 3; ++axis) {
-                    block.min[axis] = std::min(block.min[axis], low[axis]);
-                    block.max[axis] = std::max(block.max[axis], high[axis]);
-                }
-            }
+            Run block{first, std::min(first + kBlock, toolpath.beads.size())};
+            for (std::size_t i = block.first; i < block.last; ++i) block.box.include(boxOf(toolpath.beads[i]));
             blocks_.push_back(block);
+        }
+        for (std::size_t first = 0; first < blocks_.size(); first += kGroup) {
+            Run group{first, std::min(first + kGroup, blocks_.size())};
+            for (std::size_t i = group.first; i < group.last; ++i) group.box.include(blocks_[i].box);
+            groups_.push_back(group);
         }
     }
 
     double operator()(double x, double y, double z) const {
-        const double p[3] = {x, y, z};
+        const std::array<double, 3> p{x, y, z};
         double best = std::numeric_limits<double>::max();
-        for (const Block& block : blocks_) {
-            double outside2 = 0;
-            for (int axis = 0; axis < 3; ++axis) {
-                const double gap = std::max({block.min[axis] - p[axis], p[axis] - block.max[axis], 0.0});
-                outside2 += gap * gap;
+        // The nearest group first: it bounds the others.
+        std::vector<double> gaps;
+        for (const Run& group : groups_) gaps.push_back(group.box.outside2(p));
+        const auto nearest = static_cast<std::size_t>(std::min_element(gaps.begin(), gaps.end()) - gaps.begin());
+        for (std::size_t k = 0; k < groups_.size(); ++k) {
+            const std::size_t g = (nearest + k) % groups_.size();
+            if (farther(gaps[g], best)) continue;
+            for (std::size_t b = groups_[g].first; b < groups_[g].last; ++b) {
+                const Run& block = blocks_[b];
+                if (farther(block.box.outside2(p), best)) continue;
+                for (std::size_t i = block.first; i < block.last; ++i)
+                    best = std::min(best, levelBeadDistance(toolpath_, toolpath_.beads[i], x, y, z));
             }
-            if (outside2 > 0 && (best < 0 || outside2 > best * best)) continue;
-            for (std::size_t i = block.first; i < block.last; ++i)
-                best = std::min(best, levelBeadDistance(toolpath_, toolpath_.beads[i], x, y, z));
         }
         return best;
     }
 
 private:
-    struct Block {
-        std::size_t first, last;
-        double min[3], max[3];
+    struct Box {
+        std::array<double, 3> min{1e300, 1e300, 1e300}, max{-1e300, -1e300, -1e300};
+
+        void include(const Box& other) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                min[axis] = std::min(min[axis], other.min[axis]);
+                max[axis] = std::max(max[axis], other.max[axis]);
+            }
+        }
+        /// The squared distance of a point; 0 inside.
+        double outside2(const std::array<double, 3>& p) const {
+            double sum = 0;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const double gap = std::max({min[axis] - p[axis], p[axis] - max[axis], 0.0});
+                sum += gap * gap;
+            }
+            return sum;
+        }
     };
+    /// Of beads, or of blocks.
+    struct Run {
+        std::size_t first, last;
+        Box box{};
+    };
+
+    Box boxOf(const gcode::Bead& bead) const {
+        const double height = static_cast<double>(toolpath_.runOf(bead).height);
+        double side = static_cast<double>(bead.width) / 2;
+        // Generous: an arc stays within its diameter of its start.
+        if (bead.arc >= 0) {
+            const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
+            side += 2 * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+        }
+        return {{std::min(bead.x0, bead.x1) - side, std::min(bead.y0, bead.y1) - side, bead.z0 - height - 1e-6},
+                {std::max(bead.x0, bead.x1) + side, std::max(bead.y0, bead.y1) + side, bead.z0 + 1e-6}};
+    }
+    static bool farther(double outside2, double best) { return outside2 > 0 && (best < 0 || outside2 > best * best); }
+
     const gcode::Toolpath& toolpath_;
-    std::vector<Block> blocks_;
+    std::vector<Run> blocks_, groups_;
 };
 
 }  // namespace stratum::test

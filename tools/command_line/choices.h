@@ -1,6 +1,8 @@
 // The values that an option takes, for checks, for guesses at mistyped ones, and for the shell to complete.
 #pragma once
 
+#include "base/names.h"
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -17,11 +19,30 @@ enum class Completion {
     preset      ///< one of the names, or a file
 };
 
+/// The names of a table, for completion.
+template <typename Value, std::size_t N>
+std::vector<std::string> wordsOf(const Names<Value, N>& names) {
+    const auto list = listOf(names);
+    return {list.begin(), list.end()};
+}
+
 /// A check: the value is one of the names. The message guesses which was meant.
 CLI::Validator oneOf(std::vector<std::string> names);
 
+/// A check: the value is one of the names of a table.
+template <typename Value, std::size_t N>
+CLI::Validator oneOf(const Names<Value, N>& names) {
+    return oneOf(wordsOf(names));
+}
+
 /// The same for enumerations, to be given to CLI::Option::transform(): the name becomes its number.
 CLI::Validator enumeration(std::vector<std::pair<std::string, int>> values);
+template <typename Value, std::size_t N>
+CLI::Validator enumeration(const Names<Value, N>& names) {
+    std::vector<std::pair<std::string, int>> values;
+    for (const auto& [name, value] : names) values.emplace_back(name, static_cast<int>(value));
+    return enumeration(std::move(values));
+}
 
 /// Notes the names for completion alone; the option's own reader checks them.
 CLI::Option* completes(CLI::Option* option, Completion how, const std::vector<std::string>& names);

@@ -109,6 +109,15 @@ void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<s
     addManual(app, brief);
 }
 
+void addGone(CLI::App& app, const std::string& option, const std::string& instead) {
+    app.add_option_function<std::string>(
+           option,
+           [option, instead](const std::string&) {
+               throw UsageError(fmt::format("{}: is no option any more: {}", option, instead));
+           })
+        ->group("");
+}
+
 void addVersion(CLI::App& app) {
     app.add_flag_callback(
            "--version", [&app] { throw CLI::CallForVersion(buildFacts(app.get_name()), 0); },

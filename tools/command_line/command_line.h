@@ -31,6 +31,10 @@ struct CommonOptions {
 /// Adds the common options and the manual (manual.h) to a command line. -h shows the options of `brief`; all, if empty.
 void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<std::string>& brief = {});
 
+/// Declares an option that a former version had, with one value. Whoever gives it is told what to do instead; help and
+/// completion do not show it.
+void addGone(CLI::App& app, const std::string& option, const std::string& instead);
+
 /// Adds --version alone.
 void addVersion(CLI::App& app);
 

@@ -1,7 +1,6 @@
 #include "convert/conversion.h"
 
 #include "convert/conversion_steps.h"
-#include "convert/convert_shard.h"
 #include "convert/elements_output.h"
 #include "convert/mesh_output.h"
 #include "convert/time_report.h"
@@ -57,8 +56,8 @@ exporter::LevelSetChoices choicesOf(const ConvertCommand& o, const fs::path& out
 }  // namespace
 
 Conversion::Conversion(const ConvertCommand& command, const std::string& input, const fs::path& output,
-                       RunFiles& files_of_run, std::optional<exporter::PartOfPrint> part)
-    : o_(command), input_(input), output_(output), files_of_run_(files_of_run), part_(std::move(part)), file_(input) {}
+                       RunFiles& files_of_run)
+    : o_(command), input_(input), output_(output), files_of_run_(files_of_run), file_(input) {}
 
 Json Conversion::run(int threads) {
     read();
@@ -103,7 +102,7 @@ Json Conversion::finish(const Json& left_out, int threads) {
 
 bool Conversion::streams() const {
     return plan_->streams() && !as_mesh_ && !exporter::isNanoPath(output_) && !o_.compare.grid &&
-           o_.snapshots.empty() && !o_.forecast && !o_.report.asked() && (part_ || !(settles() && stats()));
+           o_.snapshots.empty() && !o_.forecast && !o_.report.asked() && !(settles() && stats());
 }
 
 void Conversion::warn(const std::string& text) const {
@@ -140,15 +139,9 @@ void Conversion::choose() {
     as_mesh_ = exporter::isMeshPath(output_);
     plan_.emplace(toolpath_, choicesOf(o_, output_));
     attributes_ = as_mesh_ ? meshAttributes(o_, toolpath_, plan_->selection(), output_) : plan_->attributes();
-    if (plan_->addsColor() && o_.makesGrid()) {
-        if (part_)
-            throw UsageError(fmt::format(
-                "--shard: the print has {} colors of filament, and a color grid is made of the whole print; leave "
-                "it out with --grids surface, or make it without --shard",
-                plan_->colors()));
+    if (plan_->addsColor() && o_.makesGrid())
         say(o_.common,
             fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", plan_->colors()));
-    }
     const voxelize::Lattice& lattice = plan_->lattice();
     if (!o_.makesGrid()) return;
     say(o_.common, fmt::format("  voxel {:g} mm ({}); {:.0f} % of the length lies on voxel planes", lattice.voxel_size,
@@ -178,7 +171,6 @@ std::vector<ConversionJob> Conversion::planJobs() const {
 voxelize::VoxelizeOptions Conversion::voxelizeOptions() {
     voxelize::VoxelizeOptions options = plan_->voxelizeOptions();
     options.in_memory = !streams();
-    if (part_) options.shard = part_->shard;
     if (showsProgress(o_.common.quiet))
         options.progress = [this](double fraction) {
             if (bar_) bar_->show(fraction);
@@ -192,13 +184,7 @@ Json convert(const ConvertCommand& command, const std::string& input, const fs::
              int threads) {
     // Unwritable places are found before the work, not after it.
     if (command.writesGrid()) AtomicFile::probe(output);
-    std::optional<exporter::PartOfPrint> part;
-    if (command.shard.shard) part = partOf(command, input);
-    if (part && command.shard.resume && exporter::isPartOfPrint(output, part->version, part->scene, part->shard)) {
-        say(command.common, fmt::format("  {}: is this shard of this scene already, skipped", output.string()));
-        return {{"input", {{"path", input}}}, {"files", {{{"path", output.string()}, {"skipped", true}}}}};
-    }
-    return Conversion(command, input, output, files_of_run, std::move(part)).run(threads);
+    return Conversion(command, input, output, files_of_run).run(threads);
 }
 
 }  // namespace stratum::tools

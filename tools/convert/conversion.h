@@ -5,26 +5,16 @@
 #include "convert/convert_report.h"
 #include "run_files.h"
 
-#include "base/shard.h"
 #include "export/vdb_file.h"
 #include "voxelize/grid/print_options.h"
 
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace stratum::tools {
-
-/// --shard, and what follows from it (convert_shard.h).
-struct ConvertShard {
-    std::string text;  // as given
-    std::string said;  // the options that are given
-    bool resume = false;
-    std::optional<Shard> shard;
-};
 
 /// Of an .inp (elements_output.h).
 struct ElementOptions {
@@ -65,7 +55,6 @@ struct ConvertCommand {
     std::string snapshots;
     std::string unit = "mm", origin = "bed";
     exporter::FileOptions file;
-    ConvertShard shard;
     ElementOptions elements;
     CompareCommand compare;
     ThumbnailCommand thumbnail;
@@ -74,8 +63,7 @@ struct ConvertCommand {
     /// Whether a level set is written: not if only a report, a summary or a comparison is asked for.
     bool writesGrid() const {
         const bool tells = report.asked() || summary || !compare.model.empty();
-        return !tells || !output.empty() || usda || !snapshots.empty() || !grids.empty() || compare.grid ||
-               !shard.text.empty();
+        return !tells || !output.empty() || usda || !snapshots.empty() || !grids.empty() || compare.grid;
     }
     bool makesGrid() const { return writesGrid() || report.asked(); }
 };

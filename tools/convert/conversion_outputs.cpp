@@ -44,11 +44,7 @@ void Conversion::makeStreamed(voxelize::Voxelizer& voxelizer, const ConversionJo
     exporter::describe(*empty, plan_->lattice(), provenance_);
     bar_.emplace("voxelizing", o_.common.quiet);
     const voxelize::LeafBounds bounds = voxelizer.leafBounds();
-    if (part_) {
-        part_->blocks = voxelizer.blocks();
-        part_->print = bounds.print;
-    }
-    exporter::VdbStream file(empty, job.path, o_.file, bounds, part_);
+    exporter::VdbStream file(empty, job.path, o_.file, bounds);
     const voxelize::LeafStreamReport made = voxelizer.stream(job.end, bounds, file, checks());
     bar_.reset();
     seconds_.voxelize += watch_.lap();

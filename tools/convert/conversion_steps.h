@@ -7,7 +7,6 @@
 #include "progress.h"
 
 #include "deposit/read_print.h"
-#include "export/parts/part_file.h"
 #include "export/plan/level_set_plan.h"
 #include "export/surface_mesh.h"
 #include "gcode/container/input_bytes.h"
@@ -35,9 +34,8 @@ struct ConversionJob {
 /// Each method needs what those before it found.
 class Conversion {
 public:
-    /// @param part  if the output is one shard's
     Conversion(const ConvertCommand& command, const std::string& input, const std::filesystem::path& output,
-               RunFiles& files_of_run, std::optional<exporter::PartOfPrint> part);
+               RunFiles& files_of_run);
     nlohmann::ordered_json run(int threads);
 
 private:
@@ -51,9 +49,8 @@ private:
     bool stats() const { return !o_.common.stats.empty(); }
     // Whether nothing needs the grid in memory: its leaves then go to the file while they are made.
     bool streams() const;
-    // Whether outputs are compared with what was extruded: nobody would read it otherwise, and a part does not hold
-    // what all beads lay.
-    bool checks() const { return !part_ && (!o_.common.quiet || stats()); }
+    // Whether outputs are compared with what was extruded: nobody would read it otherwise.
+    bool checks() const { return !o_.common.quiet || stats(); }
     void warn(const std::string& text) const;
 
     // conversion.cpp: up to the first output.
@@ -91,7 +88,6 @@ private:
     const std::string& input_;
     const std::filesystem::path& output_;
     RunFiles& files_of_run_;
-    std::optional<exporter::PartOfPrint> part_;
     Stopwatch total_, watch_;
     Seconds seconds_;
     const gcode::InputBytes file_;

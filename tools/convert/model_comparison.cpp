@@ -1,5 +1,6 @@
 #include "convert/model_comparison.h"
 
+#include "base/split.h"
 #include "choices.h"
 #include "progress.h"
 
@@ -57,14 +58,11 @@ void addCompareOptions(CLI::App& app, CompareCommand& options) {
 bool takeDeviation(ConvertCommand& o) {
     std::string left;
     bool found = false;
-    for (std::string_view rest = o.grids; !rest.empty();) {
-        const std::size_t comma = rest.find(',');
-        const std::string_view name = rest.substr(0, comma);
+    for (const std::string_view name : splitList(o.grids)) {
         if (name == "deviation")
             found = true;
         else
             left += fmt::format("{}{}", left.empty() ? "" : ",", name);
-        rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
     }
     if (!found) return false;
     if (o.compare.model.empty())

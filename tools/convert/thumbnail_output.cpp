@@ -167,7 +167,7 @@ void addThumbnailOptions(CLI::App& app, ThumbnailCommand& o) {
     // All that is of level sets.
     for (const char* other : {"--unit", "--up", "--origin", "--interior", "--interior-distance", "--grids",
                               "--precision", "--compression", "--usda", "--mesh-error", "--forecast", "--snapshots",
-                              "--summary", "--dump-toolpath", "--compare", "--report", "--elastic", "--shard"})
+                              "--summary", "--dump-toolpath", "--compare", "--report", "--elastic"})
         sizes->excludes(app.get_option(other));
 }
 

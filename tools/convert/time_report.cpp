@@ -1,21 +1,15 @@
 #include "convert/time_report.h"
 
 #include "convert/limit_report.h"
+#include "gcode/toolpath/stated.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <fmt/format.h>
-
-#include <cmath>
 
 namespace stratum::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string clock(double seconds) {
-    const auto whole = std::llround(seconds);
-    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
 
 }  // namespace
 
@@ -39,18 +33,20 @@ Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& fa
 
 std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
     const auto [stated, planned] = motion::statedTime(times, facts);
-    std::string out = fmt::format("time: {} by the rule {}", clock(times.total), times.rule);
-    if (stated > 0 && facts.model_seconds) out += fmt::format(", {} of it for the model", clock(planned));
+    std::string out = fmt::format("time: {} by the rule {}", gcode::describeDuration(times.total), times.rule);
+    if (stated > 0 && facts.model_seconds)
+        out += fmt::format(", {} of it for the model", gcode::describeDuration(planned));
     if (stated > 0)
-        out += fmt::format("; the file says {} ({:+.2f} %)", clock(stated), 100 * (planned - stated) / stated);
-    out += fmt::format("\n  travel {}, retraction {}, waiting {}", clock(times.travel), clock(times.retraction),
-                       clock(times.waiting));
-    if (!times.layers.empty()) out += fmt::format(", before layer 1 {}", clock(times.layers.front()));
+        out += fmt::format("; the file says {} ({:+.2f} %)", gcode::describeDuration(stated),
+                           100 * (planned - stated) / stated);
+    out += fmt::format("\n  travel {}, retraction {}, waiting {}", gcode::describeDuration(times.travel),
+                       gcode::describeDuration(times.retraction), gcode::describeDuration(times.waiting));
+    if (!times.layers.empty()) out += fmt::format(", before layer 1 {}", gcode::describeDuration(times.layers.front()));
     out += '\n';
     for (std::size_t i = 0; i < times.features.size(); ++i)
         if (times.features[i] > 0)
-            out += fmt::format("  {:<20}{:>12}\n", gcode::featureName(static_cast<gcode::Feature>(i)),
-                               clock(times.features[i]));
+            out += fmt::format("  {:<20}{:>18}\n", gcode::featureName(static_cast<gcode::Feature>(i)),
+                               gcode::describeDuration(times.features[i]));
     return out + limitLines(times.limits);
 }
 

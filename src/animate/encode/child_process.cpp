@@ -1,6 +1,7 @@
 #include "animate/encode/child_process.h"
 
 #include "base/error.h"
+#include "base/split.h"
 
 #include <fmt/format.h>
 
@@ -24,10 +25,7 @@ namespace stratum::animate {
 
 std::optional<std::filesystem::path> findProgram(std::string_view name) {
     const char* path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-    std::string_view rest = path != nullptr ? path : "";
-    while (!rest.empty()) {
-        const std::string_view folder = rest.substr(0, rest.find(':'));
-        rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
+    for (const std::string_view folder : splitList(path != nullptr ? path : "", ':')) {
         std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / name;
         std::error_code missing;
         if (std::filesystem::is_regular_file(program, missing) && ::access(program.c_str(), X_OK) == 0) return program;

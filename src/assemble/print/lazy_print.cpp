@@ -1,11 +1,6 @@
 #include "assemble/print/lazy_print.h"
 
-#include "assemble/print/brick_picture.h"
-
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 namespace stratum::assemble {
@@ -36,13 +31,6 @@ Json reportOf(const LazyLevel& level, std::size_t cache_bytes) {
     if (cache_bytes != march::BrickGrid::kNoBound)
         report["brick_cache"] = reportOf(bricks.cache(), bricks, cache_bytes);
     return report;
-}
-
-// The picture's name with the level's number, the finest first.
-std::string ofLevel(const std::string& path, std::size_t level) {
-    const std::filesystem::path name(path);
-    return (name.parent_path() / fmt::format("{}_{}{}", name.stem().string(), level, name.extension().string()))
-        .string();
 }
 
 }  // namespace
@@ -92,11 +80,6 @@ Json LazyPrint::report() const {
     else if (reports.front().contains("brick_cache"))
         all["brick_cache"] = reports.front()["brick_cache"];
     return all;
-}
-
-void LazyPrint::writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const {
-    for (std::size_t n = 0; n < levels_.size(); ++n)
-        assemble::writeBrickPicture(levels_.size() == 1 ? path : ofLevel(path, n), *levels_[n].bricks, metadata);
 }
 
 }  // namespace stratum::assemble

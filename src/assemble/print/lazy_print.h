@@ -3,7 +3,6 @@
 
 #include "march/brick/brick_grid.h"
 #include "ondemand/print_field.h"
-#include "shade/film/picture.h"
 
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
@@ -11,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace stratum::assemble {
@@ -51,10 +49,6 @@ public:
 
     /// Seconds, bricks and bytes so far.
     nlohmann::ordered_json report() const;
-
-    /// Writes which bricks rays reached, see assemble::writeBrickPicture(). Of several levels: a file each, numbered
-    /// from the finest. Throws UsageError, OutputError.
-    void writeBrickPicture(const std::string& path, const shade::Metadata& metadata) const;
 
 private:
     std::vector<LazyLevel> levels_;

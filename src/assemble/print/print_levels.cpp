@@ -5,10 +5,10 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/stopwatch.h"
-#include "base/vdb_magic.h"
 #include "deposit/read_print.h"
 #include "gcode/container/input_bytes.h"
 #include "gcode/toolpath/warning_log.h"
+#include "march/file/vdb_magic.h"
 #include "ondemand/detail_levels.h"
 #include "voxelize/beads/growth.h"
 #include "voxelize/beads/part_bounds.h"
@@ -131,7 +131,7 @@ Json reportOf(const std::vector<PrintLevel>& levels, double per_distance) {
 
 // A file that is no .vdb is read as G-code; one named .vdb gets a message about both.
 deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOptions& options, bool timed) {
-    if (file.bytes().starts_with(kVdbMagic))
+    if (file.bytes().starts_with(march::kVdbMagic))
         throw InputError(
             fmt::format("{}: holds OpenVDB grids, which can't be read from a stream; give a file", file.name()));
     try {

@@ -1,6 +1,7 @@
 #include "assemble/print/tool_colors.h"
 
 #include "base/error.h"
+#include "base/split.h"
 #include "base/text.h"
 #include "shade/palette/color_name.h"
 
@@ -13,11 +14,8 @@ namespace stratum::assemble {
 ToolColors toolColorsOf(std::string_view list, std::string_view option) {
     constexpr std::size_t kMostTools = 256;
     ToolColors result;
-    for (bool more = true; more;) {
-        const std::size_t comma = list.find(',');
-        more = comma != std::string_view::npos;
-        const std::string_view name = trim(list.substr(0, comma));
-        if (more) list.remove_prefix(comma + 1);
+    for (const std::string_view piece : split(list)) {
+        const std::string_view name = trim(piece);
         if (result.colors.size() == kMostTools)
             throw UsageError(fmt::format("{}: more than {} colours; there are no more tools", option, kMostTools));
         if (name.empty()) {

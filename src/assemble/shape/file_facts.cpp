@@ -3,9 +3,9 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "base/vdb_magic.h"
 #include "gcode/container/input_bytes.h"
 #include "march/file/grid_axes.h"
+#include "march/file/vdb_magic.h"
 #include "voxelize/beads/part_outline.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace stratum::assemble {
 namespace fs = std::filesystem;
 
 bool isVdbFile(const std::string& path) {
-    return !gcode::isStream(path) && InputFile(path).first(kVdbMagic.size()) == kVdbMagic;
+    return !gcode::isStream(path) && InputFile(path).first(march::kVdbMagic.size()) == march::kVdbMagic;
 }
 
 std::string unitOf(const openvdb::FloatGrid& grid) {

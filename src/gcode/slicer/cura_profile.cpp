@@ -1,9 +1,8 @@
 #include "gcode/slicer/cura_profile.h"
 
+#include "base/base64.h"
 #include "base/text.h"
 #include "gcode/container/inflate.h"
-
-#include <openssl/evp.h>
 
 #include <algorithm>
 
@@ -12,19 +11,6 @@ namespace {
 
 constexpr std::size_t kMostProfile = std::size_t{1} << 20;  // bytes of an unpacked profile; real ones have 10 kB
 constexpr std::size_t kMostExtruders = 32;
-
-// The bytes of base64 whose end may be missing; empty if it is none.
-std::string decoded(std::string_view base64) {
-    base64 = trim(base64, " \t\r=");
-    std::string padded(base64);
-    padded.append((4 - padded.size() % 4) % 4, '=');
-    std::string bytes(padded.size() / 4 * 3, '\0');
-    const int size =
-        EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                        reinterpret_cast<const unsigned char*>(padded.data()), static_cast<int>(padded.size()));
-    bytes.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
-    return bytes;
-}
 
 // What zlib data unpacks to; empty if it is damaged.
 std::string inflated(std::string& bytes) {
@@ -92,7 +78,7 @@ bool CuraProfile::comment(std::string_view comment) {
 
 void CuraProfile::readProfileString(std::string_view base64) {
     cura_15_ = true;
-    std::string bytes = decoded(base64.substr(0, kMostProfile));
+    std::string bytes = bytesOfBase64(base64.substr(0, kMostProfile));
     const std::string profile = bytes.empty() ? std::string() : inflated(bytes);
     damaged_ = damaged_ || profile.empty();
     addAll(std::string_view(profile).substr(0, profile.find('\f')), '\b', std::nullopt, settings_);

@@ -1,5 +1,7 @@
 #include "gcode/slicer/mixed_colors.h"
 
+#include "base/srgb.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,14 +11,8 @@ namespace {
 
 constexpr double kDarkest = 0.003;
 
-double linearOf(std::uint8_t srgb) {
-    const double v = srgb / 255.0;
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
-std::uint8_t srgbOf(double linear) {
-    const double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
+std::uint8_t srgbByte(double linear) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(srgbOfLinear(linear), 0.0, 1.0)));
 }
 
 }  // namespace
@@ -29,10 +25,10 @@ Rgb mixedColor(std::span<const Rgb> colors, std::span<const double> shares) {
     for (std::size_t channel = 0; channel < mixed.size(); ++channel) {
         double ratio = 0;  // K/S
         for (std::size_t n = 0; n < colors.size(); ++n) {
-            const double r = std::clamp(linearOf(colors[n][channel]), kDarkest, 1 - kDarkest);
+            const double r = std::clamp(linearOfSrgb(colors[n][channel] / 255.0), kDarkest, 1 - kDarkest);
             ratio += shares[n] * (1 - r) * (1 - r) / (2 * r);
         }
-        mixed[channel] = srgbOf(1 + ratio - std::sqrt(ratio * ratio + 2 * ratio));
+        mixed[channel] = srgbByte(1 + ratio - std::sqrt(ratio * ratio + 2 * ratio));
     }
     return mixed;
 }

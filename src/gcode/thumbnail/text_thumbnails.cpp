@@ -1,10 +1,10 @@
 #include "gcode/thumbnail/text_thumbnails.h"
 
+#include "base/base64.h"
 #include "base/error.h"
 #include "base/text.h"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -197,15 +197,6 @@ PatchedBytes withTextThumbnails(std::string_view text, std::span<const Thumbnail
     }
     result.keep(text.substr(at));
     return result;
-}
-
-std::string base64Of(std::string_view bytes) {
-    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock ends it with a zero
-    const int length =
-        EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                        reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-    text.resize(static_cast<std::size_t>(length));
-    return text;
 }
 
 }  // namespace stratum::gcode

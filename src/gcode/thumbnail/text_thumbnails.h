@@ -27,7 +27,4 @@ bool hasThumbnailPlace(std::string_view text, std::string_view name);
 /// is used in messages. Throws InputError for a block without an end.
 PatchedBytes withTextThumbnails(std::string_view text, std::span<const Thumbnail> thumbnails, std::string_view name);
 
-/// The bytes as base64 (RFC 4648, padded, in one line).
-std::string base64Of(std::string_view bytes);
-
 }  // namespace stratum::gcode

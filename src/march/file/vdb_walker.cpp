@@ -1,7 +1,7 @@
 #include "march/file/vdb_walker.h"
 
 #include "base/error.h"
-#include "base/vdb_magic.h"
+#include "march/file/vdb_magic.h"
 
 #include <blosc.h>
 #include <fmt/format.h>

@@ -67,7 +67,6 @@ void readRender(Keywords& options, RenderCall& call) {
     call.exposure = options.number("exposure");
     assign(render.integrator.name, options.text("integrator"));
     assign(render.integrator.bounces, options.integer("bounces", 1, kMost));
-    assign(render.integrator.environment_rows, options.integer("environment_rows", 1, kMost));
     assign(render.integrator.ao_distance, options.number("ao_distance"));
     if (const std::vector<double> v = options.numbers("phong"); !v.empty()) {
         if (v.size() != 5) options.fail("phong", "(ka, kd, ks, shininess, kr)");

@@ -1,7 +1,7 @@
 #include "shade/brdf/brdf_scan.h"
 
-#include "base/angles.h"
 #include "base/error.h"
+#include "shade/angles.h"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -1,6 +1,7 @@
 #include "shade/brdf/preset.h"
 
 #include "base/error.h"
+#include "base/split.h"
 
 #include <fmt/format.h>
 
@@ -15,18 +16,14 @@ Preset parsePreset(std::string_view text, std::string_view option) {
     const std::size_t colon = text.find(':');
     preset.name = text.substr(0, colon);
     if (colon == std::string_view::npos) return preset;
-    std::string_view rest = text.substr(colon + 1);
-    for (;;) {
-        const std::size_t comma = rest.find(',');
-        const std::string_view word = rest.substr(0, comma);
+    for (const std::string_view word : split(text.substr(colon + 1))) {
         float value = 0.0f;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
         if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
             throw UsageError(fmt::format("{} {}: '{}' is not a number; write e.g. 0.25", option, text, word));
         preset.values.push_back(value);
-        if (comma == std::string_view::npos) return preset;
-        rest.remove_prefix(comma + 1);
     }
+    return preset;
 }
 
 void requireValues(const Preset& preset, std::size_t count, std::string_view option, std::string_view form) {

@@ -16,24 +16,14 @@
 namespace stratum::shade {
 namespace {
 
-struct NamedView {
-    std::string_view name;
-    View view;
-    glm::dvec3 forward;  // from the camera into the scene
-};
-
 /// Three-quarter view from the front right, 28 degrees above the bed: lower than a true isometric view.
 const glm::dvec3 kIso = {-std::cos(28.0 * std::numbers::pi / 180.0) * std::sin(35.0 * std::numbers::pi / 180.0),
                          std::cos(28.0 * std::numbers::pi / 180.0) * std::cos(35.0 * std::numbers::pi / 180.0),
                          -std::sin(28.0 * std::numbers::pi / 180.0)};
 
-const std::array<NamedView, 7> kViews = {{{"iso", View::iso, kIso},
-                                          {"front", View::front, {0.0, 1.0, 0.0}},
-                                          {"back", View::back, {0.0, -1.0, 0.0}},
-                                          {"left", View::left, {1.0, 0.0, 0.0}},
-                                          {"right", View::right, {-1.0, 0.0, 0.0}},
-                                          {"top", View::top, {0.0, 0.0, -1.0}},
-                                          {"bottom", View::bottom, {0.0, 0.0, 1.0}}}};
+// From the camera into the scene, in the order of View.
+const std::array<glm::dvec3, kViews.size()> kForwards = {
+    {kIso, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}, {1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, -1.0}, {0.0, 0.0, 1.0}}};
 
 bool allFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -79,13 +69,9 @@ struct Axis {
 }  // namespace
 
 View parseView(std::string_view text) {
-    for (const NamedView& v : kViews)
-        if (v.name == text) return v.view;
-    std::vector<std::string_view> names;
-    names.reserve(kViews.size());
-    for (const NamedView& v : kViews) names.push_back(v.name);
+    if (const auto view = valueOf(kViews, text)) return *view;
     throw UsageError(fmt::format("--view {}: unknown; choose iso, front, back, left, right, top or bottom{}", text,
-                                 didYouMean(text, names)));
+                                 didYouMean(text, listOf(kViews))));
 }
 
 void CameraOptions::validate() const {
@@ -177,7 +163,7 @@ Camera Camera::fitted(const CameraOptions& options, const trace::Box& box, std::
             *options.eye, target, options.up.value_or(length > 0.0 ? defaultUp(line / length) : glm::dvec3(0, 0, 1)),
             options.fov,  width,  height};
     }
-    const glm::dvec3 forward = kViews[static_cast<std::size_t>(options.view)].forward;
+    const glm::dvec3 forward = kForwards[static_cast<std::size_t>(options.view)];
     Camera camera(middle, middle + forward, options.up.value_or(defaultUp(forward)), options.fov, width, height);
 
     std::vector<glm::dvec3> points(outline.begin(), outline.end());

@@ -1,6 +1,7 @@
 // The camera: pinhole or thin lens.
 #pragma once
 
+#include "base/names.h"
 #include "trace/intersector.h"
 
 #include <glm/geometric.hpp>
@@ -16,6 +17,13 @@ namespace stratum::shade {
 
 /// Named viewing directions. z is up and the front of a printer is at -y.
 enum class View { iso, front, back, left, right, top, bottom };
+inline constexpr Names<View, 7> kViews = {{{"iso", View::iso},
+                                           {"front", View::front},
+                                           {"back", View::back},
+                                           {"left", View::left},
+                                           {"right", View::right},
+                                           {"top", View::top},
+                                           {"bottom", View::bottom}}};
 
 /// Throws UsageError and names the choices.
 View parseView(std::string_view text);

@@ -3,16 +3,18 @@
 #include "base/error.h"
 
 #include <fmt/format.h>
+#include <Eigen/Dense>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <unsupported/Eigen/LevenbergMarquardt>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <numeric>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 namespace stratum::shade {
@@ -20,55 +22,6 @@ namespace {
 
 constexpr std::size_t kFewest = 6;
 constexpr double kFlat = 1e-3;  // thickness of the points over their spread; less counts as a plane
-
-template <std::size_t N>
-using Matrix = std::array<std::array<double, N>, N>;
-
-/// Eigenvalues, ascending, and vectors (as rows) of a symmetric matrix, by Jacobi's rotations.
-template <std::size_t N>
-std::pair<std::array<double, N>, Matrix<N>> eigen(Matrix<N> a) {
-    Matrix<N> v{};
-    for (std::size_t i = 0; i < N; ++i) v[i][i] = 1;
-    for (int sweep = 0; sweep < 60; ++sweep) {
-        double off = 0;
-        for (std::size_t p = 0; p < N; ++p)
-            for (std::size_t q = p + 1; q < N; ++q) off += a[p][q] * a[p][q];
-        if (!(off > 0)) break;
-        for (std::size_t p = 0; p < N; ++p)
-            for (std::size_t q = p + 1; q < N; ++q) {
-                if (a[p][q] == 0) continue;
-                const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-                const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-                const double c = 1 / std::sqrt(t * t + 1);
-                const double s = t * c;
-                for (std::size_t k = 0; k < N; ++k) {
-                    const double kp = a[k][p];
-                    const double kq = a[k][q];
-                    a[k][p] = c * kp - s * kq;
-                    a[k][q] = s * kp + c * kq;
-                }
-                for (std::size_t k = 0; k < N; ++k) {
-                    const double pk = a[p][k];
-                    const double qk = a[q][k];
-                    a[p][k] = c * pk - s * qk;
-                    a[q][k] = s * pk + c * qk;
-                    const double vp = v[p][k];
-                    const double vq = v[q][k];
-                    v[p][k] = c * vp - s * vq;
-                    v[q][k] = s * vp + c * vq;
-                }
-            }
-    }
-    std::array<std::size_t, N> order{};
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return a[x][x] < a[y][y]; });
-    std::pair<std::array<double, N>, Matrix<N>> sorted;
-    for (std::size_t i = 0; i < N; ++i) {
-        sorted.first[i] = a[order[i]][order[i]];
-        sorted.second[i] = v[order[i]];
-    }
-    return sorted;
-}
 
 /// A pinhole: rows of `rotation` are the picture's right, down and forward.
 struct Pinhole {
@@ -83,7 +36,7 @@ struct Pinhole {
         return {focal * glm::dot(rows[0], d) / depth, focal * glm::dot(rows[1], d) / depth};
     }
     /// Moved by small steps: three turns (radians, about the picture's axes), three shifts along them, log of focal.
-    Pinhole stepped(const std::array<double, 7>& by, double size) const {
+    Pinhole stepped(const Eigen::VectorXd& by) const {
         Pinhole other = *this;
         const glm::dvec3 turn(by[0], by[1], by[2]);
         const double angle = glm::length(turn);
@@ -93,90 +46,67 @@ struct Pinhole {
                 row = std::cos(angle) * row + std::sin(angle) * glm::cross(axis, row) +
                       (1 - std::cos(angle)) * glm::dot(axis, row) * axis;
         }
-        other.eye += size * (by[3] * rows[0] + by[4] * rows[1] + by[5] * rows[2]);
+        other.eye += by[3] * rows[0] + by[4] * rows[1] + by[5] * rows[2];
         other.focal *= std::exp(by[6]);
         return other;
     }
 };
 
-double costOf(const Pinhole& camera, const std::vector<PointPair>& pairs) {
-    double sum = 0;
-    for (const PointPair& pair : pairs) {
-        const glm::dvec2 off = camera.project(pair.point) - pair.pixel;
-        sum += glm::dot(off, off);
-        // Points behind the camera have no projection.
-        if (!(glm::dot(camera.rows[2], pair.point - camera.eye) > 0)) return std::numeric_limits<double>::infinity();
-    }
-    return sum;
-}
+/// The distances in pixels of the pairs' projections, as a function of steps from a camera.
+class Distances : public Eigen::DenseFunctor<double> {
+public:
+    Distances(const Pinhole& camera, const std::vector<PointPair>& pairs)
+        : DenseFunctor(kSteps, 2 * static_cast<int>(pairs.size())), camera_(camera), pairs_(pairs) {}
 
-/// Solves a x = b for a symmetric positive matrix by Gauss' elimination with pivots; false if it can't.
-bool solve(Matrix<7> a, std::array<double, 7> b, std::array<double, 7>& x) {
-    for (std::size_t c = 0; c < 7; ++c) {
-        std::size_t pivot = c;
-        for (std::size_t r = c + 1; r < 7; ++r)
-            if (std::abs(a[r][c]) > std::abs(a[pivot][c])) pivot = r;
-        if (!(std::abs(a[pivot][c]) > 0)) return false;
-        std::swap(a[c], a[pivot]);
-        std::swap(b[c], b[pivot]);
-        for (std::size_t r = c + 1; r < 7; ++r) {
-            const double f = a[r][c] / a[c][c];
-            for (std::size_t k = c; k < 7; ++k) a[r][k] -= f * a[c][k];
-            b[r] -= f * b[c];
-        }
-    }
-    for (std::size_t c = 7; c-- > 0;) {
-        double sum = b[c];
-        for (std::size_t k = c + 1; k < 7; ++k) sum -= a[c][k] * x[k];
-        x[c] = sum / a[c][c];
-    }
-    return true;
-}
-
-Pinhole refined(Pinhole camera, const std::vector<PointPair>& pairs, double size) {
-    double cost = costOf(camera, pairs);
-    double damping = 1e-3;
-    for (int round = 0; round < 200; ++round) {
-        Matrix<7> normal{};
-        std::array<double, 7> slope{};
-        constexpr double kStep = 1e-6;
-        for (const PointPair& pair : pairs) {
+    int operator()(const InputType& by, ValueType& distances) const {
+        const Pinhole camera = camera_.stepped(by);
+        Eigen::Index n = 0;
+        for (const PointPair& pair : pairs_) {
             const glm::dvec2 off = camera.project(pair.point) - pair.pixel;
-            std::array<glm::dvec2, 7> j;
-            for (std::size_t k = 0; k < 7; ++k) {
-                std::array<double, 7> by{};
-                by[k] = kStep;
-                const glm::dvec2 after = camera.stepped(by, size).project(pair.point);
-                by[k] = -kStep;
-                j[k] = (after - camera.stepped(by, size).project(pair.point)) / (2 * kStep);
-            }
-            for (std::size_t r = 0; r < 7; ++r) {
-                slope[r] -= glm::dot(j[r], off);
-                for (std::size_t c = 0; c < 7; ++c) normal[r][c] += glm::dot(j[r], j[c]);
-            }
+            // Points behind the camera have no projection.
+            const bool seen = glm::dot(camera.rows[2], pair.point - camera.eye) > 0;
+            for (int axis = 0; axis < 2; ++axis)
+                distances[n++] = seen ? off[axis] : std::numeric_limits<double>::infinity();
         }
-        bool better = false;
-        for (int attempt = 0; attempt < 12 && !better; ++attempt) {
-            Matrix<7> damped = normal;
-            for (std::size_t k = 0; k < 7; ++k) damped[k][k] *= 1 + damping;
-            std::array<double, 7> by{};
-            if (!solve(damped, slope, by)) return camera;
-            const Pinhole next = camera.stepped(by, size);
-            const double next_cost = costOf(next, pairs);
-            better = next_cost < cost;
-            if (better) {
-                const bool done = cost - next_cost <= 1e-14 * cost;
-                camera = next;
-                cost = next_cost;
-                damping = std::max(0.1 * damping, 1e-12);
-                if (done) return camera;
-            } else {
-                damping *= 10;
-            }
-        }
-        if (!better) break;
+        return 0;
     }
-    return camera;
+    int df(const InputType& by, JacobianType& slopes) const {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index k = 0; k < kSteps; ++k) {
+            InputType other = by;
+            other[k] = by[k] + kStep;
+            const Pinhole after = camera_.stepped(other);
+            other[k] = by[k] - kStep;
+            const Pinhole before = camera_.stepped(other);
+            Eigen::Index n = 0;
+            for (const PointPair& pair : pairs_) {
+                const glm::dvec2 slope = (after.project(pair.point) - before.project(pair.point)) / (2 * kStep);
+                for (int axis = 0; axis < 2; ++axis) slopes(n++, k) = slope[axis];
+            }
+        }
+        return 0;
+    }
+
+    static constexpr int kSteps = 7;
+
+private:
+    const Pinhole& camera_;
+    const std::vector<PointPair>& pairs_;
+};
+
+/// The camera whose distances have the least sum of squares, found from a camera nearby.
+Pinhole refined(const Pinhole& camera, const std::vector<PointPair>& pairs) {
+    Distances distances(camera, pairs);
+    Eigen::VectorXd by = Eigen::VectorXd::Zero(Distances::kSteps);
+    Eigen::VectorXd first(distances.values());
+    distances(by, first);
+    if (!first.allFinite()) return camera;
+    Eigen::LevenbergMarquardt<Distances> search(distances);
+    search.setFtol(1e-15);
+    search.setXtol(1e-15);
+    search.setMaxfev(2000);
+    search.minimize(by);
+    return camera.stepped(by);
 }
 
 [[noreturn]] void refuse(std::string_view why) { throw InputError(fmt::format("the camera's pose: {}", why)); }
@@ -184,21 +114,22 @@ Pinhole refined(Pinhole camera, const std::vector<PointPair>& pairs, double size
 // The camera by the direct linear transform: the least singular vector of the pairs' equations, made a pinhole camera.
 // `scale`: pixels, half the photograph.
 Pinhole directSolution(std::span<const PointPair> centered, double scale) {
-    Matrix<12> products{};
+    Eigen::Matrix<double, 12, 12> products = Eigen::Matrix<double, 12, 12>::Zero();
     for (const PointPair& pair : centered) {
         const glm::dvec3& p = pair.point;
         const glm::dvec2 q = pair.pixel / scale;
-        const std::array<double, 12> x{p.x, p.y, p.z, 1, 0, 0, 0, 0, -q.x * p.x, -q.x * p.y, -q.x * p.z, -q.x};
-        const std::array<double, 12> y{0, 0, 0, 0, p.x, p.y, p.z, 1, -q.y * p.x, -q.y * p.y, -q.y * p.z, -q.y};
-        for (const auto& row : {x, y})
-            for (std::size_t r = 0; r < 12; ++r)
-                for (std::size_t c = 0; c < 12; ++c) products[r][c] += row[r] * row[c];
+        Eigen::Matrix<double, 12, 1> x;
+        Eigen::Matrix<double, 12, 1> y;
+        x << p.x, p.y, p.z, 1, 0, 0, 0, 0, -q.x * p.x, -q.x * p.y, -q.x * p.z, -q.x;
+        y << 0, 0, 0, 0, p.x, p.y, p.z, 1, -q.y * p.x, -q.y * p.y, -q.y * p.z, -q.y;
+        products += x * x.transpose() + y * y.transpose();
     }
-    const auto [values, vectors] = eigen(products);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>> solved(products);  // values ascend
+    const auto& values = solved.eigenvalues();
     // A second solution as good as the first: the configuration doesn't determine the camera.
     if (!(values[1] > 1e-10 * values[11]))
         refuse("the points leave more than one pose open; add more, and spread them");
-    const auto& v = vectors[0];
+    const Eigen::Matrix<double, 12, 1> v = solved.eigenvectors().col(0);
     glm::dvec3 m[3] = {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}, {v[8], v[9], v[10]}};
     glm::dvec3 last(v[3], v[7], v[11]);
     double depth = 0;
@@ -242,14 +173,13 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
         centered.push_back({pair.pixel - 0.5 * glm::dvec2(width, height), pair.point});
         middle += pair.point / static_cast<double>(pairs.size());
     }
-    Matrix<3> spread{};
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (PointPair& pair : centered) {
         pair.point -= middle;
-        for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 3; ++c)
-                spread[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] += pair.point[r] * pair.point[c];
+        const Eigen::Vector3d place(pair.point.x, pair.point.y, pair.point.z);
+        spread += place * place.transpose();
     }
-    const auto axes = eigen(spread).first;
+    const Eigen::Vector3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
     const double size = std::sqrt(std::max(axes[2], 0.0) / static_cast<double>(pairs.size()));
     if (!(size > 0)) refuse("all points are the same");
     if (!(std::sqrt(std::max(axes[1], 0.0)) > kFlat * std::sqrt(axes[2]))) refuse("the points lie on a line");
@@ -257,7 +187,7 @@ CameraPose solveCameraPose(std::span<const PointPair> pairs, double width, doubl
         refuse("the points lie in a plane, which says too little of the focal length; add some that stand out of it");
     const double scale = 0.5 * std::max(width, height);
     for (PointPair& pair : centered) pair.point /= size;
-    const Pinhole camera = refined(directSolution(centered, scale), centered, 1.0);
+    const Pinhole camera = refined(directSolution(centered, scale), centered);
     CameraPose pose;
     double squares = 0;
     for (std::size_t n = 0; n < centered.size(); ++n) {

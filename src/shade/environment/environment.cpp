@@ -1,8 +1,8 @@
 #include "shade/environment/environment.h"
 
-#include "base/angles.h"
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "shade/angles.h"
 #include "shade/brdf/preset.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/camera/sampling.h"

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -46,8 +45,6 @@ public:
     /// @param legend  drawn into the upper left corner of such a picture, if given; not into transparent ones
     void write(const Film& film, const Metadata& metadata, const ToneOptions& tone = {},
                const Legend* legend = nullptr);
-    /// Commits a file that `writer` writes under the name that it is given. Throws what it throws, and OutputError.
-    void write(const std::function<void(const std::filesystem::path& to)>& writer) { file_.write(writer); }
 
 private:
     PictureKind kind_;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/srgb.h"
 #include "shade/camera/sampler.h"
 
 #include <fmt/format.h>
@@ -130,7 +131,7 @@ Color toneMapNeutral(Color color) {
 
 float encodeSrgb(float linear) {
     if (!(linear > 0.0f)) return 0.0f;
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+    return srgbOfLinear(linear);
 }
 
 std::vector<std::uint8_t> toDisplay(const Film& film, const ToneOptions& options) {

@@ -2,8 +2,6 @@
 
 #include "shade/camera/hemisphere_stream.h"
 #include "shade/camera/sampler_stream.h"
-#include "shade/camera/sampling.h"
-#include "shade/frame.h"
 
 #include <cmath>
 #include <vector>
@@ -42,24 +40,8 @@ Stream& streamOfThread() {
 AmbientOcclusion::AmbientOcclusion(const SceneDescription& scene, const trace::Intersector& print, double distance)
     : Integrator(scene, print), opaque_(scene.backdrop.has_value()), distance_(distance) {}
 
-bool AmbientOcclusion::shadowRay(const SurfacePoint& first, const glm::vec2& u, trace::Ray& ray) const {
-    const glm::vec3 wi = toCosineHemisphere(u);
-    if (!(wi.z > 0.0f) || surfaces_.fade(first) >= 1.0f) return false;
-    ray = surfaces_.leave(first, Frame{glm::vec3(first.normal)}.toWorld(wi));
-    ray.t_max = distance_;
-    return true;
-}
-
 Pixel AmbientOcclusion::unoccluded(const SurfacePoint* first) const {
     return first != nullptr || opaque_ ? Pixel{Color(1.0f), 1.0f} : Pixel{};
-}
-
-Pixel AmbientOcclusion::seen(const trace::Ray&, const SurfacePoint* first, TraceContext& context) const {
-    if (first == nullptr) return unoccluded(first);
-    trace::Ray ray;
-    if (!shadowRay(*first, context.sampler.next2D(), ray)) return unoccluded(first);
-    ++context.rays.shadow;
-    return {Color(surfaces_.occluded(ray, context.tracer) ? surfaces_.fade(*first) : 1.0f), 1.0f};
 }
 
 void AmbientOcclusion::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,

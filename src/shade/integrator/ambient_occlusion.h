@@ -14,14 +14,11 @@ public:
     FilmContent content() const override { return FilmContent::unit; }
 
 protected:
-    Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
     /// All occlusion rays of a stream are traced as one.
     void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 
 private:
-    /// Sets the occlusion ray from `first`; false where the result is known without a ray.
-    bool shadowRay(const SurfacePoint& first, const glm::vec2& u, trace::Ray& ray) const;
     Pixel unoccluded(const SurfacePoint* first) const;
 
     bool opaque_;  // whether the scene has a backdrop; its pixels are 1

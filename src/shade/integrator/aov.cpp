@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/split.h"
 #include "shade/frame.h"
 
 #include <fmt/format.h>
@@ -51,9 +52,7 @@ bool geometric(Aov aov) { return aov != Aov::variance && aov != Aov::samples; }
 
 std::vector<Aov> parseAovs(std::string_view text) {
     std::vector<Aov> aovs;
-    while (!text.empty()) {
-        const std::string_view word = text.substr(0, text.find(','));
-        text.remove_prefix(std::min(text.size(), word.size() + 1));
+    for (const std::string_view word : splitList(text)) {
         const auto found =
             std::find_if(kinds().begin(), kinds().end(), [word](const Kind& k) { return k.name == word; });
         if (found == kinds().end()) {
@@ -85,15 +84,16 @@ std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixe
     return layers;
 }
 
-std::vector<bool> idSums(const std::vector<Aov>& aovs) {
-    std::vector<bool> ids;
+std::size_t sumsOf(const std::vector<Aov>& aovs) {
+    std::size_t sums = 0;
     for (const Aov aov : aovs)
-        if (geometric(aov)) ids.insert(ids.end(), kindOf(aov).channels.size(), labelOf(aov).has_value());
-    return ids;
+        if (geometric(aov)) sums += kindOf(aov).channels.size();
+    return sums;
 }
 
-void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t first,
-               const PixelStatistics& statistics, std::vector<FilmLayer>& layers, std::size_t pixel) {
+void storeAovs(const std::vector<Aov>& aovs, std::span<const double> sums, const PixelStatistics& statistics,
+               std::vector<FilmLayer>& layers, std::size_t pixel) {
+    auto sum = sums.begin();
     for (std::size_t n = 0; n < aovs.size(); ++n) {
         const std::size_t channels = layers[n].channels.size();
         float* out = &layers[n].values[pixel * channels];
@@ -102,10 +102,9 @@ void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t 
         else if (aovs[n] == Aov::samples)
             *out = static_cast<float>(statistics.samples);
         else if (labelOf(aovs[n]))
-            *out = static_cast<float>(sums.value(first++) - 1.0);
+            *out = static_cast<float>(*sum++ - 1.0);
         else
-            for (std::size_t c = 0; c < channels; ++c)
-                out[c] = static_cast<float>(sums.value(first++) / statistics.samples);
+            for (std::size_t c = 0; c < channels; ++c) out[c] = static_cast<float>(*sum++ / statistics.samples);
     }
 }
 
@@ -134,9 +133,10 @@ float AovRecorder::glintOf(const SurfacePoint& point, const glm::dvec3& directio
     return 0.5f * flakes.strength * sum;
 }
 
-void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const {
+void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, std::span<double> sums) const {
     if (aovs_.empty() || !std::isfinite(point.t)) return;
-    const auto add1 = [&](double value) { sums.add(at++, value); };
+    auto sum = sums.begin();
+    const auto add1 = [&](double value) { *sum++ += value; };
     const auto add3 = [&](const glm::dvec3& v) {
         for (int k = 0; k < 3; ++k) add1(v[k]);
     };
@@ -167,9 +167,9 @@ void AovRecorder::add(const SurfacePoint& point, const glm::dvec3& direction, Ex
             case Aov::layer:
             case Aov::tool:
             case Aov::feature: {
-                // Stored one higher, so that 0 means "not set".
+                // Stored one higher, so that 0 means "not set". The first sample that has one sets it.
                 const float value = point.labels[static_cast<std::size_t>(*labelOf(aov))];
-                const bool first = sums.value(at) == 0.0 && value >= 0.0f;
+                const bool first = *sum == 0.0 && value >= 0.0f;
                 add1(first ? static_cast<double>(value) + 1.0 : 0.0);
                 break;
             }

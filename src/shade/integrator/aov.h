@@ -1,7 +1,6 @@
 // Arbitrary output variables (AOVs): layers of a film beside its color, for compositing, denoising and computer vision.
 #pragma once
 
-#include "shade/film/exact_sums.h"
 #include "shade/film/film.h"
 #include "shade/integrator/bare_light.h"
 #include "shade/integrator/integrator.h"
@@ -43,9 +42,8 @@ std::vector<Label> labelsOf(const std::vector<Aov>& aovs);
 /// Empty layers of a film of this many pixels.
 std::vector<FilmLayer> makeLayers(const std::vector<Aov>& aovs, std::size_t pixels);
 
-/// The sums of one pixel that these layers need, in their order: true for each that is an id plus 1, or 0 for none,
-/// which the first sample that has one sets.
-std::vector<bool> idSums(const std::vector<Aov>& aovs);
+/// How many sums of one pixel these layers need, in their order.
+std::size_t sumsOf(const std::vector<Aov>& aovs);
 
 /// Values of a pixel that the renderer supplies.
 struct PixelStatistics {
@@ -53,9 +51,9 @@ struct PixelStatistics {
     std::uint32_t samples = 0;
 };
 
-/// Writes the means of one pixel, whose sums begin at `first`, into the film's layers.
-void storeAovs(const std::vector<Aov>& aovs, const ExactSums& sums, std::size_t first,
-               const PixelStatistics& statistics, std::vector<FilmLayer>& layers, std::size_t pixel);
+/// Writes the means of one pixel, whose sums these are, into the film's layers.
+void storeAovs(const std::vector<Aov>& aovs, std::span<const double> sums, const PixelStatistics& statistics,
+               std::vector<FilmLayer>& layers, std::size_t pixel);
 
 /// Records the first hits of camera rays. Immutable; shared by all threads.
 class AovRecorder {
@@ -64,9 +62,9 @@ public:
     const std::vector<Aov>& aovs() const { return aovs_; }
     /// Film::bareBed() of the scene.
     float bareBed() const { return bare_bed_; }
-    /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to the sums of a pixel
-    /// from `at` on.
-    void add(const SurfacePoint& point, const glm::dvec3& direction, ExactSums& sums, std::size_t at) const;
+    /// Adds one sample, the first hit of a camera ray of that direction (t is infinite if none), to the sums of a
+    /// pixel.
+    void add(const SurfacePoint& point, const glm::dvec3& direction, std::span<double> sums) const;
 
 private:
     /// Light that flakes at a point mirror, beyond the gloss of its surface; 0 without flakes.

@@ -8,9 +8,9 @@
 namespace stratum::shade {
 
 /// World-space unit normals that face the camera. Alpha is 0 where nothing is hit; the far bed fades out.
-class NormalIntegrator final : public Integrator {
+class NormalIntegrator final : public RayIntegrator {
 public:
-    NormalIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
+    NormalIntegrator(const SceneDescription& scene, const trace::Intersector& print) : RayIntegrator(scene, print) {}
     FilmContent content() const override { return FilmContent::normal; }
 
 protected:
@@ -18,9 +18,9 @@ protected:
 };
 
 /// Distance from the eye in world units. Alpha is 0 where nothing is hit; the far bed fades out.
-class DepthIntegrator final : public Integrator {
+class DepthIntegrator final : public RayIntegrator {
 public:
-    DepthIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
+    DepthIntegrator(const SceneDescription& scene, const trace::Intersector& print) : RayIntegrator(scene, print) {}
     FilmContent content() const override { return FilmContent::depth; }
 
 protected:
@@ -28,9 +28,9 @@ protected:
 };
 
 /// World-space positions. Alpha is 0 where nothing is hit; the far bed fades out.
-class PositionIntegrator final : public Integrator {
+class PositionIntegrator final : public RayIntegrator {
 public:
-    PositionIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
+    PositionIntegrator(const SceneDescription& scene, const trace::Intersector& print) : RayIntegrator(scene, print) {}
     FilmContent content() const override { return FilmContent::position; }
 
 protected:
@@ -38,9 +38,9 @@ protected:
 };
 
 /// 1 on the print, 0 on the bed and where nothing is hit; alpha is the same.
-class MaskIntegrator final : public Integrator {
+class MaskIntegrator final : public RayIntegrator {
 public:
-    MaskIntegrator(const SceneDescription& scene, const trace::Intersector& print) : Integrator(scene, print) {}
+    MaskIntegrator(const SceneDescription& scene, const trace::Intersector& print) : RayIntegrator(scene, print) {}
     FilmContent content() const override { return FilmContent::unit; }
 
 protected:
@@ -49,10 +49,10 @@ protected:
 
 /// A label (layer, tool or feature), each number in a flat color (categoryColor). The bed and surfaces without the
 /// label are black; alpha is 1 on the print. Aov has the numbers themselves. scene.labels must have the label.
-class LabelIntegrator final : public Integrator {
+class LabelIntegrator final : public RayIntegrator {
 public:
     LabelIntegrator(const SceneDescription& scene, const trace::Intersector& print, Label label)
-        : Integrator(scene, print), label_(label) {}
+        : RayIntegrator(scene, print), label_(label) {}
     FilmContent content() const override { return FilmContent::unit; }
 
 protected:

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/nearest_name.h"
 #include "shade/integrator/ambient_occlusion.h"
-#include "shade/integrator/environment_sum.h"
 #include "shade/integrator/geometry_integrators.h"
 #include "shade/integrator/path.h"
 #include "shade/integrator/phong.h"
@@ -18,9 +17,8 @@
 namespace stratum::shade {
 namespace {
 
-constexpr std::array<std::string_view, 12> kIntegratorNames = {"path",   "direct", "environment-sum", "phong", "ao",
-                                                               "normal", "depth",  "position",        "mask",  "layer",
-                                                               "tool",   "feature"};
+constexpr std::array<std::string_view, 11> kIntegratorNames = {"path",     "direct", "phong", "ao",   "normal", "depth",
+                                                               "position", "mask",   "layer", "tool", "feature"};
 
 }  // namespace
 
@@ -35,8 +33,6 @@ void IntegratorOptions::validate() const {
         !within(phong.shininess, 1e6f) || !within(phong.reflective, 1.0f))
         throw UsageError(
             "--phong KA,KD,KS,SHININESS,KR: weights from 0 to 100, an exponent to 1e6, a mirror's share to 1");
-    if (environment_rows < 2 || environment_rows > 512)
-        throw UsageError(fmt::format("--environment-rows {}: must be from 2 to 512", environment_rows));
     if (!(ao_distance > 0.0))
         throw UsageError(fmt::format("the distance of ambient occlusion is {}; it must be above 0", ao_distance));
 }
@@ -49,12 +45,6 @@ bool needsLight(const IntegratorOptions& options) {
 
 bool catchesShadows(const IntegratorOptions& options) { return options.name == "path" || options.name == "direct"; }
 
-Pixel Integrator::radiance(const trace::Ray& ray, TraceContext& context) const {
-    SurfacePoint point;
-    ++context.rays.primary;
-    return seen(ray, surfaces_.nearest(ray, context.tracer, point) ? &point : nullptr, context);
-}
-
 void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                                 RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
     counts.primary += rays.size();
@@ -62,9 +52,9 @@ void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> s
     seenStream(rays, points, samplers, tracer, counts, pixels);
 }
 
-void Integrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
-                            std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
-                            std::span<Pixel> pixels) const {
+void RayIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                               std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+                               std::span<Pixel> pixels) const {
     for (std::size_t n = 0; n < rays.size(); ++n) {
         TraceContext context{tracer, samplers[n], counts};
         pixels[n] = seen(rays[n], std::isfinite(points[n].t) ? &points[n] : nullptr, context);
@@ -83,8 +73,6 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "layer" || options.name == "tool" || options.name == "feature")
         return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
     if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
-    if (options.name == "environment-sum")
-        return std::make_unique<EnvironmentSum>(scene, print, options.environment_rows);
     return std::make_unique<PathIntegrator>(scene, print, options.bounces);
 }
 

@@ -31,13 +31,6 @@ struct RayCounts {
     bool operator==(const RayCounts&) const = default;
 };
 
-/// State of one thread.
-struct TraceContext {
-    trace::Tracer& tracer;
-    Sampler& sampler;
-    RayCounts& rays;
-};
-
 /// Weights of PhongIntegrator's terms.
 struct PhongOptions {
     float ambient = 1.0f, diffuse = 1.0f, specular = 1.0f;  ///< ka, kd, ks, each in [0, 100]
@@ -46,11 +39,9 @@ struct PhongOptions {
 };
 
 struct IntegratorOptions {
-    std::string name = "path";  ///< path, direct, environment-sum, phong, ao, normal, depth, position, mask,
-                                ///< layer, tool, feature
+    std::string name = "path";  ///< path, direct, phong, ao, normal, depth, position, mask, layer, tool, feature
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
     PhongOptions phong;
-    int environment_rows = 32;  ///< environment-sum: rows of its map, 2 to 512; twice as many columns
     double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther surfaces don't occlude
 
     /// Throws UsageError.
@@ -68,9 +59,8 @@ bool catchesShadows(const IntegratorOptions& options);
 class Integrator {
 public:
     virtual ~Integrator() = default;
-    /// Radiance along a camera ray; finite. Draws from context.sampler in a fixed order.
-    Pixel radiance(const trace::Ray& ray, TraceContext& context) const;
-    /// The same for many rays, each with the sampler of its number; faster. All spans are of one length.
+    /// Radiance along camera rays; finite. Each draws from the sampler of its number, in a fixed order, and gets what
+    /// it would get alone. All spans are of one length.
     /// @param rays    end at the bed afterwards
     /// @param points  output: the first surface that each ray hits, for the layers of a film; t is infinite if none
     void radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
@@ -79,15 +69,31 @@ public:
 
 protected:
     Integrator(const SceneDescription& scene, const trace::Intersector& print) : surfaces_(scene, print) {}
-    /// The pixel value of a camera ray whose first hit is `first`; null if it hits nothing.
-    virtual Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
-    /// The same for many rays; integrators that trace further rays trace those as streams. The results must be
-    /// bit-identical to those of seen().
+    /// The pixel values of camera rays with these first hits (t is infinite if there is none).
     virtual void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
                             std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
-                            std::span<Pixel> pixels) const;
+                            std::span<Pixel> pixels) const = 0;
 
     Surfaces surfaces_;
+};
+
+/// What one ray needs beside itself.
+struct TraceContext {
+    trace::Tracer& tracer;
+    Sampler& sampler;
+    RayCounts& rays;
+};
+
+/// Integrators that look at one ray after the other.
+class RayIntegrator : public Integrator {
+protected:
+    using Integrator::Integrator;
+    /// The pixel value of a camera ray whose first hit is `first`; null if it hits nothing.
+    virtual Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const = 0;
+
+private:
+    void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
+                    trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const final;
 };
 
 /// The integrator of `options`. It keeps references: `scene` and `print` must outlive it. Throws UsageError.

@@ -36,17 +36,6 @@ PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Inter
     if (scene.anyTranslucent()) walk_.emplace(surfaces_, print.bounds(), scene.mm_per_unit);
 }
 
-Pixel PathIntegrator::seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const {
-    SurfacePoint point;
-    if (first == nullptr)
-        point.t = kFar;
-    else
-        point = *first;
-    Pixel pixel;
-    seenStream({&ray, 1}, {&point, 1}, {&context.sampler, 1}, context.tracer, context.rays, {&pixel, 1});
-    return pixel;
-}
-
 trace::Ray& PathIntegrator::ShadowRays::add(const Color& value, std::size_t to) {
     light.push_back(value);
     pixel.push_back(to);

@@ -33,8 +33,6 @@ public:
     PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces);
 
 protected:
-    /// A stream of one.
-    Pixel seen(const trace::Ray& ray, const SurfacePoint* first, TraceContext& context) const override;
     void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const override;
 

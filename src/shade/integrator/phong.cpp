@@ -10,7 +10,7 @@ namespace stratum::shade {
 
 PhongIntegrator::PhongIntegrator(const SceneDescription& scene, const trace::Intersector& print,
                                  const PhongOptions& options)
-    : Integrator(scene, print), options_(options), lights_(scene.lights), ambient_(scene.ambient) {
+    : RayIntegrator(scene, print), options_(options), lights_(scene.lights), ambient_(scene.ambient) {
     if (!lights_.empty() || maxComponent(ambient_) > 0.0f) return;
     ambient_ = Color(0.2f);
     const glm::dvec3 to_light = scene.camera.up() - 0.7 * scene.camera.right() - scene.camera.forward();

@@ -17,7 +17,7 @@ namespace stratum::shade {
 /// shoulder. The bed has no mirror term.
 /// Sources: B. T. Phong, CACM 18(6) 1975; the terms, depth and defaults are those of Roukema, "SDFs versus polygons",
 /// 2023.
-class PhongIntegrator final : public Integrator {
+class PhongIntegrator final : public RayIntegrator {
 public:
     PhongIntegrator(const SceneDescription& scene, const trace::Intersector& print, const PhongOptions& options);
 

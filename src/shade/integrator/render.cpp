@@ -46,9 +46,7 @@ public:
           workers_([this] { return makeWorker(); }) {
         state_.film = Film(options.width, options.height, region_, integrator_->content());
         if (scene.transparent) state_.film.makeTransparent(recorder_.bareBed());
-        // A share of the samples has no means, only sums.
-        state_.film.layers() = makeLayers(options.aovs, options.samples ? 0 : state_.film.pixels().size());
-        if (options.samples) sums_ = PixelSums(state_.film.pixels().size(), options.aovs);
+        state_.film.layers() = makeLayers(options.aovs, state_.film.pixels().size());
         state_.done.resize(boxes_.size(), 0);
     }
 
@@ -59,12 +57,8 @@ public:
             tileByTile();
         const double mean_spp = static_cast<double>(state_.samples) / static_cast<double>(pixels_);
         const bool more = region_ != options_.region();
-        return {more ? state_.film.part(options_.region()) : std::move(state_.film),
-                mean_spp,
-                state_.rays,
-                state_.samples,
-                pixels_,
-                std::move(sums_)};
+        return {more ? state_.film.part(options_.region()) : std::move(state_.film), mean_spp, state_.rays,
+                state_.samples, pixels_};
     }
 
 private:
@@ -78,10 +72,7 @@ private:
     }
     /// Adds a finished tile to the state. Not for two threads at once.
     void finish(std::size_t index, const Tile& tile) {
-        if (options_.samples)
-            tile.addTo(sums_, region_);
-        else
-            tile.store(state_.film);
+        tile.store(state_.film);
         state_.done[index] = 1;
         state_.rays += tile.rays();
         state_.samples += static_cast<std::uint64_t>(tile.samples()) * tile.pixels();
@@ -102,7 +93,6 @@ private:
     const std::uint64_t pixels_;
     tbb::enumerable_thread_specific<TileWorker> workers_;
     RenderState state_;
-    PixelSums sums_;  // of RenderOptions::samples
 };
 
 /// Everything the picture depends on: the options as text, RenderOptions::source, and a hash of a few thousand samples.
@@ -131,11 +121,11 @@ std::string Renderer::identity() const {
     std::string text = fmt::format(
         "{}x{} region {},{},{},{} spp {} noise {} seed {} march {} voxel {} box {},{},{},{},{},{} integrator {} {} {} "
         "{} "
-        "{} {} {} {} {} layers",
+        "{} {} {} {} layers",
         options_.width, options_.height, region_.x0, region_.y0, region_.x1, region_.y1, options_.spp, options_.noise,
         options_.seed, print_.name(), print_.voxelSize(), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
         box.max.z, i.name, i.bounces, i.phong.ambient, i.phong.diffuse, i.phong.specular, i.phong.shininess,
-        i.phong.reflective, i.environment_rows, i.ao_distance);
+        i.phong.reflective, i.ao_distance);
     for (const FilmLayer& layer : state_.film.layers()) text += " " + layer.name;
     return text + fmt::format(" look {:08x} source {}", look, options_.source);
 }
@@ -159,9 +149,8 @@ void Renderer::tileByTile() {
     parallelFor(todo.size(), 1, [&](std::size_t first, std::size_t last) {
         TileWorker& worker = workers_.local();
         for (std::size_t n = first; n != last; ++n) {
-            const SampleRange range = options_.samples.value_or(SampleRange{0, options_.spp});
-            Tile tile(boxes_[todo[n]], recorder_, range.first);
-            int target = options_.noise > 0.0 ? std::min(kFirstSamples, options_.spp) : range.end;
+            Tile tile(boxes_[todo[n]], recorder_);
+            int target = options_.noise > 0.0 ? std::min(kFirstSamples, options_.spp) : options_.spp;
             sample(tile, target, worker);
             while (options_.noise > 0.0 && target < options_.spp && tile.error() > options_.noise) {
                 target = std::min(2 * target, options_.spp);
@@ -254,13 +243,6 @@ void RenderOptions::validate() const {
         throw UsageError(fmt::format("--time {}: must be from 0 to 1e7 s", seconds));
     if (seconds > 0.0 && !checkpoint.empty())
         throw UsageError("--checkpoint is for pictures of so many samples; one by the clock (--time) can't be resumed");
-    if (samples && (samples->first < 0 || samples->first >= samples->end || samples->end > spp))
-        throw UsageError(fmt::format("samples {} to {} of a pixel: expected a part of the {} of --spp", samples->first,
-                                     samples->end, spp));
-    if (samples && (noise > 0.0 || seconds > 0.0 || !checkpoint.empty()))
-        throw UsageError(
-            "a share of the samples can't be traced with --noise, --time or --checkpoint: the first two decide by all "
-            "samples how many a tile gets, and the third keeps finished pixels, which a share has none of");
     integrator.validate();
 }
 

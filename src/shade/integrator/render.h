@@ -4,7 +4,6 @@
 #include "shade/film/film.h"
 #include "shade/integrator/aov.h"
 #include "shade/integrator/integrator.h"
-#include "shade/integrator/pixel_sums.h"
 #include "shade/scene/scene.h"
 #include "trace/intersector.h"
 
@@ -14,12 +13,6 @@
 #include <optional>
 
 namespace stratum::shade {
-
-/// Samples first <= s < end of each pixel.
-struct SampleRange {
-    int first = 0, end = 0;
-    bool operator==(const SampleRange&) const = default;
-};
 
 struct RenderOptions {
     int width = 1280;  ///< pixels, 1 to 32768
@@ -44,9 +37,6 @@ struct RenderOptions {
     std::uint32_t seed = 0;             ///< selects the noise pattern
     std::optional<PixelBox> crop;       ///< --crop: only this part of the same picture; must lie in the frame
     int margin = 0;  ///< pixels around the crop, inside the frame, that are rendered and kept as well
-    /// Only these of the `spp` samples of each pixel, whose sums are RenderResult::sums; the film stays empty. Not with
-    /// `noise`, `seconds` and `checkpoint`.
-    std::optional<SampleRange> samples;
     IntegratorOptions integrator;
 
     /// The crop with its margin, or the whole frame.
@@ -61,7 +51,6 @@ struct RenderResult {
     RayCounts rays;         ///< the same for any number of threads
     /// What mean_spp is the quotient of. With RenderOptions::noise: of whole tiles around a crop.
     std::uint64_t samples = 0, pixels = 0;
-    PixelSums sums;  ///< of RenderOptions::samples: of the film's pixels, row by row
 };
 
 /// Called from time to time from any thread, never from two at once, with the number of finished pixels.

@@ -39,17 +39,15 @@ PixelBox wholeTiles(const PixelBox& region, int width, int height) {
             std::min(up(region.y1), height)};
 }
 
-Tile::Tile(const PixelBox& box, const AovRecorder& recorder, int first)
+Tile::Tile(const PixelBox& box, const AovRecorder& recorder)
     : box_(box),
-      sums_(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), recorder.aovs()),
-      first_(first),
-      end_(first) {}
+      sums_(static_cast<std::size_t>(box.width()) * static_cast<std::size_t>(box.height()), recorder.aovs()) {}
 
 void Tile::sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
                   const PixelFilter& filter, TileWorker& worker) {
     // The integrator gets the samples in streams, pixel by pixel; they are summed in that order.
     orderPixels(box_, worker.order);
-    const auto each = static_cast<std::size_t>(target - end_);
+    const auto each = static_cast<std::size_t>(target - samples_);
     const std::size_t most = std::min(kStream, sums_.pixels() * each);
     worker.positions.resize(most);
     worker.rays.resize(most);
@@ -81,15 +79,15 @@ void Tile::sample(int target, const Camera& camera, const Integrator& integrator
         const glm::ivec2 at(box_.x0 + static_cast<int>(number) % box_.width(),
                             box_.y0 + static_cast<int>(number) / box_.width());
         Sampler sampler = worker.sampler;
-        sampler.start(at.x, at.y, static_cast<std::uint32_t>(end_));
-        for (int s = end_; s < target; ++s, sampler.startNext()) {
+        sampler.start(at.x, at.y, static_cast<std::uint32_t>(samples_));
+        for (int s = samples_; s < target; ++s, sampler.startNext()) {
             worker.samplers[waiting] = sampler;
             worker.positions[waiting] = at;
             if (++waiting == kStream) flush();
         }
     }
     flush();
-    end_ = target;
+    samples_ = target;
 }
 
 double Tile::error() const {
@@ -107,15 +105,6 @@ void Tile::store(Film& film) const {
     std::size_t n = 0;
     for (int y = box_.y0; y < box_.y1; ++y)
         for (int x = box_.x0; x < box_.x1; ++x) sums_.store(n++, samples(), film, x, y);
-}
-
-void Tile::addTo(PixelSums& sums, const PixelBox& region) const {
-    std::size_t n = 0;
-    for (int y = box_.y0; y < box_.y1; ++y)
-        for (int x = box_.x0; x < box_.x1; ++x) {
-            const auto row = static_cast<std::size_t>(y - region.y0) * static_cast<std::size_t>(region.width());
-            sums.add(row + static_cast<std::size_t>(x - region.x0), sums_, n++);
-        }
 }
 
 }  // namespace stratum::shade

@@ -34,8 +34,7 @@ struct TileWorker {
 class Tile {
 public:
     /// @param recorder  of the layers; only their names are stored
-    /// @param first     the number of the first sample of each pixel
-    Tile(const PixelBox& box, const AovRecorder& recorder, int first = 0);
+    Tile(const PixelBox& box, const AovRecorder& recorder);
 
     /// Adds samples to every pixel, from the one after its last to target - 1.
     void sample(int target, const Camera& camera, const Integrator& integrator, const AovRecorder& recorder,
@@ -46,18 +45,16 @@ public:
     double error() const;
     /// Writes the means into the film and its layers.
     void store(Film& film) const;
-    /// Adds its sums to those of a region, of the same layers. Not for two threads at once.
-    void addTo(PixelSums& sums, const PixelBox& region) const;
 
     const PixelBox& box() const { return box_; }
     std::size_t pixels() const { return sums_.pixels(); }
-    int samples() const { return end_ - first_; }  ///< of each pixel
+    int samples() const { return samples_; }  ///< of each pixel
     const RayCounts& rays() const { return rays_; }
 
 private:
     PixelBox box_;
     PixelSums sums_;
-    int first_, end_;  // samples [first, end) are summed
+    int samples_ = 0;  // of each pixel, that are summed
     RayCounts rays_;
 };
 

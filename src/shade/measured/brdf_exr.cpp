@@ -1,9 +1,9 @@
 #include "shade/measured/brdf_exr.h"
 
-#include "base/angles.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/own_file.h"
+#include "shade/angles.h"
 #include "shade/measured/scan_text.h"
 
 #include <ImfChannelList.h>

@@ -1,8 +1,8 @@
 #include "shade/measured/brdf_file.h"
 
-#include "base/angles.h"
 #include "base/error.h"
 #include "base/input_file.h"
+#include "shade/angles.h"
 #include "shade/measured/astm_reader.h"
 #include "shade/measured/brdf_exr.h"
 #include "shade/measured/merl_file.h"

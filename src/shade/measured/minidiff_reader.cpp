@@ -1,6 +1,6 @@
 #include "shade/measured/minidiff_reader.h"
 
-#include "base/angles.h"
+#include "shade/angles.h"
 #include "shade/measured/scan_channels.h"
 #include "shade/measured/scan_text.h"
 

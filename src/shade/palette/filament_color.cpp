@@ -1,5 +1,6 @@
 #include "shade/palette/filament_color.h"
 
+#include "base/srgb.h"
 #include "base/text.h"
 #include "shade/film/tonemap.h"
 
@@ -187,10 +188,7 @@ constexpr float kStudioGain = 0.92f;
 }  // namespace
 
 Color fromSrgb(std::uint32_t hex) {
-    const auto channel = [](std::uint32_t v) {
-        const double s = (v & 0xffU) / 255.0;
-        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    };
+    const auto channel = [](std::uint32_t v) { return static_cast<float>(linearOfSrgb((v & 0xffU) / 255.0)); };
     return {channel(hex >> 16), channel(hex >> 8), channel(hex)};
 }
 

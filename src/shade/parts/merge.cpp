@@ -2,31 +2,74 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
-#include "base/part_set.h"
-#include "shade/parts/part_sums.h"
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace stratum::shade {
 namespace {
 
-/// By number, all of one picture, each once.
+constexpr std::size_t kMostNamed = 20;  // of problems, so that a message stays readable
+
+/// A part and its file.
+struct PartFile {
+    std::filesystem::path path;
+    Part part;
+};
+
+/// Throws InputError with what is wrong with parts, a line each.
+[[noreturn]] void refuseParts(std::vector<std::string> problems) {
+    const std::size_t more = problems.size() - std::min(problems.size(), kMostNamed);
+    problems.resize(problems.size() - more);
+    if (more > 0) problems.push_back(fmt::format("and {} more", more));
+    throw InputError(fmt::format("{}\nnothing is written", fmt::join(problems, "\n")));
+}
+
+/// All parts of one picture, each once, by number. Throws InputError that names each part that is missing, doubled,
+/// unreadable or foreign.
 std::vector<PartFile> readParts(const std::vector<std::filesystem::path>& paths) {
-    return wholeSet<PartFile>(
-        paths,
-        [](const std::filesystem::path& path) {
-            return PartFile{path, readPart(path)};
-        },
-        [](const PartFile& file) {
-            return Shard{file.part.index, file.part.whole.shards};
-        },
-        [](const PartFile& file, const PartFile& first) { return differenceOf(file.part, first.part); },
-        "trace it with");
+    std::vector<std::string> problems;
+    std::vector<PartFile> found;
+    for (const std::filesystem::path& path : paths) {
+        try {
+            found.push_back({path, readPart(path)});
+        } catch (const InputError& error) {
+            problems.emplace_back(error.what());
+        }
+    }
+    if (found.empty()) refuseParts(std::move(problems));
+    const PartFile& first = found.front();
+    std::vector<PartFile*> places(static_cast<std::size_t>(first.part.whole.shards));
+    for (PartFile& one : found) {
+        const std::string differs = differenceOf(one.part, first.part);
+        if (!differs.empty()) {
+            problems.push_back(
+                fmt::format("{}: is {}, compared with {}", one.path.string(), differs, first.path.string()));
+            continue;
+        }
+        PartFile*& place = places[static_cast<std::size_t>(one.part.index)];
+        if (place)
+            problems.push_back(fmt::format("{}: is shard {} of {}, as {} is; name each once", one.path.string(),
+                                           one.part.index, places.size(), place->path.string()));
+        else
+            place = &one;
+    }
+    for (std::size_t n = 0; n < places.size(); ++n)
+        if (!places[n])
+            problems.push_back(fmt::format("shard {} of {} is missing; trace it with --shard {}/{}", n, places.size(),
+                                           n, places.size()));
+    if (!problems.empty()) refuseParts(std::move(problems));
+    std::vector<PartFile> sorted;
+    sorted.reserve(places.size());
+    for (PartFile* place : places) sorted.push_back(std::move(*place));
+    return sorted;
 }
 
 Film assemble(const std::vector<PartFile>& parts) {
@@ -34,11 +77,6 @@ Film assemble(const std::vector<PartFile>& parts) {
     Film film(any.whole.width, any.whole.height, any.whole.region, any.content);
     addLayers(any, film);
     if (any.whole.bare_bed) film.makeTransparent(*any.whole.bare_bed);
-    if (any.whole.spp > 0) {
-        const std::vector<std::string> problems = addUp(parts, film);
-        if (!problems.empty()) refuseParts(problems);
-        return film;
-    }
     std::vector<std::string> problems(parts.size());
     parallelFor(parts.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t n = first; n < last; ++n) {
@@ -77,7 +115,6 @@ MergedPicture mergeParts(const std::filesystem::path& output, const std::vector<
         samples += found.part.samples;
         pixels += found.part.pixels;
     }
-    if (any.whole.spp > 0) pixels = any.pixels;  // all have the same
     const double mean_spp = static_cast<double>(samples) / static_cast<double>(pixels);
     Metadata metadata = any.metadata;
     metadata[kMeanSamples] = fmt::format("{:g}", mean_spp);

@@ -3,11 +3,10 @@
 #include "base/checksum.h"
 #include "base/error.h"
 #include "base/input_file.h"
-#include "shade/film/exr_buffer.h"
 #include "shade/film/exr_bytes.h"
 #include "shade/film/exr_header.h"
 #include "shade/film/exr_reader.h"
-#include "shade/parts/part_sums.h"
+#include "shade/film/exr_writer.h"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>
@@ -26,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kAttribute = "StratumPart";
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 constexpr std::size_t kMostPixels = std::size_t{1} << 30;  // 32768 x 32768, what a render may have
 
 Json jsonOf(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
@@ -67,8 +66,7 @@ Json jsonOf(const PartWhole& whole) {
             {"exposure", whole.exposure},
             {"bare_bed", whole.bare_bed ? Json(*whole.bare_bed) : Json()},
             {"legend", whole.legend ? jsonOf(*whole.legend) : Json()},
-            {"shards", whole.shards},
-            {"spp", whole.spp}};
+            {"shards", whole.shards}};
 }
 
 PartWhole wholeOf(const Json& json) {
@@ -85,7 +83,6 @@ PartWhole wholeOf(const Json& json) {
     if (!json.at("bare_bed").is_null()) whole.bare_bed = json.at("bare_bed").get<float>();
     if (!json.at("legend").is_null()) whole.legend = legendOf(json.at("legend"));
     whole.shards = json.at("shards");
-    whole.spp = json.at("spp");
     return whole;
 }
 
@@ -127,25 +124,10 @@ Part partOf(const std::string& text, const Metadata& metadata) {
     for (const Json& layer : json.at("layers")) {
         part.layers.push_back({layer.at(0).get<std::string>(), layer.at(1).get<std::vector<std::string>>(), {}});
     }
-    part.planes = json.at("planes");
     part.crc = json.at("crc");
     json.erase("crc");
     part.head = crcOf(json, metadata);
     return part;
-}
-
-void checkShare(const Part& part) {
-    constexpr std::size_t kMostPlanes = 64;  // a sum of floats fits in fewer, however different they are
-    const PartWhole& whole = part.whole;
-    const SampleRange range = samplesOf(whole.spp, {part.index, whole.shards});
-    const auto pixels =
-        static_cast<std::uint64_t>(whole.region.width()) * static_cast<std::uint64_t>(whole.region.height());
-    if (part.piece != whole.region || part.pixels != pixels ||
-        part.samples != pixels * static_cast<std::uint64_t>(range.end - range.first))
-        throw std::runtime_error("its samples are not those of its number");
-    if (part.planes < 1 || part.planes > kMostPlanes) throw std::runtime_error("its number of planes is impossible");
-    if (layersOf(part.layers) != layersOf(makeLayers(aovsOf(part), 0)))
-        throw std::runtime_error("its layers are unknown");
 }
 
 /// What it says must be possible, before memory is allocated for it.
@@ -164,24 +146,12 @@ void check(const Part& part) {
     if (part.index < 0 || part.index >= whole.shards || part.pixels < 1 || part.content < FilmContent::radiance ||
         part.content > FilmContent::position)
         throw std::runtime_error("its numbers are impossible");
-    if (whole.spp > 0) {
-        checkShare(part);
-        return;
-    }
     if (part.piece != piecesOf(whole.region, whole.shards).at(static_cast<std::size_t>(part.index)))
         throw std::runtime_error("its place is not that of its number, so it would overlap others");
 }
 
 /// So many layers as it states: before memory is allocated for them.
 void checkChannels(const Part& part, const Imf::ChannelList& channels) {
-    if (part.whole.spp > 0) {
-        for (const std::string& name : channelsOfSums(PixelSums(0, aovsOf(part)).each(), part.planes)) {
-            const Imf::Channel* channel = channels.findChannel(name);
-            if (!channel || channel->type != Imf::UINT)
-                throw std::runtime_error(fmt::format("its channel {} is missing", name));
-        }
-        return;
-    }
     for (const FilmLayer& layer : part.layers)
         for (const std::string& channel : layer.channels)
             if (!channels.findChannel(layer.name + "." + channel))
@@ -196,8 +166,7 @@ Json headOf(const Film& film, const Part& part) {
             {"samples", part.samples},
             {"pixels", part.pixels},
             {"content", static_cast<int>(film.content())},
-            {"layers", layersOf(film.layers())},
-            {"planes", part.planes}};
+            {"layers", layersOf(film.layers())}};
 }
 
 }  // namespace
@@ -207,22 +176,6 @@ void writePart(PictureFile& file, const Film& film, Part part) {
     json["crc"] = crcOf(crcOf(json, part.metadata), film);
     part.metadata[kAttribute] = textOf(json);
     file.write(film, part.metadata);
-}
-
-void writePart(PictureFile& file, const Film& film, const PixelSums& sums, Part part) {
-    part.planes = sums.sums().planes();
-    Json json = headOf(film, part);
-    json["crc"] = crcOf(crcOf(json, part.metadata), sums, film.region());
-    part.metadata[kAttribute] = textOf(json);
-    file.write([&](const std::filesystem::path& to) {
-        writeExrChannels(to, film, exrBufferOf(sums, film.region()), part.metadata);
-    });
-}
-
-std::vector<Aov> aovsOf(const Part& part) {
-    std::string names;
-    for (const FilmLayer& layer : part.layers) names += (names.empty() ? "" : ",") + layer.name;
-    return parseAovs(names);
 }
 
 Part readPart(const std::filesystem::path& path) {
@@ -272,16 +225,12 @@ void readPixels(const std::filesystem::path& path, const Part& part, Film& film)
 }
 
 bool isPartOf(const std::filesystem::path& path, const std::string& version, const std::string& scene,
-              const Shard& shard, bool by_samples) {
+              const Shard& shard) {
     try {
         const Part part = readPart(path);
         if (part.whole.version != version || part.whole.scene != scene || part.index != shard.index ||
-            part.whole.shards != shard.count || (part.whole.spp > 0) != by_samples)
+            part.whole.shards != shard.count)
             return false;
-        if (by_samples) {
-            checkSums({path, part});
-            return true;
-        }
         Film film(part.whole.width, part.whole.height, part.piece, part.content);
         addLayers(part, film);
         readPixels(path, part, film);
@@ -296,9 +245,6 @@ std::string differenceOf(const Part& part, const Part& other) {
         return fmt::format("made by version {}, not {}", part.whole.version, other.whole.version);
     if (part.whole.shards != other.whole.shards)
         return fmt::format("one of {} shards, not of {}", part.whole.shards, other.whole.shards);
-    if ((part.whole.spp > 0) != (other.whole.spp > 0))
-        return part.whole.spp > 0 ? "a share of the samples, not a piece of the picture"
-                                  : "a piece of the picture, not a share of the samples";
     if (part.whole.scene != other.whole.scene)
         return "of another scene: the input files, the options, the seed or the frame differ";
     Metadata metadata = part.metadata;

@@ -1,5 +1,5 @@
 // A part of a picture that one of several processes traced: an EXR that says what it is a part of. It holds the pixels
-// of a piece of the picture, or sums over some samples of all pixels.
+// of a piece of the picture.
 #pragma once
 
 #include "shade/film/film.h"
@@ -30,7 +30,6 @@ struct PartWhole {
     double exposure = 0.0;  ///< stops, of a picture to look at
     std::optional<Legend> legend;
     int shards = 1;
-    int spp = 0;  ///< samples a pixel that the parts share; 0 if each has all samples of its piece
     std::optional<float> bare_bed = std::nullopt;  ///< Film::bareBed(), of a transparent picture
 };
 
@@ -41,7 +40,6 @@ struct Part {
     std::uint64_t samples = 0, pixels = 0;  ///< RenderResult::samples and pixels
     FilmContent content = FilmContent::radiance;
     std::vector<FilmLayer> layers;  ///< without values
-    std::size_t planes = 0;         ///< of ExactSums, if it is a share of the samples
     std::uint32_t head = 0;         ///< CRC-32 of all that is said of the pixels
     std::uint32_t crc = 0;          ///< CRC-32 of that and of all values
     Metadata metadata;              ///< of the picture; its mean number of samples is the part's own
@@ -50,14 +48,8 @@ struct Part {
 /// Writes a part. Content, layers and checksums are taken from the film, whose region is the piece. Throws OutputError.
 void writePart(PictureFile& file, const Film& film, Part part);
 
-/// Writes a share of the samples: their sums, of the film's pixels. The film has layers without values.
-void writePart(PictureFile& file, const Film& film, const PixelSums& sums, Part part);
-
 /// Reads what a part says of itself. Throws InputError for other files and damaged ones.
 Part readPart(const std::filesystem::path& path);
-
-/// The layers of a part, if it is a share of the samples.
-std::vector<Aov> aovsOf(const Part& part);
 
 /// Gives a film the layers of a part, without values.
 void addLayers(const Part& part, Film& film);
@@ -66,9 +58,8 @@ void addLayers(const Part& part, Film& film);
 void readPixels(const std::filesystem::path& path, const Part& part, Film& film);
 
 /// Whether there is such a file, and it is that shard's part of that scene by that version, undamaged.
-/// @param by_samples  a share of the samples, else a piece of the picture
 bool isPartOf(const std::filesystem::path& path, const std::string& version, const std::string& scene,
-              const Shard& shard, bool by_samples = false);
+              const Shard& shard);
 
 /// The differences of two parts that can't be of one picture, e.g. "of another scene"; empty if they can.
 std::string differenceOf(const Part& part, const Part& other);

@@ -66,11 +66,9 @@ BedTexture::Finish matt(const Color& color) { return {std::make_shared<Lambert>(
 }  // namespace
 
 BedSurface parseBedSurface(std::string_view text) {
-    if (text == "paper") return BedSurface::paper;
-    if (text == "pei") return BedSurface::pei;
-    if (text == "grid") return BedSurface::grid;
+    if (const auto surface = valueOf(kBedSurfaces, text)) return *surface;
     throw UsageError(fmt::format("--bed-surface {}: unknown; choose paper, pei or grid{}", text,
-                                 didYouMean(text, {"paper", "pei", "grid"})));
+                                 didYouMean(text, listOf(kBedSurfaces))));
 }
 
 BedTexture::BedTexture(BedSurface surface, double mm_per_unit) : surface_(surface), mm_per_unit_(mm_per_unit) {

@@ -1,6 +1,7 @@
 // The material of the bed: plain paper, or printers' build plates.
 #pragma once
 
+#include "base/names.h"
 #include "shade/brdf/brdf.h"
 #include "shade/color.h"
 
@@ -18,6 +19,8 @@ enum class BedSurface : std::uint8_t {
     pei,    ///< a powder-coated steel sheet: dark bronze, satin, bumps of about 0.4 mm
     grid,   ///< a dark matt plate with light lines every 10 mm, broader ones every 50
 };
+inline constexpr Names<BedSurface, 3> kBedSurfaces = {
+    {{"paper", BedSurface::paper}, {"pei", BedSurface::pei}, {"grid", BedSurface::grid}}};
 
 /// Throws UsageError.
 BedSurface parseBedSurface(std::string_view text);

@@ -1,6 +1,7 @@
 #include "study/picture/flip.h"
 
 #include "base/parallel_for.h"
+#include "base/srgb.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -60,8 +61,6 @@ struct Spaces {
 
 // For large differences of colour: city block in lightness, Euclid in chroma.
 double hyab(const glm::dvec3& a, const glm::dvec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
-
-double decodeSrgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 // A row of weights, the middle one for the pixel itself.
 using Kernel = std::vector<double>;
@@ -156,7 +155,7 @@ Seen look(const DisplayPicture& picture, const Spaces& spaces, double pixels_per
     for (std::size_t n = 0; n < count; ++n) {
         glm::dvec3 rgb;
         for (int c = 0; c < 3; ++c)
-            rgb[c] = decodeSrgb(std::clamp(static_cast<double>(picture.pixels[n][c]), 0.0, 1.0));
+            rgb[c] = linearOfSrgb(std::clamp(static_cast<double>(picture.pixels[n][c]), 0.0, 1.0));
         const glm::dvec3 opponent = spaces.opponent(rgb);
         for (std::size_t c = 0; c < 3; ++c) channels[c][n] = opponent[static_cast<int>(c)];
     }

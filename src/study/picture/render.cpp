@@ -134,8 +134,8 @@ void RenderStudy::write(const fs::path& html) {
     Page page("Pictures: error against run time", common_.command);
     page.paragraph(fmt::format(
         "{}, {} pixels, studio light on a modelled measured material (pla-blue), {} seeds of each. References have {} "
-        "samples a pixel of a seed that no picture has; that of \"direct\" and of the environment sum is made by the "
-        "path integrator with one bounce, that of \"ao\" by the same in a white scene. relMSE is the mean of "
+        "samples a pixel of a seed that no picture has; that of \"direct\" is made by the path integrator with one "
+        "bounce, that of \"ao\" by the same in a white scene. relMSE is the mean of "
         "(x - r)\u00b2 / (r\u00b2 + 0.01); FLIP is LDR-FLIP (Andersson et al. 2020) at 67 pixels a degree on the "
         "tone-mapped picture. Times are of the render alone, all threads; CPU time is what other work on the machine "
         "disturbs least.",
@@ -148,13 +148,8 @@ void RenderStudy::write(const fs::path& html) {
     page.picture(references_.show("shown denoised", fewSamples(plan_.variantNamed("denoised"))),
                  "4 samples a pixel, denoised");
     addComparison(page, results, "Intersectors", {"brick", "brick floats", "sphere", "vdb"});
-    std::vector<std::string> integrators{"brick", "direct", "ao"};
-    for (const Variant& v : plan_.variants)
-        if (v.kind.integrator.name == "environment-sum") integrators.push_back(v.name);
-    addComparison(page, results, "Integrators", integrators);
-    page.paragraph(
-        "\"brick\" is the path integrator with three bounces. The environment sum has no noise but at the edges of "
-        "things, so its error stays where it is: the cells of its map.");
+    addComparison(page, results, "Integrators", {"brick", "direct", "ao"});
+    page.paragraph("\"brick\" is the path integrator with three bounces.");
     addComparison(page, results, "Samples", {"brick", "samples apart"});
     page.paragraph(
         "There is one sampler. \"Samples apart\" is what it would be without its stratification over the samples of a "

@@ -71,14 +71,6 @@ RenderPlan makePlan(std::vector<int> per_layer, bool quick) {
     plan.variants.push_back({kDefaultPicture, path, base, false, denoised, 1, 1 << 30, chosen.spp});
     plan.variants.push_back({"direct", direct, "path, one bounce"});
     plan.variants.push_back({"ao", ao, "path, white"});
-    for (const int rows : {8, 16, 32}) {
-        PictureKind sum = path;
-        sum.integrator.name = "environment-sum";
-        sum.integrator.environment_rows = rows;
-        plan.variants.push_back(
-            {fmt::format("environment sum, {} rows", rows), sum, "path, one bounce", false, false, 1, quick ? 1 : 2});
-        if (quick) break;
-    }
     return plan;
 }
 

@@ -1,6 +1,7 @@
 #include "study/report/page.h"
 
 #include "base/atomic_file.h"
+#include "base/base64.h"
 #include "base/error.h"
 #include "base/input_file.h"
 
@@ -33,19 +34,6 @@ bool isNumber(const std::string& text) {
 }
 
 }  // namespace
-
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t n = 0; n < bytes.size(); n += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t i = 0; i < 3; ++i)
-            group = group << 8 | (n + i < bytes.size() ? static_cast<std::uint8_t>(bytes[n + i]) : 0U);
-        for (std::size_t i = 0; i < 4; ++i) text += n + i <= bytes.size() ? kDigits[group >> (18 - 6 * i) & 63U] : '=';
-    }
-    return text;
-}
 
 Page::Page(std::string title, std::span<const std::string> command) : title_(std::move(title)) {
     made_by_ = fmt::format("<footer><p><code>{}</code><br>\n{:%Y-%m-%d}, vdbstudy {}<br>\n{}</p></footer>\n",
@@ -105,7 +93,7 @@ void Page::plot(const Plot& plot) { body_ += "<div class='plot'>" + report::draw
 void Page::picture(const std::filesystem::path& file, std::string_view caption) {
     body_ += fmt::format(
         "<figure><img alt='{0}' src='data:image/{2};base64,{1}'><figcaption>{0}</figcaption></figure>\n",
-        report::escapeMarkup(caption), base64(InputFile(file).bytes()), file.extension() == ".jpg" ? "jpeg" : "png");
+        report::escapeMarkup(caption), base64Of(InputFile(file).bytes()), file.extension() == ".jpg" ? "jpeg" : "png");
 }
 
 std::string Page::html() const {

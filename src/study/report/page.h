@@ -44,7 +44,4 @@ private:
     std::set<std::string> runs_;  // that rows refer to
 };
 
-/// Bytes as base 64 (RFC 4648).
-std::string base64(std::string_view bytes);
-
 }  // namespace stratum::study

@@ -118,9 +118,7 @@ private:
         }
         if (state_.bed_surface && *state_.bed_surface != scene.bed_surface) {
             scene.bed_surface = *state_.bed_surface;
-            say("--bed-surface", *state_.bed_surface == shade::BedSurface::paper ? "paper"
-                                 : *state_.bed_surface == shade::BedSurface::pei ? "pei"
-                                                                                 : "grid");
+            say("--bed-surface", std::string(nameOf(shade::kBedSurfaces, scene.bed_surface)));
         }
         if (state_.exposure) {
             plan_.exposure = state_.exposure;
@@ -136,8 +134,7 @@ private:
             camera.eye.reset();
             camera.look_at.reset();
             camera.up.reset();
-            constexpr const char* kNames[] = {"iso", "front", "back", "left", "right", "top", "bottom"};
-            say("--view", kNames[static_cast<std::size_t>(*state_.named)]);
+            say("--view", std::string(nameOf(shade::kViews, *state_.named)));
         }
         if (state_.eye) {
             camera.eye = state_.eye;

@@ -26,21 +26,6 @@ constexpr double kMostLength = 1e7;  // world units
 constexpr double kMostBeads = 4294967295.0;
 constexpr std::size_t kMostText = 200, kMostNumbers = 1000;
 
-constexpr std::array<std::pair<std::string_view, shade::View>, 7> kViews = {{{"iso", shade::View::iso},
-                                                                             {"front", shade::View::front},
-                                                                             {"back", shade::View::back},
-                                                                             {"left", shade::View::left},
-                                                                             {"right", shade::View::right},
-                                                                             {"top", shade::View::top},
-                                                                             {"bottom", shade::View::bottom}}};
-constexpr std::array<std::pair<std::string_view, shade::BedSurface>, 3> kSurfaces = {
-    {{"paper", shade::BedSurface::paper}, {"pei", shade::BedSurface::pei}, {"grid", shade::BedSurface::grid}}};
-
-template <typename Value, std::size_t N>
-std::string_view nameOf(const std::array<std::pair<std::string_view, Value>, N>& names, Value value) {
-    return std::find_if(names.begin(), names.end(), [&](const auto& entry) { return entry.second == value; })->first;
-}
-
 // Lists of the JSON, with their sizes bounded.
 const Json* listOf(JsonSection& section, const char* key) {
     const Json* list = section.find(key);
@@ -90,11 +75,8 @@ std::string text(JsonSection& section, const char* key) {
 
 void readCamera(JsonSection section, ViewState& state) {
     const std::string view = text(section, "view");
-    const auto named = std::find_if(kViews.begin(), kViews.end(), [&](const auto& v) { return v.first == view; });
-    if (named != kViews.end())
-        state.named = named->second;
-    else if (!view.empty())
-        section.fail("view", "iso, front, back, left, right, top or bottom");
+    state.named = valueOf(shade::kViews, view);
+    if (!state.named && !view.empty()) section.fail("view", "iso, front, back, left, right, top or bottom");
     state.eye = point(section, "eye");
     const std::optional<glm::dvec3> look_at = point(section, "look_at");
     if (state.eye.has_value() != look_at.has_value()) section.fail("eye", "a point, together with look_at");
@@ -168,12 +150,8 @@ void readLook(JsonSection& section, ViewState& state) {
         state.bed = bed;
     }
     const std::string surface = text(section, "bed_surface");
-    const auto known =
-        std::find_if(kSurfaces.begin(), kSurfaces.end(), [&](const auto& entry) { return entry.first == surface; });
-    if (known != kSurfaces.end())
-        state.bed_surface = known->second;
-    else if (!surface.empty())
-        section.fail("bed_surface", "paper, pei or grid");
+    state.bed_surface = valueOf(shade::kBedSurfaces, surface);
+    if (!state.bed_surface && !surface.empty()) section.fail("bed_surface", "paper, pei or grid");
     section.read("smooth", state.smooth);
     if (const std::vector<double> clip = section.numbers("clip", 4); !clip.empty()) {
         state.clip = trace::ClipPlane{{clip[0], clip[1], clip[2]}, clip[3]};
@@ -220,7 +198,7 @@ ViewState parseViewState(const Json& json) {
 Json toJson(const ViewState& state) {
     const auto list = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); };
     Json camera{{"fov", state.fov}};
-    if (state.named) camera["view"] = nameOf(kViews, *state.named);
+    if (state.named) camera["view"] = nameOf(shade::kViews, *state.named);
     if (state.eye) {
         camera["eye"] = list(*state.eye);
         camera["look_at"] = list(state.look_at);
@@ -244,7 +222,7 @@ Json toJson(const ViewState& state) {
     if (state.beads) json["beads"] = *state.beads;
     if (state.exposure) json["exposure"] = *state.exposure;
     if (state.bed) json["bed"] = *state.bed;
-    if (state.bed_surface) json["bed_surface"] = nameOf(kSurfaces, *state.bed_surface);
+    if (state.bed_surface) json["bed_surface"] = nameOf(shade::kBedSurfaces, *state.bed_surface);
     if (state.clip) {
         json["clip"] = list(state.clip->normal);
         json["clip"].push_back(state.clip->offset);

@@ -21,68 +21,14 @@ constexpr std::size_t kMostParts = 16;
 constexpr std::size_t kFewestBeadsAPart = 4096;
 
 // Ranks in parts of equal number, and what is known of the entries before anything is allocated: an upper bound by
-// arithmetic, and the rectangle of columns. Of tiles, the parts list the ranks that reach one of them.
+// arithmetic, and the rectangle of columns.
 struct Parts {
     std::size_t count = 1;
-    std::vector<std::vector<std::uint32_t>> own;  // ranks by part; none if all beads are binned
     double bound = 0;
     ColumnRange columns;
 };
 
-// The heights at which beads matter: as far as a layer's band reaches, and slightly farther, for welds to others.
-class BeadHeights {
-public:
-    BeadHeights(const LayerStack& stack, const Lattice& lattice) : stack_(stack), band_(lattice.background()) {
-        for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight());
-    }
-    HeightRange of(std::size_t rank) const {
-        if (rank >= stack_.first_direct) {
-            const Extent& extent = stack_.extentOf(static_cast<std::uint32_t>(rank));
-            return {extent.z_min - band_, extent.z_max + band_};
-        }
-        const double center = stack_.layers[stack_.layer[rank]].center_z;
-        const double reach = thickest_ * (1 + 2 * kWeldGap) + band_;
-        return {center - reach, center + reach};
-    }
-
-private:
-    const LayerStack& stack_;
-    const double band_;
-    double thickest_ = 0;
-};
-
-Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-                   const Footprints& footprints, const BeadHeights& heights, const PlanTiles* only) {
-    const std::size_t beads = stack.beads.size();
-    Parts parts;
-    parts.count = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
-    if (only != nullptr) parts.own.resize(parts.count);
-    std::vector<double> bounds(parts.count, 0.0);
-    std::vector<ColumnRange> ranges(parts.count);
-    parallelFor(parts.count, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p != end; ++p)
-            for (std::size_t rank = beads * p / parts.count; rank != beads * (p + 1) / parts.count; ++rank) {
-                const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
-                const double limit = footprints.limit(bead);
-                const ColumnRange range = footprints.range(bead, limit);
-                if (only != nullptr) {
-                    if (range.empty() || !only->meet(range, heights.of(rank))) continue;
-                    parts.own[p].push_back(static_cast<std::uint32_t>(rank));
-                }
-                bounds[p] += mostColumns(toolpath, bead, limit, lattice);
-                ranges[p].include(range);
-            }
-    });
-    for (std::size_t p = 0; p < parts.count; ++p) {
-        parts.bound += bounds[p];
-        parts.columns.include(ranges[p]);
-    }
-    if (only != nullptr) parts.columns = only->columns();
-    return parts;
-}
-
-}  // namespace
-
+// At most so many entries of bins has a bead that reaches this far: see Footprints::limit().
 double mostColumns(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double limit, const Lattice& lattice) {
     const double edge = lattice.voxel_size * kLeafDim;
     const double across = 2 * limit / edge + 1;
@@ -93,13 +39,37 @@ double mostColumns(const gcode::Toolpath& toolpath, const gcode::Bead& bead, dou
     return (length / edge + across) * across;
 }
 
+Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
+                   const Footprints& footprints) {
+    const std::size_t beads = stack.beads.size();
+    Parts parts;
+    parts.count = std::clamp<std::size_t>(beads / kFewestBeadsAPart, 1, kMostParts);
+    std::vector<double> bounds(parts.count, 0.0);
+    std::vector<ColumnRange> ranges(parts.count);
+    parallelFor(parts.count, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p != end; ++p)
+            for (std::size_t rank = beads * p / parts.count; rank != beads * (p + 1) / parts.count; ++rank) {
+                const gcode::Bead& bead = toolpath.beads[stack.beads[rank]];
+                const double limit = footprints.limit(bead);
+                bounds[p] += mostColumns(toolpath, bead, limit, lattice);
+                ranges[p].include(footprints.range(bead, limit));
+            }
+    });
+    for (std::size_t p = 0; p < parts.count; ++p) {
+        parts.bound += bounds[p];
+        parts.columns.include(ranges[p]);
+    }
+    return parts;
+}
+
+}  // namespace
+
 PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-                   std::size_t memory_limit, const PlanTiles* only) {
+                   std::size_t memory_limit) {
     if (stack.beads.empty()) return;
     const Footprints footprints = columnFootprints(toolpath, lattice);
     const std::size_t beads = stack.beads.size();
-    const BeadHeights heights(stack, lattice);
-    const Parts found = boundEntries(toolpath, stack, lattice, footprints, heights, only);
+    const Parts found = boundEntries(toolpath, stack, lattice, footprints);
     const ColumnRange& all = found.columns;
     const double bound = found.bound;
     std::size_t parts = found.count;
@@ -123,26 +93,12 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
         return static_cast<std::size_t>(j - first_j_) * columns_i_ + static_cast<std::size_t>(i - first_i_);
     };
 
-    // Calls visit(rank, column) for the entries of a part, by rank. With fewer parts than there are lists, a part has
-    // several of them.
+    // Calls visit(rank, column) for the entries of a part, by rank.
     const auto forEachEntry = [&](std::size_t p, const auto& visit) {
-        const auto columnsOf = [&](std::size_t rank) {
-            const HeightRange height = only == nullptr ? HeightRange{} : heights.of(rank);
-            const auto visitRow = [&](int i0, int i1, int j) {
-                for (std::size_t c = columnIndex(i0, j); i0 <= i1; ++i0, ++c) visit(rank, c);
-            };
+        for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank)
             footprints.forEachColumn(toolpath.beads[stack.beads[rank]], [&](int i0, int i1, int j) {
-                if (only == nullptr)
-                    visitRow(i0, i1, j);
-                else
-                    only->forEachIn(i0, i1, j, height, visitRow);
+                for (std::size_t c = columnIndex(i0, j); i0 <= i1; ++i0, ++c) visit(rank, c);
             });
-        };
-        if (only == nullptr)
-            for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank) columnsOf(rank);
-        else
-            for (std::size_t list = found.count * p / parts; list != found.count * (p + 1) / parts; ++list)
-                for (const std::uint32_t rank : found.own[list]) columnsOf(rank);
     };
 
     // Counts by part and column; then, by column, where each part's ranks begin, relative to the column.

@@ -6,7 +6,6 @@
 #include "voxelize/beads/footprint.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_tiles.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,19 +23,14 @@ inline Footprints columnFootprints(const gcode::Toolpath& toolpath, const Lattic
             Footprints::Reach::field};
 }
 
-/// At most so many entries of bins has a bead that reaches this far: see Footprints::limit().
-double mostColumns(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double limit, const Lattice& lattice);
-
 /// Ranks of beads (see LayerStack) by leaf column, in CSR form; ascending within a column, so layer by layer with the
 /// direct beads last.
 class PlanBins {
 public:
     /// Bins every bead whose band reaches a column. Parallel; the result does not depend on the number of threads.
     /// Throws UsageError if that needs more than `memory_limit` bytes.
-    /// @param only  columns of other tiles are left empty, and so are others of beads that are above or below what is
-    ///              made there; such beads cost next to nothing. Its rectangle is that of all beads
-    PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, std::size_t memory_limit,
-             const PlanTiles* only = nullptr);
+    PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
+             std::size_t memory_limit);
 
     /// Columns of the bounding rectangle, row by row; many may be empty.
     std::size_t size() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/split.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,16 +14,6 @@
 
 namespace stratum::voxelize {
 namespace {
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    while (true) {
-        const std::size_t end = text.find(separator);
-        parts.push_back(text.substr(0, end));
-        if (end == std::string_view::npos) return parts;
-        text.remove_prefix(end + 1);
-    }
-}
 
 template <typename Number>
 std::optional<Number> parseNumber(std::string_view text) {

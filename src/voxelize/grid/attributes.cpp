@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "base/split.h"
+#include "base/srgb.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
 #include "voxelize/beads/bead_field.h"
@@ -29,8 +31,7 @@ float linear(std::uint8_t srgb) {
     static const std::array<float, 256> kTable = [] {
         std::array<float, 256> table{};
         for (std::size_t n = 0; n < table.size(); ++n) {
-            const double v = static_cast<double>(n) / 255;
-            table[n] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+            table[n] = static_cast<float>(linearOfSrgb(static_cast<double>(n) / 255));
         }
         return table;
     }();
@@ -131,10 +132,7 @@ std::string_view attributeName(Attribute attribute) { return kNames[static_cast<
 
 std::vector<Attribute> parseGrids(std::string_view text) {
     std::vector<Attribute> attributes;
-    while (!text.empty()) {
-        const std::size_t comma = text.find(',');
-        const std::string_view name = text.substr(0, comma);
-        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+    for (const std::string_view name : splitList(text)) {
         if (name == "surface") continue;
         const auto known = std::find(kNames.begin(), kNames.end(), name);
         if (known == kNames.end())

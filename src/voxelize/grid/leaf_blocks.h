@@ -2,7 +2,6 @@
 #pragma once
 
 #include "voxelize/beads/plan_bins.h"
-#include "voxelize/beads/plan_tiles.h"
 #include "voxelize/grid/leaf_receiver.h"
 #include "voxelize/leaf/leaf_column.h"
 
@@ -15,7 +14,6 @@ namespace stratum::voxelize {
 
 constexpr int kSlabLeaves = kSlabVoxels / kLeafDim;  ///< along each axis of an upper node
 constexpr int kBlockLeaves = kBlockVoxels / kLeafDim;
-static_assert(PlanTiles::kTileColumns == kBlockLeaves);
 
 inline int floorDivide(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -65,19 +63,18 @@ void forEachCell(const LeafRectangle& all, int edge, const Visit& visit) {
                                 std::max(all.first_j, y * edge), std::min(all.last_j, (y + 1) * edge - 1)});
 }
 
-/// visit(number, block) of all blocks between these heights, empty ones too.
+/// visit(block) of all blocks between these heights, empty ones too.
 template <typename Visit>
 void forEachBlock(const LeafRectangle& all, const LeafRange& heights, const Visit& visit) {
-    std::size_t number = 0;
     forEachCell(all, kSlabLeaves, [&](int, int, const LeafRectangle& upper) {
         for (int slab = floorDivide(heights.first, kSlabLeaves); slab <= floorDivide(heights.second, kSlabLeaves);
              ++slab)
             forEachCell(upper, kBlockLeaves, [&](int x, int y, const LeafRectangle& plan) {
-                visit(number++, LeafBlock{x,
-                                          y,
-                                          plan,
-                                          {std::max(heights.first, slab * kSlabLeaves),
-                                           std::min(heights.second, (slab + 1) * kSlabLeaves - 1)}});
+                visit(LeafBlock{x,
+                                y,
+                                plan,
+                                {std::max(heights.first, slab * kSlabLeaves),
+                                 std::min(heights.second, (slab + 1) * kSlabLeaves - 1)}});
             });
     });
 }

@@ -131,21 +131,19 @@ private:
 
 }  // namespace
 
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights,
-                       const BlockRange& share) {
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights) {
     LeafBounds all;
     constexpr LeafRange kNone{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     if (bins.size() == 0) return all;
     const LeafRectangle plan = rectangleOf(bins);
-    // Blocks of the share by tile; mostly one.
+    // Blocks by tile; mostly one.
     struct Tile {
         std::size_t number = 0;
         std::vector<LeafRange> slabs;
     };
     std::map<std::pair<int, int>, Tile> own;
     std::size_t slabs = 0;
-    forEachBlock(plan, heights, [&](std::size_t number, const LeafBlock& block) {
-        if (!share.has(number)) return;
+    forEachBlock(plan, heights, [&](const LeafBlock& block) {
         Tile& tile = own.try_emplace({block.x, block.y}, Tile{own.size(), {}}).first->second;
         tile.slabs.push_back(block.heights);
         ++slabs;
@@ -181,21 +179,21 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     all.leaves = leaves;
     all.heights = heights;
     all.lower_nodes = static_cast<std::size_t>(std::count(lower.begin(), lower.end(), true));
-    all.print = {all.leaves, all.lower_nodes,
-                 cellsMet(plan.first_i, plan.last_i, kSlabLeaves) * cellsMet(plan.first_j, plan.last_j, kSlabLeaves) *
-                     cellsMet(heights.first, heights.second, kSlabLeaves)};
-    all.upper_nodes = std::min({slabs, all.print.upper_nodes, all.lower_nodes});
+    all.upper_nodes =
+        std::min({slabs,
+                  cellsMet(plan.first_i, plan.last_i, kSlabLeaves) * cellsMet(plan.first_j, plan.last_j, kSlabLeaves) *
+                      cellsMet(heights.first, heights.second, kSlabLeaves),
+                  all.lower_nodes});
     return all;
 }
 
 LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress, const BlockRange& share) {
+                              const std::function<void(double)>& progress) {
     if (bounds.leaves == 0) return {};
     const LeafRectangle plan = rectangleOf(bins);
     std::size_t entries = 0;
-    forEachBlock(plan, bounds.heights, [&](std::size_t number, const LeafBlock& block) {
-        if (!share.has(number)) return;
+    forEachBlock(plan, bounds.heights, [&](const LeafBlock& block) {
         forEachColumnOf(block, bins, [&](std::size_t bin, std::size_t) {
             const LeafRange& column = bounds.columns[bin];
             if (leavesIn(block.heights, column) > 0 && column.second <= block.heights.second)
@@ -203,9 +201,7 @@ LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns,
         });
     });
     Blocks blocks(bins, columns, end, bounds, receiver, measure, entries, progress);
-    forEachBlock(plan, bounds.heights, [&](std::size_t number, const LeafBlock& block) {
-        if (share.has(number)) blocks.run(block);
-    });
+    forEachBlock(plan, bounds.heights, [&](const LeafBlock& block) { blocks.run(block); });
     return blocks.report();
 }
 

@@ -3,7 +3,6 @@
 
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/grid/leaf_receiver.h"
-#include "voxelize/grid/leaf_share.h"
 #include "voxelize/leaf/leaf_positions.h"
 
 #include <cstddef>
@@ -17,19 +16,15 @@ namespace stratum::voxelize {
 struct NodeBounds {
     std::size_t leaves = 0;
     std::size_t lower_nodes = 0, upper_nodes = 0;
-    bool operator==(const NodeBounds&) const = default;
 };
 
-/// What a print, or some blocks of it, has at most, from z extents alone.
+/// What a print has at most, from z extents alone.
 struct LeafBounds : NodeBounds {
-    LeafRange heights{0, -1};        ///< of all blocks
-    std::vector<LeafRange> columns;  ///< of these blocks, by column of the bins; empty ones have first > second
-    NodeBounds print;                ///< leaves and lower nodes of these blocks alone, upper nodes of all
+    LeafRange heights{0, -1};        ///< of all columns
+    std::vector<LeafRange> columns;  ///< by column of the bins; empty ones have first > second
 };
-/// Parallel. `heights`: of all beads. The bounds of leaves and lower nodes of disjoint
-/// blocks add up to those of all.
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights,
-                       const BlockRange& share = {});
+/// Parallel. `heights`: of all beads.
+LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights);
 
 struct LeafStreamReport {
     std::size_t evaluated = 0;  ///< leaf positions
@@ -40,10 +35,10 @@ struct LeafStreamReport {
 
 /// Makes all leaves of the beads with an index in the toolpath below `end`, with the bits of Voxelizer::printUntil(),
 /// and gives them to `receiver`. Columns that reach into more than one of OpenVDB's upper nodes are opened once for
-/// each. `share`: only the leaves of these blocks, which `bounds` are of. Parallel; calls and their order do not depend
+/// each. Parallel; calls and their order do not depend
 /// on the number of threads.
 LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress, const BlockRange& share = {});
+                              const std::function<void(double)>& progress);
 
 }  // namespace stratum::voxelize

@@ -67,10 +67,7 @@ struct Voxelizer::State {
                                     kBytesPerActiveVoxel
                               : 0),
           stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
-          share(options.shard && !stack.beads.empty()
-                    ? std::optional(voxelize::shareOf(toolpath, stack, lattice, *options.shard))
-                    : std::nullopt),
-          bins(toolpath, stack, lattice, memoryLimit(options) / 4, share ? &share->tiles : nullptr),
+          bins(toolpath, stack, lattice, memoryLimit(options) / 4),
           scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
           grid(emptyGrid()) {}
@@ -87,10 +84,9 @@ struct Voxelizer::State {
     void buildTouched(std::uint32_t end);
     void buildReached(std::uint32_t end);
     ExteriorRule exteriorRule() const;
-    BlockRange blocks() const { return share ? share->blocks : BlockRange{}; }
     LeafBounds bounds() {
         if (stack.beads.empty()) return {};
-        return boundLeaves(bins, columnSource(), leavesAround(lattice, stack), blocks());
+        return boundLeaves(bins, columnSource(), leavesAround(lattice, stack));
     }
     ColumnSource columnSource() {
         return [this]() -> LeafColumn& { return scratch.local(); };
@@ -101,7 +97,6 @@ struct Voxelizer::State {
     const VoxelizeOptions options;
     const double estimated_bytes;
     const LayerStack stack;
-    const std::optional<LeafShare> share;
     const PlanBins bins;
     tbb::enumerable_thread_specific<LeafColumn> scratch;
     const float background;
@@ -215,12 +210,10 @@ openvdb::FloatGrid::Ptr Voxelizer::printUntil(std::uint32_t end) {
 
 LeafBounds Voxelizer::leafBounds() const { return state_->bounds(); }
 
-BlockRange Voxelizer::blocks() const { return state_->blocks(); }
-
 LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure) {
     const auto start = Clock::now();
-    const LeafStreamReport streamed = streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure,
-                                                   state_->options.progress, blocks());
+    const LeafStreamReport streamed =
+        streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure, state_->options.progress);
     state_->streamed = end;
     VoxelizeReport& report = state_->report;
     report.leaf_positions = report.leaves_evaluated = streamed.evaluated;

@@ -1,13 +1,11 @@
 // LayerStack -> FloatGrid: the level set of the part as printed.
 #pragma once
 
-#include "base/shard.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/placement.h"
 #include "voxelize/grid/attributes.h"
 #include "voxelize/grid/deposit_balance.h"
-#include "voxelize/grid/leaf_share.h"
 #include "voxelize/grid/leaf_stream.h"
 
 #include <openvdb/openvdb.h>
@@ -16,7 +14,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,8 +32,6 @@ struct VoxelizeOptions {
     Interior interior = Interior::keep;
     /// Whether a grid will be built; stream() alone needs no memory for one.
     bool in_memory = true;
-    /// Only the blocks of one of several processes, for stream() alone.
-    std::optional<Shard> shard;
     /// Refuse before building if the estimate is larger, bytes. 0: 90 % of what the machine has available.
     std::size_t memory_limit = 0;
     /// Called from time to time with the fraction done, 0..1, from any of the working threads, one call at a time.
@@ -88,8 +83,6 @@ public:
     /// leafBounds().
     LeafStreamReport stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure);
     LeafBounds leafBounds() const;
-    /// The blocks that stream() makes; all without VoxelizeOptions::shard.
-    BlockRange blocks() const;
     /// Name, class, transform and background of the grid, without a voxel.
     openvdb::FloatGrid::Ptr emptyGrid() const;
 

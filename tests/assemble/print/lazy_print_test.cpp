@@ -1,12 +1,8 @@
 #include "assemble/print/lazy_print.h"
 
-#include "base/error.h"
 #include "prints.h"
-#include "scratch_folder.h"
 
 #include <gtest/gtest.h>
-
-#include <filesystem>
 
 namespace stratum::assemble {
 namespace {
@@ -25,15 +21,6 @@ TEST(LazyPrint, ShowsEarlierMoments) {
     EXPECT_GT(beads(), 0U);
     print->show(2);
     EXPECT_EQ(beads(), all);
-}
-
-TEST(LazyPrint, PicturesItsBricks) {
-    const test::ScratchFolder scratch;
-    const TracedObjects objects = readTracedObjects({test::printOf("tile.gcode")}, test::coarseTracing());
-    ASSERT_EQ(objects.prints.size(), 1U);
-    objects.prints[0]->writeBrickPicture((scratch / "bricks.png").string(), {{"Software", "test"}});
-    EXPECT_GT(std::filesystem::file_size(scratch / "bricks.png"), 100U);
-    EXPECT_THROW(objects.prints[0]->writeBrickPicture((scratch / "bricks.exr").string(), {}), UsageError);
 }
 
 TEST(LazyPrint, TellsOfABoundOnItsBricks) {

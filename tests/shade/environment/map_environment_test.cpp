@@ -6,6 +6,7 @@
 #include "shade/environment/bed_light.h"
 #include "shade/frame.h"
 #include "shade/integrator/path.h"
+#include "shade/mean_radiance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -230,7 +231,7 @@ public:
                 double sum = 0.0;
                 for (std::uint32_t s = 0; s < spp; ++s) {
                     sampler.start(64 * trial, 64 * p, s);
-                    sum += double(shade::luminance(path.radiance(rays_[std::size_t(p)], context).rgb));
+                    sum += double(shade::luminance(test::radianceOf(path, rays_[std::size_t(p)], context).rgb));
                 }
                 errors.push_back(std::abs(sum / spp - expected_[std::size_t(p)]) / mean);
             }

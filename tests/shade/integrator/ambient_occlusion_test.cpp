@@ -1,6 +1,7 @@
 #include "shade/integrator/ambient_occlusion.h"
 
 #include "shade/analytic_prints.h"
+#include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ double openness(const trace::Intersector& print, const shade::SceneDescription& 
     double sum = 0.0;
     for (std::uint32_t s = 0; s < 4096; ++s) {
         sampler.start(0, 0, s);
-        sum += double(ao.radiance(ray, context).rgb.r);
+        sum += double(test::radianceOf(ao, ray, context).rgb.r);
     }
     return sum / 4096.0;
 }

@@ -1,6 +1,7 @@
 #include "shade/integrator/geometry_integrators.h"
 
 #include "shade/analytic_prints.h"
+#include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>
 
@@ -21,24 +22,24 @@ TEST(GeometryIntegrators, OfASphere) {
     trace::Ray ray;
     ray.origin = {0, -5, 0};
     ray.direction = {0, 1, 0};
-    EXPECT_EQ(normal.radiance(ray, context).rgb, shade::Color(0, -1, 0));
-    EXPECT_EQ(depth.radiance(ray, context).rgb.r, 3.0f);
+    EXPECT_EQ(test::radianceOf(normal, ray, context).rgb, shade::Color(0, -1, 0));
+    EXPECT_EQ(test::radianceOf(depth, ray, context).rgb.r, 3.0f);
     // From inside the surface faces the eye.
     ray.origin = {0, 0, 0};
-    EXPECT_EQ(normal.radiance(ray, context).rgb, shade::Color(0, -1, 0));
+    EXPECT_EQ(test::radianceOf(normal, ray, context).rgb, shade::Color(0, -1, 0));
     ray.direction = {0, 0, 1};
     ray.origin = {0, 0, 3};
-    EXPECT_EQ(depth.radiance(ray, context).alpha, 0.0f);
+    EXPECT_EQ(test::radianceOf(depth, ray, context).alpha, 0.0f);
     EXPECT_EQ(rays.primary, 4u);
     EXPECT_EQ(rays.total(), 4u);
 
     const shade::PositionIntegrator position(scene, ball);
     const shade::MaskIntegrator mask(scene, ball);
-    EXPECT_EQ(mask.radiance(ray, context).alpha, 0.0f);
+    EXPECT_EQ(test::radianceOf(mask, ray, context).alpha, 0.0f);
     ray.origin = {0, -5, 0};
     ray.direction = {0, 1, 0};
-    EXPECT_EQ(mask.radiance(ray, context).rgb, shade::Color(1.0f));
-    EXPECT_EQ(position.radiance(ray, context).rgb, shade::Color(0, -2, 0));
+    EXPECT_EQ(test::radianceOf(mask, ray, context).rgb, shade::Color(1.0f));
+    EXPECT_EQ(test::radianceOf(position, ray, context).rgb, shade::Color(0, -2, 0));
 }
 
 }  // namespace

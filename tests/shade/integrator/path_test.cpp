@@ -128,7 +128,7 @@ TEST(Path, AStreamAnswersAsItsRaysDoOneByOne) {
             shade::RayCounts singles;
             for (std::size_t n = 0; n < rays.size(); ++n) {
                 shade::TraceContext context{*tracer, again[n], singles};
-                const shade::Pixel one = path.radiance(rays[n], context);
+                const shade::Pixel one = test::radianceOf(path, rays[n], context);
                 ASSERT_EQ(one.rgb, pixels[n].rgb) << n;
                 ASSERT_EQ(one.alpha, pixels[n].alpha) << n;
             }

@@ -4,6 +4,7 @@
 #include "shade/environment/constant.h"
 #include "shade/light/directional.h"
 #include "shade/light/point_light.h"
+#include "shade/mean_radiance.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ Color along(const trace::Intersector& print, const shade::SceneDescription& scen
     trace::Ray ray;
     ray.origin = origin;
     ray.direction = glm::normalize(direction);
-    return phong.radiance(ray, context).rgb;
+    return test::radianceOf(phong, ray, context).rgb;
 }
 
 TEST(Phong, AddsItsTerms) {

@@ -271,7 +271,7 @@ TEST(RandomWalk, AStreamAnswersAsItsRaysDoOneByOne) {
     for (std::size_t n = 0; n < kRays; ++n) {
         shade::RayCounts alone;
         shade::TraceContext context{*tracer, again[n], alone};
-        ASSERT_EQ(pixels[n].rgb, integrator.radiance(rays[n], context).rgb) << n;
+        ASSERT_EQ(pixels[n].rgb, test::radianceOf(integrator, rays[n], context).rgb) << n;
     }
 }
 

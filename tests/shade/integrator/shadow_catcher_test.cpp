@@ -40,7 +40,7 @@ float meanAlpha(const trace::Intersector& print, const shade::SceneDescription& 
     double sum = 0.0;
     for (std::uint32_t s = 0; s < samples; ++s) {
         sampler.start(3, 4, s);
-        const shade::Pixel pixel = integrator.radiance(ray, context);
+        const shade::Pixel pixel = test::radianceOf(integrator, ray, context);
         EXPECT_EQ(pixel.rgb, Color(0.0f));
         sum += double(pixel.alpha);
     }

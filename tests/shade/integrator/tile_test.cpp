@@ -52,11 +52,11 @@ TEST(Tile, SamplesInTwoGoesAreThoseInOne) {
 
 /// Half of the light is even, the other half comes by one sample in many, as from a small lamp that is met by chance.
 /// The mean of every pixel is 1.
-class Spikes final : public shade::Integrator {
+class Spikes final : public shade::RayIntegrator {
 public:
     /// @param rare  the share of the samples that meet the lamp
     Spikes(const shade::SceneDescription& scene, const trace::Intersector& print, float rare)
-        : Integrator(scene, print), rare_(rare) {}
+        : RayIntegrator(scene, print), rare_(rare) {}
 
 protected:
     shade::Pixel seen(const trace::Ray&, const shade::SurfacePoint*, shade::TraceContext& context) const override {

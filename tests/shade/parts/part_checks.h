@@ -51,7 +51,7 @@ inline shade::Part partOf(int index, int shards) {
 
 inline std::filesystem::path writePartOf(const ScratchFolder& folder, const shade::Part& part,
                                          const shade::Film& film) {
-    const std::filesystem::path path = shardName(folder / "p.exr", {part.index, part.whole.shards});
+    const std::filesystem::path path = shade::shardName(folder / "p.exr", {part.index, part.whole.shards});
     shade::PictureFile file(path);
     shade::writePart(
         file, film.part(shade::piecesOf(kPartFrame, part.whole.shards).at(static_cast<std::size_t>(part.index))), part);

@@ -5,17 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 namespace stratum::study {
 namespace {
-
-TEST(Page, Base64OfTheStandardsExamples) {
-    const std::array<std::array<const char*, 2>, 5> examples{
-        {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foobar", "Zm9vYmFy"}}};
-    for (const auto& [plain, coded] : examples) EXPECT_EQ(base64(plain), coded);
-    EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
-}
 
 TEST(Page, HoldsAllThatItShowsAndNoFolders) {
     const std::vector<std::string> command{"/home/me/bin/vdbstudy", "memory", "/data/a.gcode", "-o", "/data/out/"};

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace stratum::mechanics {
+namespace stratum {
 
 /// Union-find with path halving; the lowest number of a set is its representative.
 class UnionFind {
@@ -29,4 +29,4 @@ private:
     std::vector<std::uint32_t> leader_;
 };
 
-}  // namespace stratum::mechanics
+}  // namespace stratum
