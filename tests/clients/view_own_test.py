@@ -199,7 +199,7 @@ def streams():
             check(js("return document.body.dataset.moving") == "stream", "the server's stream")
 
 
-page = browser(f"{FOLDER}/profile", 500, 420, 400)
+page = browser(f"{FOLDER}/profile", 500, 500, 400)
 page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
 try:
     carries_nothing()
