@@ -360,10 +360,10 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     double cells = 1;
     for (const int macro : macros) cells *= macro;
     // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
-    // much less; 128 take with their copy, while bricks are laid out, about what a brick's samples do. Where the table
-    // is large, half of the free memory is for both.
-    constexpr double kFew = 1048576.0;
-    constexpr double kMostPerLeaf = 128;
+    // much less, and thin towers at two corners of a plate 250 at 0.02 mm; 256 take with their copy, while bricks are
+    // laid out, about twice what a brick's samples do. Where the table is large, half of the free memory is for both.
+    constexpr double kFew = 2097152.0;
+    constexpr double kMostPerLeaf = 256;
     double most = std::min(2147483648.0, kFew + kMostPerLeaf * static_cast<double>(leaves));
     if (cells > kFew) most = std::min(most, static_cast<double>(availableMemory()) / (4 * sizeof(MacroCell)));
     constexpr std::size_t kMostBricks = 0xff000000;  // slots have 32 bits, and some are left over
