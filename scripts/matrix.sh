@@ -31,6 +31,7 @@ bare() {
     touch "$1.complete"
 }
 
+tried=$(git rev-parse --short HEAD)
 export root=$PWD/build/matrix/debian-$release builds="" cxx=clang++ corpus=$PWD/${STRATUM_CORPUS:-../shared/corpus}
 [[ $compiler == clang ]] || cxx=g++
 [[ ${STRATUM_CORPUS:-} != /* ]] || corpus=$STRATUM_CORPUS
@@ -88,4 +89,4 @@ unshare --mount --propagation private bash -euc '
     if [[ -d $corpus ]]; then mkdir -p "$root/corpus"; mount --bind "$corpus" "$root/corpus"; fi
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 STRATUM_CXX="$cxx" \
         STRATUM_CORPUS=/corpus bash -euc "cd /stratum && $commands"'
-echo "Debian $release, $compiler: $what passed at $(git rev-parse --short HEAD)"
+echo "Debian $release, $compiler: $what passed at $tried"
