@@ -96,8 +96,9 @@ void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::completes(
         app.add_option(
             "--grids", o.grids,
-            "Also layer,time,feature,tool,object,width,speed,flow,overfill,layer_time,temperature,fan,color,"
-            "deviation, as grids of the same voxels; surface alone is no others (default: color if there are several)"),
+            "Also grids of the same voxels: layer, time, feature, tool, object, width, speed, flow, overfill, "
+            "layer_time, temperature, fan, color, deviation; surface alone is none (default: color if there are "
+            "several)"),
         tools::Completion::list,
         {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "layer_time",
          "temperature", "fan", "color", "deviation"})

@@ -179,7 +179,7 @@ check(refused.returncode == 2 and "one print" in refused.stderr, "a series of tw
 # --- clear refusals -----------------------------------------------------------------------------------------------------
 for options, status, text in ((["--printed", "sometimes"], 2, "--printed sometimes: expected"), (["--printed", "10%,20%"], 2, "one moment"),
                               (["--layers", "900:"], 3, "layers 1 to"), (["--half-width", "1"], 2, "half-width"),
-                              (["--voxel-size", "0"], 2, "voxel"), (["--color-by", "temperature"], 2, "layer, time"),
+                              (["--voxel-size", "0"], 2, "voxel"), (["--color-by", "humidity"], 2, "layer, time"),
                               (["--march", "sphere"], 2, "gcode2vdb"), (["--voxel-size", "0.000001"], 2, "voxel"),
                               (["--brick-cache", "90kB"], 2, "give 93312 bytes"), (["--brick-cache", "much"], 2, "size"),
                               (["--brick-cache", "1MB", "--march", "vdb"], 2, "no bricks"),

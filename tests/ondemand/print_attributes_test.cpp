@@ -121,7 +121,7 @@ TEST(PrintAttribute, KnowsTheInsideBeyondTheBand) {
 }
 
 TEST(PrintAttribute, RefusesNamesThatPrintsDontHave) {
-    EXPECT_THROW((void)attributeNamed("temperature"), UsageError);
+    EXPECT_THROW((void)attributeNamed("humidity"), UsageError);
     EXPECT_THROW((void)attributeNamed("layer,tool"), UsageError);
     EXPECT_THROW((void)attributeNamed(""), UsageError);
 }
