@@ -96,9 +96,8 @@ void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::completes(
         app.add_option(
             "--grids", o.grids,
-            "Also grids of the same voxels: layer, time, feature, tool, object, width, speed, flow, overfill, "
-            "layer_time, temperature, fan, color, deviation; surface alone is none (default: color if there are "
-            "several)"),
+            "Grids of the same voxels: layer, time, feature, tool, object, width, speed, flow, overfill, layer_time, "
+            "temperature, fan, deviation, color (default if several); surface: none"),
         tools::Completion::list,
         {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "layer_time",
          "temperature", "fan", "color", "deviation"})
