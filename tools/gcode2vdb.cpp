@@ -97,7 +97,7 @@ void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
         app.add_option(
             "--grids", o.grids,
             "Grids of the same voxels: layer, time, feature, tool, object, width, speed, flow, overfill, layer_time, "
-            "temperature, fan, deviation, color (default if several); surface: none"),
+            "temperature, fan, deviation, color (default if several), or surface"),
         tools::Completion::list,
         {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "layer_time",
          "temperature", "fan", "color", "deviation"})
