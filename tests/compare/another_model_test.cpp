@@ -115,7 +115,11 @@ TEST(AnotherModel, AFineModelInInchesTakesSeconds) {
     const TriangleMesh fine = scaled(test::ellipsoidModel({10, 9, 4}, 200), glm::dvec3(1 / 25.4));
     const std::clock_t start = std::clock();
     EXPECT_NE(doubtOf(fine), "");
+#ifndef STRATUM_SANITIZED  // which takes four times as long
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 15);
+#else
+    (void)start;
+#endif
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ std::vector<StabilityCase> shardCases() {
         {"an exponent", "1e0/2"},
         {"of more than there are numbers", "0/99999999999999999999"},
         {"letters alone", "a/b"}};
+    cases.reserve(texts.size());
     for (const auto& [name, text] : texts)
         cases.push_back({"shards", fmt::format("--shard, {}", name), "accepted (1) or refused with a message (0)", 0,
                          "what is no part of a whole is refused", [text = text] {
