@@ -12,6 +12,7 @@
 #include "voxelize/grid/voxel_choice.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>

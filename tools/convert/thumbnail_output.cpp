@@ -17,6 +17,7 @@
 #include "gcode/toolpath/warning_log.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

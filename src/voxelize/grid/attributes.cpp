@@ -9,6 +9,7 @@
 #include "voxelize/beads/bead_field.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
