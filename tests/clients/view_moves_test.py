@@ -1,20 +1,18 @@
 """Travels, marks, layers and single moves on the viewer's page, in headless Chromium, against the program itself."""
 
+import contextlib
 import json
-import os
 import shutil
-import subprocess
-import sys
 import tempfile
-import time
 from urllib.parse import quote
 
-from run_tools import BIN, check, gcode, skip_without
+from run_tools import check, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
 from chromium import browser
 from program_counts import Program
+from viewer_page import ViewerPage
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_moves_")
 # Counts messages of web sockets by type.
@@ -46,37 +44,18 @@ image.decode().then(() => {
 });"""
 
 
-def js(text, *arguments):
-    return page.execute_script(text, *arguments)
+page = browser(f"{FOLDER}/profile", 760, 560, 400)
+page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
+viewer = ViewerPage(page)
+js, until = viewer.js, viewer.until
 
 
-def until(condition, text, seconds=150):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        value = js(f"return {condition}")
-        if value:
-            return value
-        time.sleep(0.05)
-    print(js("return [window.vdbviewLog?.slice(-5), window.told, document.body.innerText]"), page.get_log("browser"))
-    sys.exit(f"FAILED: {text}: not within {seconds} s")
-
-
-class Server:
-    """A vdbview, whose page is open and draws."""
-
-    def __init__(self, path, view=None):
-        self.process = subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", "--voxel-size", "0.2"],
-                                        stdout=subprocess.PIPE, text=True)
-        page.get(self.process.stdout.readline().strip() + "#" + quote(json.dumps(view or {})))
-        until("document.body.dataset.moving === 'own'", "the page draws what moves")
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        page.get("about:blank")
-        self.process.terminate()
-        self.process.wait()
+@contextlib.contextmanager
+def drawn(path, view=None):
+    """The page of a print, when it draws."""
+    with viewer.of(path, "--voxel-size", "0.2", query="#" + quote(json.dumps(view or {}))):
+        viewer.drawn_here()
+        yield
 
 
 def toggle(name, on=True):
@@ -102,7 +81,7 @@ def counts(name):
     program = Program(gcode(name))
     kinds = [kind for kind in ("travels", "retractions", "recoveries", "seams", "pauses", "filament changes")
              if program.count(kind)]
-    with Server(gcode(name)):
+    with drawn(gcode(name)):
         check(js("return [window.asked.moves, window.told.moves, window.asked.layers, window.asked.program]") == [None] * 4,
               "what nobody asked for is not sent")
         for kind in kinds:
@@ -124,7 +103,7 @@ def counts(name):
 def single_moves():
     """The slider of the moves of a layer: how many there are, what is drawn, and the line of each."""
     program = Program(gcode("tile.gcode"))
-    with Server(gcode("tile.gcode")):
+    with drawn(gcode("tile.gcode")):
         toggle("travels")
         set_slider("layer-high", 3)
         js("document.getElementById('moves-group').open = true")
@@ -152,7 +131,7 @@ def single_moves():
 def layers():
     """The layer's height and time, when the slider is used; the print's time and weight in the head."""
     program = Program(gcode("tile.gcode"))
-    with Server(gcode("tile.gcode")):
+    with drawn(gcode("tile.gcode")):
         set_slider("layer-high", 2)
         until("document.getElementById('layer-info').textContent", "the layer's facts")
         total = 0.0
@@ -193,7 +172,7 @@ def places():
     """Travels and seams are drawn where the program has them, in front of beads and not through them."""
     program = Program(gcode("tile.gcode"))
     camera = {"eye": [100, 60, 250], "look_at": [100, 100, 0], "fov": 10}
-    with Server(gcode("tile.gcode"), {"camera": camera, "layers": [1, 4], "bed": False, "spp": 1}):
+    with drawn(gcode("tile.gcode"), {"camera": camera, "layers": [1, 4], "bed": False, "spp": 1}):
         aspect = js("const c = document.getElementById('picture'); return c.clientWidth / c.clientHeight")
         middle = lambda m: [(a + b) / 2 for a, b in zip(m[1], m[2])]
         long = lambda m: sum((a - b) ** 2 for a, b in zip(m[1], m[2])) > 4
@@ -232,7 +211,7 @@ def looks():
     program = Program(gcode("tile.gcode"))
     printed = [n for n, bead in enumerate(program.beads) if bead[1] > 0]
     ends = lambda values: [f"{round(edge([values[n] for n in printed]), 4):.4g}" for edge in (min, max)]
-    with Server(gcode("tile.gcode")):
+    with drawn(gcode("tile.gcode")):
         for name, title, wanted in (("temperature", "temperature, °C", ends(program.heat)), ("fan", "fan, %", ends(program.fan)),
                                     ("flow", "flow, mm³/s", None), ("layer_time", "layer time, h:min:s", None)):
             js("const s = document.getElementById('color-by'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", name)
@@ -240,7 +219,7 @@ def looks():
             least, most = js("return [...document.querySelectorAll('#legend .ends span')].map((e) => e.textContent)")
             check(not wanted or [least, most] == wanted, f"from {least} to {most}")
             check(name != "layer_time" or (least.count(":") == 2 and most.count(":") == 2), "times as a clock has them")
-    with Server(gcode("vase.gcode")):
+    with drawn(gcode("vase.gcode")):
         check(js("return [...document.getElementById('color-by').options].some((o) => o.value === 'layer_time')"), "layer times are offered")
 
 
@@ -250,7 +229,7 @@ def bed():
     with open(gcode("tile.gcode"), encoding="utf-8") as file:
         text = file.read().split("; bed_shape = ")[1].split("\n")[0]
     corners = [[float(c) for c in corner.split("x")] + [0.0] for corner in text.split(",")]
-    with Server(gcode("tile.gcode"), {"camera": camera, "bed": False}):
+    with drawn(gcode("tile.gcode"), {"camera": camera, "bed": False}):
         aspect = js("const c = document.getElementById('picture'); return c.clientWidth / c.clientHeight")
         at = [screen([a + (b - a) * t for a, b in zip(corners[n], corners[(n + 1) % len(corners)])], camera, aspect)
               for n in range(len(corners)) for t in (0.13, 0.37, 0.61, 0.89)]
@@ -260,14 +239,14 @@ def bed():
         toggle("bed and grid of 10 mm")
         check(all(page.execute_async_script(COLORS, at, [26, 115, 204])), "and drawn on the outline when it is on")
         check(js("return window.asked.moves") is None, "which asks for no moves")
-    with Server(gcode("tile_cura.gcode")):
+    with drawn(gcode("tile_cura.gcode")):
         check(js("return document.querySelector('#also').lastChild.hidden"), "a file without a bed offers none")
 
 
 def phone():
     """At a width of 390 all that is touched is 44 pixels high, and nothing lies beside the page."""
     page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True})
-    with Server(gcode("tile.gcode"), {"color_by": "feature"}):
+    with drawn(gcode("tile.gcode"), {"color_by": "feature"}):
         until("document.querySelectorAll('#legend li').length", "the legend")
         js("document.getElementById('panels').click(); for (const d of document.querySelectorAll('details')) d.open = true;")
         small = js("""const targets = [...document.querySelectorAll('button, select, summary, input:not([type=checkbox]), label:has(input[type=checkbox]), [role=checkbox]')];
@@ -284,14 +263,12 @@ def phone():
 
 def refusals():
     """What an address says wrongly is told, and messages that nobody understands."""
-    with Server(gcode("tile.gcode"), {"layers": "all", "also": [3], "beads": -1, "file": "x", "color_by": "feature"}):
+    with drawn(gcode("tile.gcode"), {"layers": "all", "also": [3], "beads": -1, "file": "x", "color_by": "feature"}):
         text = until("!document.getElementById('trouble').hidden && document.getElementById('trouble-text').textContent", "a word of it")
         check(all(key in text for key in ("layers", "also", "beads", "file")) and "color_by" not in text, f"the keys: {text}")
         check("--color-by feature" in until("document.getElementById('command').textContent", "the rest holds"), "color_by holds")
 
 
-page = browser(f"{FOLDER}/profile", 760, 560, 400)
-page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
 try:
     counts("tile.gcode")
     counts("hull.gcode")

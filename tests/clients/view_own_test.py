@@ -1,19 +1,17 @@
 """The picture that the page draws itself: headless Chromium's WebGL2 against vdbtrace's normals, and what goes wrong."""
 
 import json
-import os
 import shutil
-import subprocess
-import sys
 import tempfile
 import time
 from urllib.parse import quote
 
-from run_tools import BIN, check, gcode, skip_without
+from run_tools import check, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
 from chromium import browser
+from viewer_page import ViewerPage
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_own_")
 # Counts what web sockets carry.
@@ -67,40 +65,10 @@ const load = async (source) => {
 })().catch((error) => done({ error: String(error) }));"""
 
 
-def js(text, *arguments):
-    return page.execute_script(text, *arguments)
-
-
-def until(condition, text, seconds=150):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        value = js(f"return {condition}")
-        if value:
-            return value
-        time.sleep(0.05)
-    print(js("return [window.vdbviewLog?.slice(-5), document.body.innerText]"), page.get_log("browser"))
-    sys.exit(f"FAILED: {text}: not within {seconds} s")
-
-
-class Server:
-    """A vdbview, whose page is open."""
-
-    def __init__(self, path, *options, query=""):
-        self.process = subprocess.Popen([os.path.join(BIN, "vdbview"), path, "--quiet", *options],
-                                        stdout=subprocess.PIPE, text=True)
-        page.get(self.process.stdout.readline().strip() + query)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        page.get("about:blank")
-        self.process.terminate()
-        self.process.wait()
-
-
-def drawn_here():
-    until("document.body.dataset.moving === 'own'", "the page draws what moves")
+page = browser(f"{FOLDER}/profile", 500, 500, 400)
+page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
+viewer = ViewerPage(page)
+js, until, drawn_here = viewer.js, viewer.until, viewer.drawn_here
 
 
 def show(**view):
@@ -123,7 +91,7 @@ def drag(lift):
 
 
 def agrees(name, view, *options):
-    with Server(gcode(name), "--voxel-size", "0.0125", *options):
+    with viewer.of(gcode(name), "--voxel-size", "0.0125", *options):
         drawn_here()
         show(integrator="normal", bed=False, spp=256, camera=view)
         found = page.execute_async_script(COMPARE)
@@ -134,7 +102,7 @@ def agrees(name, view, *options):
 
 def carries_nothing():
     """While a view turns, its pictures are as large as the canvas, and nothing is sent."""
-    with Server(gcode("tile.gcode"), "--voxel-size", "0.1", query="#" + quote('{"integrator":"normal"}')):  # soon finished
+    with viewer.of(gcode("tile.gcode"), "--voxel-size", "0.1", query="#" + quote('{"integrator":"normal"}')):  # soon finished
         drawn_here()
         until("window.vdbviewLog.some((e) => e.kind === 'final')", "the first finished picture")
         js("window.vdbviewLog.length = 0; window.carried = 0")
@@ -193,14 +161,12 @@ def loses():
 def streams():
     """What the page does not draw is streamed, and it says why."""
     for options, query, words in ((("--layers", "1:3"), "", "command line"), ((), "?stream", "address")):
-        with Server(gcode("tile.gcode"), "--voxel-size", "0.1", *options, query=query):
+        with viewer.of(gcode("tile.gcode"), "--voxel-size", "0.1", *options, query=query):
             until("window.vdbviewLog?.some((e) => e.kind === 'moving')", "a picture of the server's")
             until(f"document.getElementById('mover').textContent.includes('{words}')", f"the reason: {words}")
             check(js("return document.body.dataset.moving") == "stream", "the server's stream")
 
 
-page = browser(f"{FOLDER}/profile", 500, 500, 400)
-page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
 try:
     carries_nothing()
     agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
