@@ -50,7 +50,7 @@ else
     # CMake forgets a cache's other variables where the compiler changes.
     builds=$PWD/build/matrix/builds-$release-$compiler
     mkdir -p "$builds" "$root/stratum/build"
-    git config --file "$root/root/.gitconfig" safe.directory /stratum
+    git config --file "$root/root/.gitconfig" --replace-all safe.directory /stratum
 fi
 
 case $what in
