@@ -106,8 +106,8 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
     app.add_option(
            "--beads", options.read.deposit.beads,
            "What overlapping beads do: capsule: nothing, they are united (default); settled: what two neighbours "
-           "both claim fills the groove between them, and what has no room there presses the outlines beside it out; "
-           "grooves: only the first of both")
+           "both claim fills the groove between them, and what has no room there presses outlines out and raises "
+           "tops; grooves: only the first of both")
         ->transform(enumeration(gcode::kBeadModels))
         ->type_name("MODEL")
         ->group(plastic);
@@ -130,6 +130,12 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
            "For --flow-lag: the firmware's compensation, instead of the file's (M900, M572, SET_PRESSURE_ADVANCE)")
         ->check(CLI::Range(0.0, gcode::kLongestAdvance))
         ->type_name("SECONDS")
+        ->group(plastic);
+    app.add_option("--crown", options.read.deposit.crown,
+                   "With settled beads: how far the edges of a line on a top surface lie below its middle, as a "
+                   "fraction of the layer's height (default 0)")
+        ->check(CLI::Range(0.0, gcode::kMostCrown))
+        ->type_name("FRACTION")
         ->group(plastic);
     app.add_option("--sag", options.read.deposit.sag,
                    "How far a bead over nothing hangs down, as a fraction of the span (default 0)")

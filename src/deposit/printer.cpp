@@ -35,9 +35,10 @@ constexpr std::string_view kKinds =
 DepositModel typicalPrinter() {
     DepositModel deposit;
     deposit.beads = DepositModel::Beads::settled;
-    deposit.flow_lag = 0.015;
+    deposit.flow_lag = 0.003;
     deposit.pressure_advance = 0;
     deposit.sag = 0.02;
+    deposit.crown = 0.2;
     return deposit;
 }
 
@@ -95,6 +96,7 @@ void readJson(const std::string& path, const std::string& text, gcode::ReadOptio
         deposit.pressure_advance = advance;
     readNumber(section, "nozzle_diameter_mm", 0.05, 10, deposit.nozzle_diameter);
     readNumber(section, "sag", 0, kMostSag, deposit.sag);
+    readNumber(section, "crown", 0, gcode::kMostCrown, deposit.crown);
     if (const Json* limits = section.find("limits"); limits != nullptr && limits->is_string()) {
         const auto other = std::filesystem::path(path).parent_path() / limits->get<std::string>();
         options.printer =

@@ -131,6 +131,8 @@ std::string beadModel(const gcode::DepositModel& deposit) {
     if (deposit.flow_lag) text += fmt::format("; widths by flow, lag {:g} s", *deposit.flow_lag);
     if (deposit.sag > 0) text += fmt::format("; beads over nothing hang by {:g} of their span", deposit.sag);
     if (deposit.settles()) text += "; settled: overlaps fill grooves";
+    if (deposit.swells()) text += ", the rest moves outlines out and tops up";
+    if (deposit.swells() && deposit.crown > 0) text += fmt::format("; crowns of {:g} h", deposit.crown);
     return text;
 }
 

@@ -25,6 +25,7 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
     const voxelize::Bounds solid = field.bounds();
     const double h = lattice.voxel_size;
     double around = lattice.background();
+    double raised = 0;
     if (rank < layout.stack.first_direct) {
         // The widest sampled section need not be the widest section.
         const double center = 0.5 * (solid.min[2] + solid.max[2]);
@@ -32,6 +33,7 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
         const double far = field.radius() + lattice.background();
         around = std::sqrt(far * far - off * off) - field.radius();
         if (toolpath.deposit.swells()) around += voxelize::kMostSwell;
+        raised = layout.stack.layers[layout.stack.layer[rank]].most_rise;
     }
     constexpr double kSlack = 1e-4;  // voxels; the leaves give the exact box
     Reach reach;
@@ -39,7 +41,8 @@ Reach reachOf(const PrintLayout& layout, std::uint32_t rank) {
         const double origin = axis == 2 ? lattice.origin_z : 0;
         const double more = axis == 2 ? lattice.background() : around;
         reach.min()[axis] = static_cast<int>(std::ceil((solid.min[axis] - more - origin) / h - kSlack));
-        reach.max()[axis] = static_cast<int>(std::floor((solid.max[axis] + more - origin) / h + kSlack));
+        const double above = axis == 2 ? raised : 0;
+        reach.max()[axis] = static_cast<int>(std::floor((solid.max[axis] + above + more - origin) / h + kSlack));
     }
     return reach;
 }

@@ -49,8 +49,8 @@ public:
         const voxelize::LayerStack& stack = layout_.stack;
         slabs_.resize(static_cast<std::size_t>(map_.macros[2]));
         for (const voxelize::Layer& layer : stack.layers) {
-            const double half_height = layer.halfHeight() * (1 + 2 * voxelize::kWeldGap);
-            addRun(runOf(layer.center_z - half_height, layer.center_z + half_height), layer.first, layer.last);
+            const double gap = 2 * voxelize::kWeldGap * layer.halfHeight();
+            addRun(runOf(layer.bottom() - gap, layer.top() + gap), layer.first, layer.last);
         }
         for (std::uint32_t rank = stack.first_direct; rank < stack.beads.size(); ++rank) {
             const voxelize::Extent& extent = stack.extentOf(rank);

@@ -105,9 +105,9 @@ std::vector<openvdb::Coord> PrintField::printUntil(std::uint32_t end) {
         } else {
             // A bead can be welded to the layer below it: within LeafColumn::touched().
             const voxelize::Layer& layer = stack.layers[stack.layer[rank]];
-            const double reach = layer.halfHeight() * (1 + 2 * voxelize::kWeldGap) + lattice.background();
-            z_min = layer.center_z - reach;
-            z_max = layer.center_z + reach;
+            const double around = 2 * voxelize::kWeldGap * layer.halfHeight() + lattice.background();
+            z_min = layer.bottom() - around;
+            z_max = layer.top() + around;
         }
         footprints.forEachColumn(layout_.toolpath->beads[bead], [&](int i0, int i1, int j) {
             for (int i = i0; i <= i1; ++i)

@@ -15,7 +15,8 @@ using voxelize::kLeafDim;
 
 double reachOf(const voxelize::LayerStack& stack, const voxelize::Lattice& lattice) {
     double thickest = 0;
-    for (const voxelize::Layer& layer : stack.layers) thickest = std::max(thickest, layer.halfHeight());
+    for (const voxelize::Layer& layer : stack.layers)
+        thickest = std::max(thickest, layer.halfHeight() + layer.most_rise);
     return thickest * (1 + 2 * voxelize::kWeldGap) + lattice.background();
 }
 

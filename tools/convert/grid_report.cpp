@@ -65,6 +65,7 @@ Json describeDeposit(const gcode::DepositModel& deposit, const voxelize::Deposit
             {"fed_mm3", balance.all.fed},
             {"laid_mm3", balance.held()},
             {"pressed_out_mm3", balance.pressed_out},
+            {"raised_mm3", balance.raised},
             {"surface_mm3", surface_mm3},
             {"surplus_mm3", balance.unplaced()},
             {"features", features}};
@@ -74,9 +75,9 @@ std::string depositLines(const voxelize::DepositBalance& balance) {
     // What rounds to nothing has no sign.
     const auto rounded = [](double value, double places) { return std::round(value * places) / places + 0.0; };
     std::string lines = fmt::format(
-        "settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} of them press outlines out; {:.2f} mm^3 ({:.2f} %) have "
-        "no place\n",
-        balance.held(), balance.all.fed, balance.pressed_out, balance.unplaced(),
+        "settled: {:.2f} of {:.2f} mm^3 laid, {:.2f} of them press outlines out, {:.2f} raise tops; {:.2f} mm^3 "
+        "({:.2f} %) have no place\n",
+        balance.held(), balance.all.fed, balance.pressed_out, balance.raised, balance.unplaced(),
         100 * balance.unplaced() / balance.all.fed);
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         const voxelize::DepositShare& share = balance.features[f];

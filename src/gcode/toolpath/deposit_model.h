@@ -9,11 +9,14 @@
 
 namespace stratum::gcode {
 
+/// Of DepositModel::crown.
+constexpr double kMostCrown = 0.5;
+
 struct DepositModel {
     enum class Beads : std::uint8_t {
         capsule,  ///< the union of the beads
         grooves,  ///< what two neighbours of a layer both claim fills the groove between them
-        settled,  ///< the same, and what the groove has no room for presses the outlines beside it out
+        settled,  ///< the same, and what the groove has no room for presses outlines out and raises tops
     };
     Beads beads = Beads::capsule;
     /// Corner radius of the section as a fraction of half its height, 0..1. 1 is a stadium. `corner_mm` takes
@@ -27,6 +30,9 @@ struct DepositModel {
     double nozzle_diameter = 0.4;            ///< mm; flow is averaged over half of it. Only with flow_lag
     /// How far a bead over nothing hangs down in the middle, as a fraction of the span.
     double sag = 0;
+    /// How far the edges of a line on a top surface lie below its middle, as a fraction of the layer's height, 0 ..
+    /// kMostCrown. Only with settled beads.
+    double crown = 0;
 
     /// Corner radius (mm) of a section of this height (mm).
     double cornerRadius(double height) const {

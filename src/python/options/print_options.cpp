@@ -43,6 +43,7 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
     if (const auto lag = options.number("flow_lag", 0, deposit::kLongestLag)) read.deposit.flow_lag = *lag;
     if (const auto advance = options.number("pressure_advance", 0, gcode::kLongestAdvance))
         read.deposit.pressure_advance = *advance;
+    assign(read.deposit.crown, options.number("crown", 0, gcode::kMostCrown));
     assign(read.deposit.sag, options.number("sag", 0, deposit::kMostSag));
     return read;
 }

@@ -9,7 +9,7 @@
 namespace stratum::python {
 
 /// plate, filament_diameter, filament_colors (a color a tool), layer_height, belt, planar, e_mode, firmware, planner,
-/// printer, beads, section, flow, flow_lag, pressure_advance, sag: as the tools' options of those names. Throws
+/// printer, beads, section, flow, flow_lag, pressure_advance, sag, crown: as the tools' options of those names. Throws
 /// UsageError, InputError.
 gcode::ReadOptions readOptionsOf(Keywords& options);
 

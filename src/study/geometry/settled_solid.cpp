@@ -127,7 +127,7 @@ SettledSolid::Plan SettledSolid::filled(std::size_t number, double x, double y) 
         d = std::min(d, bead.d);
         if (bead.d < 2 * radius) beads.push_back(bead);
     }
-    Plan plan{d, d};
+    Plan plan{d, d, 0};
     if (layer.settling == nullptr || d >= radius || !(radius > 0)) return plan;
     const double weld = layer.settling->weldLevel();
     for (std::size_t a = 0; a < beads.size(); ++a)
@@ -145,13 +145,20 @@ SettledSolid::Plan SettledSolid::filled(std::size_t number, double x, double y) 
     return plan;
 }
 
-// The same with its outlines moved out by what has no place in the grooves.
+// The same with its outlines moved out, and its top up, by what has no place in the grooves.
 SettledSolid::Plan SettledSolid::plan(std::size_t number, double x, double y) const {
     Plan plan = filled(number, x, y);
     if (stack_.swell == nullptr) return plan;
-    const double out = stack_.swell->at(toolpath_, stack_, static_cast<std::uint32_t>(number), x, y);
-    plan.settled -= out;
-    plan.closed -= out;
+    const voxelize::Swell swell = stack_.swell->at(toolpath_, stack_, static_cast<std::uint32_t>(number), x, y);
+    plan.settled -= swell.out;
+    plan.closed -= swell.out;
+    plan.rise = swell.rise;
+    const voxelize::Layer& layer = stack_.layers[number];
+    if (layer.crown > 0) {
+        double nearest = kFar;
+        for (const std::uint32_t rank : cells_[number][cellOf(x, y)]) nearest = std::min(nearest, nearTo(rank, x, y).d);
+        plan.rise -= swell.open * voxelize::crownDepth(layer.crown, layer.radius, nearest);
+    }
     return plan;
 }
 
@@ -181,9 +188,12 @@ double SettledSolid::distance(const glm::dvec3& p) const {
     std::vector<std::pair<std::uint32_t, double>> closed;
     for (std::uint32_t number = 0; number < stack_.layers.size(); ++number) {
         const voxelize::Layer& layer = stack_.layers[number];
-        const double over = std::abs(p.z - layer.center_z) - layer.half_side;
-        if (over - layer.radius >= reach_) continue;
+        const double height = p.z - layer.center_z;
+        if (height <= -layer.halfHeight() - reach_ || height >= layer.halfHeight() + layer.most_rise + reach_) continue;
         const Plan plan = this->plan(number, p.x, p.y);
+        // The upper half is moved up; down by half at most.
+        const double before = std::max(std::min(height - plan.rise, 2 * height), std::min(height, 0.0));
+        const double over = std::abs(before) - layer.half_side;
         closed.emplace_back(number, plan.closed);
         const double inside = layer.half_side > 0 ? std::min(std::max(plan.settled, over), 0.0) : 0.0;
         least = std::min(least, std::hypot(std::max(plan.settled, 0.0), std::max(over, 0.0)) + inside - layer.radius);

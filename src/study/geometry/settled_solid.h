@@ -40,6 +40,7 @@ private:
     };
     struct Plan {
         double settled, closed;
+        double rise;  // mm, of the top
     };
     struct Near {
         double d, nx, ny;

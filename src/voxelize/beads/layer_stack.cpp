@@ -30,6 +30,10 @@ void rankBeads(std::span<const std::uint32_t> selection, const std::vector<std::
         layer.radius = deposit.cornerRadius(2 * half_height);
         layer.half_side = half_height - layer.radius;
         layer.inset = flatInset(2 * half_height, layer.radius);
+        if (deposit.swells()) {
+            layer.most_rise = std::min(kMostRise, half_height);
+            layer.crown = layer.radius > 0 ? 2 * half_height * deposit.crown : 0;
+        }
         stack.layers.push_back(layer);
     }
     const auto layers = static_cast<std::uint32_t>(stack.layers.size());

@@ -23,8 +23,13 @@ struct Layer {
     std::uint32_t first = 0;  ///< ranks [first, last) of LayerStack::beads, in print order
     std::uint32_t last = 0;
     const SettlingCurve* settling = nullptr;  ///< of LayerStack::curves; null: beads don't settle
+    double most_rise = 0;                     ///< mm, the most by which its top is raised: swell_field.h
+    double crown = 0;                         ///< mm, DepositModel::crown
 
     double halfHeight() const { return radius + half_side; }
+    double bottom() const { return center_z - halfHeight(); }
+    /// The highest that any of it may be; the plane of the flats where nothing is raised.
+    double top() const { return center_z + halfHeight() + most_rise; }
 };
 
 /// `upper` rests on `lower`: the top plane of one is the bottom plane of the other. Two flats that touch exactly leave

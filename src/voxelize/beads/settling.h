@@ -56,6 +56,9 @@ constexpr double kTurnPenalty = 2;
 /// The most by which an outline moves out where plastic is left over, mm: see swell_field.h.
 constexpr double kMostSwell = 0.1;
 
+/// The most by which the top of a layer is raised by what has no place in it, mm; less in layers lower than twice that.
+constexpr double kMostRise = 0.1;
+
 /// Outside the solid no slope of a settled field is larger: at most 2.82 as measured on real prints, in turns (above
 /// 1.05 at about one point in 1000), and 0.35 of a swell. Sphere tracing must divide its steps by it. Between
 /// parallel beads the slope is 1.

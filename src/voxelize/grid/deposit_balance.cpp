@@ -3,6 +3,7 @@
 #include "base/parallel_for.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/swell/open_top.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -18,21 +19,6 @@ constexpr std::size_t kBalanceGrain = 16;
 // Integers, because their sum does not depend on the order of threads; mm^3.
 constexpr double kUnit = 1e-9;
 std::int64_t unitsOf(double volume) { return std::llround(volume / kUnit); }
-
-struct Sums {
-    explicit Sums(std::size_t layers) : by_layer(layers) {}
-
-    void add(const gcode::Run& run, double volume) {
-        const std::int64_t units = unitsOf(volume);
-        by_feature[static_cast<std::size_t>(run.feature)] += units;
-        by_layer[run.layer] += units;
-    }
-
-    std::array<std::int64_t, gcode::kFeatureCount> by_feature{};
-    std::vector<std::int64_t> by_layer;
-    std::int64_t pressed_out = 0;
-    std::vector<double> shares;  // scratch
-};
 
 // mm, of a section at the distance `d` (mm) from its flat.
 double thickness(const Layer& layer, double d) {
@@ -54,16 +40,53 @@ double thicknessAt(const Layer& layer, const PlanField& sides2, std::size_t c) {
     return thickness(layer, std::sqrt(static_cast<double>(sides2.v[c])));
 }
 
-// Calls add(bead, volume) for the parts of one column of a layer; returns by how much more it holds swollen.
+// By how much more each point of a layer holds swollen and raised, mm, and where it has plastic.
+struct Pressed {
+    double out = 0;
+    std::uint64_t solid = 0;
+    std::array<double, kColumnSamples> up{};  // if nothing lies on it
+};
+
+Pressed pressedOf(const LeafColumn::LayerPlan& plan) {
+    Pressed pressed;
+    const PlanField& sides2 = plan.swollen != nullptr ? *plan.swollen : *plan.sides2;
+    for (std::size_t c = 0; c < kColumnSamples; ++c) {
+        const double solid = thicknessAt(*plan.layer, sides2, c);
+        if (plan.swollen != nullptr) pressed.out += solid - thicknessAt(*plan.layer, *plan.sides2, c);
+        if (!(solid > 0)) continue;
+        pressed.solid |= std::uint64_t{1} << c;
+        // The upper half loses no more than half of it: see PlaneTerm::rise.
+        if (plan.rise != nullptr) pressed.up[c] = std::max(static_cast<double>(plan.rise->v[c]), -0.25 * solid);
+    }
+    return pressed;
+}
+
+struct Sums {
+    explicit Sums(std::size_t layers) : by_layer(layers) {}
+
+    void add(const gcode::Run& run, double volume) {
+        const std::int64_t units = unitsOf(volume);
+        by_feature[static_cast<std::size_t>(run.feature)] += units;
+        by_layer[run.layer] += units;
+    }
+
+    std::array<std::int64_t, gcode::kFeatureCount> by_feature{};
+    std::vector<std::int64_t> by_layer;
+    std::int64_t pressed_out = 0, raised = 0;
+    // Scratch.
+    std::vector<double> shares;
+    std::vector<OpenTop> tops;
+    std::vector<Pressed> pressed;
+};
+
+// Calls add(bead, volume) for the parts of one column of a layer, as far as grooves hold them.
 template <typename Add>
-double addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double point_area,
-                std::vector<double>& shares, const Add& add) {
+void addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, double point_area,
+              std::vector<double>& shares, const Add& add) {
     const std::size_t beads = plan.beads.size();
     shares.assign(2 * beads, 0.0);  // own thickness, then the sum of parts
-    double more = 0;
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
         const double solid = thicknessAt(*plan.layer, *plan.sides2, c);
-        if (plan.swollen != nullptr) more += thicknessAt(*plan.layer, *plan.swollen, c) - solid;
         double sum = 0;
         for (std::size_t n = 0; n < beads; ++n)
             sum += shares[n] = thickness(*plan.layer, static_cast<double>(plan.beads[n].d.v[c]));
@@ -72,12 +95,12 @@ double addLayer(const LayerStack& stack, const LeafColumn::LayerPlan& plan, doub
     }
     for (std::size_t n = 0; n < beads; ++n)
         if (shares[beads + n] > 0) add(stack.beads[plan.ranks[n]], shares[beads + n] * point_area);
-    return more * point_area;
 }
 
-// Calls visit(plan) for each layer of each column, on all threads.
+// Calls visit(column) for each column that is open, on all threads.
 template <typename Visit>
-void forEachPlan(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end, const Visit& visit) {
+void forEachOpenColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end,
+                       const Visit& visit) {
     const Lattice lattice = measuringLattice();
     const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
     tbb::enumerable_thread_specific<LeafColumn> columns(
@@ -87,9 +110,19 @@ void forEachPlan(const gcode::Toolpath& toolpath, const LayerStack& stack, std::
         for (std::size_t c = first; c != last; ++c) {
             if (bins[c].empty()) continue;
             column.open(bins.originI(c), bins.originJ(c), bins[c], end);
-            column.forEachLayer(visit);
+            visit(column);
         }
     });
+}
+
+// What the open tops of a column hold more, mm times points.
+double raisedIn(const LayerStack& stack, std::vector<OpenTop>& tops, const std::vector<Pressed>& pressed) {
+    coverTops(stack, tops);
+    double sum = 0;
+    for (std::size_t n = 0; n < tops.size(); ++n)
+        for (std::size_t c = 0; c < kColumnSamples; ++c)
+            if (tops[n].open >> c & 1) sum += pressed[n].up[c];
+    return sum;
 }
 
 }  // namespace
@@ -98,17 +131,26 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     const std::size_t layers = toolpath.layer_count + std::size_t{1};
     tbb::enumerable_thread_specific<Sums> threads([layers] { return Sums(layers); });
     const double point_area = pointArea(measuringLattice());
-    forEachPlan(toolpath, stack, end, [&](const LeafColumn::LayerPlan& plan) {
+    forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
         Sums& sums = threads.local();
-        const double more = addLayer(stack, plan, point_area, sums.shares, [&](std::uint32_t bead, double volume) {
-            sums.add(toolpath.runOf(toolpath.beads[bead]), volume);
+        sums.tops.clear();
+        sums.pressed.clear();
+        column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
+            addLayer(stack, plan, point_area, sums.shares, [&](std::uint32_t bead, double volume) {
+                sums.add(toolpath.runOf(toolpath.beads[bead]), volume);
+            });
+            if (stack.swell == nullptr) return;
+            const Pressed& pressed = sums.pressed.emplace_back(pressedOf(plan));
+            sums.pressed_out += unitsOf(pressed.out * point_area);
+            addTop(static_cast<std::uint32_t>(plan.layer - stack.layers.data()), pressed.solid, sums.tops);
         });
-        sums.pressed_out += unitsOf(more);
+        if (stack.swell != nullptr) sums.raised += unitsOf(raisedIn(stack, sums.tops, sums.pressed) * point_area);
     });
     Sums laid(layers);
     Sums fed(layers);
     for (const Sums& one : threads) {
         laid.pressed_out += one.pressed_out;
+        laid.raised += one.raised;
         for (std::size_t f = 0; f < one.by_feature.size(); ++f) laid.by_feature[f] += one.by_feature[f];
         for (std::size_t l = 0; l < layers; ++l) laid.by_layer[l] += one.by_layer[l];
     }
@@ -123,6 +165,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     balance.layers.resize(layers);
     const auto mm3 = [](std::int64_t units) { return static_cast<double>(units) * kUnit; };
     balance.pressed_out = mm3(laid.pressed_out);
+    balance.raised = mm3(laid.raised);
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         balance.features[f] = {mm3(fed.by_feature[f]), mm3(laid.by_feature[f])};
         balance.all.fed += balance.features[f].fed;
@@ -138,9 +181,11 @@ std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerS
     tbb::enumerable_thread_specific<std::vector<double>> scratch;
     const double point_area = pointArea(measuringLattice());
     const auto end = static_cast<std::uint32_t>(toolpath.beads.size());
-    forEachPlan(toolpath, stack, end, [&](const LeafColumn::LayerPlan& plan) {
-        addLayer(stack, plan, point_area, scratch.local(), [&](std::uint32_t bead, double volume) {
-            laid[bead].fetch_add(unitsOf(volume), std::memory_order_relaxed);
+    forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
+        column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
+            addLayer(stack, plan, point_area, scratch.local(), [&](std::uint32_t bead, double volume) {
+                laid[bead].fetch_add(unitsOf(volume), std::memory_order_relaxed);
+            });
         });
     });
     std::vector<float> shares(toolpath.beads.size(), 0);

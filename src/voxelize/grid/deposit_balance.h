@@ -21,10 +21,11 @@ struct DepositShare {
 struct DepositBalance {
     DepositShare all;
     double pressed_out = 0;  ///< mm^3 by which layers hold more where surplus moves their outlines out: swell_field.h
+    double raised = 0;       ///< mm^3 by which it raises open tops, less what crowns take from their lines' edges
     std::array<DepositShare, gcode::kFeatureCount> features;  ///< by gcode::Feature
     std::vector<DepositShare> layers;                         ///< by Run::layer
     /// mm^3 of the solid, and what has no place in it.
-    double held() const { return all.laid + pressed_out; }
+    double held() const { return all.laid + pressed_out + raised; }
     double unplaced() const { return all.fed - held(); }
 };
 

@@ -28,8 +28,8 @@ LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack) {
     double z_min = std::numeric_limits<double>::max();
     double z_max = std::numeric_limits<double>::lowest();
     for (const Layer& layer : stack.layers) {
-        z_min = std::min(z_min, layer.center_z - layer.halfHeight());
-        z_max = std::max(z_max, layer.center_z + layer.halfHeight());
+        z_min = std::min(z_min, layer.bottom());
+        z_max = std::max(z_max, layer.top());
     }
     for (const Extent& extent : stack.extents) {
         z_min = std::min(z_min, extent.z_min);
@@ -67,7 +67,7 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
 
 void LeafColumn::prepare() {
     const LayerStack& stack = stack_;
-    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight());
+    for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight() + layer.most_rise);
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
     for (std::size_t i = 1; i < weld_offsets_.size(); ++i) weld_offsets_[i] += weld_offsets_[i - 1];
@@ -99,7 +99,7 @@ std::span<const LeafRange> LeafColumn::bounds(std::span<const std::uint32_t> ran
         } else if (stack_.layer[rank] != previous) {
             previous = stack_.layer[rank];
             const Layer& l = stack_.layers[previous];
-            ranges_.push_back(leafRange(l.center_z - l.halfHeight(), l.center_z + l.halfHeight()));
+            ranges_.push_back(leafRange(l.bottom(), l.top()));
         }
     }
     mergeRanges();
@@ -157,8 +157,8 @@ std::span<const LeafRange> LeafColumn::touched(std::uint32_t begin) {
         if (!any) continue;
         const Layer& l = stack_.layers[source.layer];
         // A new bead can be welded to the layer below: up to its own center plane, so within its own band.
-        const double reach = l.halfHeight() + weldGap(l.halfHeight());
-        ranges_.push_back(leafRange(l.center_z - reach, l.center_z + reach));
+        const double gap = weldGap(l.halfHeight());
+        ranges_.push_back(leafRange(l.bottom() - gap, l.top() + gap));
     }
     for (const DirectBead& direct : direct_)
         if (stack_.beads[direct.rank] >= begin)
@@ -220,14 +220,17 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     plan.radius = layer.radius;
     plan.half_side = layer.half_side;
     minimumOfPaths(plan.d, with_owners_ ? &plan.owners : nullptr);
+    if (with_swell_ && layer.crown > 0) nearest_ = plan.d;
     // Nothing of the column within the band: neither a surface nor a weld.
     const double reach = (layer.radius + band_) * scale_;
     const bool settles = layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1;
     float least =
         settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
-    if (with_swell_ && swell(source.layer, plan.d, plan.sides2))
+    if (with_swell_) findSwell(source.layer);
+    if (with_swell_ && swell(plan.d, plan.sides2))
         least = *std::min_element(std::begin(plan.sides2.v), std::end(plan.sides2.v));
     if (static_cast<double>(least) >= reach * reach) return;
+    plan.most_rise = with_swell_ && raise(layer, nearest_, plan.rise) ? layer.most_rise : 0;
     free_.pop_back();
     window_.push_back(slot);
     const std::pair entry{source.layer, slot};
@@ -235,37 +238,6 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     if (std::find(half_heights_.begin(), half_heights_.end(), plan.half_height) == half_heights_.end())
         half_heights_.push_back(plan.half_height);
     addWelds(plan);
-}
-
-LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
-    const Layer& layer = stack_.layers[source.layer];
-    gatherPaths(source, true);
-    line_ids_.insert(line_ids_.end(), taper_ids_.begin(), taper_ids_.end());
-    line_ids_.insert(line_ids_.end(), arc_ids_.begin(), arc_ids_.end());
-    near_.clear();
-    for (const LocalLine& line : lines_) planOfLine(grid_, line, near_.emplace_back());
-    for (const LocalTaper& taper : tapers_) planOfTaper(grid_, taper, near_.emplace_back());
-    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
-    minimumOfPaths(d_, nullptr);
-    if (layer.settling != nullptr)
-        fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
-    else
-        squaredSides(d_, sides2_);
-    swollen_ = sides2_;
-    const bool swells = with_swell_ && swell(source.layer, d_, swollen_);
-    return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr};
-}
-
-const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
-    const Layer& layer = stack_.layers[source.layer];
-    gatherPaths(source, false);
-    minimumOfPaths(d_, nullptr);
-    if (layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1)
-        settle(*layer.settling, layer.radius, d_, sides2_);
-    else
-        squaredSides(d_, sides2_);
-    if (with_swell_) swell(source.layer, d_, sides2_);
-    return d_;
 }
 
 float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
@@ -333,7 +305,7 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
     const auto reach = [this](double half_height) { return half_height + band_ + weldGap(half_height); };
     const auto passed = [&](std::uint32_t slot) {
         const PlanLayer& plan = slots_[slot];
-        return plan.center_z + reach(plan.half_height) < z_min;
+        return plan.center_z + reach(plan.half_height) + plan.most_rise < z_min;
     };
     // In order, because the first of equally near beads is the owner.
     std::size_t kept = 0;
@@ -355,7 +327,7 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
         if (layer.center_z - reach(thickest_) > z_max) break;
         if (layer.center_z - reach(layer.halfHeight()) > z_max) continue;
         source.loaded = true;
-        if (layer.center_z + reach(layer.halfHeight()) >= z_min) loadLayer(source);
+        if (layer.center_z + reach(layer.halfHeight()) + layer.most_rise >= z_min) loadLayer(source);
     }
     while (next_layer_ < column_layers_.size() && column_layers_[next_layer_].loaded) ++next_layer_;
 }
@@ -369,12 +341,18 @@ void LeafColumn::gatherTerms(int k0) {
             const auto first = static_cast<std::uint32_t>(terms_.terms.size());
             double radius = 0;
             bool straight_sides = false;
+            bool rises = false;
             for (const std::uint32_t slot : window_) {
                 const PlanLayer& plan = slots_[slot];
                 const double dz = height - plan.center_z;
-                if (plan.half_height != half_height || std::abs(dz) >= reach) continue;
+                if (plan.half_height != half_height || dz <= -reach || dz >= reach + plan.most_rise) continue;
                 radius = plan.radius;
                 straight_sides = plan.half_side > 0;
+                if (plan.most_rise > 0) {
+                    rises = true;
+                    terms_.terms.push_back({&plan.sides2, 0, &plan.d, 0, &plan.rise, static_cast<float>(dz * scale_)});
+                    continue;
+                }
                 if (!straight_sides) {
                     const auto world = static_cast<float>(dz * scale_);
                     terms_.terms.push_back({&plan.sides2, world * world});
@@ -387,7 +365,8 @@ void LeafColumn::gatherTerms(int k0) {
             }
             const auto last = static_cast<std::uint32_t>(terms_.terms.size());
             if (first != last)
-                terms_.groups.push_back({first, last, static_cast<float>(radius * scale_), straight_sides});
+                terms_.groups.push_back({first, last, static_cast<float>(radius * scale_), straight_sides, rises,
+                                         static_cast<float>((half_height - radius) * scale_)});
         }
         for (const PlanWeld& weld : welds_) {
             // Farther than the band from the interface the layer itself is deeper than the band.

@@ -79,6 +79,7 @@ public:
         std::span<const BeadPlan> beads;       ///< in the same order
         const PlanField* sides2 = nullptr;     ///< squared plan distance beyond the flats, after filling grooves
         const PlanField* swollen = nullptr;    ///< the same after LayerStack::swell; null where it changes nothing
+        const PlanField* rise = nullptr;       ///< by which the top is moved up; null where it is not
     };
     /// Calls visit() for each layer of the open column, from the lowest. Only of a column of which no leaf is
     /// evaluated.
@@ -94,13 +95,15 @@ public:
         for (const ColumnLayer& source : column_layers_) visit(source.layer, fieldOf(source));
     }
 
-    /// Calls visit(layer, sides2) for each layer of the open column, from the lowest: its index in LayerStack::layers,
-    /// and the squared plan distance beyond its flats. Only of a column of which no leaf is evaluated.
+    /// Calls visit(layer, sides2, nearest) for each layer of the open column, from the lowest: its index in
+    /// LayerStack::layers, the squared plan distance beyond its flats, and, only of layers with a crown, the plan
+    /// distance to the flat of the nearest bead before grooves are filled. Only of a column of which no leaf is
+    /// evaluated.
     template <typename Visit>
     void forEachSides(Visit visit) {
         for (const ColumnLayer& source : column_layers_) {
             fieldOf(source);
-            visit(source.layer, sides2_);
+            visit(source.layer, sides2_, nearest_);
         }
     }
 
@@ -113,7 +116,9 @@ private:
     struct PlanLayer {
         std::uint32_t layer;
         double center_z, half_height, radius, half_side;  // mm
+        double most_rise;                                 // mm, 0 where `rise` is not used
         PlanField d, sides2;                              // d: where beads settle, closed by what welds close
+        PlanField rise;                                   // world units; below 0 in crowns
         PlanOwners owners;
     };
     struct PlanWeld {
@@ -143,8 +148,17 @@ private:
     /// The same for the beads in near_.
     float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2);
     /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed.
-    bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2);
+    bool swell(PlanField& d, PlanField& sides2);
+    /// By how much the top of a layer is moved up, world units; `nearest`: as of forEachSides(). True if it is
+    /// anywhere.
+    bool raise(const Layer& of, const PlanField& nearest, PlanField& rise);
     void placeSwell();
+    /// The layer that swell() and raise() are of.
+    void findSwell(std::uint32_t layer);
+    /// One kind of values of a layer at the nodes of the open column, into `nodes`. False if there are none.
+    bool gatherNodes(std::vector<float> SwellTile::Layer::*values, std::vector<float>& nodes) const;
+    /// Those values at the samples, world units if they are mm.
+    void betweenNodes(const std::vector<float>& nodes, float scale, PlanField& values) const;
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -185,17 +199,21 @@ private:
     std::vector<BeadPlan> near_;          // beads that may fill a groove; all of the layer in planLayer()
     std::vector<std::uint32_t> filling_;  // of near_, those that do
     PlanField d_, sides2_;                // of planLayer()
-    PlanField swollen_;                   // likewise
+    PlanField swollen_, rise_;            // likewise
+    PlanField between_;                   // scratch
+    PlanField nearest_;                   // of forEachSides()
     // Where the swell of the open column comes from.
     struct SwellSource {
         const SwellTile* tile;
+        const SwellTile::Layer* layer;         // of findSwell()
         int first_i, last_i, first_j, last_j;  // nodes of the column that the tile owns
     };
     bool swell_placed_ = false;
     int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0, nodes_j_ = 0;
     std::vector<SwellSource> swell_sources_;
-    std::vector<float> swell_nodes_;
-    PlanField swell_x_, swell_y_;  // samples from the first node, in node spacings
+    std::vector<float> swell_nodes_, open_nodes_;
+    std::uint32_t swell_node_[kColumnSamples];  // of each sample, the place of the node below it
+    PlanField swell_x_, swell_y_;               // and how far it is from that node, in node spacings
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

@@ -76,6 +76,36 @@ float MaximumOf(const PlanField& a, const PlanField& b, PlanField& out) {
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
+// The height over the center plane before the upper half was moved up by `rise`. Where that is negative, heights just
+// over the plane count twice, so that none is passed over.
+HWY_INLINE VF heightBefore(float dz, VF rise) {
+    const F f;
+    const VF height = hn::Set(f, dz);
+    return hn::Max(hn::Min(hn::Sub(height, rise), hn::Set(f, 2 * dz)), hn::Min(height, hn::Zero(f)));
+}
+
+// The same as below, of layers whose tops are raised.
+HWY_INLINE VF raisedLayers(const PlaneTerm* terms, const PlaneTerms& of, std::size_t c) {
+    const F f;
+    const VF zero = hn::Zero(f);
+    const VF half_side = hn::Set(f, of.half_side);
+    VF least = hn::Set(f, 3e38f);
+    VF deepest = zero;
+    for (std::uint32_t t = of.first; t != of.last; ++t) {
+        const PlaneTerm& term = terms[t];
+        VF above2 = hn::Set(f, term.dz2);
+        VF over = hn::Set(f, term.over);
+        if (term.rise != nullptr) {
+            over = hn::Sub(hn::Abs(heightBefore(term.dz, hn::Load(f, term.rise->v + c))), half_side);
+            const VF above = hn::Max(over, zero);
+            above2 = hn::Mul(above, above);
+        }
+        least = hn::Min(least, hn::Add(hn::Load(f, term.sides2->v + c), above2));
+        if (of.straight_sides) deepest = hn::Min(deepest, hn::Max(hn::Load(f, term.d->v + c), over));
+    }
+    return hn::Add(hn::Sub(hn::Sqrt(least), hn::Set(f, of.radius)), deepest);
+}
+
 void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
     const F f;
     const PlaneTerm* const terms = leaf.terms.data();
@@ -88,6 +118,10 @@ void ExpandLayers(const LeafTerms& leaf, float background, LeafPlanes& phi) {
             VF value = hn::Set(f, background);
             for (std::uint32_t g = group; g != group_end; ++g) {
                 const PlaneTerms& of = leaf.groups[g];
+                if (of.rises) {
+                    value = hn::Min(value, raisedLayers(terms, of, c));
+                    continue;
+                }
                 VF least = hn::Add(hn::Load(f, terms[of.first].sides2->v + c), hn::Set(f, terms[of.first].dz2));
                 for (std::uint32_t t = of.first + 1; t != of.last; ++t)
                     least = hn::Min(least, hn::Add(hn::Load(f, terms[t].sides2->v + c), hn::Set(f, terms[t].dz2)));

@@ -66,12 +66,18 @@ struct PlaneTerm {
     float dz2 = 0;                 ///< squared height over the layer's center plane, or over its straight sides
     const PlanField* d = nullptr;  ///< only with straight sides
     float over = 0;                ///< height over the straight sides, negative beside them
+    /// If not null, what is above the center plane is moved up by this, or down where it is negative, by half at most.
+    /// Of `dz`, the height over the center plane, dz2 and over follow then.
+    const PlanField* rise = nullptr;
+    float dz = 0;
 };
 /// Layers of one section: terms first..last - 1 take one root together.
 struct PlaneTerms {
     std::uint32_t first, last;
     float radius;
     bool straight_sides = false;
+    bool rises = false;   ///< some of its terms
+    float half_side = 0;  ///< half the height of the straight sides; only where it rises
 };
 /// The body that closes the plane between two touching layers: max(d, bound), used where it is negative. `bound` must
 /// be negative.

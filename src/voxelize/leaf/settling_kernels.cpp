@@ -158,6 +158,28 @@ float FillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
+void MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF by = hn::Load(f, out.v + c);
+        const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), by), hn::Zero(f));
+        hn::Store(hn::Mul(side, side), f, sides2.v + c);
+        hn::Store(hn::Sub(hn::Load(f, d.v + c), by), f, d.v + c);
+    });
+}
+
+void SectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
+    const F f;
+    const VF zero = hn::Zero(f);
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), hn::Set(f, swell)), zero);
+        const VF half2 = hn::Sub(hn::Set(f, radius * radius), hn::Mul(side, side));
+        const VF half = hn::Sqrt(hn::Max(half2, zero));
+        const VF whole = hn::Add(hn::Set(f, straight), hn::Add(half, half));
+        hn::Store(hn::IfThenElseZero(hn::Gt(half2, zero), whole), f, thickness.v + c);
+    });
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace stratum::voxelize
 HWY_AFTER_NAMESPACE();
@@ -170,6 +192,8 @@ HWY_EXPORT(PlanOfTaper);
 HWY_EXPORT(PlanOfArc);
 HWY_EXPORT(LowerLevels);
 HWY_EXPORT(FillGrooves);
+HWY_EXPORT(MoveOut);
+HWY_EXPORT(SectionThickness);
 
 GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
     : table(curve.table().data()),
@@ -199,6 +223,11 @@ void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const
 }
 float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
     return HWY_DYNAMIC_DISPATCH(FillGrooves)(levels, rule, d, sides2);
+}
+
+void moveOut(const PlanField& out, PlanField& d, PlanField& sides2) { HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2); }
+void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
+    HWY_DYNAMIC_DISPATCH(SectionThickness)(sides2, swell, radius, straight, thickness);
 }
 
 }  // namespace stratum::voxelize

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace stratum::voxelize {
 namespace {
@@ -34,45 +35,120 @@ SpreadNodes gather(const std::array<const TileSums*, 9>& around, std::uint32_t l
             for (int i = std::max(0, -to_x); i < std::min(TileSums::kNodes, nodes.edge - to_x); ++i) {
                 const std::size_t from = nodeIndex(j, TileSums::kNodes, i);
                 const std::size_t to = nodeIndex(j + to_y, nodes.edge, i + to_x);
-                nodes.surplus[to] += static_cast<double>(sums->surplus[from]);
+                nodes.surplus[to] += sums->surplus[from];
                 for (std::size_t level = 0; level < nodes.gain.size(); ++level)
-                    nodes.gain[level][to] += static_cast<double>(sums->gain[level][from]);
+                    nodes.gain[level][to] += sums->gain[level][from];
+                nodes.open[to] += sums->open[from];
             }
     }
     return nodes;
 }
 
-SwellTile spreadTile(const std::array<const TileSums*, 9>& around) {
-    SwellTile tile;
-    // A tile's first nodes have sums of the tiles before it too.
-    std::vector<std::uint32_t> layers;
-    for (const std::size_t n : {0, 1, 3, 4})
-        layers.insert(layers.end(), around[n]->layers.begin(), around[n]->layers.end());
-    std::sort(layers.begin(), layers.end());
-    layers.erase(std::unique(layers.begin(), layers.end()), layers.end());
-    for (const std::uint32_t layer : layers) {
-        const SpreadNodes nodes = gather(around, layer);
-        const std::vector<double> given = spreadSurplus(nodes);
-        SwellTile::Nodes swell{};
-        bool any = false;
+// Spreads the surplus of a tile's layers, from the lowest: what has no place in one may find it in the next.
+class TileSpread {
+public:
+    TileSpread(const LayerStack& stack, const std::array<const TileSums*, 9>& around) : stack_(stack), around_(around) {
+        // A tile's first nodes have sums of the tiles before it too.
+        for (const std::size_t n : {0, 1, 3, 4})
+            layers_.insert(layers_.end(), around[n]->layers.begin(), around[n]->layers.end());
+        std::sort(layers_.begin(), layers_.end());
+        layers_.erase(std::unique(layers_.begin(), layers_.end()), layers_.end());
+        up_.resize(layers_.size());
+    }
+
+    SwellTile spread() {
+        SwellTile tile;
+        for (std::size_t number = 0; number < layers_.size(); ++number) {
+            SwellTile::Layer swell = spreadLayer(number);
+            if (swell.out.empty() && swell.rise.empty() && swell.open.empty()) continue;
+            tile.layers.push_back(layers_[number]);
+            tile.swell.push_back(std::move(swell));
+        }
+        return tile;
+    }
+
+private:
+    using Volumes = std::vector<double>;  // mm^3, of the nodes that the tile owns; empty: none
+
+    SwellTile::Layer spreadLayer(std::size_t number) {
+        const std::uint32_t layer = layers_[number];
+        const Layer& of = stack_.layers[layer];
+        const SpreadNodes nodes = gather(around_, layer);
+        const Spread spread = spreadSurplus(nodes, of.most_rise);
+        const Volumes below = takeFromBelow(layer);
+        SwellTile::Layer swell;
+        const auto set = [](std::vector<float>& values, std::size_t node, double value) {
+            if (!(value > 0)) return;
+            if (values.empty()) values.assign(SwellTile::kNodes, 0.0F);
+            values[node] = static_cast<float>(value);
+        };
         for (int j = 0; j < kTileCells; ++j)
             for (int i = 0; i < kTileCells; ++i) {
                 const std::size_t n = nodeIndex(j + kSpreadHalo, nodes.edge, i + kSpreadHalo);
-                const auto value = static_cast<float>(swellThatGains(nodes, n, given[n]));
-                swell[nodeIndex(j, kTileCells, i)] = value;
-                any |= value > 0;
+                const std::size_t own = nodeIndex(j, kTileCells, i);
+                // What comes from below takes what room the layer's own surplus has left, and the rest goes on.
+                double moves_up = std::max(static_cast<double>(spread.left[n]) + (below.empty() ? 0 : below[own]), 0.0);
+                const auto place = [&moves_up](float already, double most) {
+                    const double more = std::clamp(most - static_cast<double>(already), 0.0, moves_up);
+                    moves_up -= more;
+                    return static_cast<double>(already) + more;
+                };
+                const auto open = static_cast<double>(nodes.open[n]);
+                const double given = place(spread.given[n], static_cast<double>(nodes.gain.back()[n]));
+                const double raised = place(spread.raised[n], open * of.most_rise);
+                if (moves_up > 0) {
+                    if (up_[number].empty()) up_[number].assign(SwellTile::kNodes, 0.0);
+                    up_[number][own] = moves_up;
+                }
+                set(swell.out, own, swellThatGains(nodes, n, given));
+                if (!(open > 0)) continue;
+                set(swell.rise, own, std::min(raised / open, of.most_rise));
+                if (of.crown > 0) set(swell.open, own, openShare(layer, i, j, open));
             }
-        if (!any) continue;
-        tile.layers.push_back(layer);
-        tile.swell.push_back(swell);
+        return swell;
     }
-    return tile;
-}
+
+    // What the layers on which this one lies have left at each node.
+    Volumes takeFromBelow(std::uint32_t layer) {
+        Volumes sum;
+        const auto first = std::lower_bound(stack_.welds.begin(), stack_.welds.end(), layer,
+                                            [](const Weld& weld, std::uint32_t upper) { return weld.upper < upper; });
+        for (auto weld = first; weld != stack_.welds.end() && weld->upper == layer; ++weld) {
+            const auto lower = std::lower_bound(layers_.begin(), layers_.end(), weld->lower);
+            if (lower == layers_.end() || *lower != weld->lower) continue;
+            // Another layer that lies on the same one finds nothing.
+            const Volumes left = std::exchange(up_[static_cast<std::size_t>(lower - layers_.begin())], {});
+            if (sum.empty()) sum.resize(left.size());
+            for (std::size_t n = 0; n < left.size(); ++n) sum[n] += left[n];
+        }
+        return sum;
+    }
+
+    double openShare(std::uint32_t layer, int i, int j, double open) const {
+        double solid = 0;
+        for (const std::size_t n : {0, 1, 3, 4}) {
+            const int in_x = i + (n % 3 == 0 ? kTileCells : 0);
+            const int in_y = j + (n / 3 == 0 ? kTileCells : 0);
+            const TileSums::Layer* sums = around_[n]->of(layer);
+            if (in_x >= TileSums::kNodes || in_y >= TileSums::kNodes || sums == nullptr) continue;
+            solid += static_cast<double>(sums->solid[nodeIndex(in_y, TileSums::kNodes, in_x)]);
+        }
+        return solid > 0 ? std::min(open / solid, 1.0) : 0;
+    }
+
+    const LayerStack& stack_;
+    const std::array<const TileSums*, 9>& around_;
+    std::vector<std::uint32_t> layers_;
+    std::vector<Volumes> up_;  // what has no place, by layers_
+};
 
 }  // namespace
 
-const TileSums::Layer* TileSums::of(std::uint32_t layer) const { return find(layers, sums, layer); }
-const SwellTile::Nodes* SwellTile::of(std::uint32_t layer) const { return find(layers, swell, layer); }
+const TileSums::Layer* TileSums::of(std::uint32_t layer) const {
+    const std::unique_ptr<Layer>* found = find(layers, sums, layer);
+    return found != nullptr ? found->get() : nullptr;
+}
+const SwellTile::Layer* SwellTile::of(std::uint32_t layer) const { return find(layers, swell, layer); }
 
 void SwellField::list(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
     // Isolated: a thread that waits for its own loop must not take up work that waits for this list.
@@ -108,37 +184,49 @@ const SwellTile* SwellField::tile(const gcode::Toolpath& toolpath, const LayerSt
     if (own == nullptr) return nullptr;
     std::call_once(own->spread, [&] {
         static const TileSums kNothing;
+        std::array<Tile*, 9> tiles{};
         std::array<const TileSums*, 9> around{};
         for (int n = 0; n < 9; ++n) {
+            const auto at = static_cast<std::size_t>(n);
             const int other_x = x + n % 3 - 1;
             const int other_y = y + n / 3 - 1;
-            Tile* other = find(other_x, other_y);
-            around[static_cast<std::size_t>(n)] =
-                other == nullptr ? &kNothing : &sumsOf(toolpath, stack, *other, other_x, other_y);
+            tiles[at] = find(other_x, other_y);
+            around[at] = tiles[at] == nullptr ? &kNothing : &sumsOf(toolpath, stack, *tiles[at], other_x, other_y);
         }
-        own->swell = spreadTile(around);
+        own->swell = TileSpread(stack, around).spread();
+        // The last tile that needs the sums of another lets go of them.
+        for (std::size_t n = 0; n < tiles.size(); ++n) {
+            if (tiles[n] == nullptr) continue;
+            int neighbours = 0;
+            for (int m = 0; m < 9; ++m)
+                neighbours += find(x + static_cast<int>(n) % 3 - 1 + m % 3 - 1,
+                                   y + static_cast<int>(n) / 3 - 1 + m / 3 - 1) != nullptr;
+            if (tiles[n]->uses.fetch_add(1) + 1 == neighbours) tiles[n]->sums = {};
+        }
     });
     return &own->swell;
 }
 
-double SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x,
-                      double y) const {
+Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x,
+                     double y) const {
     const double in_x = x / kNodeSpacing;
     const double in_y = y / kNodeSpacing;
     const int i = static_cast<int>(std::floor(in_x));
     const int j = static_cast<int>(std::floor(in_y));
-    double sum = 0;
+    Swell sum;
     for (int n = 0; n < 4; ++n) {
         const int node_i = i + n % 2;
         const int node_j = j + n / 2;
         const int tile_x = floorTo(node_i, kTileCells);
         const int tile_y = floorTo(node_j, kTileCells);
         const SwellTile* from = tile(toolpath, stack, tile_x, tile_y);
-        const SwellTile::Nodes* nodes = from == nullptr ? nullptr : from->of(layer);
+        const SwellTile::Layer* nodes = from == nullptr ? nullptr : from->of(layer);
         if (nodes == nullptr) continue;
-        const int place = (node_j - tile_y * kTileCells) * kTileCells + node_i - tile_x * kTileCells;
-        sum += static_cast<double>((*nodes)[static_cast<std::size_t>(place)]) * (1 - std::abs(in_x - node_i)) *
-               (1 - std::abs(in_y - node_j));
+        const std::size_t place = nodeIndex(node_j - tile_y * kTileCells, kTileCells, node_i - tile_x * kTileCells);
+        const double weight = (1 - std::abs(in_x - node_i)) * (1 - std::abs(in_y - node_j));
+        if (!nodes->out.empty()) sum.out += weight * static_cast<double>(nodes->out[place]);
+        if (!nodes->rise.empty()) sum.rise += weight * static_cast<double>(nodes->rise[place]);
+        if (!nodes->open.empty()) sum.open += weight * static_cast<double>(nodes->open[place]);
     }
     return sum;
 }

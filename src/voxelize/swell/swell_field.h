@@ -1,20 +1,26 @@
-// Where the plastic goes that has no place in the grooves of its layer: the outlines beside it move out.
+// Where the plastic goes that has no place in the grooves of its layer: outlines move out, and tops rise.
 //
 // What neighbouring beads both claim fills the groove between them (settling.h). Where they claim more than the groove
 // holds, or cross, or end in each other, as infill does in the wall, a surplus is left: what was fed less what the
-// layer holds. The nozzle presses it sideways, into open grooves, slits and free edges nearby. Here a layer's plan
-// distance u becomes u - swell, with a swell (mm, 0 .. kMostSwell) that is bilinear between nodes kNodeSpacing apart:
-//   1. Sums over each node's tent (the bilinear weight of a node): what was fed, by the beads' exact volumes along
-//   their
-//      paths; what the layer holds, and what it gains if its outlines move out by a third, two thirds and all of
-//      kMostSwell, by kColumnSamples points of a lattice rule in each square of two by two cells.
+// layer holds. The nozzle presses it sideways, into open grooves, slits and free edges nearby; what finds no room there
+// stands up beside the nozzle, if no other layer lies on it.
+// A layer's plan distance u becomes u - swell, and what is above its center plane is moved up by the rise (mm). Both
+// are bilinear between nodes kNodeSpacing apart:
+//   1. Sums over each node's tent (the bilinear weight of a node), by kColumnSamples points of a lattice rule in each
+//      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds;
+//      what it gains if its outlines move out by a third, two thirds and all of kMostSwell; and the area of its top, as
+//      far as no layer is welded to it from above.
 //   2. Each node's surplus is given to the nodes within kNear cells, in proportion to a tent and to what they can gain.
-//      What is more than they can gain goes on to those within kFar cells; what is left then has no place.
-//   3. At each node the swell is the one that gains what the node was given.
-// The same tents weigh the gain and interpolate the swell, so the volume is kept to the second order of its changes.
+//   3. What is left raises the open tops within kUp cells, by Layer::most_rise at most.
+//   4. What is left then goes to what can gain within kFar cells. The rest moves up at its node, from layer to welded
+//      layer, into what can gain there, until it raises an open top. What that cannot take has no place.
+//   5. At each node the swell is the one that gains what the node was given, and the rise is the volume over the area.
+// The same tents weigh gain and area and interpolate swell and rise, so the volume is kept to the second order of their
+// changes.
 //
 // The result depends on the toolpath alone, not on a voxel lattice. It is local: at a point it depends on beads within
-// 2 (kNear + kFar) + 1 cells and their widths. Tiles of it are made when they are first asked for.
+// kSpreadHalo + 1 cells and their widths, in its layer and in those that it lies on. Tiles of it are made when they are
+// first asked for.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
@@ -22,6 +28,7 @@
 #include "voxelize/beads/plan_bins.h"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,53 +38,80 @@
 namespace stratum::voxelize {
 
 constexpr double kNodeSpacing = 0.4;  ///< mm
-constexpr int kTileCells = 16;        ///< along the edge of a tile
-constexpr int kNear = 2;              ///< cells: about two widths of a line
-constexpr int kFar = 4;               ///< cells
+/// Along the edge of a tile. A tile's halo is computed with it: larger ones compute less twice, and a brick waits
+/// longer.
+constexpr int kTileCells = 32;
+constexpr int kNear = 2;  ///< cells: about two widths of a line
+constexpr int kUp = 1;    ///< cells
+constexpr int kFar = 4;   ///< cells
 
 /// Of a node, in rows of `width` nodes.
 constexpr std::size_t nodeIndex(int row, int width, int column) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
 }
 
-/// What a tile of one layer holds, by its 17 x 17 nodes: sums over the tile's own cells, mm^3.
+/// What a tile of one layer holds, by its kTileCells + 1 nodes along each edge: sums over the tile's own cells.
 struct TileSums {
     static constexpr int kNodes = kTileCells + 1;
     static constexpr int kLevels = 3;
     using Nodes = std::array<float, std::size_t{kNodes} * kNodes>;
     struct Layer {
-        Nodes surplus{};                    ///< fed less held
-        std::array<Nodes, kLevels> gain{};  ///< where outlines move out by (n + 1) / kLevels of kMostSwell
+        Nodes surplus{};                    ///< mm^3, fed less held
+        std::array<Nodes, kLevels> gain{};  ///< mm^3, where outlines move out by (n + 1) / kLevels of kMostSwell
+        Nodes solid{};                      ///< mm^2 of the plan with plastic; only with crowns
+        Nodes open{};                       ///< mm^2 of it with no layer welded to it from above
     };
-    std::vector<std::uint32_t> layers;  ///< indices into LayerStack::layers, ascending
-    std::vector<Layer> sums;            ///< in the same order
+    std::vector<std::uint32_t> layers;         ///< indices into LayerStack::layers, ascending
+    std::vector<std::unique_ptr<Layer>> sums;  ///< in the same order
 
     const Layer* of(std::uint32_t layer) const;
 };
 
-/// The swell of a tile, mm, by the 16 x 16 nodes that it owns. Layers without any are left out.
-struct SwellTile {
-    using Nodes = std::array<float, std::size_t{kTileCells} * kTileCells>;
-    std::vector<std::uint32_t> layers;  ///< ascending
-    std::vector<Nodes> swell;           ///< in the same order
-
-    const Nodes* of(std::uint32_t layer) const;
+/// What becomes of a layer at a node or a point.
+struct Swell {
+    double out = 0;   ///< mm, by which outlines move out
+    double rise = 0;  ///< mm, by which the top is raised
+    double open = 0;  ///< the share of the plastic that has nothing on it; only with crowns
 };
+
+/// Swell of a tile by the nodes that it owns, kTileCells along each edge. Layers without any are left out.
+struct SwellTile {
+    static constexpr std::size_t kNodes = std::size_t{kTileCells} * kTileCells;
+    /// As Swell has them, by node; empty where all are 0.
+    struct Layer {
+        std::vector<float> out, rise, open;
+        bool operator==(const Layer&) const = default;
+    };
+    std::vector<std::uint32_t> layers;  ///< ascending
+    std::vector<Layer> swell;           ///< in the same order
+
+    const Layer* of(std::uint32_t layer) const;
+};
+
+/// mm by which a crown lowers the top of a layer: `d` is the distance from the flat of the nearest bead (mm), before
+/// grooves are filled. A parabola that begins a corner radius within the flat; the whole crown at the end of the
+/// section.
+template <typename Number>
+Number crownDepth(Number crown, Number radius, Number d) {
+    const Number across = (d < radius ? (d > -radius ? d : -radius) : radius) + radius;
+    return crown * across * across / (4 * radius * radius);
+}
 
 /// Swell tiles of a print, made on demand. Shared by all threads.
 class SwellField {
 public:
-    /// The tile that owns the nodes 16 x .. 16 x + 15 along each axis, node 0 at the origin; null if no bead is near.
-    /// `toolpath` and `stack` are the same at each call, and the field belongs to that stack.
+    /// The tile that owns the nodes from kTileCells x on along each axis, node 0 at the origin; null if no bead is
+    /// near. `toolpath` and `stack` are the same at each call, and the field belongs to that stack.
     const SwellTile* tile(const gcode::Toolpath& toolpath, const LayerStack& stack, int x, int y) const;
 
-    /// At a point of the plan (mm), mm. Slow: for tests and measurements.
-    double at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x, double y) const;
+    /// At a point of the plan (mm). Slow: for tests and measurements.
+    Swell at(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t layer, double x, double y) const;
 
 private:
     struct Tile {
         std::once_flag summed, spread;
-        TileSums sums;
+        TileSums sums;              // until the tile and those around it are spread
+        std::atomic<int> uses = 0;  // how many of those are
         SwellTile swell;
     };
     void list(const gcode::Toolpath& toolpath, const LayerStack& stack) const;

@@ -1,11 +1,13 @@
 #include "voxelize/swell/tile_sums.h"
 
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/swell/open_top.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -17,7 +19,7 @@ constexpr int kColumnCells = 2;
 constexpr int kTileColumns = kTileCells / kColumnCells;
 constexpr int kColumnNodes = kColumnCells + 1;
 
-using Layers = std::map<std::uint32_t, TileSums::Layer>;
+using Layers = std::map<std::uint32_t, std::unique_ptr<TileSums::Layer>>;
 // The weights of a column's nodes at its points.
 using Weights = std::array<PlanField, std::size_t{kColumnNodes} * kColumnNodes>;
 
@@ -44,7 +46,8 @@ public:
     ColumnSums()
         : points_(ColumnGrid::spread(static_cast<float>(cellLattice().voxel_size))), weights_(columnWeights(points_)) {}
 
-    void add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
+    // Returns the points with plastic, bit c for point c.
+    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(2 * layer.half_side);
         float least = std::numeric_limits<float>::max();
@@ -54,28 +57,49 @@ public:
             most = std::max(most, side2);
         }
         const float reach = radius + static_cast<float>(kMostSwell);
-        if (least >= reach * reach) return;
+        if (least >= reach * reach) return 0;
         PlanField held;
-        const auto thicknessAt = [&](float swell) {
-            for (std::size_t c = 0; c < kColumnSamples; ++c) {
-                const float side = std::max(std::sqrt(sides2.v[c]) - swell, 0.0F);
-                const float half2 = radius * radius - side * side;
-                held.v[c] = half2 > 0 ? straight + 2 * std::sqrt(half2) : 0;
-            }
-        };
+        const auto thicknessAt = [&](float swell) { sectionThickness(sides2, swell, radius, straight, held); };
         thicknessAt(0);
         addTo(held, -1, first_node, sums.surplus);
         // Flats all over gain nothing.
-        if (!(most > 0)) return;
+        if (!(most > 0)) return kAllPoints;
+        std::uint64_t solid = 0;
+        for (std::size_t c = 0; c < kColumnSamples; ++c) solid |= std::uint64_t{held.v[c] > 0} << c;
         const PlanField before = held;
         for (int level = 0; level < TileSums::kLevels; ++level) {
             thicknessAt(static_cast<float>(kMostSwell * (level + 1) / TileSums::kLevels));
             for (std::size_t c = 0; c < kColumnSamples; ++c) held.v[c] -= before.v[c];
             addTo(held, 1, first_node, sums.gain[static_cast<std::size_t>(level)]);
         }
+        return solid;
     }
 
-    const ColumnGrid& points() const { return points_; }
+    // The area under those points.
+    void addArea(std::uint64_t points, int first_node, TileSums::Nodes& nodes) const {
+        if (points == 0) return;
+        PlanField ones;
+        for (std::size_t c = 0; c < kColumnSamples; ++c) ones.v[c] = points >> c & 1 ? 1.0F : 0.0F;
+        addTo(ones, 1, first_node, nodes);
+    }
+
+    // What the crown takes from those points is left over.
+    void addCrown(const Layer& layer, const PlanField& nearest, const PlanField& sides2, std::uint64_t points,
+                  int first_node, TileSums::Nodes& surplus) const {
+        const auto crown = static_cast<float>(layer.crown);
+        const auto radius = static_cast<float>(layer.radius);
+        const auto straight = static_cast<float>(layer.half_side);
+        PlanField taken;
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const float above = straight + std::sqrt(std::max(radius * radius - sides2.v[c], 0.0F));
+            // The upper half loses no more than half of it: see PlaneTerm::rise.
+            const float depth = std::min(crownDepth(crown, radius, nearest.v[c]), 0.5F * above);
+            taken.v[c] = points >> c & 1 ? depth : 0.0F;
+        }
+        addTo(taken, 1, first_node, surplus);
+    }
+
+    static constexpr std::uint64_t kAllPoints = ~std::uint64_t{0};
 
 private:
     void addTo(const PlanField& held, float sign, int first_node, TileSums::Nodes& nodes) const {
@@ -226,6 +250,18 @@ private:
     const int first_x_, first_y_;  // nodes
 };
 
+TileSums::Layer& sumsOf(Layers& layers, std::uint32_t layer) {
+    std::unique_ptr<TileSums::Layer>& sums = layers[layer];
+    if (sums == nullptr) sums = std::make_unique<TileSums::Layer>();
+    return *sums;
+}
+
+// Of a top in a column.
+struct TopFields {
+    TileSums::Layer* sums = nullptr;
+    PlanField sides2, nearest;  // only with a crown
+};
+
 }  // namespace
 
 Lattice cellLattice() {
@@ -241,6 +277,8 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
     LeafColumn column(toolpath, stack, lattice, LeafColumn::Points::spread_without_swell);
     Layers layers;
     std::vector<std::uint32_t> ranks;
+    std::vector<OpenTop> tops;
+    std::vector<TopFields> fields;
     const int first_i = bins.originI(0) / kLeafDim;
     const int first_j = bins.originJ(0) / kLeafDim;
     for (int cj = 0; cj < kTileColumns; ++cj)
@@ -254,19 +292,39 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
             column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
             const int first_node = kColumnCells * (cj * kNodes + ci);
-            column.forEachSides([&](std::uint32_t layer, const PlanField& sides2) {
-                kSums.add(stack.layers[layer], sides2, first_node, layers[layer]);
+            tops.clear();
+            fields.clear();
+            column.forEachSides([&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
+                const Layer& of = stack.layers[layer];
+                TileSums::Layer& sums = sumsOf(layers, layer);
+                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums);
+                if (solid == 0) return;
+                addTop(layer, solid, tops);
+                TopFields& top = fields.emplace_back();
+                top.sums = &sums;
+                if (!(of.crown > 0)) return;
+                kSums.addArea(solid, first_node, sums.solid);
+                top.sides2 = sides2;
+                top.nearest = nearest;
             });
+            coverTops(stack, tops);
+            for (std::size_t n = 0; n < tops.size(); ++n) {
+                const TopFields& top = fields[n];
+                kSums.addArea(tops[n].open, first_node, top.sums->open);
+                const Layer& of = stack.layers[tops[n].layer];
+                if (of.crown > 0 && tops[n].open != 0)
+                    kSums.addCrown(of, top.nearest, top.sides2, tops[n].open, first_node, top.sums->surplus);
+            }
         }
     std::sort(ranks.begin(), ranks.end());
     ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
     const Feeder feeder(toolpath, stack, x, y);
     for (const std::uint32_t rank : ranks)
-        if (rank < stack.first_direct) feeder.feed(rank, layers[stack.layer[rank]]);
+        if (rank < stack.first_direct) feeder.feed(rank, sumsOf(layers, stack.layer[rank]));
     TileSums tile;
     for (auto& [layer, sums] : layers) {
         tile.layers.push_back(layer);
-        tile.sums.push_back(sums);
+        tile.sums.push_back(std::move(sums));
     }
     return tile;
 }

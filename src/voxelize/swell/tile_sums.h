@@ -8,7 +8,7 @@ namespace stratum::voxelize {
 /// The lattice whose leaf columns are squares of two by two cells.
 Lattice cellLattice();
 
-/// Of the tile from node (16 x, 16 y). `bins`: of cellLattice().
+/// Of the tile from node (kTileCells x, kTileCells y). `bins`: of cellLattice().
 TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins, int x, int y);
 
 }  // namespace stratum::voxelize

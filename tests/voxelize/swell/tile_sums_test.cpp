@@ -26,9 +26,9 @@ Totals totalsOf(gcode::Toolpath& toolpath) {
     for (int y = -4; y <= 4; ++y)
         for (int x = -4; x <= 4; ++x) {
             const TileSums tile = sumTile(toolpath, stack, bins, x, y);
-            for (const TileSums::Layer& layer : tile.sums) {
-                for (const float value : layer.surplus) totals.surplus += static_cast<double>(value);
-                for (const float value : layer.gain.back()) totals.gain += static_cast<double>(value);
+            for (const auto& layer : tile.sums) {
+                for (const float value : layer->surplus) totals.surplus += static_cast<double>(value);
+                for (const float value : layer->gain.back()) totals.gain += static_cast<double>(value);
             }
         }
     return totals;

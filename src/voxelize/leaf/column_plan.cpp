@@ -1,0 +1,44 @@
+// The part of LeafColumn that measures: one layer over the open column, by plan.
+#include "voxelize/leaf/leaf_column.h"
+
+namespace stratum::voxelize {
+
+LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    gatherPaths(source, true);
+    line_ids_.insert(line_ids_.end(), taper_ids_.begin(), taper_ids_.end());
+    line_ids_.insert(line_ids_.end(), arc_ids_.begin(), arc_ids_.end());
+    near_.clear();
+    for (const LocalLine& line : lines_) planOfLine(grid_, line, near_.emplace_back());
+    for (const LocalTaper& taper : tapers_) planOfTaper(grid_, taper, near_.emplace_back());
+    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
+    minimumOfPaths(d_, nullptr);
+    if (with_swell_ && layer.crown > 0) nearest_ = d_;
+    if (layer.settling != nullptr)
+        fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
+    else
+        squaredSides(d_, sides2_);
+    swollen_ = sides2_;
+    if (with_swell_) findSwell(source.layer);
+    const bool swells = with_swell_ && swell(d_, swollen_);
+    const bool rises = with_swell_ && raise(layer, nearest_, rise_);
+    return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr, rises ? &rise_ : nullptr};
+}
+
+const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
+    const Layer& layer = stack_.layers[source.layer];
+    gatherPaths(source, false);
+    minimumOfPaths(d_, nullptr);
+    if (layer.crown > 0) nearest_ = d_;
+    if (layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1)
+        settle(*layer.settling, layer.radius, d_, sides2_);
+    else
+        squaredSides(d_, sides2_);
+    if (with_swell_) {
+        findSwell(source.layer);
+        swell(d_, sides2_);
+    }
+    return d_;
+}
+
+}  // namespace stratum::voxelize
