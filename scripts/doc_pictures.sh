@@ -78,6 +78,48 @@ for camera in "--eye 94,88,16 --look-at 101,97,2.4" "--eye 118,88,10 --look-at 1
     done
 done
 tiles deposit 4 data/gcode/tile.gcode "${pairs[@]}"
+# What photographs of extrusion tests show: flow, pressure advance, narrow infill. Sliced here: needs OpenSCAD and PrusaSlicer.
+if asked plastic; then
+    install_packages openscad prusa-slicer
+    rm -f "$work"/*.png
+    sliced() { # NAME SCAD PERIMETERS
+        printf '%s\n' "$2" >"$work/$1.scad"
+        openscad -q -o "$work/$1.stl" "$work/$1.scad"
+        prusa-slicer --export-gcode "$work/$1.stl" -o "$work/$1.gcode" --layer-height 0.2 --perimeters "$3" \
+            --extrusion-width 0.45 --external-perimeter-extrusion-width 0.45 --top-infill-extrusion-width 0.4 \
+            --fill-density 40% --top-solid-layers 5 --nozzle-diameter 0.4 --filament-diameter 1.75 --skirts 0 \
+            --center 100,100 >/dev/null
+    }
+    sliced cube 'cube([30, 30, 3]);' 3
+    sliced bars 'cube([34, 3.2, 3]); translate([0, 6, 0]) cube([34, 2.2, 3]); translate([0, 12, 0]) cube([34, 4.4, 3]);' 2
+    # Lines whose middle is printed fast, with an advance from 0 to twice the lag.
+    {
+        printf 'M83\nM204 S2000\nG1 Z0.2 F6000\n'
+        for n in 0 1 2 3 4 5 6; do
+            printf 'M900 K%s\nG0 X85 Y%d F9000\n;TYPE:External perimeter\n;WIDTH:0.45\n;HEIGHT:0.2\n' \
+                "$(awk "BEGIN { print 0.08 * $n / 6 }")" $((90 + 3 * n))
+            printf 'G1 X95 E0.3386 F1200\nG1 X115 E0.6772 F6000\nG1 X125 E0.3386 F1200\n'
+        done
+    } >"$work/pattern.gcode"
+    shot() { # NAME FILE OPTION...
+        "$bin/vdbtrace" "$work/$2.gcode" --size 400x300 --spp 64 --brdf plastic:0.03,0.17,0.34,0.25 "${@:3}" -o "$work/$1.png"
+    }
+    behind=(--env sky:18,60)
+    aside=(--env sky:22,250)
+    for flow in 90 95 100 105; do
+        shot "1_$(printf %03d "$flow")" cube --printer typical --flow "$flow" "${behind[@]}" --eye 100,62,22 --look-at 100,94,3 --fov 24
+    done
+    for advance in 0 0.04 0.08; do
+        shot "2_$advance" cube --printer typical --flow-lag 0.04 --pressure-advance "$advance" "${aside[@]}" \
+            --eye 78,74,16 --look-at 86.5,86.5,1.6 --fov 20
+    done
+    shot 2_pattern pattern --beads settled --crown 0.2 --flow-lag 0.04 "${aside[@]}" --view top
+    for flow in 100 105; do
+        shot "3_$flow" bars --printer typical --flow "$flow" "${behind[@]}" --eye 93,84,14 --look-at 97,99.5,3 --fov 24
+        shot "4_$flow" cube --printer typical --flow "$flow" "${behind[@]}" --eye 96,80,9 --look-at 98,87.2,3 --fov 24
+    done
+    montage "$work"/[1-4]_*.png -tile 4x -geometry +2+2 "$out/plastic.png"
+fi
 shown=(--size 640x480)
 picture gallery_gear data/gcode/gear.gcode "${shown[@]}" --brdf pla-yellow
 picture tutorial_feature data/gcode/gear.gcode --size 800x600 --printed 50% --color-by feature --legend

@@ -38,6 +38,7 @@ gcode::DepositModel settledWith(double corner_fraction) {
     gcode::DepositModel deposit;
     deposit.beads = gcode::DepositModel::Beads::settled;
     deposit.corner_fraction = corner_fraction;
+    deposit.crown = 0.2;
     return deposit;
 }
 const gcode::DepositModel kSettled = settledWith(1);

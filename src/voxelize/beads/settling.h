@@ -60,8 +60,8 @@ constexpr double kMostSwell = 0.1;
 constexpr double kMostRise = 0.1;
 
 /// Outside the solid no slope of a settled field is larger: at most 2.82 as measured on real prints, in turns (above
-/// 1.05 at about one point in 1000), and 0.35 of a swell. Sphere tracing must divide its steps by it. Between
+/// 1.05 at about one point in 1000), and 0.53 of a swell. Sphere tracing must divide its steps by it. Between
 /// parallel beads the slope is 1.
-constexpr double kSettledSlope = 3.2;
+constexpr double kSettledSlope = 3.4;
 
 }  // namespace stratum::voxelize

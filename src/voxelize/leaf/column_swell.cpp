@@ -33,8 +33,8 @@ void LeafColumn::placeSwell() {
         const int i = std::clamp(static_cast<int>(x), 0, nodes_i_ - 2);
         const int j = std::clamp(static_cast<int>(y), 0, nodes_j_ - 2);
         swell_node_[c] = static_cast<std::uint32_t>(nodeIndex(j, nodes_i_, i));
-        swell_x_.v[c] = static_cast<float>(x - i);
-        swell_y_.v[c] = static_cast<float>(y - j);
+        swell_x_.v[c] = nodeShare(std::clamp(static_cast<float>(x - i), 0.0F, 1.0F));
+        swell_y_.v[c] = nodeShare(std::clamp(static_cast<float>(y - j), 0.0F, 1.0F));
     }
 }
 

@@ -213,7 +213,7 @@ private:
     std::vector<SwellSource> swell_sources_;
     std::vector<float> swell_nodes_, open_nodes_;
     std::uint32_t swell_node_[kColumnSamples];  // of each sample, the place of the node below it
-    PlanField swell_x_, swell_y_;               // and how far it is from that node, in node spacings
+    PlanField swell_x_, swell_y_;               // and nodeShare() of the next one
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

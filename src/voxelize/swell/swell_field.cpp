@@ -223,7 +223,7 @@ Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, s
         const SwellTile::Layer* nodes = from == nullptr ? nullptr : from->of(layer);
         if (nodes == nullptr) continue;
         const std::size_t place = nodeIndex(node_j - tile_y * kTileCells, kTileCells, node_i - tile_x * kTileCells);
-        const double weight = (1 - std::abs(in_x - node_i)) * (1 - std::abs(in_y - node_j));
+        const double weight = nodeShare(1 - std::abs(in_x - node_i)) * nodeShare(1 - std::abs(in_y - node_j));
         if (!nodes->out.empty()) sum.out += weight * static_cast<double>(nodes->out[place]);
         if (!nodes->rise.empty()) sum.rise += weight * static_cast<double>(nodes->rise[place]);
         if (!nodes->open.empty()) sum.open += weight * static_cast<double>(nodes->open[place]);

@@ -5,8 +5,8 @@
 // layer holds. The nozzle presses it sideways, into open grooves, slits and free edges nearby; what finds no room there
 // stands up beside the nozzle, if no other layer lies on it.
 // A layer's plan distance u becomes u - swell, and what is above its center plane is moved up by the rise (mm). Both
-// are bilinear between nodes kNodeSpacing apart:
-//   1. Sums over each node's tent (the bilinear weight of a node), by kColumnSamples points of a lattice rule in each
+// are interpolated between nodes kNodeSpacing apart, by nodeShare() along each axis:
+//   1. Sums over each node's tent (its weight in that), by kColumnSamples points of a lattice rule in each
 //      square of two by two cells: what was fed, by the beads' exact volumes along their paths; what the layer holds;
 //      what it gains if its outlines move out by a third, two thirds and all of kMostSwell; and the area of its top, as
 //      far as no layer is welded to it from above.
@@ -44,6 +44,12 @@ constexpr int kTileCells = 32;
 constexpr int kNear = 2;  ///< cells: about two widths of a line
 constexpr int kUp = 1;    ///< cells
 constexpr int kFar = 4;   ///< cells
+
+/// The share of the second of two nodes at `t`, 0 .. 1, of the way from the first: without creases at the nodes.
+template <typename Number>
+constexpr Number nodeShare(Number t) {
+    return t * t * (3 - 2 * t);
+}
 
 /// Of a node, in rows of `width` nodes.
 constexpr std::size_t nodeIndex(int row, int width, int column) {

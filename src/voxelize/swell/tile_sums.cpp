@@ -33,8 +33,8 @@ Weights columnWeights(const ColumnGrid& points) {
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (static_cast<double>(points.qx.v[c]) - shift) / kNodeSpacing + 1;
             const double y = (static_cast<double>(points.qy.v[c]) - shift) / kNodeSpacing + 1;
-            weights[static_cast<std::size_t>(node)].v[c] =
-                static_cast<float>(std::max(1 - std::abs(x - column), 0.0) * std::max(1 - std::abs(y - row), 0.0));
+            weights[static_cast<std::size_t>(node)].v[c] = static_cast<float>(
+                nodeShare(std::max(1 - std::abs(x - column), 0.0)) * nodeShare(std::max(1 - std::abs(y - row), 0.0)));
         }
     }
     return weights;
@@ -236,8 +236,8 @@ private:
         if (!(in_x >= 0 && in_x < kTileCells && in_y >= 0 && in_y < kTileCells)) return;
         const int i = static_cast<int>(in_x);
         const int j = static_cast<int>(in_y);
-        const double fx = in_x - i;
-        const double fy = in_y - j;
+        const double fx = nodeShare(in_x - i);
+        const double fy = nodeShare(in_y - j);
         const std::size_t at = nodeIndex(j, kNodes, i);
         nodes[at] += static_cast<float>(volume * (1 - fx) * (1 - fy));
         nodes[at + 1] += static_cast<float>(volume * fx * (1 - fy));

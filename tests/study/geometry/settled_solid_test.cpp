@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace stratum::study {
 namespace {
@@ -60,29 +61,51 @@ TEST(SettledSolid, KeepsTheVolumeOfLinesSideBySide) {
     EXPECT_LT(area, lines * 1.09);
 }
 
-TEST(SettledSolid, IsWhatTheVoxelizerMakes) {
-    openvdb::initialize();
+// Layers 2 to 4, whose tops are open where the hull narrows.
+gcode::Toolpath openTops(double crown, double corner_fraction) {
     gcode::Toolpath toolpath = readPrint((test::dataDir() / "gcode" / "hull.gcode").string());
     toolpath.deposit.beads = gcode::DepositModel::Beads::settled;
-    voxelize::Selection selection;
-    voxelize::parseLayers("2:4", selection);
-    std::vector<std::uint32_t> beads;
-    for (const std::uint32_t bead : voxelize::selectBeads(toolpath, selection))
-        if (toolpath.beads[bead].z0 == toolpath.beads[bead].z1) beads.push_back(bead);
-    const SettledSolid solid(toolpath, beads, 0.3);
-    const voxelize::Lattice lattice = latticeOf(toolpath, beads, 4);
-    const auto grid = voxelize::voxelize(toolpath, beads, lattice);
-    std::size_t seen = 0;
-    std::size_t number = 0;
-    for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
-        if (number++ % 997 != 0) continue;
-        const openvdb::Vec3d p = grid->indexToWorld(voxel.getCoord());
-        const double expected = solid.distance({p[0], p[1], p[2]});
-        if (expected <= 1e-6 || expected > 0.1) continue;
-        ++seen;
-        EXPECT_NEAR(static_cast<double>(*voxel), expected, 2e-5);
+    toolpath.deposit.crown = crown;
+    toolpath.deposit.corner_fraction = corner_fraction;
+    return toolpath;
+}
+
+TEST(SettledSolid, IsWhatTheVoxelizerMakes) {
+    openvdb::initialize();
+    for (const auto& [crown, corner_fraction] : {std::pair{0.0, 1.0}, std::pair{0.2, 1.0}, std::pair{0.3, 0.6}}) {
+        const gcode::Toolpath toolpath = openTops(crown, corner_fraction);
+        voxelize::Selection selection;
+        voxelize::parseLayers("2:4", selection);
+        std::vector<std::uint32_t> beads;
+        for (const std::uint32_t bead : voxelize::selectBeads(toolpath, selection))
+            if (toolpath.beads[bead].z0 == toolpath.beads[bead].z1) beads.push_back(bead);
+        const SettledSolid solid(toolpath, beads, 0.3);
+        const voxelize::Lattice lattice = latticeOf(toolpath, beads, 4);
+        const auto grid = voxelize::voxelize(toolpath, beads, lattice);
+        std::size_t seen = 0;
+        std::size_t above = 0;  // the plane of the flats
+        std::size_t number = 0;
+        for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
+            if (number++ % 499 != 0) continue;
+            const openvdb::Vec3d at = grid->indexToWorld(voxel.getCoord());
+            const glm::dvec3 p(at[0], at[1], at[2]);
+            const double expected = solid.distance(p);
+            if (expected <= 1e-6 || expected > 0.1) continue;
+            ++seen;
+            above += p.z > 0.8 ? 1 : 0;
+            EXPECT_NEAR(static_cast<double>(*voxel), expected, 2e-5) << crown;
+            constexpr double kStep = 1e-5;  // mm
+            glm::dvec3 slope;
+            for (int axis = 0; axis < 3; ++axis) {
+                glm::dvec3 step(0);
+                step[axis] = kStep;
+                slope[axis] = (solid.distance(p + step) - solid.distance(p - step)) / (2 * kStep);
+            }
+            EXPECT_LT(glm::length(slope), solid.slope()) << crown;
+        }
+        EXPECT_GT(seen, 400U);
+        EXPECT_GT(above, 100U);
     }
-    EXPECT_GT(seen, 200U);
 }
 
 // As many by area everywhere: a single bead's flats, sides and ends have theirs.

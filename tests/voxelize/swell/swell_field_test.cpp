@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -148,6 +149,74 @@ TEST(SwellField, TwoLayersHoldWhatTheyWereFedAtEverySpacing) {
     }
 }
 
+// A square of three walls, filled by a zigzag at 45 degrees that overlaps the innermost wall by a quarter of a width,
+// in three layers; `flow` multiplies the area of all beads.
+gcode::Toolpath cube(double flow) {
+    constexpr double kHalf = 8;
+    const double width = kWidth + (flow - 1) * gcode::sectionArea(kWidth, kHeight) / kHeight;
+    const double step = kWidth - kHeight * (1 - 0.25 * std::numbers::pi);
+    const double diagonal = std::sqrt(0.5);
+    gcode::Toolpath toolpath;
+    for (int layer = 1; layer <= 3; ++layer) {
+        const auto number = static_cast<std::uint32_t>(layer);
+        const double z = layer * kHeight;
+        const auto add = [&](double x0, double y0, double x1, double y1) {
+            test::addBead(toolpath, x0, y0, z, x1, y1, z, width, kHeight, number);
+        };
+        for (int wall = 0; wall < 3; ++wall) {
+            const double at = kHalf - wall * step;
+            add(-at, -at, at, -at);
+            add(at, -at, at, at);
+            add(at, at, -at, at);
+            add(-at, at, -at, -at);
+        }
+        const double inner = kHalf - 3 * step + 0.25 * kWidth;
+        const double turn = layer % 2 == 0 ? 1 : -1;
+        int line = 0;
+        double last[2] = {};
+        for (double across = 0.5 * step - 2 * inner; across < 2 * inner; across += step) {
+            // Of the line x + y = sqrt(2) across, the part within the square.
+            const double sum = across / diagonal;
+            const double low = std::max(-inner, sum - inner);
+            const double high = std::min(inner, sum + inner);
+            if (high - low < 0.5) continue;
+            const double from = line % 2 == 0 ? low : high;
+            const double to = line % 2 == 0 ? high : low;
+            if (line++ > 0) add(last[0], last[1], from, turn * (sum - from));
+            add(from, turn * (sum - from), to, turn * (sum - to));
+            last[0] = to;
+            last[1] = turn * (sum - to);
+        }
+    }
+    return toolpath;
+}
+
+// What photographs of extrusion tests show: gaps at 0.9, a seam that stands up at 1, ridges at 1.05 and more.
+TEST(SwellField, TheSeamOfInfillAndWallRisesWithTheFlow) {
+    double before = -1;
+    for (const double flow : {0.9, 0.95, 1.0, 1.05, 1.1}) {
+        gcode::Toolpath toolpath = cube(flow);
+        toolpath.deposit.beads = DepositModel::Beads::settled;
+        const LayerStack stack = stackLayers(toolpath, test::allBeads(toolpath));
+        double sum = 0;
+        int count = 0;
+        for (double along = -5; along < 5; along += 0.05)
+            for (double in = 6.3; in < 7.0; in += 0.05)
+                for (const auto& [x, y] : {std::pair{along, in}, {along, -in}, {in, along}, {-in, along}}) {
+                    sum += stack.swell->at(toolpath, stack, 2, x, y).rise;
+                    ++count;
+                }
+        const double mean = 1e3 * sum / count;
+        std::printf("  flow %.2f: the seam stands %.1f um high\n", flow, mean);
+        EXPECT_GT(mean, before) << flow;
+        if (flow == 1) {
+            EXPECT_GT(mean, 5);
+            EXPECT_LT(mean, 40);
+        }
+        before = mean;
+    }
+}
+
 // Crowns take nothing from the volume, and stand on tops alone.
 TEST(SwellField, CrownsKeepTheVolume) {
     for (const double spacing : {0.97, 1.0, 1.03}) {
@@ -226,7 +295,7 @@ TEST(SwellField, IsBoundedAndGentle) {
         }
     EXPECT_NEAR(most, kMostSwell, 1e-6);
     EXPECT_NEAR(highest, std::min(kMostRise, kHeight / 2), 1e-6);
-    EXPECT_LE(steepest, std::sqrt(2.0) * kMostSwell / kNodeSpacing * (1 + 1e-3));
+    EXPECT_LE(steepest, 1.5 * std::sqrt(2.0) * kMostSwell / kNodeSpacing * (1 + 1e-3));
 }
 
 TEST(SwellField, DoesNotDependOnTheOrderOfItsTiles) {
