@@ -23,14 +23,16 @@ constexpr std::array kNumbers{
     Definition{"deposited_volume", kVolume, "Deposited volume", "mm^3",
                "What was fed: the sum of all beads, section area times length. Overlaps count twice."},
     Definition{"plastic_volume", kVolume, "Plastic volume", "mm^3",
-               "Where the level set is negative: the union of the beads."},
+               "The union of the beads: of level ones from the layers' plans, the same for every voxel size, and the "
+               "sloped ones whole; of the level set where more than 1 % of the plastic is sloped."},
     Definition{
         "enclosed_volume", kVolume, "Enclosed volume", "mm^3",
         "Plastic and pores: the outer hull, filled. The outside is what a ball reaches from around the part whose "
-        "radius is half a voxel, or 0.15 layer heights if that is more, and three voxels around it: grooves "
-        "between layers are outside, gaps too narrow for the ball are pores."},
+        "radius is half the height of a layer (half a voxel if that is more, and at most what the band of the level "
+        "set tells), and the grooves that it touches: grooves between layers are outside, gaps too narrow for the "
+        "ball are pores."},
     Definition{"porosity", kVolume, "Porosity", "%",
-               "Pores as a share of the enclosed volume; infill's hollows are pores."},
+               "What of the enclosed volume is not plastic; infill's hollows are pores."},
     Definition{"open_porosity", kVolume, "Open porosity", "%",
                "Pores that are joined to the outside by gaps of any width that the voxels resolve, as a share of the "
                "enclosed volume. Channels between beads join most of them: a print is not airtight."},

@@ -110,7 +110,8 @@ TEST(PrintReport, InertiaOfATube) {
     EXPECT_NEAR(numberOf(report, "mass"), mass, 1e-9);
     EXPECT_NEAR(numberOf(report, "cost"), mass * 1e-3 * 20, 1e-9);
     const auto& heavy = std::get<Matrix3>(report.find("inertia")->value);
-    EXPECT_NEAR(heavy[2][2], 1.25e-3 * inertia[2][2], 1e-9 * heavy[2][2]);
+    // Of the mass that was fed, spread evenly in the measured solid.
+    EXPECT_NEAR(heavy[2][2], 1.25e-3 * inertia[2][2], 1e-3 * heavy[2][2]);
     // Open above and below: no pores but what the grooves are deeper than three voxels.
     EXPECT_LT(numberOf(report, "porosity"), 0.5);
     EXPECT_NEAR(numberOf(report, "thinnest_wall"), tube.width, 0.01);

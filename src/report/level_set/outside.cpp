@@ -234,7 +234,10 @@ voxelize::Neighbourhood around(const LeafMap& map, std::size_t n, const std::vec
 
 Outside::Outside(const LeafMap& map, double clearance, double voxel, double background) {
     clearance = std::min(clearance, background - 0.5 * voxel);
-    const int steps = std::max(voxelize::ExteriorRule{}.depth, static_cast<int>(std::ceil(clearance / voxel)) + 1);
+    // From where the ball's middle can be into the bottom of a groove between two round sides of its radius.
+    constexpr double kIntoGroove = 1.8;
+    const int steps =
+        std::max(voxelize::ExteriorRule{}.depth, static_cast<int>(std::ceil(kIntoGroove * clearance / voxel)) + 1);
     const int depth = std::min(steps, voxelize::kFarthestReach);
     std::vector<LeafMask> wide;
     {

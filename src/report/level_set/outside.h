@@ -1,13 +1,14 @@
 // Which samples of a level set the outside reaches: the hull of the part, and its open and closed pores.
 //
 // Printed parts are not airtight: beads laid side by side leave channels, which reach the outside somewhere. So there
-// are two floods from around the part. The first takes samples whose distance from the plastic is at least a clearance:
-// half a voxel, or 0.15 layer heights if that is more, as --interior cull does (voxelize/grid/exterior.h). What it
-// reaches, and what is up to three voxels from there (or the clearance and a voxel), is outside. The second takes every
-// sample that is not plastic. A pore is what the first does not reach: open if the second does, else closed.
+// are two floods from around the part. The first takes samples whose distance from the plastic is at least a clearance,
+// hullClearance(). What it reaches, and what a ball of that radius touches from there (three voxels at least), is
+// outside. The second takes every sample that is not plastic. A pore is what the first does not reach: open if the
+// second does, else closed.
 #pragma once
 
 #include "report/level_set/leaf_map.h"
+#include "voxelize/beads/lattice.h"
 #include "voxelize/leaf/leaf_mask.h"
 
 #include <cstddef>
@@ -18,11 +19,17 @@ namespace stratum::report {
 
 enum class Air : std::uint8_t { outside, open, closed };
 
+/// mm. Holes at the turns of lines are narrower than the height of a layer; the hull passes over them at every voxel
+/// size.
+inline double hullClearance(const voxelize::Lattice& lattice) {
+    return std::max(0.5 * lattice.voxel_size, 0.5 * lattice.layer_height);
+}
+
 class Outside {
 public:
-    /// `clearance` and `voxel` in the grid's world units; the first is voxelize::exteriorClearance() of a print, and at
-    /// most half a voxel less than the `background` is used, for no sample has a larger distance. Parallel; the same
-    /// result for any number of threads.
+    /// `clearance` and `voxel` in the grid's world units; the first is hullClearance() of a print, and at most half a
+    /// voxel less than the `background` is used, for no sample has a larger distance. Parallel; the same result for any
+    /// number of threads.
     Outside(const LeafMap& map, double clearance, double voxel, double background);
 
     /// Of a sample that is not plastic.

@@ -71,7 +71,7 @@ Row roughnessOf(const Wall& wall, int per_layer) {
     const voxelize::Lattice lattice = latticeOf(toolpath, beads, per_layer);
     const auto grid = voxelize::voxelize(toolpath, beads, lattice);
     const report::LeafMap map(*grid);
-    const report::Outside outside(map, voxelize::exteriorClearance(lattice), lattice.voxel_size,
+    const report::Outside outside(map, report::hullClearance(lattice), lattice.voxel_size,
                                   static_cast<double>(grid->background()));
     std::vector<double> ra;
     double rz = 0;

@@ -72,11 +72,46 @@ struct Sums {
 
     std::array<std::int64_t, gcode::kFeatureCount> by_feature{};
     std::vector<std::int64_t> by_layer;
-    std::int64_t pressed_out = 0, raised = 0;
+    std::int64_t pressed_out = 0, raised = 0, shared = 0;
     // Scratch.
     std::vector<double> shares;
     std::vector<OpenTop> tops;
     std::vector<Pressed> pressed;
+};
+
+// The intervals of heights that layers have over the points of a column, joined.
+struct JoinedLayers {
+    double heights = 0;  // mm, of the union over all points
+    double shared = 0;   // mm, of what layers have twice
+
+    JoinedLayers() { top_.fill(std::numeric_limits<double>::lowest()); }
+
+    void add(const LeafColumn::LayerPlan& plan) {
+        const PlanField& sides2 = plan.swollen != nullptr ? *plan.swollen : *plan.sides2;
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const double half = 0.5 * thicknessAt(*plan.layer, sides2, c);
+            if (!(half > 0)) continue;
+            const double rise = plan.rise != nullptr ? static_cast<double>(plan.rise->v[c]) : 0;
+            const double low = plan.layer->center_z - half;
+            const double flat = plan.layer->center_z + half;
+            const double top = flat + std::max(rise, -0.5 * half);
+            if (low >= top_[c]) {
+                heights += top - low;
+                low_[c] = low;
+            } else {
+                // Layers ascend by their center planes, and a thick one can begin below a thin one before it.
+                heights += std::max(top - top_[c], 0.0) + std::max(low_[c] - low, 0.0);
+                // What a raised top shares with the layer on it was not counted as its own.
+                shared += std::max(std::min(flat, flat_[c]) - std::max(low, low_[c]), 0.0);
+                low_[c] = std::min(low_[c], low);
+            }
+            top_[c] = std::max(top_[c], top);
+            flat_[c] = std::max(flat_[c], flat);
+        }
+    }
+
+private:
+    std::array<double, kColumnSamples> low_{}, top_{}, flat_{};
 };
 
 // Calls add(bead, volume) for the parts of one column of a layer, as far as grooves hold them.
@@ -135,7 +170,9 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
         Sums& sums = threads.local();
         sums.tops.clear();
         sums.pressed.clear();
+        JoinedLayers joined;
         column.forEachLayer([&](const LeafColumn::LayerPlan& plan) {
+            joined.add(plan);
             addLayer(stack, plan, point_area, sums.shares, [&](std::uint32_t bead, double volume) {
                 sums.add(toolpath.runOf(toolpath.beads[bead]), volume);
             });
@@ -144,6 +181,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
             sums.pressed_out += unitsOf(pressed.out * point_area);
             addTop(static_cast<std::uint32_t>(plan.layer - stack.layers.data()), pressed.solid, sums.tops);
         });
+        sums.shared += unitsOf(joined.shared * point_area);
         if (stack.swell != nullptr) sums.raised += unitsOf(raisedIn(stack, sums.tops, sums.pressed) * point_area);
     });
     Sums laid(layers);
@@ -151,6 +189,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     for (const Sums& one : threads) {
         laid.pressed_out += one.pressed_out;
         laid.raised += one.raised;
+        laid.shared += one.shared;
         for (std::size_t f = 0; f < one.by_feature.size(); ++f) laid.by_feature[f] += one.by_feature[f];
         for (std::size_t l = 0; l < layers; ++l) laid.by_layer[l] += one.by_layer[l];
     }
@@ -166,6 +205,7 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     const auto mm3 = [](std::int64_t units) { return static_cast<double>(units) * kUnit; };
     balance.pressed_out = mm3(laid.pressed_out);
     balance.raised = mm3(laid.raised);
+    balance.shared = mm3(laid.shared);
     for (std::size_t f = 0; f < balance.features.size(); ++f) {
         balance.features[f] = {mm3(fed.by_feature[f]), mm3(laid.by_feature[f])};
         balance.all.fed += balance.features[f].fed;
@@ -173,6 +213,17 @@ DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack&
     }
     for (std::size_t l = 0; l < layers; ++l) balance.layers[l] = {mm3(fed.by_layer[l]), mm3(laid.by_layer[l])};
     return balance;
+}
+
+double layersVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end) {
+    std::atomic<std::int64_t> sum{0};
+    const double point_area = pointArea(measuringLattice());
+    forEachOpenColumn(toolpath, stack, end, [&](LeafColumn& column) {
+        JoinedLayers joined;
+        column.forEachLayer([&](const LeafColumn::LayerPlan& plan) { joined.add(plan); });
+        sum.fetch_add(unitsOf(joined.heights * point_area), std::memory_order_relaxed);
+    });
+    return static_cast<double>(sum.load()) * kUnit;
 }
 
 std::vector<float> overfillOfBeads(const gcode::Toolpath& toolpath, const LayerStack& stack) {

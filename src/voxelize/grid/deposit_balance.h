@@ -22,18 +22,24 @@ struct DepositBalance {
     DepositShare all;
     double pressed_out = 0;  ///< mm^3 by which layers hold more where surplus moves their outlines out: swell_field.h
     double raised = 0;       ///< mm^3 by which it raises open tops, less what crowns take from their lines' edges
+    double shared = 0;       ///< mm^3 that two layers hold both, e.g. under threads of bridges that lie on a layer
     std::array<DepositShare, gcode::kFeatureCount> features;  ///< by gcode::Feature
     std::vector<DepositShare> layers;                         ///< by Run::layer
     /// mm^3 of the solid, and what has no place in it.
-    double held() const { return all.laid + pressed_out + raised; }
+    double held() const { return all.laid + pressed_out + raised - shared; }
     double unplaced() const { return all.fed - held(); }
 };
 
 /// Integrates the thickness of each layer, and divides it among the beads that claim a place, in proportion to their
-/// own thickness there. Overlaps of different layers are not counted, and sloped and round beads count as laid whole.
+/// own thickness there. Sloped and round beads count as laid whole.
 /// Of the beads before index `end`. From the plan fields themselves, at points of a lattice rule, 400 a mm^2: the same
 /// for every voxel size. Parallel; the result does not depend on the number of threads.
 DepositBalance balanceDeposit(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end);
+
+/// The volume of the union of all layers, mm^3: each point of the plan has an interval of heights in each layer, and
+/// intervals that overlap count once. Sloped and round beads are not in it. From the same points as balanceDeposit(),
+/// so it does not depend on a voxel size either. Parallel; the same for any number of threads.
+double layersVolume(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end);
 
 /// By bead of the toolpath: the share of its plastic that has no place in its layer's grooves, 0..1; 0 for beads that
 /// are not in the stack and for sloped and round ones. As balanceDeposit(), of all beads.

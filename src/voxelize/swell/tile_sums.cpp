@@ -47,7 +47,10 @@ public:
         : points_(ColumnGrid::spread(static_cast<float>(cellLattice().voxel_size))), weights_(columnWeights(points_)) {}
 
     // Returns the points with plastic, bit c for point c.
-    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
+    // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
+    // it does not hold.
+    std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums,
+                      PlanField* tops) const {
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(2 * layer.half_side);
         float least = std::numeric_limits<float>::max();
@@ -62,6 +65,7 @@ public:
         const auto thicknessAt = [&](float swell) { sectionThickness(sides2, swell, radius, straight, held); };
         thicknessAt(0);
         addTo(held, -1, first_node, sums.surplus);
+        if (tops != nullptr) addShared(layer, held, *tops, first_node, sums.surplus);
         // Flats all over gain nothing.
         if (!(most > 0)) return kAllPoints;
         std::uint64_t solid = 0;
@@ -102,6 +106,20 @@ public:
     static constexpr std::uint64_t kAllPoints = ~std::uint64_t{0};
 
 private:
+    void addShared(const Layer& layer, const PlanField& held, PlanField& tops, int first_node,
+                   TileSums::Nodes& surplus) const {
+        PlanField shared;
+        bool any = false;
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const auto center = static_cast<float>(layer.center_z);
+            const float half = 0.5F * held.v[c];
+            shared.v[c] = half > 0 ? std::clamp(tops.v[c] - (center - half), 0.0F, held.v[c]) : 0.0F;
+            any |= shared.v[c] > 0;
+            if (half > 0) tops.v[c] = std::max(tops.v[c], center + half);
+        }
+        if (any) addTo(shared, 1, first_node, surplus);
+    }
+
     void addTo(const PlanField& held, float sign, int first_node, TileSums::Nodes& nodes) const {
         constexpr auto kArea =
             static_cast<float>(kColumnCells * kColumnCells * kNodeSpacing * kNodeSpacing / kColumnSamples);
@@ -256,6 +274,16 @@ TileSums::Layer& sumsOf(Layers& layers, std::uint32_t layer) {
     return *sums;
 }
 
+// Whether some layer begins clearly below the top of another one before it.
+bool layersOverlap(const LayerStack& stack) {
+    double top = std::numeric_limits<double>::lowest();
+    return std::any_of(stack.layers.begin(), stack.layers.end(), [&top](const Layer& layer) {
+        const bool overlaps = layer.bottom() + 2 * kWeldGap * layer.halfHeight() < top;
+        top = std::max(top, layer.center_z + layer.halfHeight());
+        return overlaps;
+    });
+}
+
 // Of a top in a column.
 struct TopFields {
     TileSums::Layer* sums = nullptr;
@@ -279,6 +307,8 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
     std::vector<std::uint32_t> ranks;
     std::vector<OpenTop> tops;
     std::vector<TopFields> fields;
+    const bool overlap = layersOverlap(stack);
+    PlanField highest;
     const int first_i = bins.originI(0) / kLeafDim;
     const int first_j = bins.originJ(0) / kLeafDim;
     for (int cj = 0; cj < kTileColumns; ++cj)
@@ -292,12 +322,13 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
             column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
             const int first_node = kColumnCells * (cj * kNodes + ci);
+            if (overlap) std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
             tops.clear();
             fields.clear();
             column.forEachSides([&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
                 const Layer& of = stack.layers[layer];
                 TileSums::Layer& sums = sumsOf(layers, layer);
-                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums);
+                const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, overlap ? &highest : nullptr);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
                 TopFields& top = fields.emplace_back();

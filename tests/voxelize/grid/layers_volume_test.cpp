@@ -1,0 +1,67 @@
+// Volumes of layers' plans against closed forms and against fine level sets.
+#include "toolpaths.h"
+#include "voxelize/beads/selection.h"
+#include "voxelize/grid/deposit_balance.h"
+#include "voxelize/grid/enclosed_volume.h"
+#include "voxelize/grid/voxelizer.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace stratum::voxelize {
+namespace {
+
+constexpr double kBeadWidth = 0.45;
+
+double volumeOf(const gcode::Toolpath& toolpath) {
+    return layersVolume(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
+}
+double levelSetVolumeOf(const gcode::Toolpath& toolpath, double voxel) {
+    const auto beads = test::allBeads(toolpath);
+    LatticeRequest request;
+    request.voxel_size = voxel;
+    const Lattice lattice = chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request);
+    return enclosedVolume(*Voxelizer(toolpath, beads, lattice).printAll());
+}
+
+TEST(LayersVolume, OfABeadIsItsSectionAndTwoHalfDiscs) {
+    constexpr double kHeight = 0.2;
+    constexpr double kRadius = kHeight / 2;
+    constexpr double kFlat = kBeadWidth / 2 - kRadius;
+    gcode::Toolpath toolpath;
+    test::addBead(toolpath, 0.3, 0.1, kHeight, 12.1, 4.7, kHeight, kBeadWidth, kHeight);
+    const double ends = std::numbers::pi * (kFlat * kFlat * 2 * kRadius + std::numbers::pi * kFlat * kRadius * kRadius +
+                                            4 * kRadius * kRadius * kRadius / 3);
+    const double expected = gcode::beadVolume(toolpath) + ends;
+    EXPECT_NEAR(volumeOf(toolpath), expected, 1e-3 * expected);
+}
+
+// Under a bridge's thick line that lies on a layer, and where a layer's lines cross: once.
+TEST(LayersVolume, CountsWhatBeadsShareOnce) {
+    gcode::Toolpath toolpath;
+    for (double y = 0; y < 3; y += 0.407) test::addBead(toolpath, 0, y, 0.2, 6, y, 0.2, kBeadWidth, 0.2);
+    test::addBead(toolpath, 1, -0.5, 0.4, 4, 3.5, 0.4, 0.5, 0.4, 2);
+    test::addBead(toolpath, 5, 0, 0.3, 5.2, 3, 0.3, kBeadWidth, 0.2, 2);
+    const double whole = levelSetVolumeOf(toolpath, 0.0125);
+    EXPECT_NEAR(volumeOf(toolpath), whole, 3e-3 * whole);
+    EXPECT_LT(volumeOf(toolpath), 0.97 * gcode::beadVolume(toolpath));
+}
+
+TEST(LayersVolume, IsThatOfTheSettledLevelSet) {
+    gcode::Toolpath toolpath;
+    for (int layer = 1; layer <= 2; ++layer)
+        for (double y = 0; y < 4; y += 0.39)
+            test::addBead(toolpath, 0, y, 0.2 * layer, 5, y, 0.2 * layer, kBeadWidth, 0.2,
+                          static_cast<std::uint32_t>(layer));
+    toolpath.deposit.beads = gcode::DepositModel::Beads::settled;
+    toolpath.deposit.crown = 0.2;
+    const double whole = levelSetVolumeOf(toolpath, 0.02);
+    EXPECT_NEAR(volumeOf(toolpath), whole, 4e-3 * whole);
+    const DepositBalance balance =
+        balanceDeposit(toolpath, stackLayers(toolpath, test::allBeads(toolpath)), 0xffffffff);
+    EXPECT_NEAR(volumeOf(toolpath), balance.held(), 2e-3 * balance.held());
+}
+
+}  // namespace
+}  // namespace stratum::voxelize
