@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 2;  // changes with every field
+constexpr std::uint32_t kVersion = 3;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -138,7 +138,7 @@ private:
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
     auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
-           bed] = facts;
+           bed, programs_left_out] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
@@ -151,6 +151,7 @@ void visitStated(Archive& archive, Facts& facts) {
     archive.value(layer);
     archive.value(first_layer);
     archive.value(bed);
+    archive.value(programs_left_out);
 }
 
 template <typename Archive, typename Model>
@@ -180,12 +181,13 @@ void visitLimits(Archive& archive, Limits& limits) {
 
 template <typename Archive, typename Times>
 void visitTimes(Archive& archive, Times& times) {
-    auto& [total, travel, retraction, waiting, before_model, features, layers, rule, limits] = times;
+    auto& [total, travel, retraction, waiting, before_model, after_model, features, layers, rule, limits] = times;
     archive.value(total);
     archive.value(travel);
     archive.value(retraction);
     archive.value(waiting);
     archive.value(before_model);
+    archive.value(after_model);
     archive.value(features);
     archive.value(layers);
     archive.value(rule);

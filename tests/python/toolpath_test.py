@@ -284,7 +284,7 @@ class Pickles(unittest.TestCase):
                 empty.__setstate__(bad)
         at = state.index(b"stratum.Toolpath") + 16
         other = state[:at] + (99).to_bytes(4, "little") + state[at + 4:-4]
-        with self.assertRaisesRegex(stratum.InputError, "version 99; this stratum reads version 2"):
+        with self.assertRaisesRegex(stratum.InputError, "version 99; this stratum reads version 3"):
             empty.__setstate__(other + zlib.crc32(other).to_bytes(4, "little"))
         empty.__setstate__(state)
         self.same(toolpath, empty)
