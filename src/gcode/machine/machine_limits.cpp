@@ -155,10 +155,8 @@ private:
             set(Limit::least_printing_speed, key, value);
         } else if (key == "machine_min_travel_rate") {
             set(Limit::least_travel_speed, key, value);
-        } else if (key == "xy_accel_mm_per_s_per_s") {  // KISSlicer's
-            for (const Limit limit : {Limit::printing, Limit::travel, Limit::retracting}) set(limit, key, value);
-        } else if (key == "z_speed_mm_per_s") {  // KISSlicer's
-            set(ofAxis(Limit::speed, 2), key, value);
+        } else if (key == "xy_accel_mm_per_s_per_s") {  // KISSlicer's; its z_speed is what it asks for, no limit
+            for (const Limit limit : {Limit::printing, Limit::travel}) set(limit, key, value);
         } else if (key == "filament_load_time") {
             settings_.load = numbersOf(value, 0, kLongestWait);
         } else if (key == "filament_unload_time") {
