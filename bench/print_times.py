@@ -29,7 +29,7 @@ def main():
                 sys.exit(run.stderr)
             with open(stats, encoding="utf-8") as report:
                 time = json.load(report)["time"]
-            planned, stated = time["planned_s"], time["stated_s"]
+            planned, stated = time["planned_of_stated_s"] or time["planned_s"], time["stated_s"]
             share = (planned - stated) / stated if stated else None
             name = os.path.basename(file)
             if share is not None:

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "deposit/flow_recorder.h"
+#include "motion/clock_fit.h"
 #include "motion/planner.h"
 
 #include <fmt/format.h>
@@ -18,9 +19,11 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
             motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr);
     } else if (flow) {
         motion::Planner planner(*flow);
+        motion::ClockFit fit(planner);
         gcode::ReadOptions read = options;
-        read.motion = &planner;
+        read.motion = &fit;
         print.toolpath = gcode::readToolpath(bytes, name, read);
+        fit.finish();
         planner.finish();
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);

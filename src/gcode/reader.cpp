@@ -155,7 +155,7 @@ Toolpath readToolpath(std::string_view bytes, std::string_view name, const ReadO
         motion.emplace(
             *options.motion,
             readMachineSettings(text, options.corner_rule, options.printer, machine.firmware(), settings.slicer_limits),
-            warnings);
+            warnings, options.deposit.flow_lag.has_value());
         machine.recordMotion(&*motion);
     }
     Lexer lexer(text);

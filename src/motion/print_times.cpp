@@ -2,6 +2,7 @@
 
 #include "gcode/option_names.h"
 #include "gcode/summary.h"
+#include "motion/clock_fit.h"
 
 #include <algorithm>
 
@@ -69,7 +70,8 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
         if (i == 0) times.layers[layer] += timing.start;
         end = timing.start + seconds;
     }
-    times.layers[layer] += times.total - end;
+    times.after_model = times.total - end;
+    times.layers[layer] += times.after_model;
 }
 
 }  // namespace
@@ -78,7 +80,8 @@ std::string_view ruleName(CornerRule rule) { return gcode::kCornerRules[static_c
 
 StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts) {
     if (facts.model_seconds) return {*facts.model_seconds, times.total - times.before_model};
-    return {facts.seconds.value_or(0), times.total};
+    const double programs = facts.programs_left_out ? times.before_model + times.after_model : 0;
+    return {facts.seconds.value_or(0), times.total - programs};
 }
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
@@ -86,8 +89,10 @@ gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name,
     Recorder recorder(also);
     TimedPlanner planner(recorder);
     gcode::ReadOptions read = options;
-    read.motion = &planner;
+    ClockFit fit(planner);
+    read.motion = &fit;
     gcode::Toolpath toolpath = gcode::readToolpath(bytes, name, read);
+    fit.finish();
     planner.finish();
     recorder.timing.resize(toolpath.beads.size(), {.start = planner.seconds()});
     toolpath.timing = std::move(recorder.timing);

@@ -20,6 +20,7 @@ struct PrintTimes {
     double retraction = 0;                                ///< of moves of E alone: retracting, priming
     double waiting = 0;                                   ///< G4, changes of tool
     double before_model = 0;                              ///< until the first bead of layer 1: the start program
+    double after_model = 0;                               ///< behind the last bead: the end program
     std::array<double, gcode::kFeatureCount> features{};  ///< of beads
     std::vector<double> layers;  ///< by layer number; travel before a bead belongs to its layer, the rest to the last
     std::string rule;            ///< a ruleName()
@@ -29,7 +30,8 @@ struct PrintTimes {
 /// What a file states of its time, and what is planned of the same part of the program.
 struct StatedTime {
     double stated = 0;   ///< s; 0: the file states none
-    double planned = 0;  ///< s; without the start program if the stated time is the model's alone (BambuStudio)
+    double planned = 0;  ///< s; without the start program if the stated time is the model's alone (BambuStudio), and
+                         ///< without the end program, too, where the slicer doesn't read them (Cura)
 };
 StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts);
 

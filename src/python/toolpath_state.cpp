@@ -138,7 +138,7 @@ private:
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
     auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
-           bed] = facts;
+           bed, programs_left_out] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
@@ -151,6 +151,7 @@ void visitStated(Archive& archive, Facts& facts) {
     archive.value(layer);
     archive.value(first_layer);
     archive.value(bed);
+    archive.value(programs_left_out);
 }
 
 template <typename Archive, typename Model>
@@ -181,12 +182,13 @@ void visitLimits(Archive& archive, Limits& limits) {
 
 template <typename Archive, typename Times>
 void visitTimes(Archive& archive, Times& times) {
-    auto& [total, travel, retraction, waiting, before_model, features, layers, rule, limits] = times;
+    auto& [total, travel, retraction, waiting, before_model, after_model, features, layers, rule, limits] = times;
     archive.value(total);
     archive.value(travel);
     archive.value(retraction);
     archive.value(waiting);
     archive.value(before_model);
+    archive.value(after_model);
     archive.value(features);
     archive.value(layers);
     archive.value(rule);

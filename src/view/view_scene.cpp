@@ -2,6 +2,9 @@
 
 #include "base/stopwatch.h"
 #include "shade/palette/filament_color.h"
+#include "voxelize/beads/selection.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,11 +43,11 @@ Slab slabOf(const gcode::Toolpath& toolpath, std::uint32_t first, std::uint32_t 
     return slab;
 }
 
-// The layer that is being printed when that share is.
-std::uint32_t layerAt(const gcode::Toolpath& toolpath, double percent) {
-    const auto count = static_cast<double>(toolpath.beads.size());
-    const auto last = static_cast<std::size_t>(std::clamp(percent / 100.0 * count, 0.0, count - 1.0));
-    return toolpath.runOf(toolpath.beads[last]).layer;
+// The layer that is being printed when that share is, as --printed has it.
+std::uint32_t layerAt(const gcode::Toolpath& toolpath, double percent, bool by_time) {
+    const auto moments = voxelize::parseSnapshots(fmt::format("{}{}%", by_time ? "time:" : "", percent), toolpath);
+    const std::size_t beads = moments.empty() ? 1 : moments.front().bead_count;
+    return toolpath.runOf(toolpath.beads[beads - 1]).layer;
 }
 
 Json legendJson(const shade::Legend& legend) {
@@ -107,7 +110,7 @@ ViewedPicture ViewScene::standIn(const PicturePlan& plan, const ViewState& state
     const auto toolpath = document_.toolpath(0);
     std::uint32_t first = std::max(1U, state.first_layer);
     std::uint32_t last = state.last_layer == 0 ? toolpath->layer_count : state.last_layer;
-    if (state.printed) last = std::min(last, layerAt(*toolpath, *state.printed));
+    if (state.printed) last = std::min(last, layerAt(*toolpath, *state.printed, state.by_time));
     first = std::min(first, last);
     const Slab slab = slabOf(*toolpath, first, last);
     std::vector<trace::ClipPlane> planes;

@@ -60,6 +60,12 @@ for words in ([], ["--beads", "settled"], ["--beads", "settled", "--stats", "-"]
     check("nan" not in text.lower(), f"  and {words} prints no NaN")
     check("settled: 0.00 of" not in text and ("mm^3" in text or '"laid_mm3"' in text), f"  and {words} states volumes")
 check(contents() == before, "a summary alone writes no file")
+with open(path("klipper.gcode"), "w", encoding="utf-8") as file:
+    file.write("; gcode_flavor = klipper\nM83\nG1 Z.2\nG1 X10 E.4\n")
+told = does(GCODE2VDB, "klipper.gcode", "--summary")
+check(told.stdout.count("Klipper's limits") == 1 and "Klipper's limits" not in told.stderr, "a warning is told once")
+check(told.stdout.count("minimum_cruise_ratio") == 1, "and each of the assumed limits, too")
+os.remove(path("klipper.gcode"))
 does(GCODE2VDB, "t.gcode", "--summary", "-o", "summary.vdb", *COARSE)
 check("summary.vdb" in contents(), "with -o it is written")
 shutil.copy(gcode("tile.gcode"), path("u.gcode"))

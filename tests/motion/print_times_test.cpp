@@ -186,6 +186,18 @@ TEST(PrintTimes, RulesHaveNames) {
     EXPECT_EQ(ruleName(CornerRule::corner_velocity), "corner-velocity");
 }
 
+// CuraEngine doesn't read the user's start and end programs.
+TEST(PrintTimes, CurasTimeIsWithoutStartAndEndProgram) {
+    const Timed print = timed(
+        ";FLAVOR:Marlin\n;TIME:10\n;Generated with Cura_SteamEngine 5.0\nM83\nG28\nG1 Z.3 F600\nG1 X100 E9\nG1 X0 E9\n"
+        ";LAYER_COUNT:1\n;LAYER:0\nG1 X100 E4\n;TIME_ELAPSED:10\nG1 Y200\nM84\n;End of Gcode\n");
+    const stratum::motion::StatedTime time = statedTime(print.times, print.toolpath.stated);
+    EXPECT_EQ(time.stated, 10);
+    EXPECT_NEAR(time.planned, 10, 0.3);
+    EXPECT_NEAR(print.times.total, 50, 1);
+    EXPECT_NEAR(print.times.after_model, 20, 0.3);
+}
+
 // BambuStudio states the model's time apart from that of the start program.
 TEST(PrintTimes, TheStatedTimeOfTheModelIsBesideThePlannedOne) {
     const Timed print = timed(

@@ -122,7 +122,9 @@ void Conversion::read() {
 }
 
 void Conversion::tell() const {
-    for (const gcode::Warning& warning : toolpath_.warnings) warn(gcode::describe(warning, file_.name()));
+    // A summary has them, too.
+    if (!o_.summary)
+        for (const gcode::Warning& warning : toolpath_.warnings) warn(gcode::describe(warning, file_.name()));
     if (!o_.dump_toolpath.empty()) gcode::writeToolpathCsv(toolpath_, o_.dump_toolpath);
     if (o_.common.quiet) return;
     say(o_.common, fmt::format("{}: {}, {} layers, {} beads ({} arcs), {:.2f} m of filament, {:.2f} cm3", file_.name(),

@@ -17,6 +17,8 @@ std::string fromOf(const LimitOrigin& origin, gcode::CornerRule rule) {
     switch (origin.kind) {
         case LimitOrigin::Kind::assumed:
             return "assumed";
+        case LimitOrigin::Kind::fitted:
+            return "fitted to the file's TIME_ELAPSED";
         case LimitOrigin::Kind::setting:
             return fmt::format("{}the file's {}", rule == gcode::CornerRule::corner_velocity ? "assumed, from " : "",
                                origin.place);

@@ -34,8 +34,9 @@ Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& fa
 std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
     const auto [stated, planned] = motion::statedTime(times, facts);
     std::string out = fmt::format("time: {} by the rule {}", gcode::describeDuration(times.total), times.rule);
-    if (stated > 0 && facts.model_seconds)
-        out += fmt::format(", {} of it for the model", gcode::describeDuration(planned));
+    if (stated > 0 && planned < times.total)
+        out += fmt::format(", {} of it {}", gcode::describeDuration(planned),
+                           facts.model_seconds ? "for the model" : "without the start and the end program");
     if (stated > 0)
         out += fmt::format("; the file says {} ({:+.2f} %)", gcode::describeDuration(stated),
                            100 * (planned - stated) / stated);

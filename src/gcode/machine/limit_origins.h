@@ -58,6 +58,7 @@ struct LimitOrigin {
         setting,   ///< the slicer's, in a comment of the program
         firmware,  ///< the printer's file leaves it to the firmware's default
         printer,   ///< stated in the printer's file
+        fitted,    ///< stated nowhere; what the times of the program's layers tell
     };
     Kind kind = Kind::assumed;
     std::string place;               ///< "printer.cfg:12", "machine_max_jerk_x"; empty if assumed

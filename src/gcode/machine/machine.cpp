@@ -98,6 +98,7 @@ void Machine::run(const Line& line) {
         if (tag.kind == Tag::Kind::filament_loaded) loaded();
         if (tag.kind == Tag::Kind::units_set && line.count > 0 && line.commands[0].code == 21) recorder_.startPart();
         if (tag.kind != Tag::Kind::none) recorder_.tag(tag, line_);
+        if (moves_ != nullptr) tellElapsed(line.comment);
     }
     std::optional<std::size_t> workspace;
     for (std::size_t i = 0; i < line.count; ++i) {
@@ -111,6 +112,12 @@ void Machine::run(const Line& line) {
     if (workspace) frame_.select(*workspace);
     if (line.deleted) warn("a line that begins with '/' (block delete) is left out");
     if (line.unreadable && line.count == 0) warnUnreadable(line);
+}
+
+void Machine::tellElapsed(std::string_view comment) {
+    constexpr std::string_view kElapsed = "TIME_ELAPSED:";
+    if (!comment.starts_with(kElapsed)) return;
+    if (const auto seconds = parseDuration(comment.substr(kElapsed.size()))) moves_->elapsed(*seconds);
 }
 
 void Machine::warnUnreadable(const Line& line) {

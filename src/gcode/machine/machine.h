@@ -95,6 +95,7 @@ private:
     void setPosition(const Command& command);
     void setAbsolute(const Command& command);
     void remarkForeign(const Command& command);
+    void tellElapsed(std::string_view comment);
     void warnUnreadable(const Line& line);
     void setHeatOrFan(const Command& command);
     void setHomeOffset(const Command& command);

@@ -155,6 +155,8 @@ private:
             set(Limit::least_printing_speed, key, value);
         } else if (key == "machine_min_travel_rate") {
             set(Limit::least_travel_speed, key, value);
+        } else if (key == "xy_accel_mm_per_s_per_s") {  // KISSlicer's; its z_speed is what it asks for, no limit
+            for (const Limit limit : {Limit::printing, Limit::travel}) set(limit, key, value);
         } else if (key == "filament_load_time") {
             settings_.load = numbersOf(value, 0, kLongestWait);
         } else if (key == "filament_unload_time") {
@@ -214,6 +216,7 @@ private:
                 settings_.origins[limit] = {.kind = LimitOrigin::Kind::setting, .place = slicer_.machine};
         }
         settings_.states_jerk = true;
+        settings_.limits.guessed = slicer_.limits->guessed;
     }
 
     void set(Limit limit, std::string_view key, std::string_view text) {

@@ -58,6 +58,7 @@ struct MachineLimits {
     CornerRule rule = CornerRule::jerk;
     ArcRule arcs = ArcRule::unknown;
     std::uint8_t jerk_policy = 0;  ///< RepRapFirmware's M566 P
+    bool guessed = false;  ///< nobody states them: a slicer's for any machine, which its own times may tell better
 };
 
 /// A move, or one piece of a curve that beads can't represent.
@@ -98,6 +99,8 @@ public:
     virtual void wait(double seconds) = 0;
     /// What it is that the machine stops for, where people may want to know it; waits are told by themselves.
     virtual void stop(Stop kind, std::uint32_t line) { static_cast<void>(kind), static_cast<void>(line); }
+    /// The slicer's own time of all before, s: Cura's ;TIME_ELAPSED, behind each layer.
+    virtual void elapsed(double seconds) { static_cast<void>(seconds); }
     /// Once, at the end of the program: where the limits are from. Needed for reports only.
     virtual void origin(const LimitOrigins& origins) { static_cast<void>(origins); }
 };

@@ -52,8 +52,8 @@ std::optional<Stop> stopOf(const Command& command) {
 
 }  // namespace
 
-MotionRecorder::MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings)
-    : sink_(sink), settings_(std::move(settings)), limits_(settings_.limits), warnings_(warnings) {
+MotionRecorder::MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings, bool for_flow)
+    : sink_(sink), settings_(std::move(settings)), limits_(settings_.limits), warnings_(warnings), for_flow_(for_flow) {
     sink_.limits(limits_);
 }
 
@@ -255,10 +255,13 @@ void MotionRecorder::changeTool(std::size_t from, std::size_t to, std::uint32_t 
 
 void MotionRecorder::pressureAdvance(std::string_view what, double seconds, std::uint32_t line) {
     // Linear Advance 1.0 counts K in other units, from about 10 up; nothing tells what it means for the flow.
-    if (!(seconds >= 0 && seconds <= kLongestAdvance))
-        return warnings_.add(fmt::format("{}{:g} is no pressure advance in seconds (0 to {:g}); ignored", what, seconds,
-                                         kLongestAdvance),
-                             line);
+    if (!(seconds >= 0 && seconds <= kLongestAdvance)) {
+        if (for_flow_)
+            warnings_.add(fmt::format("{}{:g} is no pressure advance in seconds (0 to {:g}); ignored", what, seconds,
+                                      kLongestAdvance),
+                          line);
+        return;
+    }
     // Klipper stops to switch the smoothing of the extruder on or off.
     if (isKlipper() && (seconds > 0) != (limits_.pressure_advance > 0)) sink_.wait(0);
     limits_.pressure_advance = seconds;
@@ -288,18 +291,16 @@ void MotionRecorder::finish() {
     settings_.origins.rule = limits_.rule;
     sink_.origin(settings_.origins);
     if (!isKlipper()) return;
-    std::string assumed;
+    std::size_t assumed = 0;
     for (std::size_t n = 0; n < kLimitCount; ++n) {
         const auto limit = static_cast<Limit>(n);
-        const LimitOrigin& origin = settings_.origins[limit];
-        const bool from_setting = origin.kind == LimitOrigin::Kind::setting;
-        if (!isUsed(limit, settings_.origins) || (origin.kind != LimitOrigin::Kind::assumed && !from_setting)) continue;
-        assumed += fmt::format("{}{} {:g}{}", assumed.empty() ? "" : ", ", limitName(limit, limits_.rule), origin.value,
-                               from_setting ? fmt::format(" ({})", origin.place) : "");
+        const LimitOrigin::Kind kind = settings_.origins[limit].kind;
+        const bool given = kind == LimitOrigin::Kind::printer || kind == LimitOrigin::Kind::firmware;
+        if (!given && isUsed(limit, settings_.origins)) ++assumed;
     }
-    if (!assumed.empty())
-        warnings_.add(fmt::format("Klipper's limits are in its own configuration; assumed for the times: {}; give the "
-                                  "printer's printer.cfg",
+    if (assumed > 0)
+        warnings_.add(fmt::format("Klipper's limits are in its own configuration: {} of them are assumed for the times "
+                                  "(--summary lists them); give the printer's printer.cfg",
                                   assumed),
                       1);
 }

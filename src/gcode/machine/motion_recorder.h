@@ -35,8 +35,9 @@ struct RetractionChange {
 /// Impossible limits (negative, zero, beyond the bounds, no number) are ignored, with a warning.
 class MotionRecorder {
 public:
-    /// The sink and the log must outlive it.
-    MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings);
+    /// The sink and the log must outlive it. `for_flow`: pressure advance matters, and what isn't understood of it is
+    /// warned of.
+    MotionRecorder(MotionSink& sink, MachineSettings settings, WarningLog& warnings, bool for_flow);
 
     /// A G or M command other than a move. `unit` is mm in a unit of the program.
     void command(const Command& command, double unit, std::uint32_t line);
@@ -44,6 +45,7 @@ public:
     void retraction(const RetractionChange& change);
     void changeTool(std::size_t from, std::size_t to, std::uint32_t line);
     void pause(std::uint32_t line) { sink_.stop(Stop::pause, line); }
+    void elapsed(double seconds) { sink_.elapsed(seconds); }
     /// `seconds`: as `what` has it in the file, M900 K or the like.
     void pressureAdvance(std::string_view what, double seconds, std::uint32_t line);
 
@@ -77,6 +79,7 @@ private:
     MachineSettings settings_;
     MachineLimits limits_;
     WarningLog& warnings_;
+    bool for_flow_;
     double filament_area_ = 0;  // mm^2, of the last move
     Point place_;               // where it ended
     Retraction retract_;

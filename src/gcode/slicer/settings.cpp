@@ -104,6 +104,9 @@ public:
         if (cura_.comment(text)) return;
         text = trimQuoted(text);
         stated_.comment(text);
+        constexpr std::array<std::string_view, 3> kHead{"FLAVOR:", "TIME:", "Layer height:"};
+        for (std::size_t n = 0; n < kHead.size(); ++n)
+            if (text.starts_with(kHead[n])) cura_head_ |= 1U << n;
         if (readFooter(text, settings.footer)) return;
         const auto setting = keyAndValue(text);
         if (setting && setting->first.find(' ') == std::string_view::npos)
@@ -125,6 +128,7 @@ public:
 
     Settings finish() {
         settings.stated = stated_.finish();
+        if (settings.slicer.empty() && cura_head_ == kCuraHead) name("Cura");
         takeColors();
         takeProfile();
         settings.slicer_limits.ignores_settings = flavor_ != "marlin" && isOldPrusaSlicer(settings.slicer);
@@ -140,6 +144,8 @@ private:
     std::vector<std::optional<Rgb>> extruder_colors_;
     bool config_block_ = false;  // of OrcaSlicer, BambuStudio and their kin
     std::string flavor_;         // gcode_flavor
+    unsigned cura_head_ = 0;     // which lines of Cura's head have been seen, where its name is missing
+    static constexpr unsigned kCuraHead = 7;
 
     void takeColors() {
         // The order of the slicer's own preview. The other list fills empty places.
@@ -166,8 +172,9 @@ private:
         }
         MachineLimits limits = curaLimits(machine);
         std::vector<double> diameters;
+        limits.guessed = !isCuraMachine(machine);
         for (const auto& [extruder, key, value] : changed) {
-            setCuraLimit(key, value, limits);
+            if (setCuraLimit(key, value, limits)) limits.guessed = false;
             if (key == "layer_height" && !settings.layer_height) settings.layer_height = positiveNumber(value, 100);
             takeDiameter(extruder, key, value, diameters);
         }
@@ -179,6 +186,7 @@ private:
         if (settings.stated.bed.empty()) settings.stated.bed = curaBed(changed);
         const auto by = [this](std::string_view slicer) { return settings.slicer.find(slicer) != std::string::npos; };
         if (!by("Cura") && !by("Creality Print V")) return;
+        settings.stated.programs_left_out = true;
         settings.slicer_limits.limits = limits;
         if (isCuraMachine(machine)) settings.slicer_limits.machine = "machine, " + machine;
     }

@@ -151,6 +151,8 @@ void StatedReader::sentence(std::string_view key, std::string_view value) {
         key == "Build time" || key == "Estimated Build Time" || key == "total estimated time" ||
         key == "estimated_time(s)" || key == "Estimated Print Time") {
         if (const auto time = parseDuration(value)) facts_.seconds = time;
+    } else if (key == "TIME_ELAPSED") {
+        elapsed_ = parseDuration(value);
     } else if (key == "model printing time") {
         facts_.model_seconds = parseDuration(value);
     } else if (key == "total filament weight [g]" || key == "Plastic weight") {
@@ -237,6 +239,9 @@ void StatedReader::setNozzle(std::size_t tool, std::string_view diameter) {
 }
 
 StatedFacts StatedReader::finish() {
+    // Written by CuraEngine alone, without Cura to fill in the time that the layers sum up to.
+    constexpr double kPlaceholder = 6666;
+    if (facts_.seconds == kPlaceholder) facts_.seconds = elapsed_;
     if (facts_.printer.empty()) facts_.printer = profile_;
     if (!facts_.first_layer_height && first_share_ && facts_.layer_height)
         facts_.first_layer_height = *first_share_ * *facts_.layer_height;

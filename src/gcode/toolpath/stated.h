@@ -31,6 +31,7 @@ struct StatedFacts {
     std::optional<double> layer_height;        ///< mm
     std::optional<double> first_layer_height;  ///< mm
     std::vector<std::array<double, 2>> bed;    ///< mm, corners of the printable area; empty, or at least three
+    bool programs_left_out = false;            ///< `seconds` is without the user's start and end programs (Cura)
 
     bool empty() const;
 };
@@ -54,6 +55,7 @@ private:
     void setNozzle(std::size_t tool, std::string_view diameter);
 
     StatedFacts facts_;
+    std::optional<double> elapsed_;      // s, the last ;TIME_ELAPSED
     std::string profile_;                // the printer's settings, where no model is named
     std::optional<double> first_share_;  // of the layer height
     std::array<double, 2> bed_sides_{};  // mm; 0: not stated

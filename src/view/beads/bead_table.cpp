@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -83,8 +84,13 @@ Json BeadTable::head() const {
         features.push_back(gcode::featureName(static_cast<gcode::Feature>(n)));
     Json objects = Json::array();
     for (const std::string& name : toolpath_->objects) objects.push_back(name.substr(0, 200));
+    // As --printed has it: shares of the volume are those of the layers, without prime lines.
     std::vector<std::uint32_t> all(toolpath_->beads.size());
     std::iota(all.begin(), all.end(), 0U);
+    std::vector<std::uint32_t> part;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(part),
+                 [this](std::uint32_t bead) { return toolpath_->runOf(toolpath_->beads[bead]).layer > 0; });
+    if (part.empty()) part = all;
     return {{"type", "beads"},
             {"texels", texels_},
             {"runs", toolpath_->runs.size()},
@@ -99,7 +105,7 @@ Json BeadTable::head() const {
             {"features", std::move(features)},
             {"objects", std::move(objects)},
             {"printed",
-             {{"volume", voxelize::growthMoments(*toolpath_, all, kMoments, voxelize::GrowthBy::volume)},
+             {{"volume", voxelize::growthMoments(*toolpath_, part, kMoments, voxelize::GrowthBy::volume)},
               {"time", voxelize::growthMoments(*toolpath_, all, kMoments, voxelize::GrowthBy::time)}}}};
 }
 

@@ -53,6 +53,16 @@ TEST(MachineLimits, ForKlipperSettingsAreAnAssumption) {
     EXPECT_EQ(none.origins[Limit::printing].kind, LimitOrigin::Kind::assumed);
 }
 
+TEST(MachineLimits, OfKisslicer) {
+    const MachineSettings settings =
+        readMachineSettings("; z_speed_mm_per_s = 3.5\n; xy_accel_mm_per_s_per_s = 3000\nG28\n", CornerRule::automatic);
+    EXPECT_EQ(settings.limits.rule, CornerRule::jerk);
+    EXPECT_EQ(settings.limits.printing, 3000);
+    EXPECT_EQ(settings.limits.travel, 3000);
+    EXPECT_EQ(settings.limits.speed[2], MachineLimits().speed[2]);  // asked for, no limit
+    EXPECT_EQ(settings.origins[Limit::printing].place, "xy_accel_mm_per_s_per_s");
+}
+
 TEST(MachineLimits, TheSlicersRuleIsThereByName) {
     const MachineSettings read = readMachineSettings(kKlipperSettings, CornerRule::slicer_jerk);
     EXPECT_EQ(read.limits.speed[0], 500);
@@ -151,7 +161,7 @@ TEST(MachineLimits, OfACommandHoldWhereTheFirmwareReadsIt) {
     EXPECT_EQ(warned("M566: Klipper"), 5U);
     EXPECT_EQ(warned("M204 without S, or P and T together"), 6U);
     // The corner velocities and the like, which klipperPrinter() leaves out.
-    EXPECT_EQ(warned("assumed for the times"), 1U);
+    EXPECT_EQ(warned("7 of them are assumed for the times"), 1U);
 
     // Marlin obeys all of them.
     options.printer->firmware = Firmware::marlin;

@@ -190,6 +190,25 @@ TEST(MotionRecorder, KlipperStopsToSwitchPressureAdvanceOnAndOff) {
     EXPECT_EQ(log.waits.size(), 2U);
 }
 
+// Linear Advance 1.0 of a Prusa MK3: no time depends on it.
+TEST(MotionRecorder, OlderFactorsOfLinearAdvanceAreNoMatter) {
+    Log log;
+    record("M900 K30\nM83\nG1 Z.2\nG1 X10 E1\n", log);
+    EXPECT_EQ(warningCount(log.toolpath, "pressure advance"), 0U);
+    EXPECT_EQ(log.last.pressure_advance, 0);
+}
+
+TEST(MotionRecorder, TellsTheTimesBehindLayers) {
+    class Clock : public Log {
+    public:
+        void elapsed(double seconds) override { marks.push_back(seconds); }
+        std::vector<double> marks;
+    };
+    Clock log;
+    record("M83\nG1 Z.2\nG1 X10 E1\n;TIME_ELAPSED:12.5\nG1 X0 E1\n;TIME_ELAPSED:nan\n;TIME_ELAPSED:31\n", log);
+    EXPECT_EQ(log.marks, (std::vector<double>{12.5, 31}));
+}
+
 TEST(MotionRecorder, VolumesBecomeFilament) {
     Log log;
     record("M83\nM200 D1.75\nG1 X10 E2.4052819 F600\n", log);

@@ -43,6 +43,30 @@ TEST(Settings, SlicerNames) {
     for (const NameCase& c : kCases) EXPECT_EQ(readSettings(c.comment).slicer, c.slicer);
 }
 
+// Of a file whose "Generated with" was cut out.
+TEST(Settings, CurasHeadWithoutItsName) {
+    const Settings settings =
+        readSettings(";FLAVOR:Marlin\n;TIME:3340\n;Filament used: 4.74m\n;Layer height: 0.32\nG28\n;End of Gcode\n");
+    EXPECT_EQ(settings.slicer, "Cura");
+    ASSERT_TRUE(settings.slicer_limits.limits);
+    EXPECT_TRUE(settings.slicer_limits.limits->guessed);
+    EXPECT_EQ(settings.cut_short, "");
+    EXPECT_EQ(readSettings(";FLAVOR:Marlin\n;Layer height: 0.32\nG28\n").slicer, "");
+}
+
+TEST(Settings, CurasLimitsAreAGuessWhereNothingIsStated) {
+    const auto guessed = [](std::string_view lines) {
+        const Settings settings =
+            readSettings(std::string(";Generated with Cura_SteamEngine 5.0\nG28\n").append(lines));
+        return settings.slicer_limits.limits.value().guessed;
+    };
+    EXPECT_TRUE(guessed(""));
+    EXPECT_TRUE(guessed(";SETTING_3 {\"global_quality\": \"[general]\\ndefinition = custom\\n\"}\n"));
+    EXPECT_FALSE(guessed(";SETTING_3 {\"global_quality\": \"[general]\\ndefinition = creality_ender3\\n\"}\n"));
+    EXPECT_FALSE(
+        guessed(";SETTING_3 {\"global_quality\": \"[general]\\n[values]\\nmachine_max_acceleration_x = 50\\n\"}\n"));
+}
+
 TEST(Settings, Firmware) {
     EXPECT_EQ(readSettings("; gcode_flavor = reprap").firmware, Firmware::marlin);  // RepRap/Sprinter
     EXPECT_EQ(readSettings("; gcode_flavor = marlin2").firmware, Firmware::marlin);

@@ -52,6 +52,13 @@ TEST(Stated, OfSeveralSlicers) {
     EXPECT_EQ(factsOf({"printer_settings_id = mine", "printer_model = MK4"}).printer, "MK4");
 }
 
+// CuraEngine alone, without Cura, writes 6666 in place of the time.
+TEST(Stated, ThePlaceholderOfCuraEngineIsNoTime) {
+    EXPECT_EQ(factsOf({"TIME:6666", "TIME_ELAPSED:12.5", "TIME_ELAPSED:1878.75"}).seconds, 1878.75);
+    EXPECT_EQ(factsOf({"TIME:6666"}).seconds, std::nullopt);
+    EXPECT_EQ(factsOf({"TIME:6665", "TIME_ELAPSED:12.5"}).seconds, 6665);
+}
+
 TEST(Stated, AFirstLayerInPerCent) {
     EXPECT_EQ(factsOf({"first_layer_height = 150%", "layer_height = 0.2"}).first_layer_height, 1.5 * 0.2);
     EXPECT_EQ(factsOf({"firstLayerHeightPercentage,50", "layerHeight,0.2"}).first_layer_height, 0.1);

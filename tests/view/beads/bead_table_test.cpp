@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "corpus.h"
 #include "gcode/reader.h"
+#include "voxelize/beads/selection.h"
 
 #include <gtest/gtest.h>
 
@@ -72,10 +73,25 @@ TEST(BeadTable, SaysWhatIsPrintedByVolume) {
     const nlohmann::json printed = BeadTable(print).head()["printed"]["volume"];
     ASSERT_EQ(printed.size(), 200U);
     EXPECT_EQ(printed.back(), print->beads.size());
-    double volume = 0;
-    for (std::uint32_t bead = 0; bead < printed[99].get<std::uint32_t>(); ++bead)
-        volume += gcode::laidVolume(*print, bead);
-    EXPECT_NEAR(volume / gcode::beadVolume(*print), 0.5, 0.01);
+    const auto volumeOf = [&](std::uint32_t beads) {
+        double volume = 0;
+        for (std::uint32_t bead = 0; bead < beads; ++bead)
+            if (print->runOf(print->beads[bead]).layer > 0) volume += gcode::laidVolume(*print, bead);
+        return volume;
+    };
+    EXPECT_NEAR(volumeOf(printed[99].get<std::uint32_t>()) / volumeOf(printed[199].get<std::uint32_t>()), 0.5, 0.01);
+}
+
+// --printed 50% means half of the part, whatever was primed before.
+TEST(BeadTable, SharesOfTheVolumeLeavePrimeLinesOut) {
+    const auto print = std::make_shared<const gcode::Toolpath>(gcode::readToolpath(
+        "M83\nG1 Z.2\nG1 X100 E40 F600\n;LAYER:0\nG1 X110 E.4\nG1 X120 E.4\nG1 X130 E.4\nG1 X140 E.4\n", "test.gcode"));
+    ASSERT_EQ(print->runOf(print->beads[0]).layer, 0U);
+    const nlohmann::json printed = BeadTable(print).head()["printed"]["volume"];
+    const std::size_t half = voxelize::parseSnapshots("50%", *print).front().bead_count;
+    EXPECT_EQ(half, 3U);
+    EXPECT_EQ(printed[99], half);
+    EXPECT_EQ(printed[199], 5U);
 }
 
 TEST(BeadTable, RefusesWhatDoesNotFit) {
