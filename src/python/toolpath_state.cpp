@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 2;  // changes with every field
+constexpr std::uint32_t kVersion = 3;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -251,7 +251,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.value(extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&
-                  sizeof(gcode::BeadFlow) == 12,
+                  sizeof(gcode::BeadFlow) == 12 && sizeof(motion::Travel) == 96,
               "records are written as they are, and must have no padding");
 
 // What the rest of the program takes for granted of indices.
@@ -278,6 +278,8 @@ std::string stateOf(const ToolpathObject& object) {
     visitToolpath(writer, *object.toolpath);
     writer.value(object.times.has_value());
     if (object.times) visitTimes(writer, *object.times);
+    writer.value(object.travels != nullptr);
+    if (object.travels) writer.records(*object.travels);
     writer.value(object.source);
     writer.value(object.source_sha256);
     std::string bytes = writer.take();
@@ -307,6 +309,13 @@ ToolpathObject toolpathOf(std::string_view state) {
     bool timed = false;
     reader.value(timed);
     if (timed) visitTimes(reader, object.times.emplace());
+    bool has_travels = false;
+    reader.value(has_travels);
+    if (has_travels) {
+        std::vector<motion::Travel> travels;
+        reader.records(travels);
+        object.travels = std::make_shared<const std::vector<motion::Travel>>(std::move(travels));
+    }
     reader.value(object.source);
     reader.value(object.source_sha256);
     if (!reader.atEnd() || !indicesExist(toolpath)) Reader::fail();
