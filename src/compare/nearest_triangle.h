@@ -20,6 +20,7 @@ struct Nearest {
     /// What of the triangle has the point: bit n is set where corner n counts. One bit is a corner, two an edge, three
     /// the face.
     std::uint8_t feature = 0;
+    std::uint32_t looked_at = 0;  ///< triangles, until it was found
 };
 
 /// The point of a triangle that is nearest to p. Source: the regions of Voronoi of a triangle's corners, edges and
@@ -33,7 +34,10 @@ public:
     explicit TriangleTree(const TriangleMesh& mesh);
 
     /// @param hint  a triangle that is probably near, e.g. that of a place beside this one: saves most of the search
-    Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
+    /// @param rough  mm: beyond this distance a point that is a hundredth farther will do. From afar all triangles of a
+    /// flat side are nearly as near, and an exact answer would look at each.
+    Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone,
+                    double rough = std::numeric_limits<double>::infinity()) const;
     const TriangleMesh& mesh() const { return mesh_; }
     std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
