@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kFarSamples = 5'000;
+constexpr std::uint32_t kPrintLeaf = 16;  // of millions of triangles, of which few are searched
 const double kDiagonal = std::sqrt(0.5);  // of 45 degrees
 
 // Points and normals in print space.
@@ -185,7 +186,7 @@ glm::dvec3 slopeTowardsSurface(const Accessor& phi, const openvdb::Coord& at, do
 }  // namespace
 
 PrintedSurface::PrintedSurface(const openvdb::FloatGrid& print)
-    : grid_(print), mesh_(meshOf(print)), tree_(mesh_), sampler_(mesh_), volume_(volumeOf(mesh_)) {
+    : grid_(print), mesh_(meshOf(print)), tree_(mesh_, kPrintLeaf), sampler_(mesh_), volume_(volumeOf(mesh_)) {
     if (mesh_.triangles.empty())
         throw UsageError("--compare: the print has no surface at this voxel size; choose a smaller --voxel-size");
 }

@@ -10,7 +10,6 @@
 namespace stratum::compare {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
 constexpr double kRoughly = 0.99;
 constexpr std::size_t kDeepest = 64;  // the median halves 2^32 triangles 32 times
 
@@ -63,23 +62,23 @@ Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
     return found(p, a + ab * (towards_b / sum) + ac * (towards_c / sum), 1 | 2 | 4);
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh) {
-    std::vector<Run> all = runs();
+TriangleTree::TriangleTree(const TriangleMesh& mesh, std::uint32_t leaf) : mesh_(mesh) {
+    std::vector<Run> all = runs(leaf);
     nodes_.reserve(2 * all.size());
     if (!all.empty()) build(all);
 }
 
-std::vector<TriangleTree::Run> TriangleTree::runs() const {
+std::vector<TriangleTree::Run> TriangleTree::runs(std::uint32_t leaf) const {
     std::vector<Run> runs;
     const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-    runs.reserve(count / 2);
+    runs.reserve(2 * (count / leaf));
     for (std::uint32_t begin = 0; begin < count;) {
         glm::dvec3 sum(0.0);
         std::uint32_t end = begin;
         do {
             const Triangle& t = mesh_.triangles[end++];
             sum += mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2);
-        } while (end < count && end - begin < kLeaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
+        } while (end < count && end - begin < leaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
         runs.push_back({sum / (3.0 * (end - begin)), begin, end});
         begin = end;
     }

@@ -28,10 +28,11 @@ struct Nearest {
 Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 /// Immutable; shared by all threads. Boxes are split at the median of the middles along their longest side. A leaf has
-/// up to four triangles that follow one another in the mesh and share corners. The mesh must outlive it.
+/// triangles that follow one another in the mesh and share corners. The mesh must outlive it.
 class TriangleTree {
 public:
-    explicit TriangleTree(const TriangleMesh& mesh);
+    /// @param leaf  the most triangles of a leaf: more make the tree sooner, and searches a little longer
+    explicit TriangleTree(const TriangleMesh& mesh, std::uint32_t leaf = 4);
 
     /// @param hint  a triangle that is probably near, e.g. that of a place beside this one: saves most of the search
     /// @param rough  mm: beyond this distance a point that is a hundredth farther will do. From afar all triangles of a
@@ -51,7 +52,7 @@ private:
         glm::vec3 middle;
         std::uint32_t begin, end;  // triangles
     };
-    std::vector<Run> runs() const;
+    std::vector<Run> runs(std::uint32_t leaf) const;
     std::uint32_t build(std::span<Run> runs);
     Node leafOf(const Run& run) const;
     void test(std::uint32_t triangle, const glm::dvec3& p, Nearest& best) const;
