@@ -71,7 +71,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, std::uint32_t leaf) : mesh_
 std::vector<TriangleTree::Run> TriangleTree::runs(std::uint32_t leaf) const {
     std::vector<Run> runs;
     const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-    runs.reserve(2 * (count / leaf));
+    runs.reserve(std::size_t{2} * (count / leaf));
     for (std::uint32_t begin = 0; begin < count;) {
         glm::dvec3 sum(0.0);
         std::uint32_t end = begin;
