@@ -282,6 +282,7 @@ int main(int argc, char** argv) {
             return tools::writeThumbnails(options);
         }
         tools::useHugePages(argv);
+        if (!options.compare.model.empty()) tools::keepFreedMemory();  // of the level set, for polygons and their tree
         return run(options);
     });
 }

@@ -18,6 +18,7 @@ bead_dtype: np.dtype[np.void]
 run_dtype: np.dtype[np.void]
 arc_dtype: np.dtype[np.void]
 timing_dtype: np.dtype[np.void]
+travel_dtype: np.dtype[np.void]
 flow_dtype: np.dtype[np.void]
 
 class InputError(RuntimeError): ...
@@ -50,6 +51,8 @@ class Toolpath:
     def arcs(self) -> NDArray[np.void]: ...
     @property
     def timing(self) -> NDArray[np.void] | None: ...
+    @property
+    def travels(self) -> NDArray[np.void] | None: ...
     @property
     def flow(self) -> NDArray[np.void] | None: ...
     @property
@@ -191,7 +194,7 @@ class Picture:
     def write(self, path: _Path, *, overwrite: bool = ...) -> None: ...
 
 def read(
-    source: _Path | bytes | bytearray, *, timed: bool | None = ..., progress: _Progress | None = ...,
+    source: _Path | bytes | bytearray, *, timed: bool | None = ..., travels: bool | None = ..., progress: _Progress | None = ...,
     plate: int | None = ..., filament_diameter: float | Sequence[float] | None = ...,
     filament_colors: str | Sequence[str] | None = ...,
     layer_height: float | None = ..., belt: float | None = ..., planar: bool | None = ...,

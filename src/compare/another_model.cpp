@@ -78,8 +78,7 @@ public:
     Trials(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options)
         : print_(print), model_(model), options_(options) {
         options_.samples = std::min(options.samples, kTrialSamples);
-        scale_ =
-            spreadOf(sampleSurface(print.mesh(), kTrialSamples)) / spreadOf(sampleSurface(model.mesh(), kTrialSamples));
+        scale_ = spreadOf(print.sampled(kTrialSamples)) / spreadOf(sampleSurface(model.mesh(), kTrialSamples));
         for (const Unit& unit : kUnits)
             if (std::abs(scale_ / unit.mm - 1) < kNearUnit) scale_ = unit.mm, exact_ = true;
     }
@@ -87,7 +86,7 @@ public:
     /// `found`: of the model as it is.
     Trial best(const Comparison& found) const {
         const bool near = !exact_ && std::abs(scale_ - 1) < kNearUnit;
-        const SurfaceSamples samples = sampleSurface(print_.mesh(), kTrialSamples);
+        const SurfaceSamples samples = print_.sampled(kTrialSamples);
         const double as_it_is = roughResidual(model_, samples, found.model_to_print);
         Trial best =
             near ? run({1, false, kNever}, found.model_to_print) : place({scale_, false, kNever}, samples, as_it_is);
@@ -177,7 +176,8 @@ std::vector<std::string> doubtsOf(const PrintedSurface& print, const ClosedModel
                     options.line_width);
     if (options.placement == ModelPlacement::fit) {
         const Trial trial = Trials(print, model, options).best(found);
-        text += trial.apart <= std::max(options.line_width, 0.5 * apart(found)) && trial.apart < 0.75 * apart(found)
+        // By the same rule as for the model as it is: what is merely nearer is another model, too.
+        text += trial.apart <= options.line_width
                     ? fmt::format("; {}, within {:.2g} mm", describe(trial), trial.apart)
                     : "; no other size fits, nor its mirror image: it seems the model of another print";
     } else {

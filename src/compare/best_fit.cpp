@@ -27,11 +27,17 @@ constexpr int kFineSteps = 60;
 constexpr int kTurns = 24;
 constexpr std::size_t kRefined = 4;
 // A search that is often in vain: of another size of a model, or of its mirror image.
+constexpr std::size_t kRoughSamples = 150;
 constexpr int kRoughTurns = 12;
 constexpr int kRoughSteps = 8;
 constexpr std::size_t kRoughRefined = 2;
 constexpr int kRoughFineSteps = 24;
 constexpr int kPatience = 6;  // steps
+// Triangles that a search looks at: 10 to 90 of models that are whole, 250 and more of damaged ones. And the searches
+// that tell.
+constexpr double kUsualWork = 120;
+constexpr std::size_t kProbes = 64;
+constexpr std::size_t kLeastAffordable = 32;
 // Of the print's size: a smaller residual is that of a model that fits.
 constexpr double kFits = 0.01;
 constexpr double kOtherSize = 2;
@@ -107,7 +113,7 @@ private:
         parallelFor(points_.size(), 1024, [&](std::size_t first, std::size_t last) {
             for (std::size_t n = first; n < last; ++n) {
                 found[n].at = placement(points_[n]);
-                found[n].nearest = model_.distance(found[n].at, hints_[n]);
+                found[n].nearest = model_.distance(found[n].at, hints_[n], size_);
                 hints_[n] = found[n].nearest.triangle;
             }
         });
@@ -233,9 +239,10 @@ std::vector<Candidate> chosen(std::vector<Candidate> candidates, std::size_t mos
 // Starts from both middles, and the best of them refined.
 class Placing {
 public:
-    Placing(const ClosedModel& model, const SurfaceSamples& print)
-        : coarse_(thinned(print, kCoarseSamples)),
-          medium_(thinned(print, kMediumSamples)),
+    /// @param coarse  samples of the starts
+    Placing(const ClosedModel& model, const SurfaceSamples& print, std::size_t coarse)
+        : coarse_(thinned(print, affordable(model, print, coarse))),
+          medium_(thinned(print, affordable(model, print, kMediumSamples))),
           print_middle_(middleOf(medium_.points)),
           model_samples_(sampleSurface(model.mesh(), kMediumSamples)),
           model_middle_(middleOf(model_samples_.points)),
@@ -283,13 +290,23 @@ private:
 
 }  // namespace
 
+std::size_t affordable(const ClosedModel& model, const SurfaceSamples& print, std::size_t count) {
+    const SurfaceSamples probes = thinned(print, kProbes);
+    const glm::dvec3 move = middleOf(sampleSurface(model.mesh(), kProbes).points) - middleOf(probes.points);
+    double work = 0;
+    for (const glm::dvec3& p : probes.points) work += model.tree().nearest(p + move).looked_at;
+    const double share = kUsualWork * static_cast<double>(probes.points.size()) / std::max(work, 1.0);
+    if (share >= 1) return count;
+    return std::max(kLeastAffordable, static_cast<std::size_t>(static_cast<double>(count) * share * share));
+}
+
 Fit fitModel(const ClosedModel& model, const SurfaceSamples& print) {
     if (print.points.size() < kFewestSamples)
         throw UsageError(
             fmt::format("--compare: {} points of the printed surface are too few to place the model; choose a "
                         "smaller --voxel-size",
                         print.points.size()));
-    Placing placing(model, print);
+    Placing placing(model, print, kCoarseSamples);
     if (!placing.alikeInSize()) {
         const Candidate middles = placing.middles();
         return {middles.print_to_model.inverse(), middles.residual, kCoarseSamples, false};
@@ -307,7 +324,7 @@ Fit fitModel(const ClosedModel& model, const SurfaceSamples& print) {
 
 std::optional<Rigid> roughFit(const ClosedModel& model, const SurfaceSamples& print, double near) {
     if (print.points.size() < kFewestSamples) return std::nullopt;
-    Placing placing(model, print);
+    Placing placing(model, print, kRoughSamples);
     std::vector<Candidate> starts = placing.starts(sidesDown(), kRoughTurns, kRoughSteps);
     const auto hopeful = [near](const Candidate& start) { return start.residual < near; };
     if (std::none_of(starts.begin(), starts.end(), hopeful)) return std::nullopt;
@@ -315,14 +332,14 @@ std::optional<Rigid> roughFit(const ClosedModel& model, const SurfaceSamples& pr
 }
 
 double roughResidual(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print) {
-    const SurfaceSamples coarse = thinned(print, kCoarseSamples);
+    const SurfaceSamples coarse = thinned(print, affordable(model, print, kCoarseSamples));
     return Fitting(model, coarse, sizeOf(coarse, middleOf(coarse.points)))
         .run({model_to_print.inverse(), 0}, 0)
         .residual;
 }
 
 Fit refineFit(const ClosedModel& model, const SurfaceSamples& print, const Rigid& model_to_print) {
-    const SurfaceSamples fine = thinned(print, kFineSamples);
+    const SurfaceSamples fine = thinned(print, affordable(model, print, kFineSamples));
     Fitting exact(model, fine, sizeOf(fine, middleOf(fine.points)));
     const Candidate best = exact.run({model_to_print.inverse(), 0}, kFineSteps);
     return {best.print_to_model.inverse(), best.residual, fine.points.size()};

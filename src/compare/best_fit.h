@@ -18,6 +18,10 @@ struct Fit {
 
 constexpr std::size_t kFewestSamples = 100;
 
+/// How many samples to take where `count` is usual: fewer of a model whose triangles lie across each other, as those of
+/// a damaged file, so that each search looks at thousands.
+std::size_t affordable(const ClosedModel& model, const SurfaceSamples& print, std::size_t count);
+
 /// Iterated closest points, to the planes of the nearest triangles (Chen and Medioni, Image and Vision Computing 10,
 /// 1992), without what is farther than three times the distance that nine
 /// tenths of the samples keep. It starts

@@ -170,8 +170,8 @@ void ClosedModel::joinEdges(const std::string& name) {
                         name, open, place.x, place.y, place.z));
 }
 
-ModelDistance ClosedModel::distance(const glm::dvec3& p, std::uint32_t hint) const {
-    const Nearest nearest = tree_.nearest(p, hint);
+ModelDistance ClosedModel::distance(const glm::dvec3& p, std::uint32_t hint, double rough) const {
+    const Nearest nearest = tree_.nearest(p, hint, rough);
     const Triangle& t = mesh_.triangles[nearest.triangle];
     glm::dvec3 normal = normals_[nearest.triangle];
     if (std::has_single_bit(nearest.feature))

@@ -27,10 +27,13 @@ public:
     ClosedModel(const ClosedModel&) = delete;
     ClosedModel& operator=(const ClosedModel&) = delete;
 
-    ModelDistance distance(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
+    /// @param rough  of TriangleTree::nearest(); beyond it the sign may be wrong
+    ModelDistance distance(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone,
+                           double rough = std::numeric_limits<double>::infinity()) const;
     /// Unit normal of a triangle, outward; of one without area that of the face beyond its longest edge.
     glm::dvec3 normal(std::uint32_t triangle) const { return normals_[triangle]; }
     const TriangleMesh& mesh() const { return mesh_; }
+    const TriangleTree& tree() const { return tree_; }
     double volume() const { return volume_; }  ///< mm^3
     double area() const { return area_; }      ///< mm^2
     /// Triangles with the corners of another one: of bodies that the file has twice.

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kFarSamples = 5'000;
+constexpr std::uint32_t kPrintLeaf = 16;  // of millions of triangles, of which few are searched
 const double kDiagonal = std::sqrt(0.5);  // of 45 degrees
 
 // Points and normals in print space.
@@ -44,6 +45,7 @@ TriangleMesh meshOf(const openvdb::FloatGrid& print) {
 // mm^3: a slit between inner and outer surfaces makes it that of the plastic.
 double volumeOf(const TriangleMesh& mesh) {
     double volume = 0;
+    if (mesh.points.empty()) return volume;
     const glm::dvec3 origin = mesh.points.front();
     for (const Triangle& t : mesh.triangles) volume += glm::dot(mesh.corner(t, 0) - origin, mesh.areaNormal(t)) / 6;
     return volume;
@@ -183,19 +185,20 @@ glm::dvec3 slopeTowardsSurface(const Accessor& phi, const openvdb::Coord& at, do
 
 }  // namespace
 
-PrintedSurface::PrintedSurface(const openvdb::FloatGrid& print) : grid_(print), mesh_(meshOf(print)), tree_(mesh_) {
+PrintedSurface::PrintedSurface(const openvdb::FloatGrid& print)
+    : grid_(print), mesh_(meshOf(print)), tree_(mesh_, kPrintLeaf), sampler_(mesh_), volume_(volumeOf(mesh_)) {
     if (mesh_.triangles.empty())
         throw UsageError("--compare: the print has no surface at this voxel size; choose a smaller --voxel-size");
 }
 
 Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& model, const CompareOptions& options,
                              const Rigid* model_to_print) {
-    SurfaceSamples printed = sampleSurface(print.mesh(), options.samples);
+    SurfaceSamples printed = print.sampled(options.samples);
     Comparison comparison;
     comparison.model_mm3 = model.volume();
     comparison.model_mm2 = model.area();
     comparison.print_mm2 = printed.area;
-    comparison.print_mm3 = volumeOf(print.mesh());
+    comparison.print_mm3 = print.volume();
     const bool fits = options.placement == ModelPlacement::fit;
     if (fits) {
         comparison.fit =
@@ -204,8 +207,8 @@ Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& mod
     }
     const double residual = fits ? comparison.fit->residual : roughResidual(model, printed, comparison.model_to_print);
     // Far places take long to measure, and of a model that does not fit fewer tell as much.
-    const std::size_t samples =
-        residual > options.line_width ? std::min(options.samples, kFarSamples) : options.samples;
+    const std::size_t samples = affordable(
+        model, printed, residual > options.line_width ? std::min(options.samples, kFarSamples) : options.samples);
     printed = thinned(printed, samples);
     const auto all = static_cast<double>(printed.points.size());
     std::vector<Place> places = fromPrint(printed, print.grid(), model, comparison.model_to_print);

@@ -70,11 +70,15 @@ public:
     const openvdb::FloatGrid& grid() const { return grid_; }
     const TriangleMesh& mesh() const { return mesh_; }
     const TriangleTree& tree() const { return tree_; }
+    SurfaceSamples sampled(std::size_t count) const { return sampler_(count); }
+    double volume() const { return volume_; }  ///< mm^3, within it
 
 private:
     const openvdb::FloatGrid& grid_;
     const TriangleMesh mesh_;
     const TriangleTree tree_;
+    const SurfaceSampler sampler_;
+    const double volume_;
 };
 
 /// compareToModel() without doubts, from a placement that is nearly right if there is one.

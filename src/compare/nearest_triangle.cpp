@@ -10,7 +10,7 @@
 namespace stratum::compare {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;
+constexpr double kRoughly = 0.99;
 constexpr std::size_t kDeepest = 64;  // the median halves 2^32 triangles 32 times
 
 bool joined(const Triangle& a, const Triangle& b) {
@@ -62,22 +62,23 @@ Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
     return found(p, a + ab * (towards_b / sum) + ac * (towards_c / sum), 1 | 2 | 4);
 }
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh) {
-    std::vector<Run> all = runs();
+TriangleTree::TriangleTree(const TriangleMesh& mesh, std::uint32_t leaf) : mesh_(mesh) {
+    std::vector<Run> all = runs(leaf);
     nodes_.reserve(2 * all.size());
     if (!all.empty()) build(all);
 }
 
-std::vector<TriangleTree::Run> TriangleTree::runs() const {
+std::vector<TriangleTree::Run> TriangleTree::runs(std::uint32_t leaf) const {
     std::vector<Run> runs;
     const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+    runs.reserve(std::size_t{2} * (count / leaf));
     for (std::uint32_t begin = 0; begin < count;) {
         glm::dvec3 sum(0.0);
         std::uint32_t end = begin;
         do {
             const Triangle& t = mesh_.triangles[end++];
             sum += mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2);
-        } while (end < count && end - begin < kLeaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
+        } while (end < count && end - begin < leaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
         runs.push_back({sum / (3.0 * (end - begin)), begin, end});
         begin = end;
     }
@@ -146,31 +147,37 @@ void TriangleTree::test(std::uint32_t triangle, const glm::dvec3& p, Nearest& be
     if (std::pair(here.distance2, here.triangle) < std::pair(best.distance2, best.triangle)) best = here;
 }
 
-Nearest TriangleTree::nearest(const glm::dvec3& p, std::uint32_t hint) const {
+Nearest TriangleTree::nearest(const glm::dvec3& p, std::uint32_t hint, double rough) const {
     Nearest best;
     if (nodes_.empty()) return best;
+    std::uint32_t looked_at = 0;
     if (hint != Nearest::kNone) test(hint, p, best);
     struct Waiting {
         std::uint32_t node;
         double distance2;
+    };
+    const auto reach2 = [&best, rough2 = rough * rough] {
+        return best.distance2 > rough2 ? kRoughly * kRoughly * best.distance2 : best.distance2;
     };
     std::array<Waiting, kDeepest> stack;
     std::size_t waiting = 0;
     stack[waiting++] = {0, distance2(nodes_[0], p)};
     while (waiting > 0) {
         const Waiting next = stack[--waiting];
-        if (next.distance2 > best.distance2) continue;
+        if (next.distance2 > reach2()) continue;
         const Node& node = nodes_[next.node];
         if (node.right == 0) {
             for (std::uint32_t n = node.begin; n < node.end; ++n) test(n, p, best);
+            looked_at += node.end - node.begin;
             continue;
         }
         Waiting near{next.node + 1, distance2(nodes_[next.node + 1], p)};
         Waiting far{node.right, distance2(nodes_[node.right], p)};
         if (far.distance2 < near.distance2) std::swap(near, far);
-        if (far.distance2 <= best.distance2) stack[waiting++] = far;
-        if (near.distance2 <= best.distance2) stack[waiting++] = near;
+        if (far.distance2 <= reach2()) stack[waiting++] = far;
+        if (near.distance2 <= reach2()) stack[waiting++] = near;
     }
+    best.looked_at = looked_at;
     return best;
 }
 

@@ -20,6 +20,7 @@ struct Nearest {
     /// What of the triangle has the point: bit n is set where corner n counts. One bit is a corner, two an edge, three
     /// the face.
     std::uint8_t feature = 0;
+    std::uint32_t looked_at = 0;  ///< triangles, until it was found
 };
 
 /// The point of a triangle that is nearest to p. Source: the regions of Voronoi of a triangle's corners, edges and
@@ -27,13 +28,17 @@ struct Nearest {
 Nearest nearestOn(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
 /// Immutable; shared by all threads. Boxes are split at the median of the middles along their longest side. A leaf has
-/// up to four triangles that follow one another in the mesh and share corners. The mesh must outlive it.
+/// triangles that follow one another in the mesh and share corners. The mesh must outlive it.
 class TriangleTree {
 public:
-    explicit TriangleTree(const TriangleMesh& mesh);
+    /// @param leaf  the most triangles of a leaf: more make the tree sooner, and searches a little longer
+    explicit TriangleTree(const TriangleMesh& mesh, std::uint32_t leaf = 4);
 
     /// @param hint  a triangle that is probably near, e.g. that of a place beside this one: saves most of the search
-    Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone) const;
+    /// @param rough  mm: beyond this distance a point that is a hundredth farther will do. From afar all triangles of a
+    /// flat side are nearly as near, and an exact answer would look at each.
+    Nearest nearest(const glm::dvec3& p, std::uint32_t hint = Nearest::kNone,
+                    double rough = std::numeric_limits<double>::infinity()) const;
     const TriangleMesh& mesh() const { return mesh_; }
     std::size_t bytes() const { return nodes_.size() * sizeof(Node); }
 
@@ -47,7 +52,7 @@ private:
         glm::vec3 middle;
         std::uint32_t begin, end;  // triangles
     };
-    std::vector<Run> runs() const;
+    std::vector<Run> runs(std::uint32_t leaf) const;
     std::uint32_t build(std::span<Run> runs);
     Node leafOf(const Run& run) const;
     void test(std::uint32_t triangle, const glm::dvec3& p, Nearest& best) const;

@@ -9,19 +9,26 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <new>
 #include <string_view>
+#include <system_error>
 
 namespace stratum::compare {
 namespace {
 
 constexpr char kRead = 'r', kRefused = 'x';  // the first byte
 constexpr rlim_t kMostSeconds = 120;
+// Bytes that a reader may take: what is packed in a .3mf can be a thousand times as long as the file.
+constexpr rlim_t kMostBytes = rlim_t{1} << 30;
+constexpr rlim_t kMostPerByte = 300;
 
 bool writeAll(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -33,6 +40,22 @@ bool writeAll(int descriptor, std::string_view bytes) {
     return true;
 }
 
+// What this process has already is not counted.
+void limitMemory([[maybe_unused]] const std::string& name) {
+#ifndef STRATUM_SANITIZED  // which takes terabytes of addresses
+    std::error_code unknown;
+    const std::uintmax_t length = std::filesystem::file_size(name, unknown);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kMostBytes +
+                        (unknown ? 0 : kMostPerByte * std::min<rlim_t>(length, kMostBytes));
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur <= most) return;
+    limit.rlim_cur = most;
+    (void)::setrlimit(RLIMIT_AS, &limit);
+#endif
+}
+
 [[noreturn]] void runChild(int to, const std::string& name, const std::function<std::string()>& read) {
     (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGXFSZ}) (void)::signal(signal, SIG_DFL);
@@ -40,6 +63,7 @@ bool writeAll(int descriptor, std::string_view bytes) {
     const rlimit seconds{kMostSeconds, kMostSeconds};
     (void)::setrlimit(RLIMIT_CORE, &no_core);
     (void)::setrlimit(RLIMIT_CPU, &seconds);
+    limitMemory(name);
     // What an assertion says means nothing to people.
     if (const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC); null >= 0) (void)::dup2(null, STDERR_FILENO);
     bool done = false;

@@ -23,31 +23,38 @@ double medianOf(std::vector<double>& values) {
 
 }  // namespace
 
-SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count) {
-    SurfaceSamples samples;
-    std::vector<double> until;
-    until.reserve(mesh.triangles.size());
+SurfaceSampler::SurfaceSampler(const TriangleMesh& mesh) : mesh_(mesh) {
+    until_.reserve(mesh.triangles.size());
+    double area = 0;
     for (const Triangle& t : mesh.triangles) {
-        samples.area += 0.5 * glm::length(mesh.areaNormal(t));
-        until.push_back(samples.area);
+        area += 0.5 * glm::length(mesh.areaNormal(t));
+        until_.push_back(area);
     }
-    if (until.empty() || !(samples.area > 0)) return samples;
+}
+
+SurfaceSamples SurfaceSampler::operator()(std::size_t count) const {
+    SurfaceSamples samples;
+    if (until_.empty()) return samples;
+    samples.area = until_.back();
+    if (!(samples.area > 0)) return samples;
     samples.points.reserve(count);
     samples.triangles.reserve(count);
     std::size_t triangle = 0;
     for (std::size_t n = 0; n < count; ++n) {
         const double at = samples.area * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
-        while (triangle + 1 < until.size() && until[triangle] < at) ++triangle;
+        while (triangle + 1 < until_.size() && until_[triangle] < at) ++triangle;
         // Uniform in the triangle: the square root makes the first coordinate's density linear.
         const double root = std::sqrt(fraction(kFirst * static_cast<double>(n + 1)));
         const double other = fraction(kSecond * static_cast<double>(n + 1));
-        const Triangle& t = mesh.triangles[triangle];
-        samples.points.push_back(mesh.corner(t, 0) * (1 - root) + mesh.corner(t, 1) * (root * (1 - other)) +
-                                 mesh.corner(t, 2) * (root * other));
+        const Triangle& t = mesh_.triangles[triangle];
+        samples.points.push_back(mesh_.corner(t, 0) * (1 - root) + mesh_.corner(t, 1) * (root * (1 - other)) +
+                                 mesh_.corner(t, 2) * (root * other));
         samples.triangles.push_back(static_cast<std::uint32_t>(triangle));
     }
     return samples;
 }
+
+SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count) { return SurfaceSampler(mesh)(count); }
 
 SurfaceSamples thinned(const SurfaceSamples& samples, std::size_t count) {
     const std::size_t all = samples.points.size();

@@ -14,8 +14,21 @@ struct SurfaceSamples {
     double area = 0;  ///< mm^2, of the surface
 };
 
-/// `count` points: one in each of as many equal parts of the area, taken triangle after triangle, at a place that
-/// depends on the number of the part alone.
+/// Samples of one surface, of any number. The mesh must outlive it.
+class SurfaceSampler {
+public:
+    explicit SurfaceSampler(const TriangleMesh& mesh);
+
+    /// `count` points: one in each of as many equal parts of the area, taken triangle after triangle, at a place that
+    /// depends on the number of the part alone.
+    SurfaceSamples operator()(std::size_t count) const;
+
+private:
+    const TriangleMesh& mesh_;
+    std::vector<double> until_;  // mm^2, of all triangles up to this one
+};
+
+/// Of a surface that is sampled once.
 SurfaceSamples sampleSurface(const TriangleMesh& mesh, std::size_t count);
 
 /// Every n-th, so that about `count` are left.

@@ -9,14 +9,20 @@
 
 namespace stratum::deposit {
 
-PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed) {
+PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed,
+                    std::vector<motion::Travel>* travels) {
     PrintRead print;
     std::optional<FlowRecorder> flow;
     const gcode::DepositModel& deposit = options.deposit;
+    if (travels != nullptr && (options.belt_angle || deposit.flow_lag || deposit.sag > 0))
+        throw UsageError(
+            fmt::format("{}: travels are not told of printers with a belt, and not beside beads that lag "
+                        "or sag: leave out either",
+                        name));
     if (deposit.flow_lag) flow.emplace(*deposit.flow_lag, deposit.pressure_advance, deposit.nozzle_diameter);
     if (timed) {
         print.toolpath =
-            motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr);
+            motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr, travels);
     } else if (flow) {
         motion::Planner planner(*flow);
         motion::ClockFit fit(planner);
@@ -25,6 +31,11 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
         print.toolpath = gcode::readToolpath(bytes, name, read);
         fit.finish();
         planner.finish();
+    } else if (travels != nullptr) {
+        motion::TravelRecorder moves(*travels, nullptr);
+        gcode::ReadOptions read = options;
+        read.motion = &moves;
+        print.toolpath = gcode::readToolpath(bytes, name, read);
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);
     }

@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace stratum::deposit {
 
@@ -20,6 +21,9 @@ struct PrintRead {
 
 /// Reads a program; plans its motion only if `timed` or if the flow is simulated. Throws what readToolpath() throws.
 /// The search for what sags runs on all threads, the rest on one. Re-entrant.
-PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed);
+/// @param travels  gets the moves that lay nothing, if not null. Throws UsageError where their places or beads would
+/// not be those of the toolpath: of a belt, and where beads lag or sag.
+PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed,
+                    std::vector<motion::Travel>* travels = nullptr);
 
 }  // namespace stratum::deposit

@@ -6,6 +6,12 @@
 #include <utility>
 
 namespace stratum::exporter {
+namespace {
+
+// One part in so many of a file may be room that is left; of more the leaves are moved, which then are few.
+constexpr std::uint64_t kMostSpare = 100;
+
+}  // namespace
 
 LevelSetOutput::LevelSetOutput(openvdb::FloatGrid::Ptr grid, const std::filesystem::path& path,
                                std::uint32_t compression, const voxelize::NodeBounds& bounds)
@@ -41,17 +47,22 @@ WrittenGrid LevelSetOutput::finish() {
     statistics_.memory_bytes = nodes_.memoryBytes();
     insertStatistics(*grid_, statistics_, format_);
     const float background = grid_->background();
+    const std::string listed = list_.bytes();
+    const std::uint64_t nodes = nodes_.writtenBytes(format_, background);
+    const std::uint64_t needed = headBytes(archive_, *grid_, grid_->getName(), listed.size()) + nodes;
     // Without leaves there is no list to take the room that is left.
-    if (list_.leaves() == 0)
-        places_.leaves = places_.end =
-            places_.head + headBytes(archive_, *grid_, grid_->getName(), 0) + nodes_.writtenBytes(format_, background);
-    // The topology ends where the leaves begin, so its length is needed first; that of the masks is known.
-    places_.topology = places_.leaves - nodes_.writtenBytes(format_, background);
+    const std::uint64_t spare = places_.leaves - places_.head - needed;
+    if (listed.empty() || kMostSpare * spare > places_.end - spare) {
+        file_.moveForward(places_.leaves, places_.end, spare);
+        places_.leaves -= spare;
+        places_.end -= spare;
+    }
+    // The topology ends where the leaves begin.
+    places_.topology = places_.leaves - nodes;
     PositionedStream topology(file_, places_.topology);
     openvdb::io::setDataCompression(topology, format_.compression);
     nodes_.write(topology, background, format_.half);
     topology.writeOut();
-    const std::string listed = list_.bytes();
     writeHead(file_, archive_, *grid_, grid_->getName(), places_, listed);
     file_.write(0, archive_.header(1, identityOf(*grid_, listed)));
     file_.finish(places_.end);

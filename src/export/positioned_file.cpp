@@ -15,11 +15,12 @@ namespace stratum::exporter {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kMovedBytes = std::size_t{1} << 20;
 
 }  // namespace
 
 PositionedFile::PositionedFile(const std::filesystem::path& path, std::filesystem::path shown)
-    : shown_(std::move(shown)), fd_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+    : shown_(std::move(shown)), fd_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
     if (fd_ < 0) fail(errno);
 }
 
@@ -54,6 +55,18 @@ void PositionedFile::write(std::uint64_t at, std::span<iovec> parts) {
         if (left == 0) continue;
         parts.front().iov_base = static_cast<char*>(parts.front().iov_base) + left;
         parts.front().iov_len -= left;
+    }
+}
+
+void PositionedFile::moveForward(std::uint64_t from, std::uint64_t to, std::uint64_t by) {
+    std::vector<char> piece(kMovedBytes);
+    while (from < to) {
+        const std::size_t wanted = std::min<std::uint64_t>(piece.size(), to - from);
+        const ssize_t got = ::pread(fd_, piece.data(), wanted, static_cast<off_t>(from));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) fail(got < 0 ? errno : EIO);
+        write(from - by, {piece.data(), static_cast<std::size_t>(got)});
+        from += static_cast<std::uint64_t>(got);
     }
 }
 

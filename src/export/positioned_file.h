@@ -27,6 +27,8 @@ public:
     void write(std::uint64_t at, std::string_view bytes);
     /// All of these, one after the other; changes the list.
     void write(std::uint64_t at, std::span<iovec> parts);
+    /// The bytes of this range come `by` bytes earlier. Throws OutputError.
+    void moveForward(std::uint64_t from, std::uint64_t to, std::uint64_t by);
     /// The disk may begin to write this range, so that the last flush has less to do.
     void startFlush(std::uint64_t from, std::uint64_t to);
     /// The file ends here. Throws OutputError.

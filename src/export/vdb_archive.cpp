@@ -3,6 +3,7 @@
 #include "base/checksum.h"
 #include "base/error.h"
 
+#include <blosc.h>
 #include <fmt/format.h>
 #include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -11,7 +12,9 @@
 
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
 namespace stratum::exporter {
 namespace {
@@ -74,9 +77,28 @@ HeadParts headAround(const LeafFormat& format, const GridBase& grid, const std::
 // ones: then it refuses the file. It reads any list that is not packed.
 constexpr std::size_t kMostPackedLeaves = std::size_t{1} << 24;
 
+constexpr std::size_t kPlainBytes = sizeof(std::int8_t) + sizeof(std::int64_t);  // of a leaf
+
+void append(std::string& bytes, std::uint32_t value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+// As DelayedLoadMetadata has its lists: bytes of Blosc behind their number, or 0 and the values as they are. It packs
+// as if values had four bytes; by their own size zeros come together.
 template <typename T>
-void append(std::string& bytes, const T* values, std::size_t count) {
-    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+void appendList(std::string& bytes, const std::vector<T>& values, bool packs) {
+    constexpr int kLevel = 9;
+    constexpr std::size_t kFilledUp = 128;  // shorter ones it fills up before it packs them
+    const std::size_t plain = values.size() * sizeof(T);
+    packs = packs && plain >= kFilledUp;
+    std::vector<char> chunk(packs ? plain + BLOSC_MAX_OVERHEAD : 0);
+    const int packed = packs ? blosc_compress_ctx(kLevel, BLOSC_SHUFFLE, sizeof(T), plain, values.data(), chunk.data(),
+                                                  chunk.size(), BLOSC_LZ4_COMPNAME, 0, 1)
+                             : 0;
+    const bool smaller = packed > 0 && static_cast<std::size_t>(packed) < plain;
+    append(bytes, smaller ? static_cast<std::uint32_t>(packed) : 0);
+    bytes.append(smaller ? chunk.data() : reinterpret_cast<const char*>(values.data()),
+                 smaller ? static_cast<std::size_t>(packed) : plain);
 }
 
 }  // namespace
@@ -111,40 +133,27 @@ void LeafList::add(PackedLeaf leaf) {
 
 std::string LeafList::bytes() const {
     if (kinds_.empty()) return {};
-    if (kinds_.size() > kMostPackedLeaves) return plainBytes();
-    openvdb::io::DelayedLoadMetadata list;
-    list.resizeMask(kinds_.size());
-    for (std::size_t n = 0; n < kinds_.size(); ++n) list.setMask(n, kinds_[n]);
-    if (format_.sized()) {
-        list.resizeCompressedSize(kinds_.size());
-        for (std::size_t n = 0; n < kinds_.size(); ++n) list.setCompressedSize(n, sizes_[n]);
-    }
-    std::ostringstream out(std::ios::binary);
-    list.write(out);
-    return out.str().substr(sizeof(std::uint32_t));  // without its length
-}
-
-// As DelayedLoadMetadata::write() writes what it can't pack.
-std::string LeafList::plainBytes() const {
-    if (mostBytes(kinds_.size()) > std::numeric_limits<std::uint32_t>::max())
+    if (kinds_.size() * kPlainBytes > std::numeric_limits<std::uint32_t>::max())
         throw OutputError(
             fmt::format("{} leaves are more than the .vdb format can list; choose a larger voxel", kinds_.size()));
-    const auto count = static_cast<std::uint32_t>(kinds_.size());
-    constexpr std::uint32_t kPlain = 0;
-    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    const bool packs = kinds_.size() <= kMostPackedLeaves;
     std::string bytes;
-    bytes.reserve(mostBytes(kinds_.size()));
-    append(bytes, &count, 1);
-    append(bytes, &kPlain, 1);
-    append(bytes, kinds_.data(), kinds_.size());
-    append(bytes, format_.sized() ? &kPlain : &kNone, 1);
-    for (const std::int64_t size : sizes_) append(bytes, &size, 1);
+    append(bytes, static_cast<std::uint32_t>(kinds_.size()));
+    appendList(bytes, kinds_, packs);
+    if (format_.sized())
+        appendList(bytes, std::vector<std::int64_t>(sizes_.begin(), sizes_.end()), packs);
+    else
+        append(bytes, std::numeric_limits<std::uint32_t>::max());  // no sizes
     return bytes;
 }
 
 std::size_t LeafList::mostBytes(std::size_t leaves) {
-    // A count and two lengths; lists that cannot be packed are stored as they are.
-    return leaves == 0 ? 0 : 3 * sizeof(std::uint32_t) + leaves * (sizeof(std::int8_t) + sizeof(std::int64_t));
+    // A count and two lengths; and of short lists Blosc's own head.
+    constexpr std::size_t kFixed = 1024;
+    if (leaves == 0) return 0;
+    if (leaves > kMostPackedLeaves) return kFixed + leaves * kPlainBytes;
+    // Sizes have 16 bits: six of eight planes of bytes are zeros, and two may be there as they are.
+    return kFixed + leaves * (sizeof(std::int8_t) + sizeof(std::uint16_t)) + leaves / 8;
 }
 
 std::size_t headBytes(const VdbArchive& archive, const GridBase& grid, const std::string& name,
@@ -160,6 +169,7 @@ void writeHead(PositionedFile& file, const VdbArchive& archive, const GridBase& 
     const std::uint64_t room = places.topology - places.head - fixed;
     if (room > std::numeric_limits<std::uint32_t>::max())
         throw OutputError("a grid of more than four thousand million bytes of leaf list can't be written");
+    if (list.size() > room) throw std::logic_error("the leaf list is longer than the room for it");
     const HeadParts parts = headAround(archive.formatOf(grid), grid, name, places, static_cast<std::uint32_t>(room));
     file.write(places.head, parts.before);
     file.write(places.head + parts.before.size(), list);

@@ -4,7 +4,8 @@
 // A file begins with a header. Each grid has a head (descriptor, metadata, transform), the topology of its tree, and
 // the values of its leaves. The metadata hold a list of the leaves' sizes (io::DelayedLoadMetadata), which is known
 // last; so a head is given room before the leaves and written after them. What of that room is not used lies at the end
-// of the list, where every OpenVDB since 6.2 skips what it does not know, and is a hole in the file.
+// of the list, where every OpenVDB since 6.2 skips what it does not know, and is a hole in the file of at most a
+// hundredth.
 #pragma once
 
 #include "export/leaf_packer.h"
@@ -45,8 +46,6 @@ public:
     static std::size_t mostBytes(std::size_t leaves);
 
 private:
-    std::string plainBytes() const;
-
     LeafFormat format_;
     std::vector<std::int8_t> kinds_;
     std::vector<std::uint16_t> sizes_;

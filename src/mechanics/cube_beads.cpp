@@ -47,7 +47,7 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
               const voxelize::Lattice& lattice, SolidElements& elements) {
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
     const voxelize::Lattice middles = middlesOf(toolpath, stack, lattice, elements);
-    const voxelize::PlanBins bins(toolpath, stack, middles, availableMemory() / 4);
+    const voxelize::PlanBins bins(toolpath, stack, middles, availableMemory());
     if (bins.size() == 0 || elements.list.empty()) return;
     std::vector<SolidElement>& list = elements.list;
 

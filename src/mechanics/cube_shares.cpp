@@ -199,7 +199,7 @@ CubeShares cubeShares(const gcode::Toolpath& toolpath, std::span<const std::uint
     plan.voxel_size = lattice.voxel_size / lines;
     plan.half_width = 1;
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
-    const voxelize::PlanBins bins(toolpath, stack, plan, availableMemory() / 4);
+    const voxelize::PlanBins bins(toolpath, stack, plan, availableMemory());
     tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
         [&] { return voxelize::LeafColumn(toolpath, stack, plan, 1.0); });
     voxelize::ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), progress);

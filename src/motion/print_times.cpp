@@ -5,6 +5,7 @@
 #include "motion/clock_fit.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace stratum::motion {
 namespace {
@@ -14,7 +15,7 @@ using gcode::CornerRule;
 // Collects the data for the sums while the toolpath is being read.
 class Recorder : public PlanSink {
 public:
-    explicit Recorder(PlanSink* also) : also_(also) {}
+    Recorder(PlanSink* also, std::vector<Travel>* travels) : also_(also), travels_(travels) {}
 
     void piece(const PlannedPiece& piece) override {
         if (also_ != nullptr) also_->piece(piece);
@@ -22,6 +23,11 @@ public:
         const double seconds = piece.speed.seconds();
         if (segment.bead == gcode::Move::kNoBead) {
             (segment.travels ? travel : retraction) += seconds;
+            if (travels_ != nullptr && segment.travel != gcode::Move::kNoBead) {
+                Travel& of = (*travels_)[segment.travel];
+                if (of.seconds == 0) of.start = piece.start;
+                of.seconds += static_cast<float>(seconds);
+            }
             return;
         }
         if (timing.size() <= segment.bead) {
@@ -46,6 +52,7 @@ public:
 
 private:
     PlanSink* also_;
+    std::vector<Travel>* travels_;
 };
 
 class TimedPlanner : public Planner {
@@ -85,12 +92,14 @@ StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts) 
 }
 
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
-                                  PrintTimes& times, PlanSink* also) {
-    Recorder recorder(also);
+                                  PrintTimes& times, PlanSink* also, std::vector<Travel>* travels) {
+    Recorder recorder(also, travels);
     TimedPlanner planner(recorder);
     gcode::ReadOptions read = options;
     ClockFit fit(planner);
+    std::optional<TravelRecorder> moves;
     read.motion = &fit;
+    if (travels != nullptr) read.motion = &moves.emplace(*travels, &fit);
     gcode::Toolpath toolpath = gcode::readToolpath(bytes, name, read);
     fit.finish();
     planner.finish();

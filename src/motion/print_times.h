@@ -4,6 +4,7 @@
 #include "gcode/reader.h"
 #include "gcode/toolpath/toolpath.h"
 #include "motion/planner.h"
+#include "motion/travels.h"
 
 #include <array>
 #include <string>
@@ -39,8 +40,9 @@ StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts);
 std::string_view ruleName(gcode::CornerRule rule);
 
 /// Reads a program and plans its motion: fills Toolpath::timing and returns the sums. `also`, if not null, gets the
-/// plan too. Throws what readToolpath() throws. Takes about twice as long as reading alone, and 24 bytes a bead.
+/// plan too, and `travels` the moves that lay nothing. Throws what readToolpath() throws. Takes about twice as long as
+/// reading alone, and 24 bytes a bead.
 gcode::Toolpath readTimedToolpath(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options,
-                                  PrintTimes& times, PlanSink* also = nullptr);
+                                  PrintTimes& times, PlanSink* also = nullptr, std::vector<Travel>* travels = nullptr);
 
 }  // namespace stratum::motion

@@ -97,6 +97,7 @@ void cutMove(const gcode::Move& move, const gcode::MachineLimits& limits,
     Segment segment;
     segment.bead = move.bead;
     segment.line = move.line;
+    segment.travel = move.travel;
     segment.filament_area = move.filament_area;
     segment.pressure_advance = limits.pressure_advance;
     segment.speed = segment.asked = move.speed;

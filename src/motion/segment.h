@@ -22,6 +22,7 @@ struct Segment {
     bool travels = false;                                ///< x, y or z moves; else E alone
     std::uint32_t bead = gcode::Move::kNoBead;
     std::uint32_t line = 0;
+    std::uint32_t travel = gcode::Move::kNoBead;  ///< Move::travel
 };
 
 /// Calls take() for the segments of a move, in order; arcs are cut into chords as the rule's firmware does. Speed and

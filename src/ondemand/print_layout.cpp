@@ -51,7 +51,7 @@ PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, st
       lattice(the_lattice),
       unit(the_unit),
       stack(voxelize::stackLayers(*toolpath, selection)),
-      bins(*toolpath, stack, lattice, availableMemory() / 4),
+      bins(*toolpath, stack, lattice, availableMemory()),
       reach(reachOf(stack, lattice)) {}
 
 std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {

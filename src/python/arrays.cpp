@@ -98,6 +98,27 @@ py::dtype recordType<gcode::BeadFlow>() {
                   sizeof(BeadFlow));
 }
 
+template <>
+py::dtype recordType<motion::Travel>() {
+    using motion::Travel;
+    return typeOf({{"x0", "<f8", offsetof(Travel, x0)},
+                   {"y0", "<f8", offsetof(Travel, y0)},
+                   {"z0", "<f8", offsetof(Travel, z0)},
+                   {"x1", "<f8", offsetof(Travel, x1)},
+                   {"y1", "<f8", offsetof(Travel, y1)},
+                   {"z1", "<f8", offsetof(Travel, z1)},
+                   {"center_x", "<f8", offsetof(Travel, center_x)},
+                   {"center_y", "<f8", offsetof(Travel, center_y)},
+                   {"start", "<f8", offsetof(Travel, start)},
+                   {"sweep", "<f4", offsetof(Travel, sweep)},
+                   {"seconds", "<f4", offsetof(Travel, seconds)},
+                   {"speed", "<f4", offsetof(Travel, speed)},
+                   {"filament", "<f4", offsetof(Travel, filament)},
+                   {"bead", "<u4", offsetof(Travel, bead)},
+                   {"line", "<u4", offsetof(Travel, line)}},
+                  sizeof(Travel));
+}
+
 py::array viewOf(const py::dtype& type, const std::vector<py::ssize_t>& shape, const void* data,
                  const py::object& owner) {
     // Of nothing, too, the owner owns it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
+#include "motion/travels.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -26,6 +27,8 @@ template <>
 pybind11::dtype recordType<gcode::BeadTiming>();
 template <>
 pybind11::dtype recordType<gcode::BeadFlow>();
+template <>
+pybind11::dtype recordType<motion::Travel>();
 
 /// A read-only array over memory that `owner` keeps alive.
 pybind11::array viewOf(const pybind11::dtype& type, const std::vector<pybind11::ssize_t>& shape, const void* data,

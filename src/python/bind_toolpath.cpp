@@ -20,7 +20,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace stratum::python {
 
@@ -33,6 +35,7 @@ constexpr const char* kRead =
     R"(Reads one G-code program: a path, or bytes; plain text or any container (gzip, .bgcode, .gcode.3mf, .ufp, .gx).
 
 timed: plan the motion of the machine, for Toolpath.timing and Toolpath.times; takes about twice as long.
+travels: keep the moves that lay nothing, for Toolpath.travels; not with belt, flow_lag and sag.
 progress: called with the fraction done, 0..1.
 Returns a Toolpath. The options are those of the tools: plate, filament_diameter (mm, one or by tool), filament_colors (one or
 by tool, as --color), layer_height (mm), belt (degrees), planar, e_mode, firmware,
@@ -49,6 +52,7 @@ Raises UsageError, with the index and the remedy, for records that nothing can b
 ToolpathObject readProgram(const py::object& source, const py::object& progress, const py::kwargs& given) {
     Keywords options("read", given);
     const bool timed = options.flag("timed").value_or(false);
+    const bool with_travels = options.flag("travels").value_or(false);
     gcode::ReadOptions read = readOptionsOf(options);
     options.finish();
     std::string bytes;
@@ -65,10 +69,14 @@ ToolpathObject readProgram(const py::object& source, const py::object& progress,
     return callLong(progress, [&](const Report& report) {
         read.progress = report;
         const auto make = [&](std::string_view program, const std::string& name) {
-            deposit::PrintRead print = deposit::readPrint(program, name, read, timed);
-            return ToolpathObject{std::make_shared<const gcode::Toolpath>(std::move(print.toolpath)),
-                                  std::move(print.times), in_memory ? "" : std::filesystem::path(name).filename(),
-                                  sha256Hex(program)};
+            std::vector<motion::Travel> travels;
+            deposit::PrintRead print =
+                deposit::readPrint(program, name, read, timed, with_travels ? &travels : nullptr);
+            ToolpathObject object{std::make_shared<const gcode::Toolpath>(std::move(print.toolpath)),
+                                  std::move(print.times), nullptr,
+                                  in_memory ? "" : std::filesystem::path(name).filename(), sha256Hex(program)};
+            if (with_travels) object.travels = std::make_shared<const std::vector<motion::Travel>>(std::move(travels));
+            return object;
         };
         if (in_memory) return make(bytes, "bytes");
         const gcode::InputBytes file(path);
@@ -89,7 +97,7 @@ ToolpathObject finished(gcode::Toolpath&& toolpath) {
     const py::gil_scoped_release release;
     requireValid(toolpath);
     sumUp(toolpath);
-    return {std::make_shared<const gcode::Toolpath>(std::move(toolpath)), {}, "", ""};
+    return {std::make_shared<const gcode::Toolpath>(std::move(toolpath)), {}, nullptr, "", ""};
 }
 
 ToolpathObject makeToolpath(const py::object& beads, const py::object& runs, const py::object& arcs,
@@ -177,18 +185,9 @@ py::list warningsOf(const gcode::Toolpath& toolpath) {
 
 const ToolpathObject& objectOf(const py::object& self) { return self.cast<const ToolpathObject&>(); }
 
-void addArrays(py::class_<ToolpathObject>& type) {
+// Those that are there if they were asked for.
+void addAskedArrays(py::class_<ToolpathObject>& type) {
     type.def_property_readonly(
-            "beads", [](const py::object& self) { return viewOf(objectOf(self).toolpath->beads, self); },
-            "Read-only array of bead_dtype, without a copy, in print order: mm; z is that of the nozzle, the top of "
-            "the bead; run is an index into runs; arc is an index into arcs, or minus the line if straight.")
-        .def_property_readonly(
-            "runs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->runs, self); },
-            "Read-only array of run_dtype, without a copy: what consecutive beads share. height mm, speed mm/s.")
-        .def_property_readonly(
-            "arcs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->arcs, self); },
-            "Read-only array of arc_dtype, without a copy: center mm, sweep radians.")
-        .def_property_readonly(
             "timing",
             [](const py::object& self) -> py::object {
                 const gcode::Toolpath& toolpath = *objectOf(self).toolpath;
@@ -204,7 +203,30 @@ void addArrays(py::class_<ToolpathObject>& type) {
                 if (toolpath.flow.empty()) return py::none();
                 return viewOf(toolpath.flow, self);
             },
-            "Read-only array of flow_dtype by bead, without a copy: mm^3, mm^3/s, mm. None unless read with flow_lag.");
+            "Read-only array of flow_dtype by bead, without a copy: mm^3, mm^3/s, mm. None unless read with flow_lag.")
+        .def_property_readonly(
+            "travels",
+            [](const py::object& self) -> py::object {
+                const ToolpathObject& object = objectOf(self);
+                if (!object.travels) return py::none();
+                return viewOf(*object.travels, self);
+            },
+            "Read-only array of travel_dtype, without a copy, in order: the moves of the nozzle that lay nothing. mm, "
+            "mm/s; filament is what E moves meanwhile (negative: drawn back); bead is the index of the next bead; "
+            "start and seconds are 0 unless timed=True. None unless read with travels=True.");
+}
+
+void addArrays(py::class_<ToolpathObject>& type) {
+    type.def_property_readonly(
+            "beads", [](const py::object& self) { return viewOf(objectOf(self).toolpath->beads, self); },
+            "Read-only array of bead_dtype, without a copy, in print order: mm; z is that of the nozzle, the top of "
+            "the bead; run is an index into runs; arc is an index into arcs, or minus the line if straight.")
+        .def_property_readonly(
+            "runs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->runs, self); },
+            "Read-only array of run_dtype, without a copy: what consecutive beads share. height mm, speed mm/s.")
+        .def_property_readonly(
+            "arcs", [](const py::object& self) { return viewOf(objectOf(self).toolpath->arcs, self); },
+            "Read-only array of arc_dtype, without a copy: center mm, sweep radians.");
     using Path = gcode::Toolpath;
     using gcode::Bead;
     type.def(
@@ -313,6 +335,7 @@ void bindToolpath(py::module_& module) {
                                     "Everything that one G-code file deposits, in print order: mm, z up. It never "
                                     "changes; replace() makes another.");
     addArrays(type);
+    addAskedArrays(type);
     addFacts(type);
     type.def("select", &selectBeads,
              documented(fmt::format("select(self, *, {})", kSelectionParameters),
@@ -329,7 +352,8 @@ void bindToolpath(py::module_& module) {
         [](const py::object& source, const py::object& progress, const py::kwargs& options) {
             return readProgram(source, progress, options);
         },
-        documented(fmt::format("read(source, *, timed=None, progress=None, {})", kReadParameters), kRead).c_str(),
+        documented(fmt::format("read(source, *, timed=None, travels=None, progress=None, {})", kReadParameters), kRead)
+            .c_str(),
         "source"_a, py::kw_only(), "progress"_a = py::none());
     module.def("make_toolpath", &makeToolpath,
                documented("make_toolpath(beads, runs, arcs=None, objects=None, *, filament_diameter=1.75, "
@@ -342,6 +366,7 @@ void bindToolpath(py::module_& module) {
     module.attr("run_dtype") = recordType<gcode::Run>();
     module.attr("arc_dtype") = recordType<gcode::Arc>();
     module.attr("timing_dtype") = recordType<gcode::BeadTiming>();
+    module.attr("travel_dtype") = recordType<motion::Travel>();
     module.attr("flow_dtype") = recordType<gcode::BeadFlow>();
     py::list features;
     for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)

@@ -15,8 +15,13 @@ namespace py = pybind11;
 namespace {
 
 // Those that Python calls otherwise than by '_' for '-'.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOtherNames = {
-    {{"tool", "tools"}, {"object", "objects"}, {"light", "lights"}, {"time", "seconds"}, {"force", "overwrite=True"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherNames = {{{"tool", "tools"},
+                                                                                       {"object", "objects"},
+                                                                                       {"light", "lights"},
+                                                                                       {"time", "seconds"},
+                                                                                       {"color", "filament_colors"},
+                                                                                       {"compare-at", "at"},
+                                                                                       {"force", "overwrite=True"}}};
 
 bool isOf(char c) { return std::islower(static_cast<unsigned char>(c)) != 0 || c == '-'; }
 

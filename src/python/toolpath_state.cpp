@@ -254,7 +254,7 @@ void visitToolpath(Archive& archive, Path& toolpath) {
     archive.value(extruded_mm3);
 }
 static_assert(sizeof(gcode::Bead) == 60 && sizeof(gcode::Run) == 16 && sizeof(gcode::BeadTiming) == 24 &&
-                  sizeof(gcode::BeadFlow) == 12,
+                  sizeof(gcode::BeadFlow) == 12 && sizeof(motion::Travel) == 96,
               "records are written as they are, and must have no padding");
 
 // What the rest of the program takes for granted of indices.
@@ -281,6 +281,8 @@ std::string stateOf(const ToolpathObject& object) {
     visitToolpath(writer, *object.toolpath);
     writer.value(object.times.has_value());
     if (object.times) visitTimes(writer, *object.times);
+    writer.value(object.travels != nullptr);
+    if (object.travels) writer.records(*object.travels);
     writer.value(object.source);
     writer.value(object.source_sha256);
     std::string bytes = writer.take();
@@ -310,6 +312,13 @@ ToolpathObject toolpathOf(std::string_view state) {
     bool timed = false;
     reader.value(timed);
     if (timed) visitTimes(reader, object.times.emplace());
+    bool has_travels = false;
+    reader.value(has_travels);
+    if (has_travels) {
+        std::vector<motion::Travel> travels;
+        reader.records(travels);
+        object.travels = std::make_shared<const std::vector<motion::Travel>>(std::move(travels));
+    }
     reader.value(object.source);
     reader.value(object.source_sha256);
     if (!reader.atEnd() || !indicesExist(toolpath)) Reader::fail();

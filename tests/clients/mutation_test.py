@@ -1,7 +1,7 @@
 """Mutated files of every kind through the real tools: they end by themselves with 0, 1, 2 or 3, in bounded time and memory.
 
-STRATUM_MUTATIONS is how many of each kind are run (6), STRATUM_MUTATION_SEED where the random numbers begin; a finding is
-kept, and its command is printed."""
+STRATUM_MUTATIONS is how many of each kind are run (6), STRATUM_MUTATION_SEED where the random numbers begin,
+STRATUM_MUTATION_KINDS a regular expression that the kinds match (all); a finding is kept, and its command is printed."""
 
 import gzip
 import json
@@ -22,6 +22,7 @@ FOLDER = tempfile.mkdtemp(prefix="stratum_mutation_")
 KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "stratum_findings"))
 COUNT = int(os.environ.get("STRATUM_MUTATIONS", "6"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
+KINDS = re.compile(os.environ.get("STRATUM_MUTATION_KINDS", ""))
 CPU_SECONDS = 10.0  # of a run beyond its honest twin
 MOST_CPU_SECONDS = 60.0
 STILL_SECONDS = 300.0  # without any progress: a hang, not a busy machine
@@ -196,6 +197,8 @@ def main():
     everything = [read(kind[1]) for kind in kinds]
     runs = findings = 0
     for kind, name, command, text, *packing in kinds:
+        if not KINDS.search(kind):
+            continue
         data = read(name)
         pack = packing[0] if packing else bytes
         write(name, pack(data))

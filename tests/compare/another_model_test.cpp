@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
+#include <algorithm>
 #include <ctime>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -88,6 +90,13 @@ TEST(AnotherModel, OneThatNothingMakesFitIsSaidToBe) {
     EXPECT_NE(doubt.find("the model of another print"), std::string::npos) << doubt;
 }
 
+// A size that comes nearer, but not near, is no hint.
+TEST(AnotherModel, WhatIsMerelyNearerIsAnother) {
+    const std::string doubt = doubtOf(scaled(test::angleModel(), glm::dvec3(1 / 25.4)), few());
+    EXPECT_NE(doubt.find("the model of another print"), std::string::npos) << doubt;
+    EXPECT_EQ(doubt.find("inches"), std::string::npos) << doubt;
+}
+
 TEST(AnotherModel, BodiesInOnePlaceAreSaid) {
     TriangleMesh mesh = slanted();
     const std::vector<Triangle> once = mesh.triangles;
@@ -108,6 +117,21 @@ TEST(AnotherModel, APointFarAwayTakesNoMinutes) {
     const std::clock_t start = std::clock();
     EXPECT_NE(doubtOf(mesh), "");
     EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20);
+}
+
+// As of a file whose list of points lost some: each search sees nearly all triangles.
+TEST(AnotherModel, TrianglesAcrossEachOtherTakeSeconds) {
+    TriangleMesh mesh = test::ellipsoidModel({10, 9, 4}, 70);
+    std::mt19937 random(5);
+    std::shuffle(mesh.points.begin(), mesh.points.begin() + static_cast<std::ptrdiff_t>(mesh.points.size() / 3),
+                 random);
+    const std::clock_t start = std::clock();
+    EXPECT_NE(doubtOf(mesh), "");
+#ifndef STRATUM_SANITIZED
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 15);
+#else
+    (void)start;
+#endif
 }
 
 // Queries from afar see all triangles of a small model at about one distance.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -148,6 +149,25 @@ TEST(ClosedModel, OpenAndInsideOutOnesAreRefused) {
     std::swap(one_face_turned.triangles[0][0], one_face_turned.triangles[0][1]);
     EXPECT_NE(refusalOf(one_face_turned).find("is not closed"), std::string::npos);
     EXPECT_EQ(refusalOf(test::boxModel({0, 0, 0}, {1, 1, 1})), "");
+}
+
+// Beyond the distance that is given a hundredth farther will do, and nothing else changes.
+TEST(TriangleTree, RoughAnswersAreNearlyTheNearest) {
+    const TriangleMesh mesh = test::ellipsoidModel({10, 9, 0.5}, 60);
+    const TriangleTree tree(mesh);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-60, 60);
+    for (int n = 0; n < 2000; ++n) {
+        const glm::dvec3 p(place(random), place(random), place(random));
+        const double exact = std::sqrt(tree.nearest(p).distance2);
+        const double rough = std::sqrt(tree.nearest(p, Nearest::kNone, 12).distance2);
+        if (exact <= 12) {
+            ASSERT_EQ(rough, exact);
+        } else {
+            ASSERT_LE(rough, exact / 0.99);
+        }
+        ASSERT_GE(rough, exact);
+    }
 }
 
 }  // namespace

@@ -45,5 +45,16 @@ TEST(ReaderProcess, ACrashEndsTheCopyAlone) {
     EXPECT_NE(refusalOf([]() -> std::string { std::abort(); }).find("crashed"), std::string::npos);
 }
 
+#ifndef STRATUM_SANITIZED
+TEST(ReaderProcess, MemoryOfAFileIsBounded) {
+    const std::string said = refusalOf([]() -> std::string {
+        std::string much;
+        for (int n = 0; n < 64; ++n) much.append(std::size_t{1} << 26, 'x');
+        return "all of it";
+    });
+    EXPECT_NE(said.find("a.3mf: can't be read as a model"), std::string::npos) << said;
+}
+#endif
+
 }  // namespace
 }  // namespace stratum::compare

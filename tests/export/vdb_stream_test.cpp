@@ -62,6 +62,8 @@ protected:
         grid->setSaveFloatAsHalf(options.half);
         test::OpenVdbArchive::writeFile({grid}, theirs, compressionFlags(options.compression));
         test::expectSameContents(ours, theirs);
+        // Room that was reserved before the leaves came, and is left.
+        EXPECT_LE(static_cast<double>(fs::file_size(ours)), 1.01 * static_cast<double>(fs::file_size(theirs)) + 4096);
         EXPECT_EQ(written.leaves, grid->tree().leafCount());
         EXPECT_EQ(report.leaves, grid->tree().leafCount());
         EXPECT_EQ(written.statistics.active_voxels, grid->activeVoxelCount());
@@ -116,6 +118,16 @@ TEST_F(VdbStreamTest, EveryNodeAroundTheOriginIsInItsOrder) {
     for (int n = 0; n < 12; ++n)
         test::addBead(moved, 40.3 + n, 40.2, 40.7 + 0.15 * n, 41.1 + n, 42.9, 40.7 + 0.15 * n, 0.4, 0.2);
     expectAsOpenVdb(moved, latticeOf(0.01), {});
+}
+
+// Nothing is reserved for what lies between them.
+TEST_F(VdbStreamTest, TowersFarApart) {
+    gcode::Toolpath toolpath;
+    for (int layer = 1; layer <= 40; ++layer)
+        for (const double x : {0.0, 250.0})
+            for (int n = 0; n < 7; ++n)
+                test::addBead(toolpath, x, x + 0.45 * n, 0.2 * layer, x + 3, x + 0.45 * n, 0.2 * layer, 0.45, 0.2);
+    expectAsOpenVdb(toolpath, latticeOf(0.05), {});
 }
 
 TEST_F(VdbStreamTest, SectionsSettlingAndArcs) {

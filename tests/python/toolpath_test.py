@@ -123,6 +123,43 @@ class Reading(unittest.TestCase):
         self.assertIsNone(stratum.read(gcode("tile.gcode")).times)
 
 
+    def test_travels(self):
+        path = gcode("tile.gcode")
+        self.assertIsNone(stratum.read(path).travels)
+        toolpath = stratum.read(path, travels=True)
+        travels = toolpath.travels
+        self.assertEqual(travels.dtype, stratum.travel_dtype)
+        self.assertFalse(travels.flags.writeable)
+        self.assertGreater(len(travels), 20)
+        self.assertTrue((np.diff(travels["line"].astype(int)) >= 0).all())
+        self.assertTrue((np.diff(travels["bead"].astype(int)) >= 0).all())
+        self.assertTrue((travels["start"] == 0).all())
+        # Where travels end, the next bead begins, unless another travel comes before it.
+        last = np.append(np.diff(travels["bead"].astype(int)) > 0, True) & (travels["bead"] < len(toolpath))
+        for axis in "xyz":
+            np.testing.assert_allclose(travels[axis + "1"][last], toolpath.beads[axis + "0"][travels["bead"][last]], atol=1e-9)
+        timed = stratum.read(path, travels=True, timed=True)
+        self.assertTrue((np.diff(timed.travels["start"]) >= 0).all())
+        self.assertAlmostEqual(timed.travels["seconds"].sum(), timed.times["travel"], places=2)
+        for name in stratum.travel_dtype.names:
+            if name not in ("start", "seconds"):
+                np.testing.assert_array_equal(timed.travels[name], travels[name])
+        self.assertIsNone(timed.replace(beads=timed.beads).travels)
+        for options in ({"sag": 0.1}, {"flow_lag": 0.05}, {"belt": 45}):
+            with self.assertRaisesRegex(stratum.UsageError, "travels are not told"):
+                stratum.read(path, travels=True, **options)
+
+    def test_travels_on_arcs(self):
+        program = b"M83\nG1 X10 Y10 Z0.2 F6000\nG1 X20 E1 F1200\nG2 X30 Y10 I5 J0 F6000\nG1 X40 E1 E-1\nG1 X30 E-0.5\nG1 X20 E1\n"
+        travels = stratum.read(program, travels=True, timed=True).travels
+        arc = travels[travels["sweep"] != 0]
+        self.assertEqual(len(arc), 1)
+        self.assertAlmostEqual(arc["sweep"][0], -np.pi, places=5)
+        self.assertEqual((arc["center_x"][0], arc["center_y"][0], arc["bead"][0], arc["line"][0]), (25, 10, 1, 4))
+        self.assertGreater(arc["seconds"][0], 5 * np.pi / 100)
+        self.assertEqual(travels["filament"][travels["line"] == 6], -0.5)
+
+
 class Views(unittest.TestCase):
     def test_layout(self):
         self.assertEqual(stratum.bead_dtype.itemsize, 60)
@@ -239,7 +276,7 @@ FIELDS = ("objects", "slicer", "firmware", "format", "filament_diameter", "layer
 
 class Pickles(unittest.TestCase):
     def same(self, toolpath, again):
-        for name in ("beads", "runs", "arcs", "timing", "flow"):
+        for name in ("beads", "runs", "arcs", "timing", "flow", "travels"):
             one, other = getattr(toolpath, name), getattr(again, name)
             if one is None:
                 self.assertIsNone(other)
@@ -254,7 +291,7 @@ class Pickles(unittest.TestCase):
     def test_every_field(self):
         everything = {"timed": True, "flow_lag": 0.02, "sag": 0.1, "beads": "settled", "section": "50%",
                       "filament_colors": "#ff8000"}
-        for name, options in (("tile.gcode", {}), ("tile_arcs.gcode", everything), ("two_tone.gcode", {"timed": True}),
+        for name, options in (("tile.gcode", {}), ("tile_arcs.gcode", everything), ("two_tone.gcode", {"timed": True, "travels": True}),
                               ("hull.gcode", {"planner": "jerk", "timed": True})):
             toolpath = stratum.read(gcode(name), **options)
             for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
@@ -310,6 +347,8 @@ class Errors(unittest.TestCase):
             with self.assertRaisesRegex(stratum.UsageError, words) as caught:
                 stratum.voxelize(stratum.read(path), **options)
             self.assertNotIn("--", str(caught.exception))
+        mixing = stratum.read(b"M83\nM163 S0 P0.5\nM163 S1 P0.5\nM164 S0\nG1 X10 Y10 Z0.2 F600\nG1 X20 E1\n")
+        self.assertIn("filament_colors NAME,NAME,... says which", " ".join(w["text"] for w in mixing.warnings))
         with self.assertRaisesRegex(stratum.InputError, "left by layers, features, objects and tools"):
             stratum.voxelize(stratum.read(path), layers="800:900")
         for options, words in (({"spp": 99999999}, "^spp 99999999"), ({"view": "x"}, "^view x"), ({"env": "x"}, "^env x"),

@@ -73,6 +73,7 @@ struct Move {
     PlanPoint center{};                       ///< mm from the start; of an arc
     std::uint32_t bead = kNoBead;             ///< index into Toolpath::beads of its bead, or kNoBead
     std::uint32_t line = 0;                   ///< 1-based line in the source
+    std::uint32_t travel = kNoBead;           ///< index into the travels that are recorded (motion/travels.h), if any
 };
 
 /// What interrupts a print.

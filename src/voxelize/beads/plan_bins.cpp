@@ -1,6 +1,7 @@
 #include "voxelize/beads/plan_bins.h"
 
 #include "base/error.h"
+#include "base/human_text.h"
 #include "base/parallel_for.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/footprint.h"
@@ -19,6 +20,8 @@ namespace {
 // any number of parts.
 constexpr std::size_t kMostParts = 16;
 constexpr std::size_t kFewestBeadsAPart = 4096;
+// The lists take at most one part in so many of the free memory; what is made with their help needs the rest.
+constexpr double kListsOfMemory = 2;
 
 // Ranks in parts of equal number, and what is known of the entries before anything is allocated: an upper bound by
 // arithmetic, and the rectangle of columns.
@@ -65,7 +68,7 @@ Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, con
 }  // namespace
 
 PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-                   std::size_t memory_limit) {
+                   std::size_t free_memory) {
     if (stack.beads.empty()) return;
     const Footprints footprints = columnFootprints(toolpath, lattice);
     const std::size_t beads = stack.beads.size();
@@ -81,11 +84,13 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     while (parts > 1 && columns * static_cast<double>(parts) > 2 * bound + 1e6) parts /= 2;
     const double bytes = columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) +
                          bound * sizeof(std::uint32_t);
-    if (bytes > static_cast<double>(memory_limit))
+    const double limit = static_cast<double>(free_memory) / kListsOfMemory;
+    if (bytes > limit)
+        // Of half the voxel they are four times as many at most.
         throw UsageError(fmt::format(
-            "voxel size {:g} mm needs about {:.3g} GB for its lists alone ({:.3g} GB may be used for them); "
-            "choose a larger voxel, or let --memory-budget choose one",
-            lattice.voxel_size, bytes * 1e-9, static_cast<double>(memory_limit) * 1e-9));
+            "the lists of the beads near each voxel take about {}, which is more than half of the {} that are free; "
+            "choose voxels about {:.2g} times as large (--voxel-size), or fewer layers (--layers)",
+            humanBytes(bytes), humanBytes(static_cast<double>(free_memory)), 1.05 * std::sqrt(bytes / limit)));
     columns_i_ = static_cast<std::size_t>(all.i1 - all.i0) + 1;
     columns_j_ = static_cast<std::size_t>(all.j1 - all.j0) + 1;
     const std::size_t count = columns_i_ * columns_j_;

@@ -28,9 +28,8 @@ inline Footprints columnFootprints(const gcode::Toolpath& toolpath, const Lattic
 class PlanBins {
 public:
     /// Bins every bead whose band reaches a column. Parallel; the result does not depend on the number of threads.
-    /// Throws UsageError if that needs more than `memory_limit` bytes.
-    PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
-             std::size_t memory_limit);
+    /// Throws UsageError if that needs more than half of `free_memory` bytes.
+    PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, std::size_t free_memory);
 
     /// Columns of the bounding rectangle, row by row; many may be empty.
     std::size_t size() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }

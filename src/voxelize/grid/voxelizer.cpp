@@ -67,7 +67,7 @@ struct Voxelizer::State {
                                     kBytesPerActiveVoxel
                               : 0),
           stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
-          bins(toolpath, stack, lattice, memoryLimit(options) / 4),
+          bins(toolpath, stack, lattice, memoryLimit(options)),
           scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
           grid(emptyGrid()) {}

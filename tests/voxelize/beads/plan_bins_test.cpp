@@ -116,5 +116,26 @@ TEST(PlanBins, RefusesBeforeItAllocates) {
     EXPECT_THROW(PlanBins(toolpath, stack, lattice, std::size_t{1} << 30), UsageError);
 }
 
+// The message tells what is free, what is needed, and voxels that fit.
+TEST(PlanBins, TheRefusalIsTrue) {
+    gcode::Toolpath toolpath;
+    addBead(toolpath, 0, 0, 0.2, 100, 100, 0.2, 0.5, 0.2);
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    Lattice lattice;
+    constexpr std::size_t kFree = 40'000'000;
+    lattice.voxel_size = 0.002;
+    std::string said;
+    try {
+        PlanBins(toolpath, stack, lattice, kFree);
+    } catch (const UsageError& error) {
+        said = error.what();
+    }
+    EXPECT_NE(said.find("more than half of the 40.0 MB that are free"), std::string::npos) << said;
+    const std::size_t at = said.find("about ", said.find("choose voxels"));
+    ASSERT_NE(at, std::string::npos) << said;
+    lattice.voxel_size *= std::stod(said.substr(at + 6));
+    EXPECT_NO_THROW(PlanBins(toolpath, stack, lattice, kFree)) << said;
+}
+
 }  // namespace
 }  // namespace stratum::voxelize
