@@ -45,6 +45,10 @@ void TravelRecorder::stop(gcode::Stop kind, std::uint32_t line) {
     if (next_ != nullptr) next_->stop(kind, line);
 }
 
+void TravelRecorder::elapsed(double seconds) {
+    if (next_ != nullptr) next_->elapsed(seconds);
+}
+
 void TravelRecorder::origin(const gcode::LimitOrigins& origins) {
     if (next_ != nullptr) next_->origin(origins);
 }

@@ -33,6 +33,7 @@ public:
     void move(const gcode::Move& move) override;
     void wait(double seconds) override;
     void stop(gcode::Stop kind, std::uint32_t line) override;
+    void elapsed(double seconds) override;
     void origin(const gcode::LimitOrigins& origins) override;
 
 private:

@@ -47,6 +47,27 @@ TEST(Travels, AreTheMovesThatLayNothing) {
     EXPECT_EQ(travels[3].z1, 0.6);
 }
 
+// As a program that is read without its travels has them: limits that are fitted need the times behind the layers.
+TEST(Travels, ChangeNoTimes) {
+    struct Listener final : gcode::MotionSink {
+        std::vector<double> seconds;
+        void limits(const gcode::MachineLimits& /*limits*/) override {}
+        void move(const gcode::Move& /*move*/) override {}
+        void wait(double /*seconds*/) override {}
+        void elapsed(double at) override { seconds.push_back(at); }
+    };
+    Listener listener;
+    std::vector<Travel> travels;
+    TravelRecorder recorder(travels, &listener);
+    gcode::ReadOptions options;
+    options.motion = &recorder;
+    gcode::readToolpath(
+        ";FLAVOR:Marlin\n;Generated with Cura_SteamEngine 5.0\nM83\nG1 X10 Z0.2 F6000\nG1 X20 E1 F1200\n"
+        ";TIME_ELAPSED:12.5\nG1 X30 E1\n",
+        "test.gcode", options);
+    EXPECT_EQ(listener.seconds, std::vector<double>{12.5});
+}
+
 TEST(Travels, HaveTheirTimesInThePlan) {
     std::vector<Travel> travels;
     PrintTimes times;
