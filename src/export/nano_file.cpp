@@ -6,8 +6,14 @@
 
 #define NANOVDB_USE_BLOSC
 #define NANOVDB_USE_ZIP
+#if __has_include(<nanovdb/tools/CreateNanoGrid.h>)  // from OpenVDB 12 on
+#define NANOVDB_USE_OPENVDB
+#include <nanovdb/io/IO.h>
+#include <nanovdb/tools/CreateNanoGrid.h>
+#else
 #include <nanovdb/util/IO.h>
 #include <nanovdb/util/OpenToNanoVDB.h>
+#endif
 
 #include <exception>
 #include <stdexcept>
@@ -31,13 +37,29 @@ nanovdb::io::Codec codecOf(Compression compression) {
     return nanovdb::io::Codec::NONE;
 }
 
+#if __has_include(<nanovdb/tools/CreateNanoGrid.h>)
+template <typename Grid>
+Handle nanoOf(const Grid& grid) {
+    return nanovdb::tools::createNanoGrid(grid);
+}
+Handle halfNanoOf(const openvdb::FloatGrid& grid) {
+    return nanovdb::tools::createNanoGrid<openvdb::FloatGrid, nanovdb::Fp16>(grid);
+}
+#else
+template <typename Grid>
+Handle nanoOf(const Grid& grid) {
+    return nanovdb::openToNanoVDB(grid);
+}
+Handle halfNanoOf(const openvdb::FloatGrid& grid) {
+    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, nanovdb::Fp16>(grid);
+}
+#endif
+
 Handle handleOf(const openvdb::GridBase::Ptr& grid, bool half) {
-    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) {
-        if (half) return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::FloatTree, nanovdb::Fp16>(*floats);
-        return nanovdb::openToNanoVDB(*floats);
-    }
-    if (const auto numbers = openvdb::gridPtrCast<openvdb::Int32Grid>(grid)) return nanovdb::openToNanoVDB(*numbers);
-    if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) return nanovdb::openToNanoVDB(*vectors);
+    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
+        return half ? halfNanoOf(*floats) : nanoOf(*floats);
+    if (const auto numbers = openvdb::gridPtrCast<openvdb::Int32Grid>(grid)) return nanoOf(*numbers);
+    if (const auto vectors = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) return nanoOf(*vectors);
     throw std::invalid_argument("writeNano() has no grids of " + grid->valueType());
 }
 

@@ -53,7 +53,7 @@ public:
     }
 
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-        if (mode == CLI::AppFormatMode::Sub) return make_expanded(app);
+        if (mode == CLI::AppFormatMode::Sub) return CLI::Formatter::make_help(app, std::move(name), mode);
         const bool all = mode == CLI::AppFormatMode::All || brief_.empty();
         std::string text = make_description(app) + make_usage(app, std::move(name));
         text += make_positionals(app);
