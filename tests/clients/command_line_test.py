@@ -66,7 +66,7 @@ refused([GCODE2VDB, make("absurd.gcode", "G1 X0 Y0 Z0.2\nG1 X1e9 E1\nG1 X1000000
 # --- options that make no sense -------------------------------------------------------------------------------------
 for size in ("0", "-1", "1e-9", "500", "nan", "inf", "small"):
     refused([GCODE2VDB, TILE, "-o", OUT, f"--voxel-size={size}"], 2, "voxel")
-refused([GCODE2VDB, TILE, "-o", OUT, "--voxel-size", "0.0002"], 2, "GB")
+refused([GCODE2VDB, TILE, "-o", OUT, "--voxel-size", "0.0001"], 2, "GB")
 refused([GCODE2VDB, TILE, "-o", OUT, "--voxel-size", "0.1", "--voxels-per-layer", "2"], 2)
 refused([GCODE2VDB, TILE, "-o", OUT, "--layers", "900:"], 3, "layers 1 to")
 refused([GCODE2VDB, TILE, "-o", OUT, "--features", "+nonsense"], 2, "external-perimeter")

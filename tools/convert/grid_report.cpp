@@ -61,9 +61,15 @@ Json describeDeposit(const gcode::DepositModel& deposit, const voxelize::Deposit
             features[std::string(gcode::featureName(static_cast<gcode::Feature>(f)))] = {
                 {"fed_mm3", share.fed}, {"laid_mm3", share.laid}, {"surplus_mm3", share.surplus()}};
     }
-    return {{"model", gcode::describe(deposit)},      {"fed_mm3", balance.all.fed},   {"laid_mm3", balance.held()},
-            {"pressed_out_mm3", balance.pressed_out}, {"raised_mm3", balance.raised}, {"surface_mm3", surface_mm3},
-            {"surplus_mm3", balance.unplaced()},      {"features", features}};
+    return {{"model", gcode::describe(deposit)},
+            {"fed_mm3", balance.all.fed},
+            {"laid_mm3", balance.held()},
+            {"pressed_out_mm3", balance.pressed_out},
+            {"raised_mm3", balance.raised},
+            {"shared_mm3", balance.shared},
+            {"surface_mm3", surface_mm3},
+            {"surplus_mm3", balance.unplaced()},
+            {"features", features}};
 }
 
 std::string depositLines(const voxelize::DepositBalance& balance) {

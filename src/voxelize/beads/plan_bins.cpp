@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostParts = 16;
 constexpr std::size_t kFewestBeadsAPart = 4096;
 // The lists take at most one part in so many of the free memory; what is made with their help needs the rest.
-constexpr double kListsOfMemory = 2;
+constexpr double kListsOfMemory = 4;
 
 // Ranks in parts of equal number, and what is known of the entries before anything is allocated: an upper bound by
 // arithmetic, and the rectangle of columns.
@@ -88,7 +88,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     if (bytes > limit)
         // Of half the voxel they are four times as many at most.
         throw UsageError(fmt::format(
-            "the lists of the beads near each voxel take about {}, which is more than half of the {} that are free; "
+            "the lists of the beads near each voxel take about {}, which is more than a quarter of the {} that are "
+            "free; "
             "choose voxels about {:.2g} times as large (--voxel-size), or fewer layers (--layers)",
             humanBytes(bytes), humanBytes(static_cast<double>(free_memory)), 1.05 * std::sqrt(bytes / limit)));
     columns_i_ = static_cast<std::size_t>(all.i1 - all.i0) + 1;

@@ -124,7 +124,8 @@ TEST_F(Deposit, TimesAreThoseOfTheFiles) {
     EXPECT_EQ(times[0].at("status"), "ok");
     EXPECT_NEAR(numberOf(times[0], "off_percent"), 0, 3);  // PrusaSlicer's own rule
     EXPECT_GT(numberOf(times[1], "planned_s"), 0);
-    EXPECT_EQ(times[1].at("stated_s"), "");  // CuraEngine's 6666 s are no time
+    // CuraEngine's 6666 s are no time; its clock behind the layers is.
+    EXPECT_NEAR(numberOf(times[1], "off_percent"), 0, 5);
 }
 
 TEST_F(Deposit, EachEffectIsMeasuredBesideCapsules) {

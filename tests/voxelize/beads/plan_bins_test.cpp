@@ -130,7 +130,7 @@ TEST(PlanBins, TheRefusalIsTrue) {
     } catch (const UsageError& error) {
         said = error.what();
     }
-    EXPECT_NE(said.find("more than half of the 40.0 MB that are free"), std::string::npos) << said;
+    EXPECT_NE(said.find("more than a quarter of the 40.0 MB that are free"), std::string::npos) << said;
     const std::size_t at = said.find("about ", said.find("choose voxels"));
     ASSERT_NE(at, std::string::npos) << said;
     lattice.voxel_size *= std::stod(said.substr(at + 6));
