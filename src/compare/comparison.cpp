@@ -85,6 +85,10 @@ DeviationsByNormal byNormal(const std::vector<Place>& places) {
     return all;
 }
 
+openvdb::BBoxd boxOf(const openvdb::FloatGrid& print) {
+    return print.transform().indexToWorld(print.evalActiveVoxelBoundingBox());
+}
+
 // Whether the print lies between one of its places and the outside of the model beyond: along the model's normal, from
 // a voxel above the place to a voxel above the model. There is nothing outside of the print's box.
 class Hidden {
@@ -119,7 +123,7 @@ std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& 
     const Rigid to_model = model_to_print.inverse();
     std::vector<Place> places(samples.points.size());
     std::vector<std::uint8_t> seen(places.size());
-    const openvdb::BBoxd box = print.transform().indexToWorld(print.evalActiveVoxelBoundingBox());
+    const openvdb::BBoxd box = boxOf(print);
     parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
         const Hidden hidden(print, box);
         std::uint32_t hint = Nearest::kNone;
@@ -147,6 +151,7 @@ std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& 
 std::vector<Place> fromModel(const SurfaceSamples& samples, const ClosedModel& model, const Rigid& model_to_print,
                              const TriangleTree& surface, const openvdb::FloatGrid& print) {
     std::vector<Place> places(samples.points.size());
+    const openvdb::BBoxd box = boxOf(print);
     parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
         const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi(print);
         std::uint32_t hint = Nearest::kNone;
@@ -155,7 +160,9 @@ std::vector<Place> fromModel(const SurfaceSamples& samples, const ClosedModel& m
             const Nearest found = surface.nearest(at, hint);
             hint = found.triangle;
             const double distance = std::sqrt(found.distance2);
-            const bool inside = phi.wsSample({at.x, at.y, at.z}) < 0;
+            // Models have places that no voxel has an index for.
+            const openvdb::Vec3d p(at.x, at.y, at.z);
+            const bool inside = box.isInside(p) && phi.wsSample(p) < 0;
             places[n] = {at, inside ? distance : -distance,
                          (model_to_print.turn * model.normal(samples.triangles[n])).z};
         }
