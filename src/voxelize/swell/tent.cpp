@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // out[n] = sum of (1 - |step| / (reach + 1)) from[n + step * stride]. Reads, and writes, whole vectors.
 void SumAlong(const float* HWY_RESTRICT from, std::size_t stride, int reach, std::size_t count,
               float* HWY_RESTRICT out) {
-    const hn::ScalableTag<float> d;
+    const hn::CappedTag<float, 16> d;
     for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
         auto sum = hn::Zero(d);
         for (int step = -reach; step <= reach; ++step) {
@@ -40,7 +40,7 @@ HWY_EXPORT(SumAlong);
 
 namespace {
 
-// A vector that begins at the last node of a row reads and writes this many nodes more. At most 512 bits.
+// A vector that begins at the last node of a row reads and writes this many nodes more.
 constexpr std::size_t kMostLanes = 16;
 constexpr std::size_t kPad = Tent::kMostReach + kMostLanes;
 
