@@ -25,10 +25,18 @@ void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
         const bool straight_sides = plan.half_side > 0;
         for (int z = 0; z < kLeafDim; ++z) {
             const double dz = sampleZ(k0 + z) - plan.center_z;
-            if (std::abs(dz) >= plan.half_height + band_) continue;
-            const auto over = static_cast<float>((std::abs(dz) - plan.half_side) * scale_);
-            const float above = std::max(over, 0.0F);
+            const double reach = plan.half_height + band_;
+            if (dz <= -reach || dz >= reach + plan.most_rise) continue;
+            const auto height = static_cast<float>(dz * scale_);
+            const auto half_side = static_cast<float>(plan.half_side * scale_);
+            const auto level = static_cast<float>((std::abs(dz) - plan.half_side) * scale_);
             for (std::size_t c = 0; c < kColumnSamples; ++c) {
+                // Where the top is raised, as PlaneTerm::rise has it.
+                float over = level;
+                if (plan.most_rise > 0)
+                    over = std::abs(std::max(std::min(height - plan.rise.v[c], 2 * height), std::min(height, 0.0F))) -
+                           half_side;
+                const float above = std::max(over, 0.0F);
                 float distance = std::sqrt(plan.sides2.v[c] + above * above) - radius;
                 if (straight_sides) distance += std::min(std::max(plan.d.v[c], over), 0.0F);
                 claim(c * kLeafPlanes + static_cast<std::size_t>(z), distance, plan.owners.v[c]);

@@ -71,6 +71,27 @@ TEST(Attributes, EveryVoxelNamesTheNearestBead) {
         0.5f);
 }
 
+// Above a raised top, too, whose band ends higher than that of its bead.
+TEST(Attributes, RaisedTopsNameTheirBeads) {
+    gcode::Toolpath toolpath;
+    for (int n = 0; n < 24; ++n) addBead(toolpath, -4, 0.3 * n, 0.2, 4, 0.3 * n, 0.2, 0.45, 0.2, 1);
+    toolpath.deposit.beads = gcode::DepositModel::Beads::settled;
+    toolpath.deposit.crown = 0.2;
+    Lattice lattice;
+    lattice.voxel_size = 0.025;
+    Voxelizer voxelizer(toolpath, allBeads(toolpath), lattice);
+    const auto surface = voxelizer.printAll();
+    const auto grids = voxelizer.attributes(parseGrids("surface,layer"));
+    const auto layer = openvdb::gridConstPtrCast<openvdb::Int32Grid>(grids[0])->getConstAccessor();
+    std::size_t above = 0;  // the band of a top that is not raised
+    for (auto voxel = surface->cbeginValueOn(); voxel; ++voxel) {
+        const openvdb::Vec3d p = surface->indexToWorld(voxel.getCoord());
+        above += p[2] > 0.2 + lattice.background() ? 1 : 0;
+        ASSERT_EQ(layer.getValue(voxel.getCoord()), 1) << p;
+    }
+    EXPECT_GT(above, 1000U);
+}
+
 TEST(Attributes, TimeAndSpeedAreThePlans) {
     gcode::Toolpath toolpath = twoTone();
     const std::vector<Attribute> wanted{Attribute::time, Attribute::speed};
