@@ -40,6 +40,17 @@ double thicknessAt(const Layer& layer, const PlanField& sides2, std::size_t c) {
     return thickness(layer, std::sqrt(static_cast<double>(sides2.v[c])));
 }
 
+// With its outlines moved out.
+double swollenAt(const LeafColumn::LayerPlan& plan, std::size_t c) {
+    return thicknessAt(*plan.layer, plan.swollen != nullptr ? *plan.swollen : *plan.sides2, c);
+}
+
+// By which the top over a point of that thickness is moved up. The upper half loses no more than half of it: see
+// PlaneTerm::rise.
+double riseAt(const LeafColumn::LayerPlan& plan, std::size_t c, double held) {
+    return plan.rise != nullptr ? std::max(static_cast<double>(plan.rise->v[c]), -0.25 * held) : 0;
+}
+
 // By how much more each point of a layer holds swollen and raised, mm, and where it has plastic.
 struct Pressed {
     double out = 0;
@@ -49,14 +60,12 @@ struct Pressed {
 
 Pressed pressedOf(const LeafColumn::LayerPlan& plan) {
     Pressed pressed;
-    const PlanField& sides2 = plan.swollen != nullptr ? *plan.swollen : *plan.sides2;
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        const double solid = thicknessAt(*plan.layer, sides2, c);
+        const double solid = swollenAt(plan, c);
         if (plan.swollen != nullptr) pressed.out += solid - thicknessAt(*plan.layer, *plan.sides2, c);
         if (!(solid > 0)) continue;
         pressed.solid |= std::uint64_t{1} << c;
-        // The upper half loses no more than half of it: see PlaneTerm::rise.
-        if (plan.rise != nullptr) pressed.up[c] = std::max(static_cast<double>(plan.rise->v[c]), -0.25 * solid);
+        pressed.up[c] = riseAt(plan, c, solid);
     }
     return pressed;
 }
@@ -87,14 +96,13 @@ struct JoinedLayers {
     JoinedLayers() { top_.fill(std::numeric_limits<double>::lowest()); }
 
     void add(const LeafColumn::LayerPlan& plan) {
-        const PlanField& sides2 = plan.swollen != nullptr ? *plan.swollen : *plan.sides2;
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const double half = 0.5 * thicknessAt(*plan.layer, sides2, c);
+            const double held = swollenAt(plan, c);
+            const double half = 0.5 * held;
             if (!(half > 0)) continue;
-            const double rise = plan.rise != nullptr ? static_cast<double>(plan.rise->v[c]) : 0;
             const double low = plan.layer->center_z - half;
             const double flat = plan.layer->center_z + half;
-            const double top = flat + std::max(rise, -0.5 * half);
+            const double top = flat + riseAt(plan, c, held);
             if (low >= top_[c]) {
                 heights += top - low;
                 low_[c] = low;
