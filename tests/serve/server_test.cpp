@@ -123,7 +123,9 @@ TEST(Server, EndsWithConnectionsOpen) {
         const test::RunningServer server;
         for (int n = 0; n < 8; ++n) {
             clients.push_back(server.client());
-            if (n % 2 == 0) EXPECT_EQ(clients.back().open(server.page), 101);
+            if (n % 2 == 0) {
+                EXPECT_EQ(clients.back().open(server.page), 101);
+            }
         }
     }
     for (test::RawClient& client : clients) EXPECT_EQ(client.readAll(), "");

@@ -18,7 +18,9 @@ TEST(LimitOrigins, EveryLimitIsAMemberOfItsOwn) {
         EXPECT_LT(bounds.least, bounds.most);
         // The defaults are limits that one may state; steps are unknown.
         const double value = valueOf(limits, limit);
-        if (std::isfinite(value) && value != 0) EXPECT_TRUE(value >= bounds.least && value <= bounds.most) << n;
+        if (std::isfinite(value) && value != 0) {
+            EXPECT_TRUE(value >= bounds.least && value <= bounds.most) << n;
+        }
         EXPECT_FALSE(limitName(limit, CornerRule::jerk).empty());
     }
     EXPECT_EQ(members.size(), kLimitCount);

@@ -55,8 +55,12 @@ TEST(TileValues, AreThoseGivenInLittleMemory) {
         for (std::size_t n = 0; n < values.size(); ++n) values[n] = 0.5F * static_cast<float>(n * n % different) - 1;
         const TileValues tiles(values);
         for (std::size_t n = 0; n < values.size(); ++n) ASSERT_EQ(tiles[n], values[n]) << different << " " << n;
-        if (different == 1) EXPECT_LT(tiles.bytes(), 100U);
-        if (different == 2) EXPECT_LT(tiles.bytes(), 700U);
+        if (different == 1) {
+            EXPECT_LT(tiles.bytes(), 100U);
+        }
+        if (different == 2) {
+            EXPECT_LT(tiles.bytes(), 700U);
+        }
     }
 }
 

@@ -30,7 +30,9 @@ TEST(SpreadSurplus, AllOfItFindsAPlaceWhereThereIsRoom) {
     EXPECT_NEAR(sum(given), 0.003, 3e-9);
     for (int j = 0; j < kEdge; ++j)
         for (int i = 0; i < kEdge; ++i)
-            if (i != 20) EXPECT_EQ(given[nodeAt(i, j)], 0);
+            if (i != 20) {
+                EXPECT_EQ(given[nodeAt(i, j)], 0);
+            }
     EXPECT_GT(given[nodeAt(20, 20)], given[nodeAt(20, 22)]);
 }
 
