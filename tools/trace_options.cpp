@@ -209,11 +209,12 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
     materials.insert(materials.end(),
-                     {"lambert:", "plastic:", "metal:", "matte:", "silk:", "glitter:", "translucent:"});
+                     {"lambert:", "plastic:", "fdm:", "metal:", "matte:", "silk:", "glitter:", "translucent:"});
     completes(
         app.add_option(
             "--brdf", o.scene.brdf,
-            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, "
+            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), fdm:R,G,B,ALPHA[,RATIO] (gloss along lines), "
+            "metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, "
             "glitter:R,G,B[,FLAKE_MM], "
             "translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
             "through; also natural-pla, clear-petg, lithophane-white), a measured table (Mini-Diff, Zemax, ASTM E1392, "

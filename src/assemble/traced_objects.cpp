@@ -4,6 +4,7 @@
 #include "assemble/shape/object_materials.h"
 #include "assemble/shape/shape.h"
 #include "base/error.h"
+#include "shade/finish/line_gloss.h"
 #include "trace/box_corners.h"
 #include "trace/clip_intersector.h"
 
@@ -70,6 +71,25 @@ void planLabels(const std::vector<ObjectOptions>& objects, const TracingOptions&
     }
 }
 
+// Whether lines on tops are modelled: then plain plastic has their gloss, too.
+bool showsLines(const PrintRequest& prints) {
+    return (prints.toolpath ? prints.toolpath->deposit : prints.print.read.deposit).crown > 0;
+}
+
+// Whether a material of the object has the gloss of lines.
+bool needsGrain(const ObjectOptions& object, const TracingOptions& options) {
+    if (object.sdf) return false;
+    const bool lines = showsLines(options.prints);
+    const auto directed = [lines](const std::string& text) {
+        return shade::hasGlossOfLines(lines ? shade::withGlossOfLines(text) : text);
+    };
+    const auto any = [&](const auto& texts) {
+        return std::any_of(texts.begin(), texts.end(), [&](const auto& each) { return directed(each.second); });
+    };
+    return directed(object.material.brdf.empty() ? options.brdf : object.material.brdf) || any(object.material.each) ||
+           any(options.finishes);
+}
+
 MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs) {
     MaterialPlan plan{object.material, false, ""};
     if (plan.material.by.empty() && plan.material.brdf.empty() && !object.sdf) {
@@ -77,6 +97,7 @@ MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& opt
         plan.stated_colors = options.file_colors && plan.material.by.empty();
     }
     plan.by = plan.stated_colors ? "color" : plan.material.by;
+    if (needsGrain(object, options)) needs.addGrain(object);
     if (plan.by.empty()) return plan;
     (void)needs.number(plan.by);
     if (plan.stated_colors)
@@ -179,7 +200,7 @@ TracedObjects readTracedObjects(const std::vector<ObjectOptions>& objects, const
     for (const ObjectOptions& object : objects) plans.push_back(planMaterial(object, options, needs));
 
     ShapeReader reader(options, needs);
-    ObjectMaterials materials(options.brdf, options.finishes);
+    ObjectMaterials materials(options.brdf, options.finishes, showsLines(options.prints));
     std::vector<trace::SceneObject> scene;
     std::optional<trace::Box> parts;
     bool any_part = false;

@@ -7,17 +7,8 @@ namespace stratum::mechanics {
 
 BeadDirection directionAt(const gcode::Toolpath& toolpath, const gcode::Bead& bead, double x, double y) {
     constexpr double kDegrees = 180 / std::numbers::pi;
-    double dx = bead.x1 - bead.x0;
-    double dy = bead.y1 - bead.y0;
-    double climb = bead.z1 - bead.z0;
-    double plan = std::hypot(dx, dy);
-    if (bead.arc >= 0) {
-        const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-        plan = std::abs(arc.sweep) * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
-        const double turn = arc.sweep < 0 ? -1 : 1;
-        dx = -turn * (y - arc.center_y);
-        dy = turn * (x - arc.center_x);
-    }
+    const auto [dx, dy, climb] = gcode::pathDirection(toolpath, bead, x, y);
+    const double plan = std::hypot(dx, dy);
     if (dx == 0 && dy == 0 && climb == 0) return {};
     long azimuth = dx == 0 && dy == 0 ? 0 : std::lround(std::atan2(dy, dx) * kDegrees);
     long elevation = std::lround(std::atan2(climb, plan) * kDegrees);

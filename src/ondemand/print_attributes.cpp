@@ -51,6 +51,45 @@ private:
     const Attribute attribute_;
 };
 
+class GrainLookup final : public march::AttributeLookup {
+public:
+    explicit GrainLookup(const PrintField& field) : field_(field), beads_(field) {}
+
+    std::optional<glm::vec3> at(const glm::dvec3& position) override {
+        const std::optional<std::uint32_t> index = beads_.at(position);
+        if (!index) return std::nullopt;
+        const PrintLayout& layout = field_.layout();
+        const gcode::Bead& bead = layout.toolpath->beads[*index];
+        const openvdb::math::Transform& transform = field_.transform();
+        const openvdb::Vec3d place =
+            layout.lattice.voxel_size * transform.worldToIndex(openvdb::Vec3d(position.x, position.y, position.z));
+        const auto direction = gcode::pathDirection(*layout.toolpath, bead, place.x(), place.y());
+        // The map scales all axes alike; its shift is no part of a direction.
+        const openvdb::Vec3d world =
+            transform.baseMap()->applyJacobian(openvdb::Vec3d(direction.x, direction.y, direction.z));
+        const double length = world.length();
+        if (!(length > 0)) return std::nullopt;
+        return glm::vec3(glm::dvec3(world.x(), world.y(), world.z()) / length);
+    }
+
+private:
+    const PrintField& field_;
+    BeadLookup beads_;
+};
+
+class PrintGrain final : public march::AttributeSource {
+public:
+    explicit PrintGrain(std::shared_ptr<const PrintField> field) : field_(std::move(field)) {}
+
+    std::unique_ptr<march::AttributeLookup> makeLookup() const override {
+        return std::make_unique<GrainLookup>(*field_);
+    }
+    std::size_t bytes() const override { return 0; }
+
+private:
+    const std::shared_ptr<const PrintField> field_;
+};
+
 // What BeadAttributes wants, if that is the attribute.
 std::vector<float> overfillFor(const PrintField& field, Attribute attribute) {
     if (attribute != Attribute::overfill) return {};
@@ -99,6 +138,10 @@ voxelize::Attribute attributeNamed(std::string_view name) {
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
                                                                  voxelize::Attribute attribute) {
     return std::make_shared<const PrintAttribute>(std::move(field), attribute);
+}
+
+std::shared_ptr<const march::AttributeSource> makePrintGrain(std::shared_ptr<const PrintField> field) {
+    return std::make_shared<const PrintGrain>(std::move(field));
 }
 
 trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,

@@ -22,6 +22,10 @@ voxelize::Attribute attributeNamed(std::string_view name);
 std::shared_ptr<const march::AttributeSource> makePrintAttribute(std::shared_ptr<const PrintField> field,
                                                                  voxelize::Attribute attribute);
 
+/// For Tracer::grain(): the unit vector, in the field's world space, along which the bead at a place was laid; nothing
+/// where there is none, or where it has no length.
+std::shared_ptr<const march::AttributeSource> makePrintGrain(std::shared_ptr<const PrintField> field);
+
 /// The march::summarize() of that grid, but from the selected beads, including those that are nearest to no voxel.
 trace::AttributeSummary summarize(const PrintField& field, voxelize::Attribute attribute,
                                   std::span<const std::uint32_t> selection);

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <cmath>
+
 namespace stratum::shade {
 
 struct Frame {
@@ -23,6 +25,17 @@ struct Frame {
         const float b = normal.x * normal.y * a;
         x = glm::vec3(1.0f + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
         y = glm::vec3(b, sign + normal.y * normal.y * a, -normal.y);
+    }
+
+    /// With x along the part of `grain` that lies in the plane; any basis if there is none.
+    Frame(const glm::vec3& normal, const glm::vec3& grain) : Frame(normal) {
+        const glm::vec3 tangent = grain - glm::dot(grain, normal) * normal;
+        const float length2 = glm::dot(tangent, tangent);
+        // Below, rounding of the difference would decide the direction.
+        constexpr float kLeast2 = 1e-8f;
+        if (!(length2 > kLeast2)) return;
+        x = tangent / std::sqrt(length2);
+        y = glm::cross(z, x);
     }
 
     glm::vec3 toLocal(const glm::vec3& v) const { return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)}; }

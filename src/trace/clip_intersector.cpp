@@ -101,6 +101,12 @@ public:
             if (hit.normal == plane.normal) return hit.normal;
         return tracer_->shadingNormal(hit);
     }
+    glm::dvec3 grain(const Hit& hit) override {
+        // A cut was not drawn by a nozzle.
+        for (const ClipPlane& plane : planes_)
+            if (hit.normal == plane.normal) return glm::dvec3(0.0);
+        return tracer_->grain(hit);
+    }
     std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override {
         return tracer_->attribute(hit, which);
     }

@@ -67,6 +67,9 @@ public:
     /// The shading normal at a hit of this tracer: unit, towards outside. The geometric one, unless the intersector was
     /// annotated with smooth normals (annotation.h).
     virtual glm::dvec3 shadingNormal(const Hit& hit) { return hit.normal; }
+    /// The direction in which the material at a hit was laid, for gloss that differs along and across it: world space,
+    /// near unit length, of either sign; zero where it is not known.
+    virtual glm::dvec3 grain(const Hit&) { return glm::dvec3(0.0); }
     /// The value of the attribute with that number at a hit of this tracer. A number is in x, a color is linear RGB.
     /// Nothing where there is no value.
     virtual std::optional<glm::vec3> attribute(const Hit&, std::size_t) { return std::nullopt; }

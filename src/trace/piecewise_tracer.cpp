@@ -205,6 +205,8 @@ glm::dvec3 PiecewiseTracer::shadingNormal(const Hit& hit) {
     return tracers_[hit.part % tracers_.size()]->shadingNormal(own(hit));
 }
 
+glm::dvec3 PiecewiseTracer::grain(const Hit& hit) { return tracers_[hit.part % tracers_.size()]->grain(own(hit)); }
+
 std::optional<glm::vec3> PiecewiseTracer::attribute(const Hit& hit, std::size_t which) {
     return tracers_[hit.part % tracers_.size()]->attribute(own(hit), which);
 }

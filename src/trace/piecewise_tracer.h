@@ -48,6 +48,7 @@ public:
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override;
     void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override;
     glm::dvec3 shadingNormal(const Hit& hit) override;
+    glm::dvec3 grain(const Hit& hit) override;
     std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override;
 
 private:

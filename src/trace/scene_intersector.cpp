@@ -166,6 +166,14 @@ public:
         const glm::dvec3 own = tracers_[hit.object]->shadingNormal(member.backIn(hit));
         return member.turned ? glm::normalize(member.normals_out * own) : own;
     }
+    glm::dvec3 grain(const Hit& hit) override {
+        const Member& member = members_[hit.object];
+        const glm::dvec3 own = tracers_[hit.object]->grain(member.backIn(hit));
+        if (!member.turned) return own;
+        const glm::dvec3 placed = member.linear * own;
+        const double length = glm::length(placed);
+        return length > 0.0 ? placed / length : glm::dvec3(0.0);
+    }
     std::optional<glm::vec3> attribute(const Hit& hit, std::size_t which) override {
         return tracers_[hit.object]->attribute(members_[hit.object].backIn(hit), which);
     }

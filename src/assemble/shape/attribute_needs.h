@@ -28,6 +28,10 @@ public:
     void addStatedColors(const ObjectOptions& object);
     bool needsStatedColors(const ObjectOptions& object) const;
 
+    /// The object's material needs to know along which direction its beads were laid.
+    void addGrain(const ObjectOptions& object) { grain_.insert(fileOf(object)); }
+    bool needsGrain(const ObjectOptions& object) const { return grain_.contains(fileOf(object)); }
+
 private:
     using File = std::pair<std::string, std::string>;  // path, grid
     static File fileOf(const ObjectOptions& object) { return {object.vdb, object.grid}; }
@@ -35,6 +39,7 @@ private:
     std::vector<std::string> names_;
     std::set<std::pair<File, std::string>> needed_;
     std::set<File> stated_colors_;
+    std::set<File> grain_;
 };
 
 }  // namespace stratum::assemble

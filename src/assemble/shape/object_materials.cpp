@@ -1,6 +1,7 @@
 #include "assemble/shape/object_materials.h"
 
 #include "shade/brdf/brdf.h"
+#include "shade/finish/line_gloss.h"
 #include "shade/palette/filament_color.h"
 
 #include <algorithm>
@@ -30,6 +31,13 @@ Json reportOf(const shade::Legend& legend, const trace::AttributeSummary& summar
 
 }  // namespace
 
+ObjectMaterials::ObjectMaterials(const std::string& brdf, std::map<std::string, std::string> finishes, bool lines)
+    : lines_(lines), brdf_(materialOf(brdf)), finishes_(std::move(finishes)) {}
+
+std::string ObjectMaterials::materialOf(const std::string& text) const {
+    return lines_ ? shade::withGlossOfLines(text) : text;
+}
+
 std::shared_ptr<const shade::Brdf> ObjectMaterials::brdfOf(const std::string& text) {
     auto& brdf = made_[text];
     if (!brdf) brdf = shade::makeBrdf(text);
@@ -53,7 +61,7 @@ void ObjectMaterials::explain(const shade::MaterialOptions& material, const trac
 void ObjectMaterials::add(const shade::MaterialOptions& material, std::size_t attribute,
                           const trace::AttributeSummary* summary) {
     own_ = own_ || !material.by.empty() || !material.brdf.empty();
-    const std::string& text = material.brdf.empty() ? brdf_ : material.brdf;
+    const std::string text = material.brdf.empty() ? brdf_ : materialOf(material.brdf);
     use(text);
     if (summary == nullptr) {
         materials_.emplace_back(brdfOf(text));
@@ -80,6 +88,7 @@ void ObjectMaterials::add(const PrintColors& colors, std::size_t attribute, cons
     std::string text = colors.stated.empty() ? std::string() : colors.stated.front();
     if (const auto finish = finishes.find(text); finish != finishes.end()) text = finish->second;
     own_ = own_ || !colors.stated.empty();
+    text = materialOf(text);
     use(text);
     materials_.emplace_back(brdfOf(text));
 }

@@ -22,8 +22,9 @@ class ObjectMaterials {
 public:
     /// @param brdf      of objects that have none of their own, see shade::makeBrdf(); empty: not given
     /// @param finishes  materials of stated colors, by "#rrggbb"
-    explicit ObjectMaterials(const std::string& brdf, std::map<std::string, std::string> finishes = {})
-        : brdf_(brdf), finishes_(std::move(finishes)) {}
+    /// @param lines     colors, and the default material, have the gloss of lines: shade::withGlossOfLines()
+    explicit ObjectMaterials(const std::string& brdf, std::map<std::string, std::string> finishes = {},
+                             bool lines = false);
 
     /// An object with a given material.
     /// @param attribute  number of `material.by`
@@ -53,6 +54,10 @@ private:
     void use(const std::string& text);
     void explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary);
 
+    /// The text of the material that an object has for this one.
+    std::string materialOf(const std::string& text) const;
+
+    const bool lines_;
     const std::string brdf_;
     const std::map<std::string, std::string> finishes_;
     std::map<std::string, std::shared_ptr<const shade::Brdf>> made_;  // baking a table takes a second

@@ -25,6 +25,7 @@ march::Annotation annotationOf(const ObjectOptions& object, const std::shared_pt
                                             ? ondemand::makePrintAttribute(field, ondemand::attributeNamed(name))
                                             : nullptr);
     if (options.smooth_normals) annotation.smooth_field = field;
+    if (needs.needsGrain(object)) annotation.grain = ondemand::makePrintGrain(field);
     return annotation;
 }
 

@@ -52,6 +52,18 @@ double beadLength(const Toolpath& toolpath, const Bead& bead) {
     return rise == 0 ? plan : std::hypot(plan, rise);
 }
 
+PathDirection pathDirection(const Toolpath& toolpath, const Bead& bead, double x, double y) {
+    const double climb = bead.z1 - bead.z0;
+    if (bead.arc < 0) return {bead.x1 - bead.x0, bead.y1 - bead.y0, climb};
+    const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+    const double away_x = x - arc.center_x;
+    const double away_y = y - arc.center_y;
+    const double away = std::hypot(away_x, away_y);
+    if (!(away > 0)) return {0, 0, climb};
+    const double plan = arc.sweep * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
+    return {-away_y / away * plan, away_x / away * plan, climb};
+}
+
 double beadSeconds(const Toolpath& toolpath, const Bead& bead) {
     const double speed = toolpath.runOf(bead).speed;
     return speed > 0 ? beadLength(toolpath, bead) / speed : 0;

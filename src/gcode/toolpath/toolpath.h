@@ -161,6 +161,13 @@ struct Toolpath {
 /// Length of the path of a bead in mm, its climb included.
 double beadLength(const Toolpath& toolpath, const Bead& bead);
 
+/// The direction in which a bead was laid at its place that is nearest to (x, y), mm: its vector in print space, of any
+/// length; zero for a bead without length. Arcs turn.
+struct PathDirection {
+    double x = 0, y = 0, z = 0;
+};
+PathDirection pathDirection(const Toolpath& toolpath, const Bead& bead, double x, double y);
+
 /// Seconds to lay a bead at the programmed speed, without accelerations; 0 if the file has no speed.
 double beadSeconds(const Toolpath& toolpath, const Bead& bead);
 

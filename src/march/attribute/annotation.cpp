@@ -15,6 +15,7 @@ public:
             smooth_.emplace(*annotation.smooth);
         else if (annotation.smooth_field)
             smooth_.emplace(*annotation.smooth_field);
+        if (annotation.grain) grain_ = annotation.grain->makeLookup();
         for (const auto& source : annotation.attributes) attributes_.push_back(source ? source->makeLookup() : nullptr);
     }
 
@@ -29,6 +30,9 @@ public:
     glm::dvec3 shadingNormal(const trace::Hit& hit) override {
         return smooth_ ? smooth_->at(hit.position, hit.normal) : hit.normal;
     }
+    glm::dvec3 grain(const trace::Hit& hit) override {
+        return grain_ ? glm::dvec3(grain_->at(hit.position).value_or(glm::vec3(0.0F))) : glm::dvec3(0.0);
+    }
     std::optional<glm::vec3> attribute(const trace::Hit& hit, std::size_t which) override {
         if (which >= attributes_.size() || !attributes_[which]) return std::nullopt;
         return attributes_[which]->at(hit.position);
@@ -37,6 +41,7 @@ public:
 private:
     std::unique_ptr<trace::Tracer> rays_;
     std::optional<SmoothNormal> smooth_;
+    std::unique_ptr<AttributeLookup> grain_;
     std::vector<std::unique_ptr<AttributeLookup>> attributes_;
 };
 
@@ -55,6 +60,7 @@ public:
     std::size_t bytes() const override {
         std::size_t sum = shape_->bytes();
         if (annotation_.smooth) sum += annotation_.smooth->memUsage();
+        if (annotation_.grain) sum += annotation_.grain->bytes();
         for (const auto& source : annotation_.attributes)
             if (source) sum += source->bytes();
         return sum;
@@ -68,7 +74,7 @@ private:
 }  // namespace
 
 bool Annotation::empty() const {
-    return !smooth && !smooth_field &&
+    return !smooth && !smooth_field && !grain &&
            std::all_of(attributes.begin(), attributes.end(), [](const auto& source) { return !source; });
 }
 

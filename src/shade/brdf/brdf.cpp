@@ -11,6 +11,7 @@
 #include "shade/camera/sampling.h"
 #include "shade/data_folder.h"
 #include "shade/finish/glitter.h"
+#include "shade/finish/line_gloss.h"
 #include "shade/finish/matte.h"
 #include "shade/finish/silk.h"
 #include "shade/measured/brdf_file.h"
@@ -59,9 +60,9 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     const bool none = namesIn(tableFolder()).empty();
     const std::vector<std::string> known = brdfNames();
     std::vector<std::string_view> names(known.begin(), known.end());
-    names.insert(names.end(), {"lambert", "plastic", "metal", "matte", "silk", "glitter", "translucent"});
+    names.insert(names.end(), {"lambert", "plastic", "fdm", "metal", "matte", "silk", "glitter", "translucent"});
     throw UsageError(fmt::format(
-        "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, "
+        "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, fdm:R,G,B,ALPHA, "
         "metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, glitter:R,G,B[,FLAKE_MM], "
         "translucent:R,G,B,MEAN_FREE_PATH_MM, a colour (#ff6600, teal), a file, or one of: {}{}{}",
         text, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
@@ -70,8 +71,8 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
 
 bool isFormula(std::string_view text) {
     const std::string_view name = text.substr(0, text.find(':'));
-    return name == "lambert" || name == "plastic" || name == "metal" || name == "matte" || name == "silk" ||
-           name == "glitter" || isTranslucent(text);
+    return name == "lambert" || name == "plastic" || name == "fdm" || name == "metal" || name == "matte" ||
+           name == "silk" || name == "glitter" || isTranslucent(text);
 }
 
 }  // namespace
@@ -134,6 +135,13 @@ std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
         if (preset.values.size() == 3) return std::make_shared<Glitter>(bodyColor());
         requireRange(preset, 3, Glitter::kMinSize, Glitter::kMaxSize, kOption, "the size of flakes in mm");
         return std::make_shared<Glitter>(bodyColor(), static_cast<double>(preset.values[3]));
+    }
+    if (preset.name == "fdm") {
+        if (preset.values.size() != 5) requireValues(preset, 4, kOption, "fdm:R,G,B,ALPHA or fdm:R,G,B,ALPHA,RATIO");
+        requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
+        if (preset.values.size() == 4) return std::make_shared<Plastic>(plasticOfLines(bodyColor(), preset.values[3]));
+        requireRange(preset, 4, 1.0f, kMostLineRatio, kOption, "RATIO, of alpha across the line to along it,");
+        return std::make_shared<Plastic>(plasticOfLines(bodyColor(), preset.values[3], preset.values[4]));
     }
     const bool metal = preset.name == "metal";
     requireValues(preset, 4, kOption, metal ? "metal:R,G,B,ALPHA" : "plastic:R,G,B,ALPHA");

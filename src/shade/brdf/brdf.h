@@ -33,11 +33,11 @@ struct Flakes {
 
 /// A bidirectional reflectance distribution function, in 1/sr.
 ///
-/// Frame: local, z is the surface normal, x and y any tangents (every material here is isotropic). `wo` points to the
-/// viewer, `wi` to the light; both leave the surface and are of unit length. The cosine |wi.z| is never included.
-/// Opaque: whenever wo.z or wi.z is not positive, eval and pdf are 0 and sample returns nothing.
-/// Contract: reciprocal, eval >= 0 and finite, no albedo above 1, pdf > 0 wherever eval > 0, and sample, eval and pdf
-/// agree. Immutable; shared by all threads.
+/// Frame: local, z is the surface normal, x and y any tangents; of a material with a direction (undirected()), x is the
+/// tangent along it. `wo` points to the viewer, `wi` to the light; both leave the surface and are of unit length. The
+/// cosine |wi.z| is never included. Opaque: whenever wo.z or wi.z is not positive, eval and pdf are 0 and sample
+/// returns nothing. Contract: reciprocal, eval >= 0 and finite, no albedo above 1, pdf > 0 wherever eval > 0, and
+/// sample, eval and pdf agree. Immutable; shared by all threads.
 class Brdf {
 public:
     virtual ~Brdf() = default;
@@ -57,6 +57,9 @@ public:
     virtual std::shared_ptr<const Brdf> recolored(const Color&) const { return nullptr; }
     /// Itself, if light goes through it; see translucent.h.
     virtual const Translucent* translucent() const { return nullptr; }
+    /// Of a material whose gloss has a direction, as printed lines have: the one to use where the direction is not
+    /// known. Null for all others. As long-lived as this one.
+    virtual const Brdf* undirected() const { return nullptr; }
     /// Whether it is another one at other places; then at() says which.
     virtual bool variesByPlace() const { return false; }
     /// Of this place: mm, in the space of the scene. As long-lived as this one.
@@ -79,6 +82,8 @@ extern const char* const kDefaultBrdf;
 ///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
 ///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
 ///   matte:R,G,B          rough and diffuse, without a coat: matte.h
+///   fdm:R,G,B,ALPHA[,RATIO]  plastic whose gloss has the direction of printed lines: alpha is ALPHA on the mean, and
+///                        RATIO times as large across the line as along it (default kLineRatio)
 ///   silk:R,G,B           plastic with pearlescent platelets: silk.h
 ///   glitter:R,G,B[,MM]   plastic with flakes of that size: glitter.h
 ///   FILE, or NAME        a measured table, see readBrdfFile; of a NAME, e.g. pla-blue, that of data/brdf, looked for

@@ -7,7 +7,7 @@
 namespace stratum::shade {
 
 Metal::Metal(const Color& color, float alpha)
-    : ggx_{alpha}, once_(ggx_, AlbedoTable::Facets::steep, [](float) { return 1.0f; }) {
+    : ggx_(alpha), once_(ggx_, AlbedoTable::Facets::steep, [](float) { return 1.0f; }) {
     setColor(color);
 }
 
@@ -27,11 +27,11 @@ Color Metal::eval(const glm::vec3& wo, const glm::vec3& wi) const {
     const float off = 1.0f - c;
     const float grazing = off * off * off * off * off;
     const Color once = (color_ + (Color(1.0f) - color_) * grazing) * (ggx_.d(h) * ggx_.visibility(wo, wi));
-    return once + further_ * once_.rest(wo.z, wi.z);
+    return once + further_ * once_.rest(wo, wi);
 }
 
 GlossMixture Metal::mixture(const glm::vec3& wo) const {
-    const float once = once_.at(wo.z);
+    const float once = once_.at(wo);
     const float further = maxComponent(further_) * (1.0f - once);
     return {ggx_, once / (once + further)};
 }

@@ -10,9 +10,9 @@ namespace stratum::shade {
 /// f = F D G2 / (4 cos cos) + kd / pi (1 - E(o)) (1 - E(i)) / (1 - Eavg)
 ///
 /// E is the coat's directional albedo, tabulated at construction, so that energy is conserved: with kd = 1 the albedo
-/// is 1 at any angle (to the table's 1e-4). Energy of multiple scattering between facets is added to the body. Exact
-/// Fresnel, eta 1.5.
-/// Source of the coupling: C. Kelemen, L. Szirmay-Kalos, EG 2001; A. Kulla, A. Conty, SIGGRAPH course 2017.
+/// is 1 at any angle (to the table's 1e-4; to 1e-3 where alpha differs along and across). Energy of multiple scattering
+/// between facets is added to the body. Exact Fresnel, eta 1.5. Source of the coupling: C. Kelemen, L. Szirmay-Kalos,
+/// EG 2001; A. Kulla, A. Conty, SIGGRAPH course 2017.
 class Plastic final : public Brdf {
 public:
     static constexpr float kEta = 1.5f;
@@ -20,25 +20,29 @@ public:
 
     /// @param body   reflectance of the body, kd, in [0, 1]
     /// @param alpha  GGX's alpha of the coat, in [kMinAlpha, 1]
-    Plastic(const Color& body, float alpha);
+    Plastic(const Color& body, float alpha) : Plastic(body, Ggx(alpha)) {}
+    /// @param coat  its microfacets, of any direction
+    Plastic(const Color& body, const Ggx& coat);
     Color eval(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::optional<BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override;
     float pdf(const glm::vec3& wo, const glm::vec3& wi) const override;
     std::shared_ptr<const Brdf> recolored(const Color& body) const override;
+    /// With a coat of the mean alpha, if the coat's is not the same along and across.
+    const Brdf* undirected() const override { return undirected_.get(); }
 
-    /// The coat's directional albedo E at this angle.
-    /// @param cosine  to the normal, in [0, 1]
-    float coatAlbedo(float cosine) const { return coat_.at(cosine); }
+    /// The coat's directional albedo E.
+    float coatAlbedo(const glm::vec3& w) const { return coat_.at(w); }
 
 private:
     /// Probability of drawing from the coat.
-    float coatShare(float cosine) const;
+    float coatShare(const glm::vec3& wo) const;
     float coat(const glm::vec3& wo, const glm::vec3& wi, const glm::vec3& h) const;
 
     Color body_;
     float body_max_;
     Ggx ggx_;
     AlbedoTable coat_;
+    std::shared_ptr<const Brdf> undirected_;
 };
 
 }  // namespace stratum::shade

@@ -25,7 +25,7 @@ std::optional<glm::vec3> refract(const glm::vec3& wo, const glm::vec3& h, float 
 
 }  // namespace
 
-RoughInterface::RoughInterface(float eta, float alpha) : eta_(eta), ggx_{alpha} {
+RoughInterface::RoughInterface(float eta, float alpha) : eta_(eta), ggx_(alpha) {
     for (const Side side : {Side::air, Side::solid}) {
         auto& table = lost_[indexOf(side)];
         parallelFor(kNodes, 1, [&](std::size_t begin, std::size_t end) {

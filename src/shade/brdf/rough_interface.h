@@ -48,7 +48,7 @@ public:
     std::optional<InterfaceSample> sample(Side from, const glm::vec3& wo, glm::vec2 lobe, const glm::vec2& u) const;
 
     float eta() const { return eta_; }
-    float alpha() const { return ggx_.alpha; }
+    float alpha() const { return ggx_.along(); }
     /// What the facets' single scattering loses.
     /// @param cosine  to the normal, in [0, 1]
     float lost(Side side, float cosine) const;

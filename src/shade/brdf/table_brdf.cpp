@@ -46,7 +46,7 @@ TableBrdf::TableBrdf(HalfDiffTable table, const std::array<Lobes, 3>& lobes, std
         log_alpha += l.ks * std::log(l.alpha);
         body[c] = static_cast<float>(std::min(l.kd, 1.0));
     }
-    ggx_.alpha = static_cast<float>(std::clamp(1.1 * std::exp(log_alpha / std::max(weight, 1e-12)), 0.005, 1.0));
+    ggx_ = Ggx(static_cast<float>(std::clamp(1.1 * std::exp(log_alpha / std::max(weight, 1e-12)), 0.005, 1.0)));
     // The albedo's quadrature needs a density, whose lobe weights depend on the albedo: it starts with equal weights.
     gloss_share_.fill(0.5f);
     scale_.fill(Color(1.0f));

@@ -79,7 +79,8 @@ void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direct
 
 PathIntegrator::PathVertex::PathVertex(Path& of)
     : path(&of),
-      frame(glm::vec3(of.point.normal)),
+      frame(of.point.grain == glm::vec3(0.0f) ? Frame(glm::vec3(of.point.normal))
+                                              : Frame(glm::vec3(of.point.normal), of.point.grain)),
       wo(frame.toLocal(glm::vec3(-of.direction))),
       bent(of.solid != nullptr && of.point.normal != of.point.geometric) {
     if (of.solid != nullptr && of.side() == Side::solid) wo.z = -wo.z;
@@ -338,7 +339,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         bounce_rays.clear();
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
-        surfaces_.nearest(bounce_rays, tracer, hits);
+        surfaces_.nearestBounced(bounce_rays, tracer, hits);
         continuePaths(bounces, hits, sums, next_paths);
         if (!walkers.empty()) walk(walkers, samplers, tracer, counts, next_paths);
         paths.swap(next_paths);

@@ -15,7 +15,8 @@ Surfaces::Surfaces(const SceneDescription& scene, const trace::Intersector& prin
     contact_->z += 0.05 * print.voxelSize();
 }
 
-void Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer, SurfacePoint& point) const {
+void Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, Gloss gloss, trace::Tracer& tracer,
+                       SurfacePoint& point) const {
     point.position = hit.position;
     point.t = hit.t;
     point.bed = false;
@@ -24,6 +25,11 @@ void Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Trac
     const Material& material = object.single() ? object.only() : object.of(tracer.attribute(hit, object.attribute()));
     point.brdf = material.by_place ? &material.brdf->at(scene_.mm_per_unit * hit.position) : material.brdf.get();
     point.albedo = material.albedo;
+    point.grain = glm::vec3(0.0f);
+    if (const Brdf* const undirected = point.brdf->undirected(); undirected != nullptr) {
+        if (gloss == Gloss::directed) point.grain = glm::vec3(tracer.grain(hit));
+        if (point.grain == glm::vec3(0.0f)) point.brdf = undirected;
+    }
     for (std::size_t n = 0; n < kLabels; ++n)
         if (scene_.labels[n])
             if (const auto value = tracer.attribute(hit, *scene_.labels[n])) point.labels[n] = value->x;
@@ -52,6 +58,7 @@ void Surfaces::onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoi
     const BedTexture::Finish& finish = bed.texture.at(xy);
     point.brdf = finish.brdf.get();
     point.albedo = finish.albedo;
+    point.grain = glm::vec3(0.0f);
     constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
     point.normal = point.geometric = kUp;
     if (bed.texture.bumpy()) {
@@ -71,21 +78,25 @@ bool Surfaces::nearest(const trace::Ray& ray, trace::Tracer& tracer, SurfacePoin
     trace::Hit hit;
     const bool print = tracer.intersect(limited, hit);
     if (print)
-        onPrint(ray, hit, tracer, point);
+        onPrint(ray, hit, Gloss::directed, tracer, point);
     else if (bed)
         onBed(*scene_.bed, ray, *bed, point);
     return print || bed;
 }
 
 void Surfaces::nearest(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
-    nearest(rays, scene_.bed ? &*scene_.bed : nullptr, tracer, points);
+    nearest(rays, scene_.bed ? &*scene_.bed : nullptr, Gloss::directed, tracer, points);
+}
+
+void Surfaces::nearestBounced(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
+    nearest(rays, scene_.bed ? &*scene_.bed : nullptr, Gloss::undirected, tracer, points);
 }
 
 void Surfaces::nearestInside(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const {
-    nearest(rays, contact_ ? &*contact_ : nullptr, tracer, points);
+    nearest(rays, contact_ ? &*contact_ : nullptr, Gloss::undirected, tracer, points);
 }
 
-void Surfaces::nearest(std::span<trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+void Surfaces::nearest(std::span<trace::Ray> rays, const Bed* bed, Gloss gloss, trace::Tracer& tracer,
                        std::span<SurfacePoint> points) const {
     // Kept by the thread: fresh memory for every stream would cost as much as tracing it.
     static thread_local std::vector<trace::Hit> hits;
@@ -105,7 +116,7 @@ void Surfaces::nearest(std::span<trace::Ray> rays, const Bed* bed, trace::Tracer
     tracer.intersectStream(rays, hits);
     for (std::size_t n = 0; n < rays.size(); ++n) {
         if (std::isfinite(hits[n].t))
-            onPrint(rays[n], hits[n], tracer, points[n]);
+            onPrint(rays[n], hits[n], gloss, tracer, points[n]);
         else if (bed != nullptr && beds[n] < kNone)
             onBed(*bed, rays[n], beds[n], points[n]);
         else

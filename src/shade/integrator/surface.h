@@ -20,6 +20,7 @@ struct SurfacePoint {
     glm::dvec3 position{0.0};
     glm::dvec3 normal{0.0, 0.0, 1.0};     ///< unit, for shading, on the side of the ray's origin
     glm::dvec3 geometric{0.0, 0.0, 1.0};  ///< unit, to offset new rays along; differs only with smooth normals
+    glm::vec3 grain{0.0f};                ///< Tracer::grain(), where the material has a direction; else zero
     double t = 0.0;                       ///< along the ray, world units
     const Brdf* brdf = nullptr;
     Color albedo{0.0f};  ///< reflectanceFactor of brdf
@@ -39,6 +40,9 @@ public:
     /// The same for many rays; points[i].t is infinite where there is none. `points` is as long as `rays`, which end
     /// at the bed afterwards.
     void nearest(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
+    /// The same for rays that were scattered. They meet gloss without its direction (Brdf::undirected()): to look up
+    /// the beads where such rays end would take longer than the rays.
+    void nearestBounced(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
     /// The same for rays inside of a translucent print. What stands on the bed touches it without a gap: a bottom less
     /// than a twentieth of a voxel above the bed is the bed.
     void nearestInside(std::span<trace::Ray> rays, trace::Tracer& tracer, std::span<SurfacePoint> points) const;
@@ -77,10 +81,12 @@ public:
     bool backdrop(std::span<const trace::Ray> rays, std::span<Color> radiances) const;
 
 private:
+    enum class Gloss : std::uint8_t { directed, undirected };
     // They set every field, where it stays: to copy what was just written in pieces takes longer than to write it.
-    void onPrint(const trace::Ray& ray, const trace::Hit& hit, trace::Tracer& tracer, SurfacePoint& point) const;
+    void onPrint(const trace::Ray& ray, const trace::Hit& hit, Gloss gloss, trace::Tracer& tracer,
+                 SurfacePoint& point) const;
     static void onBed(const Bed& bed, const trace::Ray& ray, double t, SurfacePoint& point);
-    void nearest(std::span<trace::Ray> rays, const Bed* bed, trace::Tracer& tracer,
+    void nearest(std::span<trace::Ray> rays, const Bed* bed, Gloss gloss, trace::Tracer& tracer,
                  std::span<SurfacePoint> points) const;
 
     const SceneDescription& scene_;

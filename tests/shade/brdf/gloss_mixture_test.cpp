@@ -12,7 +12,7 @@ using shade::Color;
 /// A matt surface that is drawn from by the mixture.
 class Mixed final : public shade::Brdf {
 public:
-    Mixed(float alpha, float share) : mixture_{{alpha}, share} {}
+    Mixed(float alpha, float share) : mixture_{shade::Ggx(alpha), share} {}
     Color eval(const glm::vec3&, const glm::vec3&) const override { return Color(0.5f * shade::kInvPi); }
     std::optional<shade::BrdfSample> sample(const glm::vec3& wo, float lobe, const glm::vec2& u) const override {
         return mixture_.sample(*this, wo, lobe, u);
@@ -39,7 +39,7 @@ TEST(GlossMixture, FindsAllThatAMattSurfaceReflects) {
 }
 
 TEST(GlossMixture, GivesNothingBelowTheSurface) {
-    const shade::GlossMixture mixture{{0.3f}, 0.5f};
+    const shade::GlossMixture mixture{shade::Ggx(0.3f), 0.5f};
     EXPECT_EQ(mixture.pdf({0, 0, 1}, {0, 0.6f, -0.8f}), 0.0f);
     EXPECT_EQ(mixture.pdf({0, 0.6f, -0.8f}, {0, 0, 1}), 0.0f);
     EXPECT_FALSE(mixture.sample(Mixed(0.3f, 0.5f), {0, 0.6f, -0.8f}, 0.1f, {0.5f, 0.5f}));

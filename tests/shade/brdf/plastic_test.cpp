@@ -43,10 +43,10 @@ TEST(Plastic, BlackBodyReflectsTheCoatAlone) {
         const Plastic brdf(Color(0.0f), alpha);
         for (const double c : kCosines)
             EXPECT_NEAR(test::albedo(brdf, test::direction(c, 0.4), 800, 800),
-                        double(brdf.coatAlbedo(static_cast<float>(c))), 1e-3);
+                        double(brdf.coatAlbedo(test::direction(c, 0.0))), 1e-3);
     }
     // A smooth coat is Fresnel's: 4 % at normal incidence for eta 1.5.
-    EXPECT_NEAR(Plastic(Color(0.0f), 0.001f).coatAlbedo(1.0f), 0.04f, 1e-4f);
+    EXPECT_NEAR(Plastic(Color(0.0f), 0.001f).coatAlbedo({0, 0, 1}), 0.04f, 1e-4f);
 }
 
 TEST(Plastic, SamplesAgreeWithQuadrature) {
