@@ -36,10 +36,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kExamples = R"(
 Examples:
-  gcode2vdb part.gcode                              part.vdb, voxel size chosen from the layer height
+  gcode2vdb part.gcode                        part.vdb, 4 voxels a layer
   gcode2vdb part.gcode -o part.vdb --voxel-size 0.1
   gcode2vdb part.gcode --voxels-per-layer 4 --features -skirt,-brim,-support
   gcode2vdb part.gcode -o part.stl                  a closed mesh of the outside; also .ply, .obj
+  gcode2vdb part.gcode -o part.glb --faces 50000    for a web page: no more triangles than that
   gcode2vdb part.gcode -o part.3mf --tool 0,1       with a material a tool; also .glb, .usda, .obj --grids color
   gcode2vdb part.gcode -o part.nvdb --precision half   NanoVDB for GPUs
   gcode2vdb part.gcode -o part.inp --voxel-size 0.4 --elastic 3500   solid elements for CalculiX and Abaqus
@@ -76,6 +77,10 @@ void addWritingOptions(CLI::App& app, tools::ConvertCommand& o) {
     app.add_option("--mesh-error", o.mesh_error, "Meshes: how far faces may be merged; 0 keeps all (default 0.25)")
         ->check(CLI::Range(0.0, 2.0))
         ->type_name("VOXELS")
+        ->group(writing);
+    app.add_option("--faces", o.mesh_faces, "Meshes: triangles at most; faces are merged as far as that takes")
+        ->check(CLI::Range(100.0, 4e9))
+        ->type_name("N")
         ->group(writing);
     app.add_flag("--forecast", o.forecast, "With --stats: what --interior cull would save")->group(writing);
     app.add_option("--dump-toolpath", o.dump_toolpath, "Write the beads as CSV")->type_name("FILE.csv")->group(writing);
@@ -148,29 +153,33 @@ void addOptions(CLI::App& app, tools::ConvertCommand& o) {
     tools::addGone(app, "--shard", "one process writes the level set of a print of any size; leave it out");
     tools::addReportOptions(app, o.report);
     tools::addThumbnailOptions(app, o.thumbnail);
-    tools::addCommonOptions(app, o.common, {"--output",
-                                            "--voxel-size",
-                                            "--voxels-per-layer",
-                                            "--memory-budget",
-                                            "--unit",
-                                            "--origin",
-                                            "--up",
-                                            "--interior",
-                                            "--grids",
-                                            "--layers",
-                                            "--features",
-                                            "--object",
-                                            "--snapshots",
-                                            "--filament-diameter",
-                                            "--summary",
-                                            "--report",
-                                            "--thumbnail",
-                                            "--threads",
-                                            "--stats",
-                                            "--quiet",
-                                            "--version",
-                                            "--help",
-                                            "--help-all"});
+    tools::addCommonOptions(app, o.common,
+                            {{"IN", "G-code of any slicer; - is standard input"},
+                             {"--output", "A .vdb, .nvdb, mesh or .inp, or a folder"},
+                             {"--voxel-size", ""},
+                             {"--voxels-per-layer", ""},
+                             {"--memory-budget", "Finest voxel that fits, e.g. 4GB"},
+                             {"--unit", "World unit: mm, cm or m (default mm)"},
+                             {"--origin", "bed, center or min (default bed)"},
+                             {"--up", "z as printed, or y"},
+                             {"--printer", "ideal, typical, or your printer's limits"},
+                             {"--interior", "keep, or cull what nobody sees"},
+                             {"--grids", "layer, feature, tool, width, color, ..."},
+                             {"--layers", "Only layers A to B, counted from 1"},
+                             {"--features", "+perimeter only, or all -skirt,-brim"},
+                             {"--object", "Only this object of the print"},
+                             {"--snapshots", "Partial prints: 25%,layer:40,time:90"},
+                             {"--filament-diameter", "By tool; overrides the file's settings"},
+                             {"--summary", "Layers, features, filament, time; no .vdb"},
+                             {"--report", "Mass, porosity, walls: .json, .md, .html"},
+                             {"--compare", "Distances to this model: .stl, .3mf, .obj"},
+                             {"--thumbnail", "A copy of the print with new pictures"},
+                             {"--threads", ""},
+                             {"--stats", "Write a JSON report; - is standard output"},
+                             {"--quiet", ""},
+                             {"--version", "How it was built, and with what"},
+                             {"--help", ""},
+                             {"--help-all", ""}});
     app.footer(kExamples);
 }
 
@@ -270,8 +279,7 @@ void run(tools::ConvertCommand& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Turns printer G-code into an OpenVDB level set of the part as printed, every bead and layer line.",
-                 "gcode2vdb");
+    CLI::App app("Turns printer G-code into a level set (.vdb) of the part as printed.", "gcode2vdb");
     tools::ConvertCommand options;
     addOptions(app, options);
     return tools::runTool(app, argc, argv, [&] {

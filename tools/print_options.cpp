@@ -62,7 +62,8 @@ void addSelectionOptions(CLI::App& app, voxelize::PrintOptions& options) {
     std::vector<std::string> features;
     for (std::size_t f = 0; f < gcode::kFeatureCount; ++f)
         features.emplace_back(gcode::featureName(static_cast<gcode::Feature>(f)));
-    completes(app.add_option("--features", options.features, "Only (+NAME,...) or all but (-NAME,...) these features"),
+    completes(app.add_option("--features", options.features,
+                             "Only (+NAME,...) or all but (-NAME,...) these features; all: also what meshes leave out"),
               Completion::selection, features)
         ->type_name("LIST")
         ->group(what);

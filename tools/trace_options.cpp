@@ -30,8 +30,8 @@ constexpr const char* kOnce = "once";  // --turntable without a number
 
 constexpr const char* kExamples = R"(
 Examples:
-  vdbtrace part.vdb                                 part.png, 1280 x 960, studio light
-  vdbtrace part.gcode                               the same without a .vdb: voxels are made where rays come
+  vdbtrace part.vdb                           part.png in studio light
+  vdbtrace part.gcode                         the same without a .vdb
   vdbtrace part.gcode --printed 50% --voxel-size 0.05
   vdbtrace part.gcode --film part.mp4 --nozzle      the print as it grows, 8 s
   vdbtrace part.vdb -o part.png --view front --spp 64
@@ -343,9 +343,32 @@ void addTraceOptions(CLI::App& app, TraceCommand& o) {
     addTracePrintOptions(app, o.prints, o.brick_cache);
     addFilmOptions(app, o.film, o.nozzle);
     addCommonOptions(app, o.common,
-                     {"--output",  "--size",      "--spp",   "--noise",      "--denoise", "--view",     "--eye",
-                      "--look-at", "--turntable", "--film",  "--integrator", "--brdf",    "--color-by", "--env",
-                      "--bed",     "--threads",   "--stats", "--quiet",      "--version", "--help",     "--help-all"});
+                     {{"IN", "A print, a level set, or a scene (.json)"},
+                      {"--output", ".png, .jpg, .webp or a linear .exr"},
+                      {"--size", ""},
+                      {"--spp", "Samples a pixel (default 8, denoised)"},
+                      {"--noise", "Samples until the error is this, e.g. 0.05"},
+                      {"--denoise", "The default for all but .exr"},
+                      {"--view", "iso, front, back, left, right, top, bottom"},
+                      {"--eye", "Where the camera stands"},
+                      {"--look-at", "What it looks at (default: the part)"},
+                      {"--turntable", "N pictures from all around"},
+                      {"--integrator", "path, direct, phong, ao, normal, depth, ..."},
+                      {"--color", "'#ff6600', teal, 'Prusament Galaxy Black'"},
+                      {"--brdf", "plastic:R,G,B,ALPHA, pla-blue, a table, ..."},
+                      {"--color-by", "tool, feature, layer, speed, width, ..."},
+                      {"--env", "studio, sky, constant:R,G,B, .hdr or .exr"},
+                      {"--bed", "A bed under the print (the default)"},
+                      {"--voxel-size", "Of G-code"},
+                      {"--printer", "ideal, typical, or your printer's limits"},
+                      {"--printed", "A part of the print: 50%, layer:40"},
+                      {"--film", "The print as it grows: .mp4, .webm, .gif"},
+                      {"--threads", ""},
+                      {"--stats", "Write a JSON report; - is standard output"},
+                      {"--quiet", ""},
+                      {"--version", "How it was built, and with what"},
+                      {"--help", ""},
+                      {"--help-all", ""}});
     app.footer(kExamples);
 }
 

@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExamples = R"(
 Examples:
-  vdbmerge part.png part.*of8.exr                   what vdbtrace -o part.png --shard 0/8 ... 7/8 wrote
-  vdbmerge part.exr part.*of8.exr                   the same of vdbtrace -o part.exr
-  vdbmerge - part.*of8.exr --quiet > part.png       to standard output)";
+  vdbmerge part.png part.*of8.exr           what vdbtrace --shard 0/8 ... wrote
+  vdbmerge part.exr part.*of8.exr           the same of vdbtrace -o part.exr
+  vdbmerge - part.*of8.exr --quiet > part.png)";
 
 struct MergeCommand {
     tools::CommonOptions common;

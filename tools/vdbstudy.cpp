@@ -28,19 +28,19 @@ namespace {
 using namespace stratum;
 
 constexpr const char* kExamples = R"(
-Each study writes NAME.csv, row by row, and NAME.html, one page that holds all it shows. A study that was stopped goes
-on with the rows that it has.
+Each study writes NAME.csv, row by row, and NAME.html, one page that holds all
+it shows. A study that was stopped goes on with the rows that it has.
 
 Examples:
-  vdbstudy memory part.gcode -o studies             bytes against voxel size, kept and culled
+  vdbstudy memory part.gcode -o studies       bytes against voxel size
   vdbstudy memory *.gcode -o studies --voxels-per-layer 1,2,3,4,6
   vdbstudy geometry part.gcode -o studies --layers 1:20
-  vdbstudy stability -o studies                     a hundred cases that could go wrong
-  vdbstudy render part.gcode -o studies             error of pictures against run time
-  vdbstudy need part.gcode -o studies               what is not needed, and what it would have cost
-  vdbstudy deposit part.gcode -o studies            volume, roughness, corners and times against published figures
+  vdbstudy stability -o studies               cases that could go wrong
+  vdbstudy render part.gcode -o studies       error of pictures against time
+  vdbstudy need part.gcode -o studies         what is not needed, and its cost
+  vdbstudy deposit part.gcode -o studies      volume, roughness, corners, times
   vdbstudy polygons --scenes data/scenes/*.json -o studies
-  vdbstudy polygons prints/ -o studies              level sets beside beads and prisms)";
+  vdbstudy polygons prints/ -o studies        level sets beside beads)";
 
 struct Options {
     tools::CommonOptions common;
@@ -73,7 +73,7 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
 
 void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
     CLI::App* deposit =
-        addVerb(app, o, "deposit", "Volume, roughness, corners, times and cost of what the plastic does");
+        addVerb(app, o, "deposit", "What the plastic does: volume, corners, times, cost");
     deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume, times and cost")
         ->required()
         ->type_name("FILE.gcode");
@@ -88,7 +88,7 @@ void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
 
 std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
     std::vector<Verb> verbs;
-    CLI::App* memory = addVerb(app, o, "memory", "Bytes against voxel size, kept and culled, in memory and on disk");
+    CLI::App* memory = addVerb(app, o, "memory", "Bytes against voxel size, in memory and on disk");
     memory->add_option("PRINT", o.memory.prints, "Prints to convert")->required()->type_name("FILE.gcode");
     memory->add_option("--voxels-per-layer", o.memory.voxels_per_layer, "Sizes (default 1,2,3,4)")
         ->delimiter(',')
@@ -96,7 +96,7 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 64))
         ->type_name("N,...");
     verbs.push_back({memory, [&o] { return study::studyMemory(o.memory, o.study); }});
-    CLI::App* geometry = addVerb(app, o, "geometry", "Distance from the beads' exact surface to the level set");
+    CLI::App* geometry = addVerb(app, o, "geometry", "From the beads' exact surface to the level set");
     geometry->add_option("PRINT", o.geometry.print, "A print; its level beads count")
         ->required()
         ->type_name("FILE.gcode");
@@ -121,9 +121,9 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
     verbs.push_back({render, [&o] { return study::studyRender(o.render, o.study); }});
-    CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a tolerance and a verdict");
+    CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a verdict");
     verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
-    CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and what it would have cost");
+    CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and its cost");
     need->add_option("PRINT", o.need.prints, "Prints to convert and render")->required()->type_name("FILE.gcode");
     need->add_option("--repeats", o.need.repeats, "Runs of each (default 7)")
         ->check(CLI::Range(1, 1000))
@@ -199,7 +199,7 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app("Measures what a print costs as a level set and as a picture, and how exact both are.", "vdbstudy");
+    CLI::App app("Measures what prints cost as level sets and pictures, and how exact both are.", "vdbstudy");
     Options options;
     const std::vector<Verb> verbs = addVerbs(app, options);
     app.require_subcommand(1);

@@ -35,9 +35,9 @@ using namespace stratum;
 
 constexpr const char* kExamples = R"(
 Examples:
-  vdbview part.gcode --open                         in the browser of this machine
+  vdbview part.gcode --open                   in the browser of this machine
   vdbview part.gcode --voxel-size 0.05 --port 8080
-  vdbview part.vdb part.gcode scene.json            one page, three inputs
+  vdbview part.vdb part.gcode scene.json      one page, three inputs
   ssh -L 8080:127.0.0.1:8080 machine vdbview part.gcode --port 8080)";
 
 struct ViewCommand {
@@ -80,8 +80,17 @@ void addOptions(CLI::App& app, ViewCommand& o) {
         ->group("Tracing");
     tools::addPrintOptions(app, o.prints.print);
     tools::addCommonOptions(app, o.common,
-                            {"--open", "--port", "--listen", "--voxel-size", "--printer", "--threads", "--quiet",
-                             "--version", "--help", "--help-all"});
+                            {{"IN", "Prints, level sets, scenes; the page chooses"},
+                             {"--open", "Opens the page in the browser"},
+                             {"--port", "Default: any that is free"},
+                             {"--listen", "Default 127.0.0.1: this machine alone"},
+                             {"--voxel-size", ""},
+                             {"--printer", "ideal, typical, or your printer's limits"},
+                             {"--threads", ""},
+                             {"--quiet", ""},
+                             {"--version", "How it was built, and with what"},
+                             {"--help", ""},
+                             {"--help-all", ""}});
     app.footer(kExamples);
 }
 

@@ -148,6 +148,12 @@ void takeMaterials(const std::vector<std::uint32_t>& labels, bool by_tool, Surfa
             static_cast<std::uint32_t>(std::lower_bound(all.begin(), all.end(), label) - all.begin()));
 }
 
+// By so many voxels.
+void simplifyBy(double error, const openvdb::FloatGrid& grid, std::vector<std::uint32_t>& labels, SurfaceMesh& mesh) {
+    labels = simplify(mesh, error * grid.voxelSize()[0], labels);
+    mesh.error += error;
+}
+
 }  // namespace
 
 SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& options) {
@@ -185,7 +191,15 @@ SurfaceMesh meshSurface(const openvdb::FloatGrid& grid, const MeshOptions& optio
     dropUnusedPoints(mesh);
     std::vector<std::uint32_t> labels;
     if (options.color != nullptr) labels = labelsOf(mesh, *options.color, options.tool);
-    if (options.error > 0) labels = simplify(mesh, options.error * grid.voxelSize()[0], labels);
+    if (options.error > 0) simplifyBy(options.error, grid, labels, mesh);
+    // A triangle stays where its neighbours are as large: the error grows until there are few enough.
+    constexpr double kFirstError = 0.25;
+    constexpr double kMostError = 64;
+    double error = std::max(options.error, kFirstError);
+    while (options.most_triangles > 0 && mesh.triangleCount() > options.most_triangles && error <= kMostError) {
+        simplifyBy(error, grid, labels, mesh);
+        error *= 1.3;
+    }
     if (options.color != nullptr) takeMaterials(labels, options.tool != nullptr, mesh);
     return mesh;
 }

@@ -28,6 +28,7 @@ struct SurfaceMesh {
     std::vector<Face> faces;
     std::vector<MeshMaterial> materials;           ///< none: nothing is known of them
     std::vector<std::uint32_t> material_of_point;  ///< index into materials; empty: all are of the only one, or of none
+    double error = 0;  ///< voxels: the sum of what simplifying was allowed, see mesh_simplify.h
 
     /// Calls visit(a, b, c) with the indices of each triangle; a quad has two.
     template <typename Visit>
@@ -51,6 +52,9 @@ struct MeshOptions {
     bool outside_only = false;
     /// Voxels: allowed error of the simplified mesh, see mesh_simplify.h; 0 keeps a point in every surface cell.
     double error = 0.0;
+    /// Triangles at most; 0: any number. The allowed error grows until there are no more, or until edges can't be
+    /// collapsed without changing how parts hang together.
+    std::size_t most_triangles = 0;
     /// Gives the points materials by the nearest active voxel of this grid (linear sRGB), and doesn't simplify faces
     /// between materials; may be null.
     const openvdb::Vec3SGrid* color = nullptr;

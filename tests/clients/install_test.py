@@ -45,7 +45,9 @@ for tool in TOOLS:
 
     brief = run(program, "-h")
     everything = run(program, "--help-all")
-    check(len(brief.splitlines()) <= 60, f"{tool} -h fits a screen: {len(brief.splitlines())} lines")
+    lines = brief.splitlines()
+    check(len(lines) <= 50, f"{tool} -h fits a screen: {len(lines)} lines")
+    check(max(map(len, lines)) <= 80, f"  of 80 columns: {max(map(len, lines))}")
     examples = everything.split("Examples:")[1].count(f"  {tool} ")
     check(examples >= 3 and brief.split("Examples:")[1].count(f"  {tool} ") >= 3, "  with three examples")
 

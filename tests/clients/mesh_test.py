@@ -42,6 +42,16 @@ for print_, options in (("tile.gcode", []), ("tile.gcode", ["--mesh-error", "0"]
     least = report["grid"]["volume_mm3"]
     check(0.98 < made["volume_mm3"] / least < 1.02, f"  which is the level set's: {made['volume_mm3']:.2f}, {least:.2f} mm3")
 
+# Skirts are no part of a model, unless features are asked for; and as few faces as asked for.
+gear = ["--voxel-size", "0.15", "--layers", "1:4"]
+_, alone = mesh(gcode("gear.gcode"), "alone.stl", *gear)
+_, everything = mesh(gcode("gear.gcode"), "all.stl", *gear, "--features", "all")
+path, few = mesh(gcode("gear.gcode"), "few.stl", *gear, "--faces", "4000")
+sizes = [[high - low for low, high in zip(*report["toolpath"]["selected_bbox_mm"])] for report in (alone, everything)]
+check(sizes[0][0] + 3 < sizes[1][0], f"the skirt is left out: {sizes[0][0]:.1f} of {sizes[1][0]:.1f} mm")
+check(few["files"][0]["mesh"]["triangles"] <= 4000 < alone["files"][0]["mesh"]["triangles"], "--faces bounds them")
+check(admesh(path)["Total disconnected facets"] == 0, "  and the mesh is closed")
+
 # The same surface in every format, unit and orientation.
 path, report = mesh(gcode("tile.gcode"), "a.ply", "--voxel-size", "0.2")
 made = report["files"][0]["mesh"]

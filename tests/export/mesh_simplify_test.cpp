@@ -110,7 +110,7 @@ TEST(MeshSimplify, ColorsKeepTheirBorder) {
     color->topologyUnion(*grid);
     for (auto voxel = color->beginValueOn(); voxel; ++voxel)
         voxel.setValue(voxel.getCoord().z() < 3 ? openvdb::Vec3f(1, 0, 0) : openvdb::Vec3f(0, 0, 1));
-    const SurfaceMesh mesh = meshSurface(*grid, {false, 0.5, color.get()});
+    const SurfaceMesh mesh = meshSurface(*grid, {false, 0.5, 0, color.get()});
     test::expectClosed(mesh);
     ASSERT_EQ(mesh.material_of_point.size(), mesh.points.size());
     ASSERT_EQ(mesh.materials.size(), 2U);

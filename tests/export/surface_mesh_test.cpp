@@ -133,6 +133,25 @@ TEST(SurfaceMesh, CavitiesGoOnRequest) {
     EXPECT_NEAR(outside.volume(), 4.0 / 3.0 * kPi * 8.0, 0.1);
 }
 
+TEST(SurfaceMesh, HasNoMoreTrianglesThanAskedFor) {
+    const auto grid = levelSet(40, 0.1, [](const openvdb::Vec3d& p) { return torus(p, 2.5, 0.8); });
+    const SurfaceMesh all = meshSurface(*grid);
+    EXPECT_EQ(all.error, 0);
+    MeshOptions options;
+    options.most_triangles = 1500;
+    const SurfaceMesh few = meshSurface(*grid, options);
+    EXPECT_GT(all.triangleCount(), 5000U);
+    EXPECT_LE(few.triangleCount(), 1500U);
+    EXPECT_GT(few.triangleCount(), 300U);
+    EXPECT_GT(few.error, 0);
+    EXPECT_EQ(eulerCharacteristic(few), 0);
+    test::expectClosed(few);
+    EXPECT_NEAR(few.volume() / all.volume(), 1, 0.03);
+    // What hangs together stays so, however few are asked for.
+    options.most_triangles = 1;
+    EXPECT_EQ(eulerCharacteristic(meshSurface(*grid, options)), 0);
+}
+
 TEST(SurfaceMesh, OfNothingIsEmpty) {
     const SurfaceMesh mesh = meshSurface(*openvdb::FloatGrid::create(3.0F));
     EXPECT_TRUE(mesh.points.empty());

@@ -93,7 +93,7 @@ std::string shortWithEquals(const CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
-void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<std::string>& brief) {
+void addCommonOptions(CLI::App& app, CommonOptions& options, const Brief& brief) {
     app.add_option("--threads", options.threads, "Threads to use (default: all the machine has)")
         ->check(CLI::Range(1, 1024))
         ->type_name("N")

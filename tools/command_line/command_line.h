@@ -3,6 +3,7 @@
 
 #include "base/human_text.h"
 #include "base/stopwatch.h"
+#include "manual.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -29,7 +30,7 @@ struct CommonOptions {
 };
 
 /// Adds the common options and the manual (manual.h) to a command line. -h shows the options of `brief`; all, if empty.
-void addCommonOptions(CLI::App& app, CommonOptions& options, const std::vector<std::string>& brief = {});
+void addCommonOptions(CLI::App& app, CommonOptions& options, const Brief& brief = {});
 
 /// Declares an option that a former version had, with one value. Whoever gives it is told what to do instead; help and
 /// completion do not show it.

@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
-#include <set>
 #include <string_view>
 
 namespace stratum::tools {
@@ -18,7 +18,7 @@ constexpr std::size_t kExamplesInBrief = 3;
 constexpr const char* kExamplesTitle = "Examples:";
 constexpr const char* kOptionsGroup = "Options";  // CLI11's for options without one
 constexpr const char* kCommonGroup = "General";
-constexpr std::size_t kScreenColumns = 120;
+constexpr std::size_t kScreenColumns = 80;
 
 std::string typeName(const CLI::Option& option) {
     const std::string name = option.get_type_name();
@@ -48,21 +48,21 @@ std::string firstExamples(const CLI::App& app) {
 
 class HelpFormatter : public CLI::Formatter {
 public:
-    explicit HelpFormatter(const std::vector<std::string>& brief) : brief_(brief.begin(), brief.end()) {
-        column_width(29);
-    }
+    explicit HelpFormatter(const Brief& brief) : brief_(brief.begin(), brief.end()) { column_width(29); }
 
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
         if (mode == CLI::AppFormatMode::Sub) return CLI::Formatter::make_help(app, std::move(name), mode);
         const bool all = mode == CLI::AppFormatMode::All || brief_.empty();
         std::string text = make_description(app) + make_usage(app, std::move(name));
-        text += make_positionals(app);
+        text += all ? make_positionals(app) : briefGroup(*app, "") + "\nOptions:\n";
         for (const std::string& group : groupsOf(*app)) {
-            const auto wanted = [&](const CLI::Option* option) {
-                return option->get_group() == group && option->nonpositional() &&
-                       (all || brief_.count(option->get_name()) > 0);
-            };
-            const auto options = app->get_options(wanted);
+            if (!all) {
+                text += briefGroup(*app, group);
+                continue;
+            }
+            const auto options = app->get_options([&group](const CLI::Option* option) {
+                return option->get_group() == group && option->nonpositional();
+            });
             if (!options.empty()) text += make_group(group, false, options);
         }
         text += make_subcommands(app, mode);
@@ -104,7 +104,22 @@ private:
         return fmt::format("{}\n\n{} --help-all tells the rest.", firstExamples(app), app.get_name());
     }
 
-    std::set<std::string> brief_;
+    // A line an option: of a group, or of what has no dashes.
+    std::string briefGroup(const CLI::App& app, const std::string& group) const {
+        std::string lines;
+        for (const CLI::Option* option : app.get_options()) {
+            const auto known = brief_.find(option->get_name(!option->nonpositional()));
+            if (known == brief_.end() || (option->nonpositional() ? option->get_group() != group : !group.empty()))
+                continue;
+            const std::string& text = known->second.empty() ? option->get_description() : known->second;
+            lines += fmt::format("  {:<{}} {}\n",
+                                 make_option_name(option, !option->nonpositional()) + make_option_opts(option),
+                                 column_width_ - 3, text);
+        }
+        return lines;
+    }
+
+    std::map<std::string, std::string> brief_;
 };
 
 // Backslashes, leading dots and hyphens mean something else to roff.
@@ -272,7 +287,7 @@ std::string bashCompletion(const CLI::App& app) {
                         name);
 }
 
-void addManual(CLI::App& app, const std::vector<std::string>& brief) {
+void addManual(CLI::App& app, const Brief& brief) {
     app.formatter(std::make_shared<HelpFormatter>(brief));
     app.set_help_all_flag("--help-all", "All options and examples")->group(kCommonGroup);
     app.get_help_ptr()->description("The options that most people need")->group(kCommonGroup);

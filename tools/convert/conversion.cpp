@@ -42,6 +42,8 @@ exporter::LevelSetChoices choicesOf(const ConvertCommand& o, const fs::path& out
     const bool as_mesh = exporter::isMeshPath(output);
     if (o.interior == "cull" || (o.interior.empty() && as_mesh)) choices.interior = voxelize::Interior::cull;
     choices.interior_distance = o.interior_distance;
+    // Who chooses features chooses from all of them.
+    choices.part_alone = as_mesh && o.print.features.empty();
     // Meshes choose by their format, and elements have none.
     if (as_mesh || isElementsPath(output))
         choices.attributes.emplace();
@@ -141,6 +143,11 @@ void Conversion::choose() {
     as_mesh_ = exporter::isMeshPath(output_);
     plan_.emplace(toolpath_, choicesOf(o_, output_));
     attributes_ = as_mesh_ ? meshAttributes(o_, toolpath_, plan_->selection(), output_) : plan_->attributes();
+    if (plan_->leftOut() > 0)
+        say(o_.common,
+            fmt::format("  without what is printed beside the part: {} beads of skirts, prime lines and towers "
+                        "(--features all keeps them)",
+                        plan_->leftOut()));
     if (plan_->addsColor() && o_.makesGrid())
         say(o_.common,
             fmt::format("  {} colors of filament: a color grid, too (--grids surface: none)", plan_->colors()));

@@ -46,6 +46,7 @@ struct ConvertCommand {
     voxelize::PrintOptions print;
     std::string interior;  // empty: what the output wants
     double mesh_error = 0.25;
+    std::size_t mesh_faces = 0;  // at most; 0: any number
     bool forecast = false;
     bool interior_distance = false;
     bool usda = false;

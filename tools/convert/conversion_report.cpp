@@ -44,7 +44,12 @@ void Conversion::tellOutput(const voxelize::Voxelizer& voxelizer, const Conversi
 
 void Conversion::tellMesh(const exporter::SurfaceMesh& mesh, const openvdb::FloatGrid& grid) {
     files_.back()["mesh"] = describeMesh(mesh, grid, plan_->lattice());
-    say(o_.common, fmt::format("  {} triangles", humanCount(static_cast<double>(mesh.triangleCount()))));
+    std::string text = fmt::format("  {} triangles", humanCount(static_cast<double>(mesh.triangleCount())));
+    if (o_.mesh_faces > 0)
+        text += fmt::format(", at most {:.2g} mm from the surface", mesh.error * plan_->lattice().voxel_size);
+    if (o_.mesh_faces > 0 && mesh.triangleCount() > o_.mesh_faces)
+        text += fmt::format("; {} would take what hangs together apart", o_.mesh_faces);
+    say(o_.common, text);
 }
 
 void Conversion::tellDeposit(const voxelize::Voxelizer& voxelizer, double surface_mm3) {

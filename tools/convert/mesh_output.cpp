@@ -84,7 +84,7 @@ std::vector<exporter::MeshMaterial> materialsOf(const gcode::Toolpath& toolpath,
 exporter::SurfaceMesh meshOf(const ConvertCommand& o, const openvdb::FloatGrid& grid, const openvdb::GridPtrVec& grids,
                              bool culled, const std::vector<exporter::MeshMaterial>& materials,
                              const std::filesystem::path& output) {
-    exporter::MeshOptions options{culled, o.mesh_error};
+    exporter::MeshOptions options{culled, o.mesh_error, o.mesh_faces};
     options.color = gridNamed<openvdb::Vec3SGrid>(grids, voxelize::Attribute::color);
     options.tool = gridNamed<openvdb::Int32Grid>(grids, voxelize::Attribute::tool);
     exporter::SurfaceMesh mesh = exporter::meshSurface(grid, options);

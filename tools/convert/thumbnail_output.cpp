@@ -167,8 +167,8 @@ void addThumbnailOptions(CLI::App& app, ThumbnailCommand& o) {
     app.add_flag("--in-place", o.in_place, "Replaces the input")->needs(sizes)->group(group);
     // All that is of level sets.
     for (const char* other : {"--unit", "--up", "--origin", "--interior", "--interior-distance", "--grids",
-                              "--precision", "--compression", "--usda", "--mesh-error", "--forecast", "--snapshots",
-                              "--summary", "--dump-toolpath", "--compare", "--report", "--elastic"})
+                              "--precision", "--compression", "--usda", "--mesh-error", "--faces", "--forecast",
+                              "--snapshots", "--summary", "--dump-toolpath", "--compare", "--report", "--elastic"})
         sizes->excludes(app.get_option(other));
 }
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace stratum::exporter {
@@ -12,7 +14,7 @@ namespace stratum::exporter {
 LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choices)
     : toolpath_(toolpath),
       choices_(std::move(choices)),
-      selection_(voxelize::selectBeads(toolpath, voxelize::selectionOf(choices_.print, toolpath))),
+      selection_(selected()),
       bounds_(voxelize::boundsOf(toolpath, selection_)),
       lattice_(voxelize::latticeFor(choices_.print, toolpath, selection_, bounds_, choices_.interior)),
       placement_(voxelize::placementOf(choices_.unit, choices_.up, choices_.origin, bounds_)),
@@ -21,6 +23,23 @@ LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choi
         attributes_ = *choices_.attributes;
     else if (addsColor())
         attributes_.push_back(voxelize::Attribute::color);
+}
+
+std::vector<std::uint32_t> LevelSetPlan::selected() {
+    std::vector<std::uint32_t> all = voxelize::selectBeads(toolpath_, voxelize::selectionOf(choices_.print, toolpath_));
+    if (!choices_.part_alone) return all;
+    std::vector<std::uint32_t> part;
+    part.reserve(all.size());
+    std::copy_if(all.begin(), all.end(), std::back_inserter(part),
+                 [this](std::uint32_t bead) { return purposes()[bead] != gcode::Purpose::beside; });
+    if (part.empty()) return all;
+    left_out_ = all.size() - part.size();
+    return part;
+}
+
+const std::vector<gcode::Purpose>& LevelSetPlan::purposes() const {
+    if (purposes_.empty()) purposes_ = gcode::purposesOf(toolpath_);
+    return purposes_;
 }
 
 voxelize::VoxelizeOptions LevelSetPlan::voxelizeOptions() const {
@@ -39,14 +58,14 @@ Provenance LevelSetPlan::provenance(const std::string& source_file, const std::s
     provenance.unit = choices_.unit;
     provenance.up = choices_.up;
     provenance.selection = voxelize::describeSelection(choices_.print);
+    if (left_out_ > 0) provenance.selection += provenance.selection.empty() ? "the part alone" : "; the part alone";
     if (colors_.size() == 1 && colors_.front()) {
         const auto& [red, green, blue] = *colors_.front();
         provenance.filament_color = fmt::format("#{:02X}{:02X}{:02X}", red, green, blue);
     }
-    if (purposes_.empty()) purposes_ = gcode::purposesOf(toolpath_);
-    const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes_, printed);
+    const voxelize::Bounds part = voxelize::partBounds(toolpath_, purposes(), printed);
     provenance.part = voxelize::placed(part, placement_);
-    provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes_, printed, part), placement_);
+    provenance.outline = voxelize::placed(voxelize::partOutline(toolpath_, purposes(), printed, part), placement_);
     provenance.deposit = toolpath_.deposit;
     provenance.culled = culls();
     provenance.swept = choices_.interior_distance;

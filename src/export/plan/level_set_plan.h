@@ -25,6 +25,9 @@ struct LevelSetChoices {
     voxelize::PrintOptions print;
     voxelize::Interior interior = voxelize::Interior::keep;
     bool interior_distance = false;
+    /// Without what is printed beside the part (gcode::Purpose::beside): skirts, towers. All of it if nothing else is
+    /// left.
+    bool part_alone = false;
     std::optional<std::vector<voxelize::Attribute>> attributes;  ///< nothing: color, if the beads have several
     std::string unit = "mm", up = "z", origin = "bed";
 };
@@ -40,6 +43,8 @@ public:
     const voxelize::Bounds& bounds() const { return bounds_; }
     const voxelize::Lattice& lattice() const { return lattice_; }
     const voxelize::Placement& placement() const { return placement_; }
+    /// With LevelSetChoices::part_alone: how many of the selected beads that leaves out.
+    std::size_t leftOut() const { return left_out_; }
     /// The grids beside the level set.
     const std::vector<voxelize::Attribute>& attributes() const { return attributes_; }
     /// How many colors of filament the beads have; one that is not stated counts.
@@ -57,15 +62,19 @@ public:
                           std::span<const std::uint32_t> printed) const;
 
 private:
+    std::vector<std::uint32_t> selected();
+    const std::vector<gcode::Purpose>& purposes() const;
+
     const gcode::Toolpath& toolpath_;
     LevelSetChoices choices_;
+    mutable std::vector<gcode::Purpose> purposes_;  // by bead, once they are needed
+    std::size_t left_out_ = 0;
     std::vector<std::uint32_t> selection_;
     voxelize::Bounds bounds_;
     voxelize::Lattice lattice_;
     voxelize::Placement placement_;
     std::vector<std::optional<gcode::Rgb>> colors_;
     std::vector<voxelize::Attribute> attributes_;
-    mutable std::vector<gcode::Purpose> purposes_;  // by bead, from the first provenance() on
 };
 
 }  // namespace stratum::exporter

@@ -163,6 +163,7 @@ void parseLayers(std::string_view text, Selection& selection) {
 }
 
 void parseFeatures(std::string_view text, Selection& selection) {
+    if (text == "all") return selection.features.fill(true);
     bool first = true;
     for (const std::string_view part : split(text, ',')) {
         const gcode::Feature feature = part.size() < 2 ? gcode::Feature::count_ : gcode::featureNamed(part.substr(1));
@@ -172,8 +173,8 @@ void parseFeatures(std::string_view text, Selection& selection) {
                 names.push_back(gcode::featureName(static_cast<gcode::Feature>(f)));
             const bool sign = part.starts_with('+') || part.starts_with('-');
             throw UsageError(
-                fmt::format("--features {}: expected +NAME or -NAME, separated by commas; the names are: {}{}", part,
-                            fmt::join(names, " "), didYouMean(part.substr(sign ? 1 : 0), names)));
+                fmt::format("--features {}: expected all, or +NAME or -NAME, separated by commas; the names are: {}{}",
+                            part, fmt::join(names, " "), didYouMean(part.substr(sign ? 1 : 0), names)));
         }
         // A list that starts with + names what to keep; one that starts with - names what to drop.
         if (first) selection.features.fill(part[0] == '-');

@@ -28,8 +28,8 @@ struct Selection {
 /// what is extruded before the first layer. Throws UsageError.
 void parseLayers(std::string_view text, Selection& selection);
 
-/// Parses "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with the list
-/// of names for an unknown one.
+/// Parses "all", "+perimeter,+infill" (only these) or "-skirt,-brim,-support" (all but these). Throws UsageError with
+/// the list of names for an unknown one.
 void parseFeatures(std::string_view text, Selection& selection);
 
 /// Adds the object of that name, or else of that number (1, 2, ... in the order in which the file names them; 0 are

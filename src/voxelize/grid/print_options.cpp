@@ -24,7 +24,7 @@ std::string describeSelection(const PrintOptions& options) {
         if (!value.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : "; ", what, value);
     };
     note("layers", options.layers);
-    note("features", options.features);
+    if (options.features != "all") note("features", options.features);
     for (const std::string& object : options.objects) note("object", object);
     for (const std::uint8_t tool : options.tools) note("tool", std::to_string(tool));
     return text;

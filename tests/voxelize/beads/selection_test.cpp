@@ -56,6 +56,9 @@ TEST(Selection, FeaturesKeepOrDrop) {
     EXPECT_EQ(countKept(only), 10U);
     Selection all_but;
     parseFeatures("-infill,-skirt", all_but);
+    Selection all;
+    parseFeatures("all", all);
+    EXPECT_EQ(all.features, Selection().features);
     EXPECT_EQ(countKept(all_but), 10U);
     Selection selection;
     for (const char* bad : {"", "infill", "+", "+nothing", "infill,+skirt"})
