@@ -90,9 +90,11 @@ public:
         double before = std::numeric_limits<double>::infinity();
         for (int step = 0; step < steps; ++step) {
             const Rigid moved = improve(candidate);
-            // A placement that is far off and hardly gets nearer is not that of this model.
+            // A placement that is far off and hardly gets nearer is not that of this model. Of a damaged model a few
+            // samples come and go with each step, and it never rests.
             if (step % kPatience == kPatience - 1) {
-                if (candidate.residual > kFits * size_ && candidate.residual > 0.98 * before) break;
+                const double hardly = candidate.residual > kFits * size_ ? 0.98 : 1;
+                if (candidate.residual >= hardly * before) break;
                 before = candidate.residual;
             }
             const double turned = angleOf(moved.turn) * size_;

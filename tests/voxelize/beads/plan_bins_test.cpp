@@ -123,7 +123,7 @@ TEST(PlanBins, TheRefusalIsTrue) {
     const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
     Lattice lattice;
     constexpr std::size_t kFree = 40'000'000;
-    lattice.voxel_size = 0.002;
+    lattice.voxel_size = 0.001;
     std::string said;
     try {
         PlanBins(toolpath, stack, lattice, kFree);
