@@ -33,9 +33,9 @@ constexpr int kRoughSteps = 8;
 constexpr std::size_t kRoughRefined = 2;
 constexpr int kRoughFineSteps = 24;
 constexpr int kPatience = 6;  // steps
-// Triangles that a search looks at: 10 to 90 of models that are whole, 250 and more of damaged ones. And the searches
-// that tell.
-constexpr double kUsualWork = 120;
+// Triangles and boxes that a search looks at: 60 to 250 of models that are whole, 300 and more of damaged ones. And the
+// searches that tell.
+constexpr double kUsualWork = 250;
 constexpr std::size_t kProbes = 64;
 constexpr std::size_t kLeastAffordable = 32;
 // Of the print's size: a smaller residual is that of a model that fits.

@@ -102,12 +102,11 @@ private:
             reachGap(c, gaps - 1);
             bool free_face = false;
             bool free_side = false;
-            for (int dx = -1; dx <= 1; ++dx)
-                for (int dy = -1; dy <= 1; ++dy) {
-                    if (columnBeside(c, dx, dy) != PlanBins::kNone) continue;
-                    free_side = true;
-                    free_face = free_face || dx == 0 || dy == 0;
-                }
+            for (int n = 0; n < 9; ++n) {
+                if (columnBeside(c, n / 3 - 1, n % 3 - 1) != PlanBins::kNone) continue;
+                free_side = true;
+                free_face = free_face || n % 2 == 1;
+            }
             if (free_face)
                 for (std::size_t n = 1; n + 1 < gaps; ++n) reachGap(c, n);
             if (!free_side) continue;
