@@ -10,8 +10,6 @@
 #include <array>
 #include <atomic>
 #include <limits>
-#include <map>
-#include <utility>
 #include <vector>
 
 namespace stratum::voxelize {
