@@ -47,7 +47,7 @@ TriangleMesh changed(const TriangleMesh& model, double scale, bool mirrored) {
 }
 
 // By how much a model that lies right is too small: the scale about its middle that brings it nearest to the print.
-double growthOf(const PrintedSurface& print, const ClosedModel& model, const Comparison& found) {
+double growthOf(const PrintedSurface& print, const ClosedModel& model, const Comparison& found, double rough) {
     const SurfaceSamples samples = sampleSurface(model.mesh(), kTrialSamples);
     glm::dvec3 middle(0.0);
     for (const glm::dvec3& p : samples.points) middle += found.model_to_print(p);
@@ -58,7 +58,7 @@ double growthOf(const PrintedSurface& print, const ClosedModel& model, const Com
     for (std::size_t n = 0; n < samples.points.size(); ++n) {
         const glm::dvec3 at = found.model_to_print(samples.points[n]);
         const glm::dvec3 normal = found.model_to_print.turn * model.normal(samples.triangles[n]);
-        const Nearest nearest = print.tree().nearest(at, hint);
+        const Nearest nearest = print.tree().nearest(at, hint, rough);
         hint = nearest.triangle;
         const double lever = glm::dot(at - middle, normal);
         up += lever * glm::dot(nearest.point - at, normal);
@@ -122,7 +122,7 @@ private:
             trial.apart = apart(found);
             const bool nearer = trial.apart < kNearer * best.apart;
             if (trial.apart < best.apart) best = trial;
-            const double growth = exact_ ? 0 : growthOf(print_, model, found);
+            const double growth = exact_ ? 0 : growthOf(print_, model, found, options_.line_width);
             if (!nearer || std::abs(growth) < 1e-4) break;
             trial.scale *= 1 + growth;
             // The middle of the print stays where it is.

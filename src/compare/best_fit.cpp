@@ -33,9 +33,9 @@ constexpr int kRoughSteps = 8;
 constexpr std::size_t kRoughRefined = 2;
 constexpr int kRoughFineSteps = 24;
 constexpr int kPatience = 6;  // steps
-// Triangles that a search looks at: 10 to 90 of models that are whole, 250 and more of damaged ones. And the searches
-// that tell.
-constexpr double kUsualWork = 120;
+// Triangles and boxes that a search looks at: 60 to 250 of models that are whole, 300 and more of damaged ones. And the
+// searches that tell.
+constexpr double kUsualWork = 250;
 constexpr std::size_t kProbes = 64;
 constexpr std::size_t kLeastAffordable = 32;
 // Of the print's size: a smaller residual is that of a model that fits.
@@ -90,9 +90,11 @@ public:
         double before = std::numeric_limits<double>::infinity();
         for (int step = 0; step < steps; ++step) {
             const Rigid moved = improve(candidate);
-            // A placement that is far off and hardly gets nearer is not that of this model.
+            // A placement that is far off and hardly gets nearer is not that of this model. Of a damaged model a few
+            // samples come and go with each step, and it never rests.
             if (step % kPatience == kPatience - 1) {
-                if (candidate.residual > kFits * size_ && candidate.residual > 0.98 * before) break;
+                const double hardly = candidate.residual > kFits * size_ ? 0.98 : 1;
+                if (candidate.residual >= hardly * before) break;
                 before = candidate.residual;
             }
             const double turned = angleOf(moved.turn) * size_;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace stratum::compare {
@@ -119,7 +120,7 @@ private:
 
 // Their samples are taken out of `samples`.
 std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& print, const ClosedModel& model,
-                             const Rigid& model_to_print) {
+                             const Rigid& model_to_print, double rough) {
     const Rigid to_model = model_to_print.inverse();
     std::vector<Place> places(samples.points.size());
     std::vector<std::uint8_t> seen(places.size());
@@ -128,7 +129,7 @@ std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& 
         const Hidden hidden(print, box);
         std::uint32_t hint = Nearest::kNone;
         for (std::size_t n = first; n < last; ++n) {
-            const ModelDistance found = model.distance(to_model(samples.points[n]), hint);
+            const ModelDistance found = model.distance(to_model(samples.points[n]), hint, rough);
             hint = found.triangle;
             const glm::dvec3 normal = model_to_print.turn * model.normal(found.triangle);
             places[n] = {samples.points[n], found.distance, normal.z};
@@ -149,7 +150,7 @@ std::vector<Place> fromPrint(SurfaceSamples& samples, const openvdb::FloatGrid& 
 }
 
 std::vector<Place> fromModel(const SurfaceSamples& samples, const ClosedModel& model, const Rigid& model_to_print,
-                             const TriangleTree& surface, const openvdb::FloatGrid& print) {
+                             const TriangleTree& surface, const openvdb::FloatGrid& print, double rough) {
     std::vector<Place> places(samples.points.size());
     const openvdb::BBoxd box = boxOf(print);
     parallelFor(places.size(), kGrain, [&](std::size_t first, std::size_t last) {
@@ -157,7 +158,7 @@ std::vector<Place> fromModel(const SurfaceSamples& samples, const ClosedModel& m
         std::uint32_t hint = Nearest::kNone;
         for (std::size_t n = first; n < last; ++n) {
             const glm::dvec3 at = model_to_print(samples.points[n]);
-            const Nearest found = surface.nearest(at, hint);
+            const Nearest found = surface.nearest(at, hint, rough);
             hint = found.triangle;
             const double distance = std::sqrt(found.distance2);
             // Models have places that no voxel has an index for.
@@ -213,21 +214,24 @@ Comparison measureDeviations(const PrintedSurface& print, const ClosedModel& mod
         comparison.model_to_print = comparison.fit->model_to_print;
     }
     const double residual = fits ? comparison.fit->residual : roughResidual(model, printed, comparison.model_to_print);
-    // Far places take long to measure, and of a model that does not fit fewer tell as much.
-    const std::size_t samples = affordable(
-        model, printed, residual > options.line_width ? std::min(options.samples, kFarSamples) : options.samples);
+    // Far places take long to measure, and of a model that does not fit fewer tell as much, and their distances to a
+    // hundredth.
+    const bool far = residual > options.line_width;
+    const double rough = far ? options.line_width : std::numeric_limits<double>::infinity();
+    const std::size_t samples =
+        affordable(model, printed, far ? std::min(options.samples, kFarSamples) : options.samples);
     printed = thinned(printed, samples);
     const auto all = static_cast<double>(printed.points.size());
-    std::vector<Place> places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
+    std::vector<Place> places = fromPrint(printed, print.grid(), model, comparison.model_to_print, rough);
     comparison.hidden_share = 1 - static_cast<double>(places.size()) / all;
     if (fits && comparison.fit->converged && printed.points.size() >= kFewestSamples) {
         comparison.fit = refineFit(model, printed, comparison.model_to_print);
         comparison.model_to_print = comparison.fit->model_to_print;
-        places = fromPrint(printed, print.grid(), model, comparison.model_to_print);
+        places = fromPrint(printed, print.grid(), model, comparison.model_to_print, rough);
     }
     comparison.print_to_model = byNormal(places);
-    comparison.model_to_surface = byNormal(
-        fromModel(sampleSurface(model.mesh(), samples), model, comparison.model_to_print, print.tree(), print.grid()));
+    comparison.model_to_surface = byNormal(fromModel(sampleSurface(model.mesh(), samples), model,
+                                                     comparison.model_to_print, print.tree(), print.grid(), rough));
     return comparison;
 }
 

@@ -165,6 +165,7 @@ Nearest TriangleTree::nearest(const glm::dvec3& p, std::uint32_t hint, double ro
     while (waiting > 0) {
         const Waiting next = stack[--waiting];
         if (next.distance2 > reach2()) continue;
+        ++looked_at;
         const Node& node = nodes_[next.node];
         if (node.right == 0) {
             for (std::uint32_t n = node.begin; n < node.end; ++n) test(n, p, best);

@@ -20,7 +20,7 @@ struct Nearest {
     /// What of the triangle has the point: bit n is set where corner n counts. One bit is a corner, two an edge, three
     /// the face.
     std::uint8_t feature = 0;
-    std::uint32_t looked_at = 0;  ///< triangles, until it was found
+    std::uint32_t looked_at = 0;  ///< triangles and boxes of the tree, until it was found
 };
 
 /// The point of a triangle that is nearest to p. Source: the regions of Voronoi of a triangle's corners, edges and

@@ -10,6 +10,7 @@ namespace {
 constexpr double kThinnest = 0.05;  // mm, diameter of a thread
 // The width may grow by this share of the length: beyond 45 degrees to each side one end would hide the other.
 constexpr double kSteepest = 1.0;
+constexpr double kMostHeights = 100;    // a wider part is a mistake, as a wider bead is; the rest is purged
 constexpr double kMostShortened = 0.9;  // of a part's length
 
 // Half the width of a rectangle of the same area and height as a stadium, less half the stadium's width, mm.
@@ -71,14 +72,16 @@ private:
     void addPart(const FlowPart& part) {
         const gcode::Bead& bead = toolpath_.beads[part.bead];
         const double length = gcode::beadLength(toolpath_, bead) * (part.to - part.from);
-        const double volume = part.volume * scale_ + carried_;
         const double height = heightOf(part.bead);
+        const double flow = part.volume * scale_ + carried_;
+        const double volume = std::min(flow, gcode::sectionArea(kMostHeights * height, height) * length);
         const double width = length > 0 ? gcode::sectionWidth(volume / length, height) : 0;
         if (!(width >= kThinnest)) {
-            carried_ = volume;
+            carried_ = flow;
             return;
         }
         carried_ = 0;
+        report_.purged += flow - volume;
         BeadPiece piece;
         piece.bead = part.bead;
         piece.from = part.from;

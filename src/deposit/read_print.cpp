@@ -7,7 +7,25 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 namespace stratum::deposit {
+namespace {
+
+// What is without effect, because another part of the model is missing.
+void warnOfUnused(const gcode::DepositModel& deposit, std::vector<gcode::Warning>& warnings) {
+    if (deposit.crown > 0 && !deposit.swells())
+        warnings.push_back({fmt::format("crowns ({:g} % of the height) are left out: only settled beads have them",
+                                        100 * deposit.crown),
+                            1, 1});
+    if (deposit.pressure_advance.value_or(0) > 0 && !deposit.flow_lag)
+        warnings.push_back({fmt::format("pressure advance ({:g} s) is left out: it makes up for a lag of the flow, and "
+                                        "none is given",
+                                        *deposit.pressure_advance),
+                            1, 1});
+}
+
+}  // namespace
 
 PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed,
                     std::vector<motion::Travel>* travels) {
@@ -39,6 +57,7 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
     } else {
         print.toolpath = gcode::readToolpath(bytes, name, options);
     }
+    warnOfUnused(deposit, print.toolpath.warnings);
     if (!flow) {
         if (deposit.sag > 0) print.sag = sagBeads(print.toolpath, deposit.sag);
         return print;

@@ -76,8 +76,8 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
         for (std::size_t c = begin; c < end; ++c) {
             const int i = list[order[first[c]]].i >> kLeafBits << kLeafBits;
             const int j = list[order[first[c]]].j >> kLeafBits << kLeafBits;
-            const auto bin = static_cast<std::size_t>((j - bins.originJ(0)) / kLeafDim) * bins.columnsI() +
-                             static_cast<std::size_t>((i - bins.originI(0)) / kLeafDim);
+            const std::size_t bin = bins.find(i >> kLeafBits, j >> kLeafBits);
+            if (bin == voxelize::PlanBins::kNone) continue;
             column.open(i, j, bins[bin], kNobody);
             int evaluated = std::numeric_limits<int>::min();
             for (std::size_t n = first[c]; n < first[c + 1]; ++n) {

@@ -207,7 +207,6 @@ CubeShares cubeShares(const gcode::Toolpath& toolpath, std::span<const std::uint
     parallelFor(bins.size(), 16, [&](std::size_t first, std::size_t last) {
         ColumnReader reader(toolpath, columns.local(), stack, cubes, lines, voxelize::kWeldGap * lattice.layer_height);
         for (std::size_t c = first; c < last; ++c) {
-            if (bins[c].empty()) continue;
             reader.read(bins.originI(c), bins.originJ(c), bins[c], parts[c]);
             meter.advance(bins[c].size());
         }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "march/brick/brick_grid.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/footprint.h"
 
@@ -137,11 +138,12 @@ PrintMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) 
         map.macros[static_cast<std::size_t>(axis)] = count;
         macros *= count;
     }
-    constexpr double kMost = 2147483648.0;
-    if (macros > kMost)
+    // Bricks are in the columns that beads reach; the table is made before they are counted.
+    const auto heights = static_cast<std::size_t>((active.max()[2] - map.origin[2]) / kBrick + 1);
+    if (!march::BrickGrid::canSpan(map.macros, layout.bins.size() * heights))
         throw UsageError(
-            fmt::format("voxel size {:g} mm makes {:.3g} blocks of 32 x 32 x 32 voxels, more than can be "
-                        "laid out for rays; choose a larger voxel",
+            fmt::format("voxels of {:g} mm make {:.3g} blocks of 32 x 32 x 32, too many for the beads in them to be "
+                        "laid out for rays; choose a larger voxel, or print parts that lie far apart one by one",
                         layout.lattice.voxel_size, macros));
     map.masks.resize(static_cast<std::size_t>(macros));
     result.first_bead.resize(map.masks.size());

@@ -55,15 +55,9 @@ PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, st
       reach(reachOf(stack, lattice)) {}
 
 std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {
-    if (bins.size() == 0) return std::nullopt;
-    const auto place = [](int at, int first) { return (at - first) >> 3; };
     static_assert(kLeafDim == 8);
-    const int ci = place(i, bins.originI(0));
-    const int cj = place(j, bins.originJ(0));
-    if (ci < 0 || cj < 0 || ci >= static_cast<int>(bins.columnsI()) || cj >= static_cast<int>(bins.columnsJ()))
-        return std::nullopt;
-    const std::size_t column = static_cast<std::size_t>(cj) * bins.columnsI() + static_cast<std::size_t>(ci);
-    if (bins[column].empty()) return std::nullopt;
+    const std::size_t column = bins.find(i >> 3, j >> 3);
+    if (column == voxelize::PlanBins::kNone) return std::nullopt;
     return column;
 }
 

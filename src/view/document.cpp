@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "gcode/summary.h"
 #include "shade/brdf/preset_names.h"
-#include "view/program_lines.h"
 
 #include <fmt/format.h>
 
@@ -80,6 +79,7 @@ void Document::requireFiles() const {
 
 void Document::forget() {
     kept_.forget();
+    program_.forget();
     ++generation_;
 }
 
@@ -113,14 +113,16 @@ Json Document::layers() {
     return {{"z", std::move(tops)}, {"seconds", gcode::layerSeconds(*print)}, {"generation", generation_}};
 }
 
-Json Document::programAt(std::uint32_t bead) const {
+Json Document::programAt(std::uint32_t bead) {
     const auto print = toolpath(0);
     if (!print || bead >= print->beads.size()) throw InputError("the message: bead: the print has no such bead");
-    requireFiles();
     const std::uint32_t line = print->lineOf(print->beads[bead]);
-    return {{"bead", bead},
-            {"line", line},
-            {"lines", linesAround(given_.objects.front().vdb, given_.options.tracing.prints.print, line)}};
+    return {{"bead", bead}, {"line", line}, {"lines", linesAround(0, line)}};
+}
+
+Json Document::linesAround(std::size_t object, std::uint32_t line) {
+    requireFiles();
+    return program_.around(given_.objects[object].vdb, given_.options.tracing.prints.print, line);
 }
 
 Json Document::facts() const {

@@ -4,6 +4,7 @@
 #include "assemble/print/kept_prints.h"
 #include "gcode/toolpath/toolpath.h"
 #include "view/asked/picture_plan.h"
+#include "view/program_lines.h"
 
 #include <nlohmann/json.hpp>
 
@@ -41,13 +42,16 @@ public:
     /// for. Throws InputError, also if the input is no print.
     nlohmann::json layers();
     /// The line of a bead, and those around it. Throws InputError.
-    nlohmann::json programAt(std::uint32_t bead) const;
+    nlohmann::json programAt(std::uint32_t bead);
+    /// The lines of an object's program around one of them. Throws InputError.
+    nlohmann::json linesAround(std::size_t object, std::uint32_t line);
     /// What the page offers: layers, features, objects, tools, attributes. Of the first print, if there is one.
     nlohmann::json facts() const;
 
 private:
     GivenInput given_;
     assemble::KeptPrints kept_;
+    KeptProgram program_;
     std::uint64_t generation_ = 0;
 };
 

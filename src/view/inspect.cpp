@@ -1,7 +1,6 @@
 #include "view/inspect.h"
 
 #include "ondemand/bead_lookup.h"
-#include "view/program_lines.h"
 
 #include <glm/matrix.hpp>
 
@@ -74,9 +73,7 @@ Json inspect(Document& document, const ViewScene& scene, const ViewedPicture& pi
     const auto toolpath = document.timedToolpath(hit.object);
     if (!toolpath || *bead >= toolpath->beads.size()) return json;
     json["bead"] = describe(*toolpath, *bead);
-    document.requireFiles();
-    json["lines"] = linesAround(objects[hit.object].vdb, document.given().options.tracing.prints.print,
-                                toolpath->lineOf(toolpath->beads[*bead]));
+    json["lines"] = document.linesAround(hit.object, toolpath->lineOf(toolpath->beads[*bead]));
     return json;
 }
 

@@ -204,6 +204,20 @@ TEST(Flow, ExtremesStayFinite) {
     for (const double lag : {0.0, 0.05, 2.0}) expectSound(readText(program, withLag(lag)));
 }
 
+// A damaged amount of E: without a bound the parts of a millimetre would be metres wide.
+TEST(Flow, PartsAreNoWiderThanAHundredHeights) {
+    gcode::ReadOptions options;
+    options.deposit.flow_lag = 0.05;
+    const std::string text =
+        "M83\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\nG1 Z.2 F600\nG1 X10 Y10\nG1 X20 E.5 F1200\nG1 Y11 E1269\nG1 X10 "
+        "E.5\n";
+    const PrintRead print = readPrint(text, "blob.gcode", options, false);
+    EXPECT_FALSE(print.toolpath.empty());
+    for (const gcode::Bead& bead : print.toolpath.beads) EXPECT_LE(bead.width, 20.001F);
+    EXPECT_NEAR(print.flow->purged + print.flow->in_parts + print.flow->in_discs, print.flow->laid,
+                1e-3 * print.flow->laid);
+}
+
 TEST(Flow, ThePrintsOfTheProjectKeepTheirPlastic) {
     for (const char* name :
          {"hull.gcode", "gear.gcode", "bridges.gcode", "two_tone.gcode", "vase.gcode", "knot.gcode"}) {

@@ -1,6 +1,9 @@
 #include "deposit/printer.h"
 
 #include "base/error.h"
+#include "base/input_file.h"
+#include "corpus.h"
+#include "deposit/read_print.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -42,6 +45,26 @@ std::string write(const std::filesystem::path& folder, const std::string& text) 
     const auto path = folder / "printer.json";
     std::ofstream(path) << text;
     return path.string();
+}
+
+TEST(Printer, WhatHasNoEffectIsToldOf) {
+    const InputFile file(test::dataDir() / "gcode" / "tile.gcode");
+    gcode::ReadOptions options;
+    const auto told = [&] {
+        std::size_t count = 0;
+        for (const gcode::Warning& warning : readPrint(file.bytes(), "tile.gcode", options, false).toolpath.warnings)
+            count += warning.text.find("left out") != std::string::npos ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(told(), 0U);
+    options.deposit.crown = 0.2;
+    EXPECT_EQ(told(), 1U);
+    options.deposit.pressure_advance = 0.05;
+    EXPECT_EQ(told(), 2U);
+    options.deposit.beads = gcode::DepositModel::Beads::settled;
+    EXPECT_EQ(told(), 1U);
+    options.deposit.flow_lag = 0.05;
+    EXPECT_EQ(told(), 0U);
 }
 
 TEST(Printer, IdealIsTheDefaultAndTypicalIsNot) {

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <string>
 
 namespace stratum::view {
 namespace {
@@ -53,11 +56,46 @@ TEST(Inspect, NothingBesideThePrint) {
 
 TEST(ProgramLines, AtTheEndsOfTheFile) {
     const std::string path = test::givenTile(0.1).path;
-    const auto first = linesAround(path, {}, 1, 2);
+    KeptProgram program;
+    const auto first = program.around(path, {}, 1, 2);
     ASSERT_EQ(first.size(), 3U);
     EXPECT_EQ(first.front().number, 1U);
-    const auto beyond = linesAround(path, {}, 4000000, 2);
+    const auto beyond = program.around(path, {}, 4000000, 2);
     EXPECT_TRUE(beyond.empty());
+}
+
+void writeLines(const std::string& path, int count, const char* word) {
+    std::ofstream file(path);
+    for (int n = 1; n <= count; ++n) file << "; " << word << ' ' << n << '\n';
+}
+
+TEST(ProgramLines, FarIntoTheFile) {
+    const std::string path = ::testing::TempDir() + "program_lines_far.gcode";
+    constexpr int kLines = 5000;
+    writeLines(path, kLines, "line");
+    KeptProgram program;
+    for (const std::uint32_t number : {1U, 3U, 1023U, 1024U, 1025U, 1026U, 2048U, 2049U, 4999U, 5000U}) {
+        const auto lines = program.around(path, {}, number, 2);
+        ASSERT_FALSE(lines.empty());
+        EXPECT_EQ(lines.front().number, number > 2 ? number - 2 : 1);
+        EXPECT_EQ(lines.back().number, std::min<std::uint32_t>(number + 2, kLines));
+        for (const ProgramLine& line : lines) EXPECT_EQ(line.text, "; line " + std::to_string(line.number));
+    }
+}
+
+// The file is read once, and again when it is forgotten; one that is larger than the bound each time.
+TEST(ProgramLines, AreReadOnce) {
+    const std::string path = ::testing::TempDir() + "program_lines_once.gcode";
+    writeLines(path, 100, "old");
+    KeptProgram kept;
+    KeptProgram small(100);
+    EXPECT_EQ(kept.around(path, {}, 50, 0).front().text, "; old 50");
+    EXPECT_EQ(small.around(path, {}, 50, 0).front().text, "; old 50");
+    writeLines(path, 100, "new");
+    EXPECT_EQ(kept.around(path, {}, 51, 0).front().text, "; old 51");
+    EXPECT_EQ(small.around(path, {}, 51, 0).front().text, "; new 51");
+    kept.forget();
+    EXPECT_EQ(kept.around(path, {}, 51, 0).front().text, "; new 51");
 }
 
 }  // namespace

@@ -13,7 +13,10 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr double kSameZ = 1e-6;  // mm; rounding of relative moves, far below the precision of files
+// What a damaged coordinate makes of a line: hundreds of thousands of voxels around next to nothing.
+constexpr double kLong = 1000;             // mm
+constexpr double kFinestSection = 3.1e-4;  // mm^2
+constexpr double kSameZ = 1e-6;            // mm; rounding of relative moves, far below the precision of files
 constexpr std::size_t kMostPrimeBeads = 100;
 
 }  // namespace
@@ -176,6 +179,9 @@ void BeadRecorder::countLayer(const Point& from, const Point& to, bool sloped) {
 
 void BeadRecorder::add(const Point& from, const Point& to, const std::optional<Arc>& arc, double length, double volume,
                        std::uint32_t line) {
+    if (length > kLong && volume < kFinestSection * length)
+        return warnings_.add(
+            "lines of more than a metre that are thinner than 0.02 mm are left out; is a number damaged?", line);
     const bool sloped = std::abs(to.z - from.z) > kSameZ;
     if (!layer_marks_) countLayer(from, to, sloped);
     // If the height is unknown, a run has one level, because the height will follow from the level.

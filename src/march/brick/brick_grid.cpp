@@ -354,9 +354,7 @@ void BrickGrid::listBricks(const LeafField& field, std::size_t cache_bytes) {
     countBricks(true, cache_bytes);
 }
 
-void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves) {
-    origin_ = origin;
-    macros_ = macros;
+bool BrickGrid::canSpan(const std::array<int, 3>& macros, std::size_t leaves) {
     double cells = 1;
     for (const int macro : macros) cells *= macro;
     // Two distant leaves must not take memory for all space between them: prints have one or two macro cells a leaf, or
@@ -368,14 +366,22 @@ void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& m
     if (cells > kFew) most = std::min(most, static_cast<double>(availableMemory()) / (4 * sizeof(MacroCell)));
     constexpr std::size_t kMostBricks = 0xff000000;  // slots have 32 bits, and some are left over
     constexpr int kLongest = (1 << 19) - 1;          // macro cells: leaf coordinates are kept in 21 bits an axis
-    if (cells > most || *std::max_element(macros.begin(), macros.end()) > kLongest || leaves > kMostBricks)
+    return cells <= most && *std::max_element(macros.begin(), macros.end()) <= kLongest && leaves <= kMostBricks;
+}
+
+void BrickGrid::setBox(const openvdb::Coord& origin, const std::array<int, 3>& macros, std::size_t leaves) {
+    origin_ = origin;
+    macros_ = macros;
+    if (!canSpan(macros, leaves))
         throw InputError(fmt::format(
             "the level set spans {} x {} x {} voxels with {} leaves, too far apart to lay them out for rays; split it "
             "or use --march vdb",
             std::int64_t{macros[0]} * kMacroEdge, std::int64_t{macros[1]} * kMacroEdge,
             std::int64_t{macros[2]} * kMacroEdge, leaves));
     for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = macros[axis] * kMacroEdge;
-    macro_cells_ = HugeArray<MacroCell>(static_cast<std::size_t>(cells));
+    std::size_t cells = 1;
+    for (const int macro : macros) cells *= static_cast<std::size_t>(macro);
+    macro_cells_ = HugeArray<MacroCell>(cells);
 }
 
 // Numbers the bricks whose bits are set.

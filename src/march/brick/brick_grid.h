@@ -38,6 +38,8 @@ namespace stratum::march {
 class BrickGrid {
 public:
     static constexpr int kMacroEdge = 32;  ///< cells
+    /// Whether the memory for so many macro cells along each axis is in proportion to the leaves in them.
+    static bool canSpan(const std::array<int, 3>& macros, std::size_t leaves);
     static constexpr int kBrickEdge = 8;   ///< cells
     static constexpr int kSamples = kBrickEdge + 1;
     /// Strides of a brick's samples.

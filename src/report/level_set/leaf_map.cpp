@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
+#include <tuple>
 
 namespace stratum::report {
 namespace {
@@ -16,24 +16,20 @@ constexpr std::size_t kColumnGrain = 256;
 LeafMap::LeafMap(const openvdb::FloatGrid& grid) {
     std::vector<const Leaf*> unordered;
     unordered.reserve(grid.tree().leafCount());
-    int i1 = std::numeric_limits<int>::min();
-    int j1 = i1;
-    i0_ = j0_ = std::numeric_limits<int>::max();
+    voxelize::PlanIndex unordered_columns;
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
-        const openvdb::Coord origin = leaf->origin();
-        i0_ = std::min(i0_, origin.x() >> 3);
-        i1 = std::max(i1, origin.x() >> 3);
-        j0_ = std::min(j0_, origin.y() >> 3);
-        j1 = std::max(j1, origin.y() >> 3);
+        unordered_columns.add(leaf->origin().x() >> 3, leaf->origin().y() >> 3);
         unordered.push_back(leaf.getLeaf());
     }
     if (unordered.empty()) {
         first_.assign(1, 0);
         return;
     }
-    columns_i_ = static_cast<std::size_t>(i1 - i0_) + 1;
-    columns_j_ = static_cast<std::size_t>(j1 - j0_) + 1;
-    first_.assign(columns_i_ * columns_j_ + 1, 0);
+    std::vector<voxelize::PlanIndex::Square> squares = unordered_columns.squares();
+    std::sort(squares.begin(), squares.end(),
+              [](const auto& a, const auto& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); });
+    for (const auto& square : squares) index_.add(square.x, square.y);
+    first_.assign(squares.size() + 1, 0);
     const auto column = [this](const Leaf& leaf) { return columnAt(leaf.origin().x() >> 3, leaf.origin().y() >> 3); };
     for (const Leaf* leaf : unordered) ++first_[column(*leaf) + 1];
     for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];

@@ -1,6 +1,8 @@
 // The leaves of a level set by column, and the uniform gaps between them: what a flood walks through.
 #pragma once
 
+#include "voxelize/beads/plan_index.h"
+
 #include <openvdb/openvdb.h>
 
 #include <array>
@@ -13,9 +15,10 @@ namespace stratum::report {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// Columns of leaves over a rectangle of the plan. Between two leaves of a column, below the first and above the last
-/// there is a gap, which may be empty: its voxels are all outside or all inside, because no surface is near. A column
-/// of n leaves has n + 1 gaps. Refers to the grid's leaves: the grid must outlive it and not change.
+/// Columns of leaves, row by row of the plan; where no leaf is, there is no column. Between two leaves of a column,
+/// below the first and above the last there is a gap, which may be empty: its voxels are all outside or all inside,
+/// because no surface is near. A column of n leaves has n + 1 gaps. Refers to the grid's leaves: the grid must outlive
+/// it and not change.
 class LeafMap {
 public:
     explicit LeafMap(const openvdb::FloatGrid& grid);
@@ -33,16 +36,14 @@ public:
     std::size_t columnOf(std::size_t n) const { return column_of_[n]; }
 
     std::size_t columnCount() const { return first_.size() - 1; }
-    int columnI(std::size_t c) const { return i0_ + static_cast<int>(c % columns_i_); }
-    int columnJ(std::size_t c) const { return j0_ + static_cast<int>(c / columns_i_); }
+    int columnI(std::size_t c) const { return index_.squares()[c].x; }
+    int columnJ(std::size_t c) const { return index_.squares()[c].y; }
     std::size_t firstLeaf(std::size_t c) const { return first_[c]; }
-    bool has(int i, int j) const {
-        return i >= i0_ && j >= j0_ && static_cast<std::size_t>(i - i0_) < columns_i_ &&
-               static_cast<std::size_t>(j - j0_) < columns_j_;
-    }
-    /// Of a column that there is.
+    static constexpr std::size_t kNowhere = ~std::size_t{0};
+    /// The column of a place of the plan, or kNowhere.
     std::size_t columnAt(int i, int j) const {
-        return static_cast<std::size_t>(j - j0_) * columns_i_ + static_cast<std::size_t>(i - i0_);
+        const std::uint32_t c = index_.find(i, j);
+        return c == voxelize::PlanIndex::kNone ? kNowhere : c;
     }
 
     std::size_t gapCount() const { return gap_inside_.size(); }
@@ -58,9 +59,11 @@ public:
 
     /// What is at leaf coordinate `k` of a column.
     Place at(std::size_t c, int k) const;
-    /// The same of a place of the plan; outside the rectangle it is a gap of number kNowhere.
-    Place at(int i, int j, int k) const { return has(i, j) ? at(columnAt(i, j), k) : Place{false, kNowhere}; }
-    static constexpr std::size_t kNowhere = ~std::size_t{0};
+    /// The same of a place of the plan; without a column it is a gap of number kNowhere.
+    Place at(int i, int j, int k) const {
+        const std::size_t c = columnAt(i, j);
+        return c != kNowhere ? at(c, k) : Place{false, kNowhere};
+    }
 
     /// A leaf and what lies beyond it where its cells end: number 1, 2, 4 and their sums along x, y and z.
     using CellPlaces = std::array<Place, 8>;
@@ -69,8 +72,7 @@ public:
     void gather(const CellPlaces& places, float (&samples)[9][9][9], float outside) const;
 
 private:
-    int i0_ = 0, j0_ = 0;
-    std::size_t columns_i_ = 0, columns_j_ = 0;
+    voxelize::PlanIndex index_;  // of the columns
     std::vector<const Leaf*> leaves_;
     std::vector<int> k_;  // beside the leaves: searches touch no leaf
     std::vector<std::uint32_t> column_of_;

@@ -67,8 +67,11 @@ public:
 
     void run() {
         for (std::size_t c = 0; c < map_.columnCount(); ++c) {
+            const std::size_t last = map_.firstLeaf(c + 1) - map_.firstLeaf(c);
             reachGap(c, 0);
-            reachGap(c, map_.firstLeaf(c + 1) - map_.firstLeaf(c));
+            reachGap(c, last);
+            if (freeBeside(c))
+                for (std::size_t n = 1; n < last; ++n) reachGap(c, n);
         }
         std::vector<std::size_t> round(map_.leafCount());
         std::iota(round.begin(), round.end(), std::size_t{0});
@@ -113,6 +116,12 @@ private:
     void queue(std::size_t leaf) {
         if (queued_[leaf].exchange(1, std::memory_order_acq_rel) == 0) next_.push_back(leaf);
     }
+    // Whether a place beside a column has none: it is outside as far as it is high.
+    bool freeBeside(std::size_t c) const {
+        return std::any_of(std::begin(kNeighbours), std::begin(kNeighbours) + 4, [&](const auto& step) {
+            return map_.columnAt(map_.columnI(c) + step[0], map_.columnJ(c) + step[1]) == LeafMap::kNowhere;
+        });
+    }
     void reachGap(std::size_t c, std::size_t number) {
         const std::size_t gap = map_.firstGap(c) + number;
         if (!map_.gapInside(gap) && gaps_[gap].exchange(1, std::memory_order_relaxed) == 0)
@@ -135,10 +144,9 @@ private:
         if (gap.number > 0) queue(first + gap.number - 1);
         if (first + gap.number < map_.firstLeaf(gap.column + 1)) queue(first + gap.number);
         for (int face = 0; face < 4; ++face) {
-            const int i = map_.columnI(gap.column) + kNeighbours[face][0];
-            const int j = map_.columnJ(gap.column) + kNeighbours[face][1];
-            if (!map_.has(i, j)) continue;
-            const std::size_t c = map_.columnAt(i, j);
+            const std::size_t c = map_.columnAt(map_.columnI(gap.column) + kNeighbours[face][0],
+                                                map_.columnJ(gap.column) + kNeighbours[face][1]);
+            if (c == LeafMap::kNowhere) continue;
             const LeafMap::Place low = map_.at(c, range.low);
             const std::size_t begin = map_.firstLeaf(c);
             std::size_t n = low.leaf ? low.index : begin + (low.index - map_.firstGap(c));

@@ -6,8 +6,8 @@
 
 namespace stratum::report {
 
-std::uint64_t PlanBits::bitsOf(std::size_t i, std::size_t j, std::span<const std::uint32_t> layers) const {
-    const std::vector<Entry>& entries = entries_[j * columns_i_ + i];
+std::uint64_t PlanBits::bitsOf(std::size_t column, std::span<const std::uint32_t> layers) const {
+    const std::vector<Entry>& entries = entries_[column];
     std::uint64_t bits = 0;
     for (const std::uint32_t layer : layers) {
         const auto found = std::lower_bound(entries.begin(), entries.end(), layer,
@@ -17,8 +17,7 @@ std::uint64_t PlanBits::bitsOf(std::size_t i, std::size_t j, std::span<const std
     return bits;
 }
 
-PlanBits::Window::Window(const PlanBits& bits, std::size_t i, std::size_t j, std::span<const std::uint32_t> below,
-                         int most)
+PlanBits::Window::Window(const PlanBits& bits, std::size_t column, std::span<const std::uint32_t> below, int most)
     : most_(std::min(most, kMost)),
       margin_((most_ + 7) / 8 * 8),
       words_(static_cast<std::size_t>(2 * margin_ + 8 + 63) / 64),
@@ -26,12 +25,9 @@ PlanBits::Window::Window(const PlanBits& bits, std::size_t i, std::size_t j, std
     const int columns = margin_ / 8;
     for (int di = -columns; di <= columns; ++di)
         for (int dj = -columns; dj <= columns; ++dj) {
-            const auto ci = static_cast<std::ptrdiff_t>(i) + di;
-            const auto cj = static_cast<std::ptrdiff_t>(j) + dj;
-            if (ci < 0 || cj < 0 || ci >= static_cast<std::ptrdiff_t>(bits.columns_i_) ||
-                cj >= static_cast<std::ptrdiff_t>(bits.columns_j_))
-                continue;
-            const std::uint64_t word = bits.bitsOf(static_cast<std::size_t>(ci), static_cast<std::size_t>(cj), below);
+            const std::size_t other = bits.bins_.find(bits.bins_.columnI(column) + di, bits.bins_.columnJ(column) + dj);
+            if (other == voxelize::PlanBins::kNone) continue;
+            const std::uint64_t word = bits.bitsOf(other, below);
             if (word == 0) continue;
             // Eight bits never lie across two words.
             const int bit = 8 * dj + margin_;

@@ -1,6 +1,8 @@
 // Which pixels of the plan lie within the outline of each layer: a bit a pixel, where there are any.
 #pragma once
 
+#include "voxelize/beads/plan_bins.h"
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,8 +15,8 @@ namespace stratum::report {
 /// Columns of 8 x 8 pixels; bit x * 8 + y of a word.
 class PlanBits {
 public:
-    PlanBits(std::size_t columns_i, std::size_t columns_j)
-        : columns_i_(columns_i), columns_j_(columns_j), entries_(columns_i * columns_j) {}
+    /// `bins` must outlive it.
+    explicit PlanBits(const voxelize::PlanBins& bins) : bins_(bins), entries_(bins.size()) {}
 
     struct Entry {
         std::uint32_t layer = 0;
@@ -40,17 +42,15 @@ public:
     }
 
 private:
-    std::uint64_t bitsOf(std::size_t i, std::size_t j, std::span<const std::uint32_t> layers) const;
+    std::uint64_t bitsOf(std::size_t column, std::span<const std::uint32_t> layers) const;
     /// Calls visit(squared distance) of each pixel that is in none of the layers below: to the nearest that is, or
     /// infinite beyond `most` pixels (up to kMost are looked at).
     template <typename Visit>
     void forEachGap(std::size_t column, const Entry& entry, std::span<const std::uint32_t> below, int most,
                     const Visit& visit) const {
-        const std::size_t i = column % columns_i_;
-        const std::size_t j = column / columns_i_;
-        const std::uint64_t free = entry.bits & ~bitsOf(i, j, below);
+        const std::uint64_t free = entry.bits & ~bitsOf(column, below);
         if (free == 0) return;
-        const Window window(*this, i, j, below, most);
+        const Window window(*this, column, below, most);
         for (std::uint64_t rest = free; rest != 0; rest &= rest - 1) {
             const int p = __builtin_ctzll(rest);
             visit(window.distance2(p >> 3, p & 7));
@@ -62,7 +62,7 @@ private:
     // Rows of pixels along y around a column: bit y + margin_ of a row of words.
     class Window {
     public:
-        Window(const PlanBits& bits, std::size_t i, std::size_t j, std::span<const std::uint32_t> below, int most);
+        Window(const PlanBits& bits, std::size_t column, std::span<const std::uint32_t> below, int most);
         double distance2(int x, int y) const;
 
     private:
@@ -75,7 +75,7 @@ private:
         std::vector<std::uint64_t> rows_;
     };
 
-    std::size_t columns_i_, columns_j_;
+    const voxelize::PlanBins& bins_;
     std::vector<std::vector<Entry>> entries_;
 };
 

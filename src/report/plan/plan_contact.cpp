@@ -109,7 +109,7 @@ public:
           pixels_(pixelsOf(lattice)),
           under_(underOf(stack)),
           bins_(toolpath, stack, pixels_, std::numeric_limits<std::size_t>::max()),
-          bits_(bins_.columnsI(), bins_.columnsJ()) {}
+          bits_(bins_) {}
 
     PlanContact run() {
         const std::size_t count = stack_.layers.size();
@@ -121,7 +121,7 @@ public:
             tbb::enumerable_thread_specific<ColumnFields> fields([this] { return ColumnFields(stack_); });
             parallelFor(bins_.size(), kPlanGrain, [&](std::size_t first, std::size_t last) {
                 for (std::size_t c = first; c != last; ++c)
-                    if (!bins_[c].empty()) measureColumn(c, columns.local(), fields.local(), threads.local());
+                    measureColumn(c, columns.local(), fields.local(), threads.local());
             });
             for (const Sums& one : threads)
                 for (std::size_t n = 0; n < count; ++n) {

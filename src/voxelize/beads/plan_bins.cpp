@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <tuple>
 #include <utility>
 
 namespace stratum::voxelize {
@@ -65,56 +65,155 @@ Parts boundEntries(const gcode::Toolpath& toolpath, const LayerStack& stack, con
     return parts;
 }
 
+using Block = PlanBins::Block;
+constexpr int kBlockEdge = PlanBins::kBlockColumns;
+
+// The parts of a row of columns [i0, i1] by block: visit(x, first, last), the latter within the block.
+template <typename Visit>
+void forEachBlockOfRow(int i0, int i1, const Visit& visit) {
+    static_assert(kBlockEdge == 16);
+    while (i0 <= i1) {
+        const int last = std::min(i1, i0 | (kBlockEdge - 1));
+        visit(i0 >> 4, i0 & (kBlockEdge - 1), last & (kBlockEdge - 1));
+        i0 = last + 1;
+    }
+}
+
+// The block before is mostly the next one, too.
+struct alignas(64) BlockCursor {
+    int x = 0, y = 0;
+    std::uint32_t known = PlanIndex::kNone;
+
+    template <typename Find>
+    std::uint32_t number(int at_x, int at_y, const Find& find) {
+        if (known == PlanIndex::kNone || at_x != x || at_y != y) {
+            known = find(at_x, at_y);
+            x = at_x;
+            y = at_y;
+        }
+        return known;
+    }
+};
+
+// The columns that some beads reach, by block.
+struct Marks {
+    PlanIndex index;
+    std::vector<std::array<std::uint16_t, kBlockEdge>> rows;
+
+    std::array<std::uint16_t, kBlockEdge>& rowsOf(int x, int y) {
+        const std::uint32_t n = at.number(x, y, [this](int i, int j) { return index.add(i, j); });
+        if (n == rows.size()) rows.emplace_back();
+        return rows[n];
+    }
+
+    BlockCursor at;
+};
+
+// Blocks in the order of a .vdb file, with the columns that are marked in any part.
+std::vector<Block> blocksOf(std::vector<Marks>& parts) {
+    Marks all = std::move(parts.front());
+    for (std::size_t p = 1; p < parts.size(); ++p)
+        for (std::size_t n = 0; n < parts[p].rows.size(); ++n) {
+            const auto [x, y] = parts[p].index.squares()[n];
+            auto& to = all.rowsOf(x, y);
+            for (std::size_t row = 0; row < to.size(); ++row) to[row] |= parts[p].rows[n][row];
+        }
+    std::vector<Block> blocks(all.rows.size());
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+        blocks[n].x = all.index.squares()[n].x;
+        blocks[n].y = all.index.squares()[n].y;
+        blocks[n].rows = all.rows[n];
+    }
+    constexpr int kUpperBits = 5;  // of OpenVDB's upper nodes
+    const auto order = [](const Block& block) {
+        return std::tuple(block.x >> kUpperBits, block.y >> kUpperBits, block.x, block.y);
+    };
+    std::sort(blocks.begin(), blocks.end(), [&](const Block& a, const Block& b) { return order(a) < order(b); });
+    std::size_t columns = 0;
+    for (Block& block : blocks) {
+        block.first = columns;
+        for (std::size_t row = 0; row < block.rows.size(); ++row) {
+            block.before[row] = static_cast<std::uint16_t>(columns - block.first);
+            columns += static_cast<std::size_t>(std::popcount(block.rows[row]));
+        }
+        block.last = columns;
+    }
+    return blocks;
+}
+
+void refuseIfTooLarge(double bytes, std::size_t free_memory) {
+    const double limit = static_cast<double>(free_memory) / kListsOfMemory;
+    if (bytes <= limit) return;
+    // Of half the voxel they are four times as many at most.
+    throw UsageError(fmt::format(
+        "the lists of the beads near each voxel take about {}, which is more than a quarter of the {} that are "
+        "free; "
+        "choose voxels about {:.2g} times as large (--voxel-size), or fewer layers (--layers)",
+        humanBytes(bytes), humanBytes(static_cast<double>(free_memory)), 1.05 * std::sqrt(bytes / limit)));
+}
+
 }  // namespace
 
 PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice,
                    std::size_t free_memory) {
     if (stack.beads.empty()) return;
     const Footprints footprints = columnFootprints(toolpath, lattice);
-    const std::size_t beads = stack.beads.size();
     const Parts found = boundEntries(toolpath, stack, lattice, footprints);
-    const ColumnRange& all = found.columns;
-    const double bound = found.bound;
-    std::size_t parts = found.count;
-    if (all.empty()) return;
-    first_i_ = all.i0;
-    first_j_ = all.j0;
-    const double columns = (static_cast<double>(all.i1) - all.i0 + 1) * (static_cast<double>(all.j1) - all.j0 + 1);
-    // Without a table for each part if the bed is wide and mostly empty.
-    while (parts > 1 && columns * static_cast<double>(parts) > 2 * bound + 1e6) parts /= 2;
-    const double bytes = columns * static_cast<double>(sizeof(std::size_t) + parts * sizeof(std::uint32_t)) +
-                         bound * sizeof(std::uint32_t);
-    const double limit = static_cast<double>(free_memory) / kListsOfMemory;
-    if (bytes > limit)
-        // Of half the voxel they are four times as many at most.
-        throw UsageError(fmt::format(
-            "the lists of the beads near each voxel take about {}, which is more than a quarter of the {} that are "
-            "free; "
-            "choose voxels about {:.2g} times as large (--voxel-size), or fewer layers (--layers)",
-            humanBytes(bytes), humanBytes(static_cast<double>(free_memory)), 1.05 * std::sqrt(bytes / limit)));
-    columns_i_ = static_cast<std::size_t>(all.i1 - all.i0) + 1;
-    columns_j_ = static_cast<std::size_t>(all.j1 - all.j0) + 1;
-    const std::size_t count = columns_i_ * columns_j_;
-    const auto columnIndex = [this](int i, int j) {
-        return static_cast<std::size_t>(j - first_j_) * columns_i_ + static_cast<std::size_t>(i - first_i_);
-    };
+    if (found.columns.empty()) return;
+    rectangle_ = found.columns;
+    refuseIfTooLarge(found.bound * sizeof(std::uint32_t), free_memory);
 
-    // Calls visit(rank, column) for the entries of a part, by rank.
-    const auto forEachEntry = [&](std::size_t p, const auto& visit) {
-        for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank)
-            footprints.forEachColumn(toolpath.beads[stack.beads[rank]], [&](int i0, int i1, int j) {
-                for (std::size_t c = columnIndex(i0, j); i0 <= i1; ++i0, ++c) visit(rank, c);
+    // Calls visit(part, rank, i0, i1, j) for the rows of columns that beads reach, part by part, by rank.
+    const auto forEachRow = [&](std::size_t parts, const auto& visit) {
+        parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
+            const std::size_t beads = stack.beads.size();
+            for (std::size_t p = begin; p != end; ++p)
+                for (std::size_t rank = beads * p / parts; rank != beads * (p + 1) / parts; ++rank)
+                    footprints.forEachColumn(toolpath.beads[stack.beads[rank]],
+                                             [&](int i0, int i1, int j) { visit(p, rank, i0, i1, j); });
+        });
+    };
+    std::vector<Marks> marks(found.count);
+    forEachRow(found.count, [&](std::size_t p, std::size_t, int i0, int i1, int j) {
+        forEachBlockOfRow(i0, i1, [&](int x, int first, int last) {
+            marks[p].rowsOf(x, j >> kBlockBits)[static_cast<std::size_t>(j & (kBlockColumns - 1))] |=
+                static_cast<std::uint16_t>((2U << last) - (1U << first));
+        });
+    });
+    blocks_ = blocksOf(marks);
+    marks = {};
+    const std::size_t count = blocks_.back().last;
+    std::size_t parts = found.count;
+    // Without a table for each part if many columns have few beads.
+    while (parts > 1 && static_cast<double>(count * parts) > 2 * found.bound + 1e6) parts /= 2;
+    refuseIfTooLarge(static_cast<double>(count) * static_cast<double>(sizeof(std::size_t) + sizeof(PlanIndex::Square) +
+                                                                      parts * sizeof(std::uint32_t)) +
+                         found.bound * sizeof(std::uint32_t),
+                     free_memory);
+    places_.reserve(count);
+    for (const Block& block : blocks_) {
+        index_.add(block.x, block.y);
+        for (int j = 0; j < kBlockColumns; ++j)
+            for (int i = 0; i < kBlockColumns; ++i)
+                if (block.has(i, j)) places_.push_back({block.x * kBlockColumns + i, block.y * kBlockColumns + j});
+    }
+
+    // Calls visit(part, rank, column) for all entries.
+    const auto forEachEntry = [&](const auto& visit) {
+        std::vector<BlockCursor> cursors(parts);
+        forEachRow(parts, [&](std::size_t p, std::size_t rank, int i0, int i1, int j) {
+            forEachBlockOfRow(i0, i1, [&](int x, int first, int last) {
+                const Block& block = blocks_[cursors[p].number(
+                    x, j >> kBlockBits, [this](int block_x, int block_y) { return index_.find(block_x, block_y); })];
+                std::size_t column = block.columnAt(first, j & (kBlockColumns - 1));
+                for (int i = first; i <= last; ++i, ++column) visit(p, rank, column);
             });
+        });
     };
 
     // Counts by part and column; then, by column, where each part's ranks begin, relative to the column.
     std::vector<std::uint32_t> next(parts * count, 0);
-    parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p != end; ++p) {
-            std::uint32_t* counts = next.data() + p * count;
-            forEachEntry(p, [counts](std::size_t, std::size_t c) { ++counts[c]; });
-        }
-    });
+    forEachEntry([&](std::size_t p, std::size_t, std::size_t c) { ++next[p * count + c]; });
     offsets_.assign(count + 1, 0);
     for (std::size_t c = 0; c < count; ++c) {
         std::uint32_t sum = 0;
@@ -126,13 +225,8 @@ PlanBins::PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, con
         offsets_[c + 1] = offsets_[c] + sum;
     }
     ranks_ = HugeArray<std::uint32_t>(offsets_.back());
-    parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p != end; ++p) {
-            std::uint32_t* next_entry = next.data() + p * count;
-            forEachEntry(p, [&](std::size_t rank, std::size_t c) {
-                ranks_[offsets_[c] + next_entry[c]++] = static_cast<std::uint32_t>(rank);
-            });
-        }
+    forEachEntry([&](std::size_t p, std::size_t rank, std::size_t c) {
+        ranks_[offsets_[c] + next[p * count + c]++] = static_cast<std::uint32_t>(rank);
     });
 }
 

@@ -6,7 +6,10 @@
 #include "voxelize/beads/footprint.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/layer_stack.h"
+#include "voxelize/beads/plan_index.h"
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -24,32 +27,74 @@ inline Footprints columnFootprints(const gcode::Toolpath& toolpath, const Lattic
 }
 
 /// Ranks of beads (see LayerStack) by leaf column, in CSR form; ascending within a column, so layer by layer with the
-/// direct beads last.
+/// direct beads last. Only columns that beads reach are listed: block by block, row by row within one. The blocks are
+/// in the order of a .vdb file: by OpenVDB's upper nodes (x, then y), then by x and y.
 class PlanBins {
 public:
+    /// Columns along each edge of a block: that of OpenVDB's lower internal nodes.
+    static constexpr int kBlockColumns = 16;
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    struct Block {
+        int x = 0, y = 0;       ///< in blocks
+        std::size_t first = 0;  ///< its columns are [first, last)
+        std::size_t last = 0;
+        std::array<std::uint16_t, kBlockColumns> rows{};    ///< bit i of row j: the column is listed
+        std::array<std::uint16_t, kBlockColumns> before{};  ///< columns in the rows before
+
+        /// Of a column that is listed; within the block.
+        std::size_t columnAt(int i, int j) const {
+            const auto row = static_cast<std::size_t>(j);
+            const unsigned left = rows[row] & ((1U << static_cast<unsigned>(i)) - 1);
+            return first + before[row] + static_cast<std::size_t>(std::popcount(left));
+        }
+        bool has(int i, int j) const { return (rows[static_cast<std::size_t>(j)] >> i & 1) != 0; }
+    };
+
     /// Bins every bead whose band reaches a column. Parallel; the result does not depend on the number of threads.
-    /// Throws UsageError if that needs more than half of `free_memory` bytes.
+    /// Throws UsageError if that needs more than a quarter of `free_memory` bytes.
     PlanBins(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, std::size_t free_memory);
 
-    /// Columns of the bounding rectangle, row by row; many may be empty.
-    std::size_t size() const { return offsets_.empty() ? 0 : offsets_.size() - 1; }
+    std::size_t size() const { return places_.size(); }
     std::span<const std::uint32_t> operator[](std::size_t column) const {
         return {ranks_.data() + offsets_[column], ranks_.data() + offsets_[column + 1]};
     }
+    /// In columns, from index 0.
+    int columnI(std::size_t column) const { return places_[column].x; }
+    int columnJ(std::size_t column) const { return places_[column].y; }
     /// Index-space coordinate of the first voxel of a column: a multiple of kLeafDim.
-    int originI(std::size_t column) const { return (first_i_ + static_cast<int>(column % columns_i_)) * kLeafDim; }
-    int originJ(std::size_t column) const { return (first_j_ + static_cast<int>(column / columns_i_)) * kLeafDim; }
+    int originI(std::size_t column) const { return places_[column].x * kLeafDim; }
+    int originJ(std::size_t column) const { return places_[column].y * kLeafDim; }
+    /// The column of this place, in columns from index 0, or kNone.
+    std::size_t find(int i, int j) const {
+        const std::uint32_t n = index_.find(i >> kBlockBits, j >> kBlockBits);
+        if (n == PlanIndex::kNone) return kNone;
+        const Block& block = blocks_[n];
+        const int in_i = i & (kBlockColumns - 1);
+        const int in_j = j & (kBlockColumns - 1);
+        return block.has(in_i, in_j) ? block.columnAt(in_i, in_j) : kNone;
+    }
 
-    std::size_t columnsI() const { return columns_i_; }
-    std::size_t columnsJ() const { return columns_j_; }
+    const std::vector<Block>& blocks() const { return blocks_; }
+    /// The number of the block that a column lies in.
+    std::size_t blockOf(std::size_t column) const {
+        return index_.find(places_[column].x >> kBlockBits, places_[column].y >> kBlockBits);
+    }
+    /// The rectangle of the beads' boxes, in columns; most of it may be empty.
+    const ColumnRange& rectangle() const { return rectangle_; }
     std::size_t entryCount() const { return ranks_.size(); }
     std::size_t bytes() const {
-        return offsets_.capacity() * sizeof(std::size_t) + ranks_.size() * sizeof(std::uint32_t);
+        return offsets_.capacity() * sizeof(std::size_t) + ranks_.size() * sizeof(std::uint32_t) +
+               places_.capacity() * sizeof(PlanIndex::Square) + blocks_.capacity() * sizeof(Block) + index_.bytes();
     }
 
 private:
-    int first_i_ = 0, first_j_ = 0;  // in columns
-    std::size_t columns_i_ = 0, columns_j_ = 0;
+    static constexpr int kBlockBits = 4;
+    static_assert(kBlockColumns == 1 << kBlockBits);
+
+    ColumnRange rectangle_;
+    PlanIndex index_;  // of blocks_
+    std::vector<Block> blocks_;
+    std::vector<PlanIndex::Square> places_;  // by column
     std::vector<std::size_t> offsets_;
     HugeArray<std::uint32_t> ranks_;
 };

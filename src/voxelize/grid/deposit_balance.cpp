@@ -151,7 +151,6 @@ void forEachOpenColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
     parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = columns.local();
         for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
             column.open(bins.originI(c), bins.originJ(c), bins[c], end);
             visit(column);
         }

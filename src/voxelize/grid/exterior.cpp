@@ -95,20 +95,29 @@ private:
         near_ = std::vector<std::atomic<std::uint8_t>>(slots);
         dirty_ = std::vector<std::atomic<std::uint8_t>>(bins_.size());
         gap_reached_ = std::vector<std::atomic<std::uint8_t>>(positions_.gapCount());
-        // The space outside the rectangle of columns is reached from the start, and so are the gaps below and above
-        // every column.
+        // Places without a column are reached from the start, and so are the gaps below and above every column.
         for (std::size_t c = 0; c < bins_.size(); ++c) {
             const std::size_t gaps = positions_.gapCount(c);
             reachGap(c, 0);
             reachGap(c, gaps - 1);
-            const int i = positions_.columnI(c);
-            const int j = positions_.columnJ(c);
-            if (i > 0 && j > 0 && positions_.inside(i + 1, j + 1)) continue;
-            for (std::size_t n = 1; n + 1 < gaps; ++n) reachGap(c, n);
+            bool free_face = false;
+            bool free_side = false;
+            for (int n = 0; n < 9; ++n) {
+                if (columnBeside(c, n / 3 - 1, n % 3 - 1) != PlanBins::kNone) continue;
+                free_side = true;
+                free_face = free_face || n % 2 == 1;
+            }
+            if (free_face)
+                for (std::size_t n = 1; n + 1 < gaps; ++n) reachGap(c, n);
+            if (!free_side) continue;
             for (const Interval& interval : positions_.intervalsOf(c))
                 for (int k = interval.first; k <= interval.last; ++k) queue(c, interval.slotOf(k));
         }
         addThreadSeconds(secondsSince(start));
+    }
+
+    std::size_t columnBeside(std::size_t c, int dx, int dy) const {
+        return bins_.find(bins_.columnI(c) + dx, bins_.columnJ(c) + dy);
     }
 
     void reachGap(std::size_t c, std::size_t n) {
@@ -144,10 +153,9 @@ private:
             if (n < intervals.size()) queue(c, intervals[n].slot);
             for (int dx = -1; dx <= 1; ++dx)
                 for (int dy = -1; dy <= 1; ++dy) {
-                    const int i = positions_.columnI(c) + dx;
-                    const int j = positions_.columnJ(c) + dy;
-                    if ((dx == 0 && dy == 0) || !positions_.inside(i, j)) continue;
-                    const std::size_t beside = positions_.columnAt(i, j);
+                    if (dx == 0 && dy == 0) continue;
+                    const std::size_t beside = columnBeside(c, dx, dy);
+                    if (beside == PlanBins::kNone) continue;
                     const auto other = positions_.intervalsOf(beside);
                     for (const Interval& interval : other)
                         for (int k = std::max(interval.first, low - 1); k <= std::min(interval.last, high + 1); ++k)
@@ -163,10 +171,11 @@ private:
         addThreadSeconds(secondsSince(start));
     }
 
-    const LeafMask* reachedAt(int i, int j, int k, LeafMask& storage) const {
+    // Of a column, or of a place without one.
+    const LeafMask* reachedAt(std::size_t c, int k, LeafMask& storage) const {
         static const LeafMask kAll = LeafMask::full();
-        if (!positions_.inside(i, j)) return &kAll;
-        const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k);
+        if (c == PlanBins::kNone) return &kAll;
+        const SlotOrGap at = positions_.at(c, k);
         if (!at.is_slot) return gap_reached_[at.index].load(std::memory_order_relaxed) != 0 ? &kAll : nullptr;
         const std::uint32_t cell = cells_of_[at.index].load(std::memory_order_acquire);
         if (cell == kUnvisited) return nullptr;
@@ -177,12 +186,11 @@ private:
     LeafMask seedsOf(std::size_t c, int k) const {
         LeafMask storage[7];
         Neighbourhood around{};
-        const int i = positions_.columnI(c);
-        const int j = positions_.columnJ(c);
-        around[neighbourIndex(0, 0, 0)] = reachedAt(i, j, k, storage[6]);
+        around[neighbourIndex(0, 0, 0)] = reachedAt(c, k, storage[6]);
         for (std::size_t n = 0; n < 6; ++n) {
             const auto [dx, dy, dz] = kFaces[n];
-            around[neighbourIndex(dx, dy, dz)] = reachedAt(i + dx, j + dy, k + dz, storage[n]);
+            const std::size_t beside = dz != 0 ? c : columnBeside(c, dx, dy);
+            around[neighbourIndex(dx, dy, dz)] = reachedAt(beside, k + dz, storage[n]);
         }
         return dilateFaces(around);
     }
@@ -198,16 +206,14 @@ private:
         Around known{};
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = positions_.columnI(c) + dx;
-                const int j = positions_.columnJ(c) + dy;
-                const bool there = positions_.inside(i, j);
+                const std::size_t beside = columnBeside(c, dx, dy);
                 for (int dz = -1; dz <= 1; ++dz) {
                     Known& out = known[neighbourIndex(dx, dy, dz)];
-                    if (!there) {
+                    if (beside == PlanBins::kNone) {
                         out.reached_gap = true;
                         continue;
                     }
-                    const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k + dz);
+                    const SlotOrGap at = positions_.at(beside, k + dz);
                     if (!at.is_slot) {
                         out.reached_gap = gap_reached_[at.index].load(std::memory_order_relaxed) != 0;
                     } else if (const std::uint32_t cell = cells_of_[at.index].load(std::memory_order_acquire);
@@ -261,11 +267,10 @@ private:
     void markNear(std::size_t c, int k) {
         for (int dx = -1; dx <= 1; ++dx)
             for (int dy = -1; dy <= 1; ++dy) {
-                const int i = positions_.columnI(c) + dx;
-                const int j = positions_.columnJ(c) + dy;
-                if (!positions_.inside(i, j)) continue;
+                const std::size_t beside = columnBeside(c, dx, dy);
+                if (beside == PlanBins::kNone) continue;
                 for (int dz = -1; dz <= 1; ++dz) {
-                    const SlotOrGap at = positions_.at(positions_.columnAt(i, j), k + dz);
+                    const SlotOrGap at = positions_.at(beside, k + dz);
                     if (at.is_slot) near_[at.index].store(1, std::memory_order_relaxed);
                 }
             }
@@ -304,10 +309,9 @@ private:
         LeafMask gained;
         for (std::size_t x = 0; x < 8; ++x) gained.word[x] = after.word[x] & ~before.word[x];
         for (const auto& face : kFaces) {
-            const int i = positions_.columnI(c) + face[0];
-            const int j = positions_.columnJ(c) + face[1];
-            if (!positions_.inside(i, j) || !touchesFace(gained, face)) continue;
-            const std::size_t beside = positions_.columnAt(i, j);
+            if (!touchesFace(gained, face)) continue;
+            const std::size_t beside = columnBeside(c, face[0], face[1]);
+            if (beside == PlanBins::kNone) continue;
             const SlotOrGap at = positions_.at(beside, k + face[2]);
             if (at.is_slot) {
                 queue(beside, at.index);

@@ -10,8 +10,6 @@
 #include <array>
 #include <atomic>
 #include <limits>
-#include <map>
-#include <utility>
 #include <vector>
 
 namespace stratum::voxelize {
@@ -34,10 +32,10 @@ public:
 
     void run(const LeafBlock& block) {
         std::vector<Column> columns;
-        forEachColumnOf(block, bins_, [&](std::size_t bin, std::size_t place) {
-            if (leavesIn(block.heights, bounds_.columns[bin]) > 0) columns.push_back({bin, place});
-        });
+        for (std::size_t bin = block.columns->first; bin < block.columns->last; ++bin)
+            if (leavesIn(block.heights, bounds_.columns[bin]) > 0) columns.push_back({bin, placeInBlock(bins_, bin)});
         if (columns.empty()) return;
+        std::sort(columns.begin(), columns.end(), [](const Column& a, const Column& b) { return a.place < b.place; });
         receiver_.open(block.origin());
         // Output of the block before is one more item.
         parallelFor(columns.size() + 1, 1, [&](std::size_t first, std::size_t last) {
@@ -104,7 +102,11 @@ private:
     }
 
     bool takes(std::size_t bin, int k) const {
-        const std::uint64_t place = bin << 24 ^ static_cast<std::uint32_t>(k);
+        const ColumnRange& all = bins_.rectangle();
+        const auto row = static_cast<std::uint64_t>(bins_.columnJ(bin) - all.j0);
+        const std::uint64_t in_plan = row * static_cast<std::uint64_t>(all.i1 - all.i0 + 1) +
+                                      static_cast<std::uint64_t>(bins_.columnI(bin) - all.i0);
+        const std::uint64_t place = in_plan << 24 ^ static_cast<std::uint32_t>(k);
         return bounds_.leaves <= kVolumeSample || scattered(place) % bounds_.leaves < kVolumeSample;
     }
 
@@ -135,42 +137,26 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     LeafBounds all;
     constexpr LeafRange kNone{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     if (bins.size() == 0) return all;
-    const LeafRectangle plan = rectangleOf(bins);
-    // Blocks by tile; mostly one.
-    struct Tile {
-        std::size_t number = 0;
-        std::vector<LeafRange> slabs;
-    };
-    std::map<std::pair<int, int>, Tile> own;
-    std::size_t slabs = 0;
-    forEachBlock(plan, heights, [&](const LeafBlock& block) {
-        Tile& tile = own.try_emplace({block.x, block.y}, Tile{own.size(), {}}).first->second;
-        tile.slabs.push_back(block.heights);
-        ++slabs;
-    });
+    const std::vector<LeafRange> slabs = slabsOf(heights);
     const int low = floorDivide(heights.first, kBlockLeaves);
     const std::size_t high = cellsMet(heights.first, heights.second, kBlockLeaves);
-    std::vector<std::atomic<bool>> lower(own.size() * high);  // nodes with leaves
+    std::vector<std::atomic<bool>> lower(bins.blocks().size() * high);  // nodes with leaves
     all.columns.assign(bins.size(), kNone);
     std::atomic<std::size_t> leaves{0};
     parallelFor(bins.size(), kBoundGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = columns();
         std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
-            const auto blocks =
-                own.find({floorDivide(bins.originI(c), kBlockVoxels), floorDivide(bins.originJ(c), kBlockVoxels)});
-            if (blocks == own.end()) continue;
+            const std::size_t block = bins.blockOf(c);
             const std::span<const LeafRange> ranges = column.bounds(bins[c]);
-            for (const LeafRange& slab : blocks->second.slabs)
+            for (const LeafRange& slab : slabs)
                 for (const LeafRange& range : ranges) {
                     const std::size_t leaves_here = leavesIn(slab, range);
                     if (leaves_here == 0) continue;
                     count += leaves_here;
                     const int last = floorDivide(std::min(range.second, slab.second), kBlockLeaves);
                     for (int k = floorDivide(std::max(range.first, slab.first), kBlockLeaves); k <= last; ++k)
-                        lower[blocks->second.number * high + static_cast<std::size_t>(k - low)].store(
-                            true, std::memory_order_relaxed);
+                        lower[block * high + static_cast<std::size_t>(k - low)].store(true, std::memory_order_relaxed);
                 }
             all.columns[c] = {ranges.front().first, ranges.back().second};
         }
@@ -179,11 +165,9 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     all.leaves = leaves;
     all.heights = heights;
     all.lower_nodes = static_cast<std::size_t>(std::count(lower.begin(), lower.end(), true));
-    all.upper_nodes =
-        std::min({slabs,
-                  cellsMet(plan.first_i, plan.last_i, kSlabLeaves) * cellsMet(plan.first_j, plan.last_j, kSlabLeaves) *
-                      cellsMet(heights.first, heights.second, kSlabLeaves),
-                  all.lower_nodes});
+    std::size_t uppers = 0;
+    forEachUpper(bins, [&](std::size_t, std::size_t) { uppers += slabs.size(); });
+    all.upper_nodes = std::min(uppers, all.lower_nodes);
     return all;
 }
 
@@ -191,17 +175,16 @@ LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns,
                               const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
                               const std::function<void(double)>& progress) {
     if (bounds.leaves == 0) return {};
-    const LeafRectangle plan = rectangleOf(bins);
     std::size_t entries = 0;
-    forEachBlock(plan, bounds.heights, [&](const LeafBlock& block) {
-        forEachColumnOf(block, bins, [&](std::size_t bin, std::size_t) {
+    forEachBlock(bins, bounds.heights, [&](const LeafBlock& block) {
+        for (std::size_t bin = block.columns->first; bin < block.columns->last; ++bin) {
             const LeafRange& column = bounds.columns[bin];
             if (leavesIn(block.heights, column) > 0 && column.second <= block.heights.second)
                 entries += bins[bin].size();
-        });
+        }
     });
     Blocks blocks(bins, columns, end, bounds, receiver, measure, entries, progress);
-    forEachBlock(plan, bounds.heights, [&](const LeafBlock& block) { blocks.run(block); });
+    forEachBlock(bins, bounds.heights, [&](const LeafBlock& block) { blocks.run(block); });
     return blocks.report();
 }
 

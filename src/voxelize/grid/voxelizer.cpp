@@ -134,7 +134,6 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
         LeafColumn& column = scratch.local();
         std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
             column.open(bins.originI(c), bins.originJ(c), bins[c], end);
             for (const LeafRange& range : column.touched(printed))
                 for (int k = range.first; k <= range.second; ++k) {
@@ -245,7 +244,6 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
         LeafColumn& column = owning.local();
         std::array<std::uint32_t, Leaf::SIZE> owners{};
         for (std::size_t c = first; c != last; ++c) {
-            if (s.bins[c].empty()) continue;
             column.open(s.bins.originI(c), s.bins.originJ(c), s.bins[c], s.printed);
             for (const LeafRange& range : column.touched())
                 for (int k = range.first; k <= range.second; ++k) {

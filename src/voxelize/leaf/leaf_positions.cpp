@@ -4,14 +4,12 @@
 
 namespace stratum::voxelize {
 
-LeafPositions::LeafPositions(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end)
-    : columns_i_(static_cast<int>(bins.columnsI())), columns_j_(static_cast<int>(bins.columnsJ())) {
+LeafPositions::LeafPositions(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end) {
     constexpr std::size_t kColumnGrain = 8;
     std::vector<std::vector<LeafRange>> ranges(bins.size());
     parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
         LeafColumn& column = columns();
         for (std::size_t c = first; c != last; ++c) {
-            if (bins[c].empty()) continue;
             column.open(bins.originI(c), bins.originJ(c), bins[c], end);
             const auto touched = column.touched();
             ranges[c].assign(touched.begin(), touched.end());

@@ -48,15 +48,7 @@ public:
     }
     SlotOrGap at(std::size_t column, int k) const;
 
-    bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < columns_i_ && j < columns_j_; }
-    std::size_t columnAt(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_i_) + static_cast<std::size_t>(i);
-    }
-    int columnI(std::size_t column) const { return static_cast<int>(column % static_cast<std::size_t>(columns_i_)); }
-    int columnJ(std::size_t column) const { return static_cast<int>(column / static_cast<std::size_t>(columns_i_)); }
-
 private:
-    int columns_i_, columns_j_;
     std::size_t slot_count_ = 0;
     std::vector<std::size_t> interval_offsets_;
     std::vector<Interval> intervals_;

@@ -155,21 +155,17 @@ void SwellField::list(const gcode::Toolpath& toolpath, const LayerStack& stack) 
     tbb::this_task_arena::isolate([&] {
         bins_ = std::make_unique<PlanBins>(toolpath, stack, cellLattice(), std::numeric_limits<std::size_t>::max());
     });
-    if (bins_->size() == 0) return;
-    constexpr int kTileVoxels = kTileCells / 2 * kLeafDim;
+    static_assert(PlanBins::kBlockColumns * 2 == kTileCells);
     // A tile beyond the outermost columns shares nodes with them.
-    first_x_ = floorTo(bins_->originI(0), kTileVoxels) - 1;
-    first_y_ = floorTo(bins_->originJ(0), kTileVoxels) - 1;
-    count_x_ = floorTo(bins_->originI(bins_->size() - 1), kTileVoxels) - first_x_ + 2;
-    count_y_ = floorTo(bins_->originJ(bins_->size() - 1), kTileVoxels) - first_y_ + 2;
-    tiles_ = std::make_unique<Tile[]>(static_cast<std::size_t>(count_x_) * static_cast<std::size_t>(count_y_));
+    for (const PlanBins::Block& block : bins_->blocks())
+        for (int dx = -1; dx <= 1; ++dx)
+            for (int dy = -1; dy <= 1; ++dy) index_.add(block.x + dx, block.y + dy);
+    tiles_ = std::make_unique<Tile[]>(index_.size());
 }
 
 SwellField::Tile* SwellField::find(int x, int y) const {
-    const int i = x - first_x_;
-    const int j = y - first_y_;
-    if (i < 0 || j < 0 || i >= count_x_ || j >= count_y_) return nullptr;
-    return &tiles_[static_cast<std::size_t>(j) * static_cast<std::size_t>(count_x_) + static_cast<std::size_t>(i)];
+    const std::uint32_t n = index_.find(x, y);
+    return n == PlanIndex::kNone ? nullptr : &tiles_[n];
 }
 
 const TileSums& SwellField::sumsOf(const gcode::Toolpath& toolpath, const LayerStack& stack, Tile& tile, int x,

@@ -125,8 +125,8 @@ private:
     const TileSums& sumsOf(const gcode::Toolpath& toolpath, const LayerStack& stack, Tile& tile, int x, int y) const;
 
     mutable std::once_flag listed_;
-    mutable std::unique_ptr<PlanBins> bins_;                             // squares of two by two cells
-    mutable int first_x_ = 0, first_y_ = 0, count_x_ = 0, count_y_ = 0;  // tiles
+    mutable std::unique_ptr<PlanBins> bins_;  // squares of two by two cells
+    mutable PlanIndex index_;                 // of tiles_
     mutable std::unique_ptr<Tile[]> tiles_;
 };
 

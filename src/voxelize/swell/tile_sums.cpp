@@ -309,16 +309,10 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
     std::vector<TopFields> fields;
     const bool overlap = layersOverlap(stack);
     PlanField highest;
-    const int first_i = bins.originI(0) / kLeafDim;
-    const int first_j = bins.originJ(0) / kLeafDim;
     for (int cj = 0; cj < kTileColumns; ++cj)
         for (int ci = 0; ci < kTileColumns; ++ci) {
-            const int i = x * kTileColumns + ci - first_i;
-            const int j = y * kTileColumns + cj - first_j;
-            if (i < 0 || j < 0 || i >= static_cast<int>(bins.columnsI()) || j >= static_cast<int>(bins.columnsJ()))
-                continue;
-            const std::size_t bin = static_cast<std::size_t>(j) * bins.columnsI() + static_cast<std::size_t>(i);
-            if (bins[bin].empty()) continue;
+            const std::size_t bin = bins.find(x * kTileColumns + ci, y * kTileColumns + cj);
+            if (bin == PlanBins::kNone) continue;
             ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
             column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
             const int first_node = kColumnCells * (cj * kNodes + ci);

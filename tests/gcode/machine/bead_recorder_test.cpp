@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 namespace stratum::gcode {
 namespace {
 
@@ -43,6 +46,21 @@ TEST(BeadRecorder, ASpiralsLayersAreNominalHeights) {
     for (int i = 1; i <= 40; ++i)
         program += "G1 X" + std::to_string(i % 2) + " Z" + std::to_string(0.2 + 0.02 * i) + " E.1\n";
     EXPECT_EQ(readProgram(program).layer_count, 4U);  // 0.22 up to 1.0
+}
+
+// A damaged coordinate: 100 m of a thread that no nozzle draws. Long lines of plastic stay.
+TEST(BeadRecorder, AThreadOfAHundredMetresIsLeftOut) {
+    const Toolpath damaged = readProgram("M83\nG1 Z.2\nG1 X9 E1\nG1 X99999 E.03\nG1 X9 E.03\nG1 X0 E1\n");
+    EXPECT_EQ(damaged.beads.size(), 2U);
+    const auto told = [](const Toolpath& toolpath) {
+        return std::any_of(toolpath.warnings.begin(), toolpath.warnings.end(), [](const Warning& warning) {
+            return warning.text.find("thinner than 0.02 mm") != std::string::npos && warning.count == 2;
+        });
+    };
+    EXPECT_TRUE(told(damaged));
+    const Toolpath large = readProgram("M83\nG1 Z.2\nG1 X9 E1\nG1 X9999 E330\nG1 X9 E330\nG1 X0 E1\n");
+    EXPECT_EQ(large.beads.size(), 4U);
+    EXPECT_FALSE(told(large));
 }
 
 TEST(BeadRecorder, ARunIsWhatNeighboursShare) {

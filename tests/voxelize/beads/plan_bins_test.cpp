@@ -56,6 +56,59 @@ TEST(PlanBins, EveryBeadIsInEveryColumnItsBandReaches) {
     EXPECT_GT(samples, 1000U);
 }
 
+// Two square towers, the second this far from the first along both axes.
+gcode::Toolpath towers(double apart) {
+    gcode::Toolpath toolpath;
+    constexpr double kEdge = 3;
+    for (int layer = 1; layer <= 5; ++layer)
+        for (const double at : {0.0, apart}) {
+            const double z = 0.2 * layer;
+            const double end = at + kEdge;
+            addBead(toolpath, at, at, z, end, at, z, 0.5, 0.2);
+            addBead(toolpath, end, at, z, end, end, z, 0.5, 0.2);
+            addBead(toolpath, end, end, z, at, end, z, 0.5, 0.2);
+            addBead(toolpath, at, end, z, at, at, z, 0.5, 0.2);
+        }
+    return toolpath;
+}
+
+TEST(PlanBins, ColumnsAreFoundByTheirPlace) {
+    const gcode::Toolpath toolpath = towers(-31);
+    const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+    Lattice lattice;
+    lattice.voxel_size = 0.05;
+    const PlanBins bins(toolpath, stack, lattice, std::size_t{1} << 30);
+    std::set<std::pair<int, int>> listed;
+    for (std::size_t c = 0; c < bins.size(); ++c) {
+        EXPECT_FALSE(bins[c].empty());
+        EXPECT_EQ(bins.find(bins.columnI(c), bins.columnJ(c)), c);
+        const PlanBins::Block& block = bins.blocks()[bins.blockOf(c)];
+        EXPECT_TRUE(block.first <= c && c < block.last);
+        listed.emplace(bins.columnI(c), bins.columnJ(c));
+    }
+    EXPECT_EQ(listed.size(), bins.size());
+    const ColumnRange& all = bins.rectangle();
+    for (int j = all.j0 - 2; j <= all.j1 + 2; ++j)
+        for (int i = all.i0 - 2; i <= all.i1 + 2; ++i)
+            EXPECT_EQ(bins.find(i, j) != PlanBins::kNone, listed.contains({i, j}));
+}
+
+// A table over the rectangle would have 1e11 columns.
+TEST(PlanBins, FarPartsTakeWhatTheirBeadsNeed) {
+    Lattice lattice;
+    lattice.voxel_size = 0.025;
+    const auto listsOf = [&](double apart) {
+        const gcode::Toolpath toolpath = towers(apart);
+        const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
+        const PlanBins bins(toolpath, stack, lattice, std::size_t{1} << 30);
+        return std::pair(bins.entryCount(), bins.bytes());
+    };
+    const auto [near_entries, near_bytes] = listsOf(20);
+    const auto [far_entries, far_bytes] = listsOf(80'000);
+    EXPECT_EQ(near_entries, far_entries);
+    EXPECT_LT(far_bytes, near_bytes + near_bytes / 4);
+}
+
 // The columns of the only bead are those of its rectangle within reach, each tested by itself.
 void expectEveryColumn(const gcode::Toolpath& toolpath) {
     const gcode::Bead& bead = toolpath.beads[0];
@@ -123,7 +176,7 @@ TEST(PlanBins, TheRefusalIsTrue) {
     const LayerStack stack = stackLayers(toolpath, allBeads(toolpath));
     Lattice lattice;
     constexpr std::size_t kFree = 40'000'000;
-    lattice.voxel_size = 0.002;
+    lattice.voxel_size = 0.001;
     std::string said;
     try {
         PlanBins(toolpath, stack, lattice, kFree);

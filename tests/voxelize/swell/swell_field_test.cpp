@@ -316,5 +316,24 @@ TEST(SwellField, DoesNotDependOnTheOrderOfItsTiles) {
         }
 }
 
+// Tiles are kept where beads are, not over the rectangle: 19 m apart it would have 1e8 of them.
+TEST(SwellField, FarCopiesHoldWhatOneDoes) {
+    gcode::Toolpath one = sparse();
+    const DepositBalance single = balanceOf(one);
+    gcode::Toolpath two = sparse();
+    // A multiple of the tiles and of the measuring columns.
+    constexpr double kApart = 19'200;
+    for (gcode::Bead bead : one.beads) {
+        bead.x0 = bead.x0 + kApart;
+        bead.x1 = bead.x1 + kApart;
+        bead.y0 = bead.y0 + kApart;
+        bead.y1 = bead.y1 + kApart;
+        two.beads.push_back(bead);
+    }
+    const DepositBalance both = balanceOf(two);
+    EXPECT_NEAR(both.all.laid, 2 * single.all.laid, 2e-3 * single.all.laid);
+    EXPECT_NEAR(both.pressed_out, 2 * single.pressed_out, 0.02 * single.pressed_out);
+}
+
 }  // namespace
 }  // namespace stratum::voxelize
