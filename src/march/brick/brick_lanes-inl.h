@@ -21,7 +21,6 @@
 #include "march/brick/ray_queue_lanes-inl.h"
 #include "trace/intersector.h"
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <array>
@@ -47,6 +46,7 @@ public:
             std::uint8_t* blocked)
         : grid_(grid),
           blocked_(blocked),
+          macros_(grid),
           lazy_(grid.lazy()),
           bounded_(grid.cache().bounded()),
           by_slot_(grid.bitsBySlot()),
@@ -54,10 +54,8 @@ public:
           reading_(cache_),
           corners_(grid),
           batch_(corners_, map, rays, hits),
-          queue_(grid, map, rays) {
+          queue_(grid, map, macros_, rays) {
         for (int axis = 0; axis < 3; ++axis) last_[axis] = grid.size()[static_cast<std::size_t>(axis)] - 1;
-        macro_y_ = grid.size()[1] / BrickGrid::kMacroEdge;
-        macro_z_ = grid.size()[2] / BrickGrid::kMacroEdge;
         for (Packet& packet : packets_)
             // Lanes without a ray are in cell 0 or where their last ray ended: their reads are valid, and ignored.
             for (auto& field : packet.field)
@@ -122,10 +120,11 @@ private:
         const D d;
         const DU du;
         M ended = hn::Ge(exit.t, load(p, kEnd));
+        VI cell[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const VI cell = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
+            cell[axis] = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
             const VI last = whole(last_[axis]);  // unsigned, so cells below 0 are beyond it, too
-            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, cell), hn::BitCast(du, last))));
+            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, cell[axis]), hn::BitCast(du, last))));
         }
         p.alive &= ~bitsOf(hn::And(ended, moving));
         moving = hn::AndNot(ended, moving);
@@ -136,6 +135,10 @@ private:
         const V face =
             hn::IfThenElse(exit.axis[0], hn::Zero(d), hn::IfThenElse(exit.axis[1], constant(1), constant(2)));
         store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
+        const VI macro = hn::IfThenElse(moved, macros_.at(cell), loadWhole(p, kMacro));
+        storeWhole(p, kMacro, macro);
+        // Beams have just read the macro cells that rays of a fan come to.
+        if (macros_.large() && !queue_.isFan()) macros_.prefetch(macro);
     }
 
     // findBlock() down to the bricks; prefetches the bits of their surface cells, or where those are by slot, the slot.
@@ -145,17 +148,13 @@ private:
         const VI none = hn::Zero(di);
         VI flip[3];
         VI c[3];
-        VI macro[3];
         MaskPosition in_macro;  // of the brick
         for (int axis = 0; axis < 3; ++axis) {
             flip[axis] = loadWhole(p, kFlip + axis);
             c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip[axis]);
-            macro[axis] = hn::ShiftRight<5>(c[axis]);
             in_macro.v[axis] = hn::ShiftRight<3>(c[axis]);
         }
-        static_assert(sizeof(MacroCell) == 16);
-        const auto [bricks, rest] = loadHalves(
-            grid_.macroCells(), product(product(macro[0], whole(macro_y_)) + macro[1], whole(macro_z_)) + macro[2]);
+        const auto [bricks, rest] = macros_.read(loadWhole(p, kMacro));
 
         const VI b = in_macro.bit();
         const VI bit = shiftedLeft(one, b);
@@ -195,13 +194,6 @@ private:
         std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
         storeWhole(p, kWord, word);
         prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), word);
-    }
-
-    template <typename T>
-    static HWY_INLINE void prefetch(const T* table, VI index) {
-        HWY_ALIGN std::int64_t places[kLanes];
-        hn::Store(index, DI(), places);
-        for (const std::int64_t place : places) hwy::Prefetch(table + place);
     }
 
     // One step of every lane that isn't waiting: out of the largest empty block, or into the waiting state in a surface
@@ -269,7 +261,7 @@ private:
         const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
         hn::Store(samples, DI(), p.sample);
         p.waiting |= found;
-        if (found != 0) corners_.prefetch(samples);
+        if (found != 0) corners_.prefetch(hn::IfThenElseZero(newly, sample));
     }
 
     HWY_INLINE VI slotsOf(VI brick) const {
@@ -367,8 +359,8 @@ private:
             in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
             in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
         }
-        // Lanes that don't wait read their last cell, or the first sample; the results are ignored.
-        const VI sample = hn::Load(DI(), p.sample);
+        // Lanes that don't wait read the first samples, which stay in the cache; the results are ignored.
+        const VI sample = hn::IfThenElseZero(hn::RebindMask(DI(), waiting), hn::Load(DI(), p.sample));
         corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
         const M in0 = hn::Lt(f.c0, zero);
@@ -409,7 +401,7 @@ private:
     std::uint8_t* const blocked_;
     std::uint8_t ignored_ = 0;
     std::int64_t last_[3];  // cells
-    std::int64_t macro_y_, macro_z_;
+    const MacroTable macros_;
     const bool lazy_, bounded_, by_slot_;
     BrickSlots& cache_;
     const BrickSlots::Reading reading_;

@@ -7,6 +7,7 @@
 #define STRATUM_LANES_INL_H
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <cstdint>
@@ -107,6 +108,13 @@ HWY_INLINE Halves loadHalves(const void* table, VI row) {
     const VI odd = hn::Combine(DI(), hn::Combine(four, both(7), both(5)), hn::Combine(four, both(3), both(1)));
 #endif
     return {hn::InterleaveLower(even, odd), hn::InterleaveUpper(DI(), even, odd)};
+}
+/// Entries of a table into the first-level cache.
+template <typename T>
+HWY_INLINE void prefetch(const T* table, VI index) {
+    HWY_ALIGN std::int64_t places[kLanes];
+    hn::Store(index, DI(), places);
+    for (const std::int64_t place : places) hwy::Prefetch(table + place);
 }
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }
