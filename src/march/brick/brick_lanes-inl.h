@@ -138,7 +138,7 @@ private:
         const VI macro = hn::IfThenElse(moved, macros_.at(cell), loadWhole(p, kMacro));
         storeWhole(p, kMacro, macro);
         // Beams have just read the macro cells that rays of a fan come to.
-        if (macros_.large() && !queue_.isFan()) macros_.prefetch(macro);
+        if (macros_.large() && !queue_.isFan()) macros_.prefetch(p.field[kMacro]);
     }
 
     // findBlock() down to the bricks; prefetches the bits of their surface cells, or where those are by slot, the slot.
@@ -154,7 +154,7 @@ private:
             c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip[axis]);
             in_macro.v[axis] = hn::ShiftRight<3>(c[axis]);
         }
-        const auto [bricks, rest] = macros_.read(loadWhole(p, kMacro));
+        const auto [bricks, rest] = macros_.read(p.field[kMacro]);
 
         const VI b = in_macro.bit();
         const VI bit = shiftedLeft(one, b);
@@ -179,11 +179,13 @@ private:
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
         if (by_slot_) {
-            prefetch(grid_.slots(), hn::ShiftRight<3>(part));
+            HWY_ALIGN Kept brick_of;
+            hn::Store(hn::BitCast(D(), hn::ShiftRight<3>(part)), D(), brick_of);
+            prefetch(grid_.slots(), brick_of);
         } else {
             storeWhole(p, kWord, part);
             // Beams have just read the bits of the blocks that rays of a fan come to.
-            if (!queue_.isFan()) prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), part);
+            if (!queue_.isFan()) prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), p.field[kWord]);
         }
     }
 
@@ -193,7 +195,7 @@ private:
         const VI word = wordOf(slotsOf(hn::ShiftRight<3>(part)), part);
         std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
         storeWhole(p, kWord, word);
-        prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), word);
+        prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), p.field[kWord]);
     }
 
     // One step of every lane that isn't waiting: out of the largest empty block, or into the waiting state in a surface
@@ -244,12 +246,12 @@ private:
     // Records and prefetches the corners of surface cells. Lanes for whose brick there is no free slot try again in
     // their next step.
     HWY_INLINE void startWaiting(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
+        if (found == 0) return;
         VI slot_index = hn::ShiftRight<3>(part);  // of the brick's samples; in an eager grid the brick's own index
         if (lazy_) {
             // By slot, the bits are those of the slot that was looked up: only without one they may be others by now.
             VI slot = by_slot_ ? hn::ShiftRight<3>(loadWhole(p, kWord)) : slotsOf(slot_index);
-            if (found != 0 && (!by_slot_ || withoutSlot(slot, found) != 0))
-                found = ensureSurface(found, slot, slot_index, part, at, c);
+            if (!by_slot_ || withoutSlot(slot, found) != 0) found = ensureSurface(found, slot, slot_index, part, at, c);
             if (bounded_ && found != 0) markUsed(found, slot);
             slot_index = slot - whole(BrickSlots::kFirst);
         }
@@ -258,10 +260,9 @@ private:
                           product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
                           product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
         const auto newly = hn::RebindMask(DI(), maskOf(found));
-        const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
-        hn::Store(samples, DI(), p.sample);
+        hn::Store(hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample)), DI(), p.sample);
         p.waiting |= found;
-        if (found != 0) corners_.prefetch(hn::IfThenElseZero(newly, sample));
+        corners_.prefetch(p.sample);
     }
 
     HWY_INLINE VI slotsOf(VI brick) const {
@@ -359,8 +360,8 @@ private:
             in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
             in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
         }
-        // Lanes that don't wait read the first samples, which stay in the cache; the results are ignored.
-        const VI sample = hn::IfThenElseZero(hn::RebindMask(DI(), waiting), hn::Load(DI(), p.sample));
+        // Lanes that don't wait read the first samples; the results are ignored.
+        const VI sample = hn::Load(DI(), p.sample);
         corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
         const M in0 = hn::Lt(f.c0, zero);
@@ -379,6 +380,7 @@ private:
         V s = constant(std::numeric_limits<double>::quiet_NaN());
         if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
         p.waiting = 0;
+        hn::Store(hn::Zero(DI()), DI(), p.sample);
         p.alive &= ~hit;
         if constexpr (kAny) {
             // Other lanes write to a dummy.

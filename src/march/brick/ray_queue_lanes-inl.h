@@ -128,9 +128,7 @@ private:
         VI cell[3];
         for (int axis = 0; axis < 3; ++axis)
             cell[axis] = hn::BitCast(DI(), hn::Xor(out[kCell + axis], out[kFlip + axis]));
-        const VI macro = macros_.at(cell);
-        out[kMacro] = hn::BitCast(D(), macro);
-        if (macros_.large() && !is_fan_) macros_.prefetch(macro);
+        out[kMacro] = hn::BitCast(D(), macros_.at(cell));
         const unsigned kept = bitsOf(good);
         if (kept != kAllLanes) {
             const auto table = tableIndices(kTable.source[kept]);
