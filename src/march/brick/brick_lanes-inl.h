@@ -3,8 +3,9 @@
 //
 // A step of a packet of rays either moves all lanes in empty space out of the largest empty blocks around them, or,
 // once enough lanes are in surface cells, solves those cells. Then it looks up the lanes' new cells and prefetches the
-// memory that its next step reads; meanwhile other packets do their steps. All state is in arrays in the first-level
-// cache: there is more of it than registers.
+// memory that its next step reads; meanwhile other packets do their steps. What the look-up itself reads, macro cells,
+// is prefetched by the step before, where there are many. All state is in arrays in the first-level cache: there is
+// more of it than registers.
 #if defined(STRATUM_BRICK_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_BRICK_LANES_INL_H
 #undef STRATUM_BRICK_LANES_INL_H

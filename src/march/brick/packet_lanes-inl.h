@@ -110,7 +110,7 @@ public:
     HWY_INLINE void prefetch(const Kept& places) const { march::HWY_NAMESPACE::prefetch(cells_, places); }
 
 private:
-    static constexpr std::int64_t kLarge = std::int64_t{1} << 15;  // half a megabyte
+    static constexpr std::int64_t kLarge = std::int64_t{1} << 16;  // a megabyte
 
     const std::byte* const cells_;
     const std::int64_t count_y_, count_z_;
