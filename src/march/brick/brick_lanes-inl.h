@@ -3,8 +3,9 @@
 //
 // A step of a packet of rays either moves all lanes in empty space out of the largest empty blocks around them, or,
 // once enough lanes are in surface cells, solves those cells. Then it looks up the lanes' new cells and prefetches the
-// memory that its next step reads; meanwhile other packets do their steps. All state is in arrays in the first-level
-// cache: there is more of it than registers.
+// memory that its next step reads; meanwhile other packets do their steps. What the look-up itself reads, macro cells,
+// is prefetched by the step before, where there are many. All state is in arrays in the first-level cache: there is
+// more of it than registers.
 #if defined(STRATUM_BRICK_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STRATUM_BRICK_LANES_INL_H
 #undef STRATUM_BRICK_LANES_INL_H
@@ -21,7 +22,6 @@
 #include "march/brick/ray_queue_lanes-inl.h"
 #include "trace/intersector.h"
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <array>
@@ -47,6 +47,7 @@ public:
             std::uint8_t* blocked)
         : grid_(grid),
           blocked_(blocked),
+          macros_(grid),
           lazy_(grid.lazy()),
           bounded_(grid.cache().bounded()),
           by_slot_(grid.bitsBySlot()),
@@ -54,10 +55,8 @@ public:
           reading_(cache_),
           corners_(grid),
           batch_(corners_, map, rays, hits),
-          queue_(grid, map, rays) {
+          queue_(grid, map, macros_, rays) {
         for (int axis = 0; axis < 3; ++axis) last_[axis] = grid.size()[static_cast<std::size_t>(axis)] - 1;
-        macro_y_ = grid.size()[1] / BrickGrid::kMacroEdge;
-        macro_z_ = grid.size()[2] / BrickGrid::kMacroEdge;
         for (Packet& packet : packets_)
             // Lanes without a ray are in cell 0 or where their last ray ended: their reads are valid, and ignored.
             for (auto& field : packet.field)
@@ -122,10 +121,11 @@ private:
         const D d;
         const DU du;
         M ended = hn::Ge(exit.t, load(p, kEnd));
+        VI cell[3];
         for (int axis = 0; axis < 3; ++axis) {
-            const VI cell = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
+            cell[axis] = hn::Xor(next[axis], loadWhole(p, kFlip + axis));
             const VI last = whole(last_[axis]);  // unsigned, so cells below 0 are beyond it, too
-            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, cell), hn::BitCast(du, last))));
+            ended = hn::Or(ended, hn::RebindMask(d, hn::Gt(hn::BitCast(du, cell[axis]), hn::BitCast(du, last))));
         }
         p.alive &= ~bitsOf(hn::And(ended, moving));
         moving = hn::AndNot(ended, moving);
@@ -136,6 +136,10 @@ private:
         const V face =
             hn::IfThenElse(exit.axis[0], hn::Zero(d), hn::IfThenElse(exit.axis[1], constant(1), constant(2)));
         store(p, kFace, hn::IfThenElse(moving, face, load(p, kFace)));
+        const VI macro = hn::IfThenElse(moved, macros_.at(cell), loadWhole(p, kMacro));
+        storeWhole(p, kMacro, macro);
+        // Beams have just read the macro cells that rays of a fan come to.
+        if (macros_.large() && !queue_.isFan()) macros_.prefetch(p.field[kMacro]);
     }
 
     // findBlock() down to the bricks; prefetches the bits of their surface cells, or where those are by slot, the slot.
@@ -145,17 +149,13 @@ private:
         const VI none = hn::Zero(di);
         VI flip[3];
         VI c[3];
-        VI macro[3];
         MaskPosition in_macro;  // of the brick
         for (int axis = 0; axis < 3; ++axis) {
             flip[axis] = loadWhole(p, kFlip + axis);
             c[axis] = hn::Xor(loadWhole(p, kCell + axis), flip[axis]);
-            macro[axis] = hn::ShiftRight<5>(c[axis]);
             in_macro.v[axis] = hn::ShiftRight<3>(c[axis]);
         }
-        static_assert(sizeof(MacroCell) == 16);
-        const auto [bricks, rest] = loadHalves(
-            grid_.macroCells(), product(product(macro[0], whole(macro_y_)) + macro[1], whole(macro_z_)) + macro[2]);
+        const auto [bricks, rest] = macros_.read(p.field[kMacro]);
 
         const VI b = in_macro.bit();
         const VI bit = shiftedLeft(one, b);
@@ -180,11 +180,13 @@ private:
         storeWhole(p, kLowBits, low_bits);
         storeWhole(p, kBeyond, beyond);
         if (by_slot_) {
-            prefetch(grid_.slots(), hn::ShiftRight<3>(part));
+            HWY_ALIGN Kept brick_of;
+            hn::Store(hn::BitCast(D(), hn::ShiftRight<3>(part)), D(), brick_of);
+            prefetch(grid_.slots(), brick_of);
         } else {
             storeWhole(p, kWord, part);
             // Beams have just read the bits of the blocks that rays of a fan come to.
-            if (!queue_.isFan()) prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), part);
+            if (!queue_.isFan()) prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), p.field[kWord]);
         }
     }
 
@@ -194,14 +196,7 @@ private:
         const VI word = wordOf(slotsOf(hn::ShiftRight<3>(part)), part);
         std::atomic_signal_fence(std::memory_order_acquire);  // the slots' bits are read later
         storeWhole(p, kWord, word);
-        prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), word);
-    }
-
-    template <typename T>
-    static HWY_INLINE void prefetch(const T* table, VI index) {
-        HWY_ALIGN std::int64_t places[kLanes];
-        hn::Store(index, DI(), places);
-        for (const std::int64_t place : places) hwy::Prefetch(table + place);
+        prefetch(reinterpret_cast<const std::uint64_t*>(grid_.clearCells()), p.field[kWord]);
     }
 
     // One step of every lane that isn't waiting: out of the largest empty block, or into the waiting state in a surface
@@ -252,12 +247,12 @@ private:
     // Records and prefetches the corners of surface cells. Lanes for whose brick there is no free slot try again in
     // their next step.
     HWY_INLINE void startWaiting(Packet& p, unsigned found, VI part, VI at, const VI c[3]) {
+        if (found == 0) return;
         VI slot_index = hn::ShiftRight<3>(part);  // of the brick's samples; in an eager grid the brick's own index
         if (lazy_) {
             // By slot, the bits are those of the slot that was looked up: only without one they may be others by now.
             VI slot = by_slot_ ? hn::ShiftRight<3>(loadWhole(p, kWord)) : slotsOf(slot_index);
-            if (found != 0 && (!by_slot_ || withoutSlot(slot, found) != 0))
-                found = ensureSurface(found, slot, slot_index, part, at, c);
+            if (!by_slot_ || withoutSlot(slot, found) != 0) found = ensureSurface(found, slot, slot_index, part, at, c);
             if (bounded_ && found != 0) markUsed(found, slot);
             slot_index = slot - whole(BrickSlots::kFirst);
         }
@@ -266,10 +261,9 @@ private:
                           product(hn::And(c[0], seven), whole(BrickGrid::kStrideX)) +
                           product(hn::And(c[1], seven), whole(BrickGrid::kStrideY)) + hn::And(c[2], seven);
         const auto newly = hn::RebindMask(DI(), maskOf(found));
-        const VI samples = hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample));
-        hn::Store(samples, DI(), p.sample);
+        hn::Store(hn::IfThenElse(newly, sample, hn::Load(DI(), p.sample)), DI(), p.sample);
         p.waiting |= found;
-        if (found != 0) corners_.prefetch(samples);
+        corners_.prefetch(p.sample);
     }
 
     HWY_INLINE VI slotsOf(VI brick) const {
@@ -367,7 +361,7 @@ private:
             in.from.v[axis] = hn::IfThenElse(by_this, near, enter);
             in.to.v[axis] = hn::IfThenElse(hn::And(whole_cell, exit.axis[axis]), hn::AndNot(flip, one), leave);
         }
-        // Lanes that don't wait read their last cell, or the first sample; the results are ignored.
+        // Lanes that don't wait read the first samples; the results are ignored.
         const VI sample = hn::Load(DI(), p.sample);
         corners_.read(sample, in.v);
         const LaneCubic f = cubicOf(in);
@@ -387,6 +381,7 @@ private:
         V s = constant(std::numeric_limits<double>::quiet_NaN());
         if (rare != 0) hit |= solveOneByOne<kAny>(rare, in, s);
         p.waiting = 0;
+        hn::Store(hn::Zero(DI()), DI(), p.sample);
         p.alive &= ~hit;
         if constexpr (kAny) {
             // Other lanes write to a dummy.
@@ -409,7 +404,7 @@ private:
     std::uint8_t* const blocked_;
     std::uint8_t ignored_ = 0;
     std::int64_t last_[3];  // cells
-    std::int64_t macro_y_, macro_z_;
+    const MacroTable macros_;
     const bool lazy_, bounded_, by_slot_;
     BrickSlots& cache_;
     const BrickSlots::Reading reading_;

@@ -41,9 +41,7 @@ public:
         pair(index + whole(BrickGrid::kStrideX + BrickGrid::kStrideY), v[6], v[7]);
     }
     /// Prefetches the corners of cells whose first ones are at `index`.
-    HWY_INLINE void prefetch(VI index) const {
-        HWY_ALIGN std::int64_t corners[kLanes];
-        hn::Store(index, DI(), corners);
+    HWY_INLINE void prefetch(const std::int64_t (&corners)[kLanes]) const {
         if (floats_ != nullptr)
             for (const std::int64_t corner : corners) prefetch(floats_ + corner);
         else

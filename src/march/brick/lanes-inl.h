@@ -7,8 +7,11 @@
 #define STRATUM_LANES_INL_H
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #undef STRATUM_WIDE_LANES
@@ -88,16 +91,19 @@ HWY_INLINE VI shiftedRight(VI v, VI count) {
 HWY_INLINE VI gather(const void* table, VI row) {
     return hn::GatherIndex(DI(), static_cast<const std::int64_t*>(table), row);
 }
-/// Of a table of 16 bytes a row, both halves. By one load a row: a gather reads each half of each row on its own.
+/// Whole numbers in memory, one a lane, with the types of packets' fields.
+using Kept = double[kLanes];
+HWY_INLINE std::int64_t keptIn(const Kept& lanes, int lane) { return std::bit_cast<std::int64_t>(lanes[lane]); }
+/// Of a table of 16 bytes a row, both halves, by the offsets of rows in bytes. By one load a row: a gather reads each
+/// half of each row on its own.
 struct Halves {
     VI first, second;
 };
-HWY_INLINE Halves loadHalves(const void* table, VI row) {
-    const auto* const halves = static_cast<const std::int64_t*>(table);
-    HWY_ALIGN std::int64_t places[kLanes];
-    hn::Store(hn::ShiftLeft<1>(row), DI(), places);
+HWY_INLINE Halves loadHalves(const std::byte* table, const Kept& offsets) {
     const hn::CappedTag<std::int64_t, 2> two;
-    const auto both = [&](int lane) HWY_ATTR { return hn::LoadU(two, halves + places[lane]); };
+    const auto both = [&](int lane) HWY_ATTR {
+        return hn::LoadU(two, reinterpret_cast<const std::int64_t*>(table + keptIn(offsets, lane)));
+    };
 #if HWY_TARGET == HWY_AVX2
     const VI even = hn::Combine(DI(), both(2), both(0));
     const VI odd = hn::Combine(DI(), both(3), both(1));
@@ -107,6 +113,11 @@ HWY_INLINE Halves loadHalves(const void* table, VI row) {
     const VI odd = hn::Combine(DI(), hn::Combine(four, both(7), both(5)), hn::Combine(four, both(3), both(1)));
 #endif
     return {hn::InterleaveLower(even, odd), hn::InterleaveUpper(DI(), even, odd)};
+}
+/// Entries of a table into the first-level cache.
+template <typename T>
+HWY_INLINE void prefetch(const T* table, const Kept& index) {
+    for (int lane = 0; lane < kLanes; ++lane) hwy::Prefetch(table + keptIn(index, lane));
 }
 /// std::clamp, operand for operand.
 HWY_INLINE V clampTo(V v, V low, V high) { return hn::Min(hn::Max(v, low), high); }

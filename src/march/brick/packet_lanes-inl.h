@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -36,6 +37,7 @@ enum Field {
     kIndex,
     kT,       // from the entry into the box on
     kFace,    // axis of the face that the cell was entered by, or -1
+    kMacro,   // where the cell's macro cell is in the table, bytes
     kQueued,  // fields that a ray in the queue has
     // By Marcher::look(): in a brick, eight times its index and the number of its 4^3 cells, and -1; elsewhere, 0, and
     // how far the empty block reaches: over all cells that differ in the low bits only, and so many more ahead.
@@ -48,7 +50,7 @@ enum Field {
 
 struct Packet {
     HWY_ALIGN double field[kFields][kLanes];
-    HWY_ALIGN std::int64_t sample[kLanes] = {};  // of a waiting lane: index of its cell's first corner
+    HWY_ALIGN std::int64_t sample[kLanes] = {};  // of a waiting lane: index of its cell's first corner; of others 0
     unsigned alive = 0, waiting = 0;
 };
 
@@ -82,6 +84,38 @@ HWY_INLINE void loadRays(const trace::Ray* rays, int count, V in[8]) {
     const VI row = hn::ShiftLeft<3>(hn::Min(hn::Iota(DI(), 0), whole(count - 1)));
     for (int n = 0; n < 8; ++n) in[n] = hn::GatherIndex(d, fields, row + whole(n));
 }
+
+/// The grid's table of macro cells.
+class MacroTable {
+public:
+    explicit MacroTable(const BrickGrid& grid)
+        : cells_(reinterpret_cast<const std::byte*>(grid.macroCells())),
+          count_y_(grid.size()[1] / BrickGrid::kMacroEdge),
+          count_z_(grid.size()[2] / BrickGrid::kMacroEdge),
+          large_(std::int64_t{grid.size()[0] / BrickGrid::kMacroEdge} * count_y_ * count_z_ >= kLarge) {}
+
+    /// Whether to prefetch an entry when a ray comes to it: a small table stays in the caches.
+    bool large() const { return large_; }
+    /// Where the macro cell of a cell is, bytes.
+    HWY_INLINE VI at(const VI cell[3]) const {
+        static_assert(BrickGrid::kMacroEdge == 1 << 5);
+        const VI row = product(hn::ShiftRight<5>(cell[0]), whole(count_y_)) + hn::ShiftRight<5>(cell[1]);
+        return hn::ShiftLeft<4>(product(row, whole(count_z_)) + hn::ShiftRight<5>(cell[2]));
+    }
+    /// The bricks of each, and what else they have.
+    HWY_INLINE Halves read(const Kept& places) const {
+        static_assert(sizeof(MacroCell) == 1 << 4);
+        return loadHalves(cells_, places);
+    }
+    HWY_INLINE void prefetch(const Kept& places) const { march::HWY_NAMESPACE::prefetch(cells_, places); }
+
+private:
+    static constexpr std::int64_t kLarge = std::int64_t{1} << 16;  // a megabyte
+
+    const std::byte* const cells_;
+    const std::int64_t count_y_, count_z_;
+    const bool large_;
+};
 
 /// From rays in the world to rays in the grid's box.
 class RayBox {

@@ -30,7 +30,7 @@ namespace stratum::march {
 namespace HWY_NAMESPACE {
 
 constexpr int kRefill = kLanes / 4;  // lanes without a ray that make a refill worthwhile
-constexpr int kQueue = 8 * kLanes;   // rays
+constexpr int kQueue = 4 * kLanes;   // rays
 
 /// Instead of FanRays where no ray comes from an eye.
 struct NoFan {
@@ -42,8 +42,8 @@ struct NoFan {
 template <bool kFans>
 class RayQueue {
 public:
-    RayQueue(const BrickGrid& grid, const CellMap& map, std::span<const trace::Ray> rays)
-        : box_(grid, map), rays_(rays), fan_(grid, map, box_) {}
+    RayQueue(const BrickGrid& grid, const CellMap& map, const MacroTable& macros, std::span<const trace::Ray> rays)
+        : box_(grid, map), macros_(macros), rays_(rays), fan_(grid, map, box_) {}
 
     /// Gives rays to the lanes that have none, once there are enough of them.
     HWY_INLINE void refill(Packet& p) {
@@ -125,6 +125,10 @@ private:
     }
     // Those of the rays that are good.
     HWY_INLINE void append(V out[kQueued], M good) {
+        VI cell[3];
+        for (int axis = 0; axis < 3; ++axis)
+            cell[axis] = hn::BitCast(DI(), hn::Xor(out[kCell + axis], out[kFlip + axis]));
+        out[kMacro] = hn::BitCast(D(), macros_.at(cell));
         const unsigned kept = bitsOf(good);
         if (kept != kAllLanes) {
             const auto table = tableIndices(kTable.source[kept]);
@@ -135,6 +139,7 @@ private:
     }
 
     const RayBox box_;
+    const MacroTable& macros_;
     const std::span<const trace::Ray> rays_;
     std::size_t next_ = 0;  // the first ray that hasn't been queued, nor given to fan_
     std::conditional_t<kFans, FanRays, NoFan> fan_;

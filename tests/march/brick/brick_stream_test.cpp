@@ -220,5 +220,24 @@ TEST_P(BrickStream, CrossesEmptySpaceBetweenFarParts) {
     EXPECT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U);
 }
 
+// A table of macro cells so large that its entries are prefetched.
+TEST_P(BrickStream, HasThemInLargeGrids) {
+    const openvdb::Vec3f far(135, 132, -130);
+    auto grid = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
+    openvdb::tools::csgUnion(*grid, *test::sphereGrid(1, far, 0.1F));
+    const BrickGrid bricks(*grid, BrickValues::Int16);
+    ASSERT_GT(bricks.size()[0] / 32 * (bricks.size()[1] / 32) * (bricks.size()[2] / 32), 1 << 16);
+    const auto intersector = makeBrickIntersector(*grid);
+    std::mt19937 random(16);
+    std::vector<trace::Ray> rays = test::randomRays(40000, 135, 0.1, 15);
+    for (std::size_t n = 0; n < rays.size(); n += 2) {
+        const glm::dvec3 center = n % 4 == 0 ? glm::dvec3(0.0) : glm::dvec3(far.x(), far.y(), far.z());
+        rays[n].direction = glm::normalize(center + 1.2 * test::randomDirection(random) - rays[n].origin);
+    }
+    const StreamTally tally = compare(*intersector->makeTracer(), rays);
+    EXPECT_GT(tally.hits, 1000U);
+    EXPECT_EQ(tally.missed + tally.extra + tally.moved + tally.blocked_wrongly, 0U);
+}
+
 }  // namespace
 }  // namespace stratum::march
