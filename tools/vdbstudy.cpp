@@ -72,8 +72,7 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
 }
 
 void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
-    CLI::App* deposit =
-        addVerb(app, o, "deposit", "What the plastic does: volume, corners, times, cost");
+    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, corners, times, cost");
     deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume, times and cost")
         ->required()
         ->type_name("FILE.gcode");
