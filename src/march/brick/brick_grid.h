@@ -40,7 +40,7 @@ public:
     static constexpr int kMacroEdge = 32;  ///< cells
     /// Whether the memory for so many macro cells along each axis is in proportion to the leaves in them.
     static bool canSpan(const std::array<int, 3>& macros, std::size_t leaves);
-    static constexpr int kBrickEdge = 8;   ///< cells
+    static constexpr int kBrickEdge = 8;  ///< cells
     static constexpr int kSamples = kBrickEdge + 1;
     /// Strides of a brick's samples.
     static constexpr std::ptrdiff_t kStrideY = kSamples;

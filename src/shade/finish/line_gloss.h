@@ -8,11 +8,11 @@
 
 namespace stratum::shade {
 
-/// What the nozzle draws along a line is smooth along it and rough across, which makes a surface of lines shine as brushed
-/// metal does: X. Chermain et al., "Orientable Dense Cyclic Infill for Anisotropic Appearance Fabrication", SIGGRAPH 2023;
-/// S. Boc, "Anisotropic reflectance model for predictive rendering of FDM prints", Ljubljana 2023. No measured alpha of a
-/// single line was found: the number is by eye, of photographs of top surfaces.
-inline constexpr float kLineRatio = 2.5f;      ///< alpha across the line over alpha along it
+/// What the nozzle draws along a line is smooth along it and rough across, which makes a surface of lines shine as
+/// brushed metal does: X. Chermain et al., "Orientable Dense Cyclic Infill for Anisotropic Appearance Fabrication",
+/// SIGGRAPH 2023; S. Boc, "Anisotropic reflectance model for predictive rendering of FDM prints", Ljubljana 2023. No
+/// measured alpha of a single line was found: the number is by eye, of photographs of top surfaces.
+inline constexpr float kLineRatio = 2.5f;  ///< alpha across the line over alpha along it
 inline constexpr float kMostLineRatio = 20.0f;
 
 /// Plastic (plastic.h) with x along the line.
