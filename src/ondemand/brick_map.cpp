@@ -139,7 +139,7 @@ PrintMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) 
         macros *= count;
     }
     // Bricks are in the columns that beads reach; the table is made before they are counted.
-    const auto heights = static_cast<std::size_t>((active.max()[2] - map.origin[2]) / kBrick + 1);
+    const auto heights = static_cast<std::size_t>((active.max()[2] - map.origin[2]) / kBrick) + 1;
     if (!march::BrickGrid::canSpan(map.macros, layout.bins.size() * heights))
         throw UsageError(
             fmt::format("voxels of {:g} mm make {:.3g} blocks of 32 x 32 x 32, too many for the beads in them to be "

@@ -93,7 +93,7 @@ does("t.gcode", "--report", "l.json", "--layers", "3:8", "--features", "-skirt",
 some = report("l.json")
 check(some["by_layer"]["layer"] == [3, 4, 5, 6, 7, 8] and "3:8" in some["print"]["selection"], "six layers of it")
 check(value(some, "bed_contact") == 0, "  that lie on no bed")
-does("t.gcode", "-o", "t.stl", "--report", "c.json", *COARSE)
+does("t.gcode", "-o", "t.stl", "--report", "c.json", "--features", "all", *COARSE)
 culled = report("c.json")
 why = {one["number"]: one["remedy"] for one in culled["left_out"]}
 check("--interior keep" in why["porosity"] and "porosity" not in culled["numbers"], "a mesh is culled: no porosity")

@@ -224,7 +224,7 @@ class Meshes(unittest.TestCase):
         path = path_of("tile.stl")
         for error in (0, 0.25):
             tool("gcode2vdb", gcode("tile.gcode"), "-o", path, "--quiet", "--voxel-size", "0.2", "--interior", "keep",
-                 "--mesh-error", error)
+                 "--mesh-error", error, "--features", "all")
             stl = np.frombuffer(read_bytes(path)[84:], [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("none", "<u2")])
             mesh = stratum.voxelize(stratum.read(gcode("tile.gcode")), voxel_size=0.2).mesh(mesh_error=error)
             self.assertEqual((mesh.vertices.dtype, mesh.faces.dtype, mesh.colors), (np.float32, np.uint32, None))
