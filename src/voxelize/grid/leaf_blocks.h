@@ -82,8 +82,8 @@ void forEachBlock(const PlanBins& bins, const LeafRange& heights, const Visit& v
 inline std::size_t placeInBlock(const PlanBins& bins, std::size_t column) {
     static_assert(kBlockVoxels == PlanBins::kBlockColumns * kLeafDim);
     constexpr int kMask = PlanBins::kBlockColumns - 1;
-    return static_cast<std::size_t>((bins.columnI(column) & kMask) * PlanBins::kBlockColumns +
-                                    (bins.columnJ(column) & kMask));
+    return static_cast<std::size_t>(bins.columnI(column) & kMask) * PlanBins::kBlockColumns +
+           static_cast<std::size_t>(bins.columnJ(column) & kMask);
 }
 
 }  // namespace stratum::voxelize
