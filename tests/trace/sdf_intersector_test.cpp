@@ -145,7 +145,7 @@ TEST(SdfGrid, IsRefusedIfItWouldNotFit) {
             march::makeSdfGrid(*shape, voxel, static_cast<std::size_t>(0.4 * bytes));
             ADD_FAILURE() << "not refused";
         } catch (const UsageError& error) {
-            EXPECT_NE(std::string(error.what()).find("GB are free; take a voxel_size of"), std::string::npos)
+            EXPECT_NE(std::string(error.what()).find("GB here; take a voxel_size of"), std::string::npos)
                 << error.what();
         }
     }
