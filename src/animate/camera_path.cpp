@@ -84,8 +84,8 @@ std::vector<CameraKey> readCameraKeys(const std::filesystem::path& path) {
     Json json;
     try {
         json = Json::parse(bytes.bytes());
-    } catch (const Json::parse_error& error) {
-        throw InputError(fmt::format("{}: byte {}: is no JSON ({})", file, error.byte, error.what()));
+    } catch (const Json::exception& error) {
+        throw InputError(fmt::format("{}: is no JSON ({})", file, error.what()));
     }
     JsonSection section(json, "", file);
     const Json* list = section.find("keys");

@@ -91,6 +91,7 @@ TEST(CameraPath, SaysWhatIsWrongWithAFile) {
     mentions("keys[1].fov: expected an angle",
              R"({"keys": [{"time": 0, "eye": [0,0,0]}, {"time": 1, "eye": [1,1,1], "fov": 180}]})");
     mentions("is no JSON", R"({"keys": [)");
+    mentions("is no JSON", R"({"keys": [{"time": 1, "eye": [0, 0, 1e3082]}]})");  // more than any double
     mentions("expected an object", "[]");
 }
 
