@@ -79,15 +79,13 @@ bool showsLines(const PrintRequest& prints) {
 // Whether a material of the object has the gloss of lines.
 bool needsGrain(const ObjectOptions& object, const TracingOptions& options) {
     if (object.sdf) return false;
-    const bool lines = showsLines(options.prints);
-    const auto directed = [lines](const std::string& text) {
-        return shade::hasGlossOfLines(lines ? shade::withGlossOfLines(text) : text);
+    const auto any = [](const auto& texts) {
+        return std::any_of(texts.begin(), texts.end(),
+                           [](const auto& each) { return shade::hasGlossOfLines(each.second); });
     };
-    const auto any = [&](const auto& texts) {
-        return std::any_of(texts.begin(), texts.end(), [&](const auto& each) { return directed(each.second); });
-    };
-    return directed(object.material.brdf.empty() ? options.brdf : object.material.brdf) || any(object.material.each) ||
-           any(options.finishes);
+    const std::string& text = object.material.brdf.empty() ? options.brdf : object.material.brdf;
+    return shade::hasGlossOfLines(showsLines(options.prints) ? shade::withGlossOfLines(text) : text) ||
+           any(object.material.each) || any(options.finishes);
 }
 
 MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& options, AttributeNeeds& needs) {

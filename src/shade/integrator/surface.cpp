@@ -26,9 +26,9 @@ void Surfaces::onPrint(const trace::Ray& ray, const trace::Hit& hit, Gloss gloss
     point.brdf = material.by_place ? &material.brdf->at(scene_.mm_per_unit * hit.position) : material.brdf.get();
     point.albedo = material.albedo;
     point.grain = glm::vec3(0.0f);
-    if (const Brdf* const undirected = point.brdf->undirected(); undirected != nullptr) {
+    if (material.undirected != nullptr) {
         if (gloss == Gloss::directed) point.grain = glm::vec3(tracer.grain(hit));
-        if (point.grain == glm::vec3(0.0f)) point.brdf = undirected;
+        if (point.grain == glm::vec3(0.0f)) point.brdf = material.undirected;
     }
     for (std::size_t n = 0; n < kLabels; ++n)
         if (scene_.labels[n])

@@ -111,13 +111,15 @@ Color rampOf(const trace::AttributeSummary& summary, std::size_t n) {
 ObjectMaterial::ObjectMaterial(std::shared_ptr<const Brdf> brdf) {
     const Color albedo = reflectanceFactor(*brdf);
     const bool by_place = brdf->variesByPlace();
-    materials_.push_back({std::move(brdf), albedo, by_place});
+    const Brdf* const undirected = brdf->undirected();
+    materials_.push_back({std::move(brdf), albedo, by_place, undirected});
 }
 
 ObjectMaterial::ObjectMaterial(std::size_t attribute, const std::vector<std::shared_ptr<const Brdf>>& brdfs,
                                std::function<std::size_t(const glm::vec3&)> choose)
     : attribute_(attribute), choose_(std::move(choose)) {
-    for (const auto& brdf : brdfs) materials_.push_back({brdf, reflectanceFactor(*brdf), brdf->variesByPlace()});
+    for (const auto& brdf : brdfs)
+        materials_.push_back({brdf, reflectanceFactor(*brdf), brdf->variesByPlace(), brdf->undirected()});
 }
 
 Color categoryColor(std::size_t n) { return fromSrgb(kCategoryColors[n % kCategoryColors.size()]); }

@@ -28,8 +28,9 @@ struct MaterialOptions {
 /// A BRDF and its color.
 struct Material {
     std::shared_ptr<const Brdf> brdf;
-    Color albedo{0.0f};     ///< its reflectanceFactor
-    bool by_place = false;  ///< its variesByPlace
+    Color albedo{0.0f};                ///< its reflectanceFactor
+    bool by_place = false;             ///< its variesByPlace
+    const Brdf* undirected = nullptr;  ///< its undirected(); null for nearly all
 };
 
 /// Immutable; shared by all threads.
