@@ -3,10 +3,8 @@
 #include "base/memory.h"
 #include "base/parallel_for.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -47,8 +45,9 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
               const voxelize::Lattice& lattice, SolidElements& elements) {
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
     const voxelize::Lattice middles = middlesOf(toolpath, stack, lattice, elements);
-    const voxelize::PlanBins bins(toolpath, stack, middles, availableMemory());
-    if (bins.size() == 0 || elements.list.empty()) return;
+    const voxelize::PrintColumns columns(toolpath, stack, middles, 1, voxelize::LeafColumn::Kind::owners,
+                                         availableMemory());
+    if (columns.size() == 0 || elements.list.empty()) return;
     std::vector<SolidElement>& list = elements.list;
 
     // By column of leaves, from the bottom.
@@ -68,17 +67,14 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
         if (n == 0 || !same_column(order[n], order[n - 1])) first.push_back(n);
     first.push_back(order.size());
 
-    tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
-        [&] { return voxelize::LeafColumn(toolpath, stack, middles, 1.0, true); });
     parallelFor(first.size() - 1, 16, [&](std::size_t begin, std::size_t end) {
-        voxelize::LeafColumn& column = columns.local();
         std::array<std::uint32_t, voxelize::Leaf::SIZE> owners;
         for (std::size_t c = begin; c < end; ++c) {
             const int i = list[order[first[c]]].i >> kLeafBits << kLeafBits;
             const int j = list[order[first[c]]].j >> kLeafBits << kLeafBits;
-            const std::size_t bin = bins.find(i >> kLeafBits, j >> kLeafBits);
+            const std::size_t bin = columns.bins().find(i >> kLeafBits, j >> kLeafBits);
             if (bin == voxelize::PlanBins::kNone) continue;
-            column.open(i, j, bins[bin], kNobody);
+            voxelize::LeafColumn& column = columns.open(bin);
             int evaluated = std::numeric_limits<int>::min();
             for (std::size_t n = first[c]; n < first[c + 1]; ++n) {
                 SolidElement& e = list[order[n]];

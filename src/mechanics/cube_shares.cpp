@@ -4,9 +4,7 @@
 #include "base/parallel_for.h"
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/grid/progress_meter.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
@@ -88,16 +86,22 @@ std::optional<Inside> insideOf(const voxelize::BeadField& bead, const voxelize::
 class ColumnReader {
 public:
     /// `lines`: along each edge of a cube, odd. `gap`: mm, the plastic of layers that are so near is one.
-    ColumnReader(const gcode::Toolpath& toolpath, voxelize::LeafColumn& column, const voxelize::LayerStack& stack,
-                 const CubeShares& cubes, int lines, double gap)
-        : toolpath_(toolpath), column_(column), stack_(stack), cubes_(cubes), lines_(lines), gap_(gap) {}
+    ColumnReader(const voxelize::PrintColumns& columns, const CubeShares& cubes, int lines, double gap)
+        : toolpath_(columns.toolpath()),
+          bins_(columns.bins()),
+          stack_(columns.stack()),
+          cubes_(cubes),
+          lines_(lines),
+          gap_(gap) {}
 
-    void read(int i, int j, std::span<const std::uint32_t> ranks, std::vector<PartOfCube>& out) {
+    /// Of the open column `n`.
+    void read(std::size_t n, voxelize::LeafColumn& column, std::vector<PartOfCube>& out) {
         for (std::vector<Inside>& line : inside_) line.clear();
         parts_.clear();
-        column_.open(i, j, ranks, std::numeric_limits<std::uint32_t>::max());
-        column_.forEachField([this](std::uint32_t layer, const PlanField& d) { addLayer(stack_.layers[layer], d); });
-        for (const std::uint32_t rank : ranks)
+        const int i = bins_.originI(n);
+        const int j = bins_.originJ(n);
+        column.forEachField([this](std::uint32_t layer, const PlanField& d) { addLayer(stack_.layers[layer], d); });
+        for (const std::uint32_t rank : bins_[n])
             if (rank >= stack_.first_direct) addBead(toolpath_.beads[stack_.beads[rank]], i, j);
         for (std::size_t c = 0; c < kColumnSamples; ++c)
             measure(i + static_cast<int>(c / kLeafDim), j + static_cast<int>(c % kLeafDim), inside_[c]);
@@ -174,7 +178,7 @@ private:
     }
 
     const gcode::Toolpath& toolpath_;
-    voxelize::LeafColumn& column_;
+    const voxelize::PlanBins& bins_;
     const voxelize::LayerStack& stack_;
     const CubeShares& cubes_;
     const int lines_;
@@ -199,18 +203,14 @@ CubeShares cubeShares(const gcode::Toolpath& toolpath, std::span<const std::uint
     plan.voxel_size = lattice.voxel_size / lines;
     plan.half_width = 1;
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
-    const voxelize::PlanBins bins(toolpath, stack, plan, availableMemory());
-    tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
-        [&] { return voxelize::LeafColumn(toolpath, stack, plan, 1.0); });
-    voxelize::ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), progress);
-    std::vector<std::vector<PartOfCube>> parts(bins.size());
-    parallelFor(bins.size(), 16, [&](std::size_t first, std::size_t last) {
-        ColumnReader reader(toolpath, columns.local(), stack, cubes, lines, voxelize::kWeldGap * lattice.layer_height);
-        for (std::size_t c = first; c < last; ++c) {
-            reader.read(bins.originI(c), bins.originJ(c), bins[c], parts[c]);
-            meter.advance(bins[c].size());
-        }
-    });
+    const voxelize::PrintColumns columns(toolpath, stack, plan, 1, voxelize::LeafColumn::Kind::values,
+                                         availableMemory());
+    tbb::enumerable_thread_specific<ColumnReader> readers(
+        [&] { return ColumnReader(columns, cubes, lines, voxelize::kWeldGap * lattice.layer_height); });
+    std::vector<std::vector<PartOfCube>> parts(columns.size());
+    columns.forEach(
+        voxelize::PrintColumns::kAllBeads,
+        [&](std::size_t c, voxelize::LeafColumn& column) { readers.local().read(c, column, parts[c]); }, progress);
 
     std::vector<PartOfCube> all;
     for (std::vector<PartOfCube>& column : parts) {

@@ -140,7 +140,7 @@ PrintMap mapBricks(const PrintLayout& layout, const openvdb::CoordBBox& active) 
     }
     // Bricks are in the columns that beads reach; the table is made before they are counted.
     const auto heights = static_cast<std::size_t>((active.max()[2] - map.origin[2]) / kBrick) + 1;
-    if (!march::BrickGrid::canSpan(map.macros, layout.bins.size() * heights))
+    if (!march::BrickGrid::canSpan(map.macros, layout.columns.size() * heights))
         throw UsageError(
             fmt::format("voxels of {:g} mm make {:.3g} blocks of 32 x 32 x 32, too many for the beads in them to be "
                         "laid out for rays; choose a larger voxel, or print parts that lie far apart one by one",

@@ -83,7 +83,7 @@ double PointDistance::at(const glm::dvec3& point) const {
     double least = reach_;
     Covers covers;
     bool covered = false;
-    for (const std::uint32_t rank : layout_.bins[*column]) {
+    for (const std::uint32_t rank : layout_.columns.bins()[*column]) {
         if (rank >= stack.first_direct) {
             const voxelize::Extent& extent = stack.extentOf(rank);
             if (point.z < extent.z_min - reach_ || point.z > extent.z_max + reach_) continue;

@@ -51,18 +51,18 @@ PrintLayout::PrintLayout(std::shared_ptr<const gcode::Toolpath> the_toolpath, st
       lattice(the_lattice),
       unit(the_unit),
       stack(voxelize::stackLayers(*toolpath, selection)),
-      bins(*toolpath, stack, lattice, availableMemory()),
+      columns(*toolpath, stack, lattice, unit, voxelize::LeafColumn::Kind::values, availableMemory()),
       reach(reachOf(stack, lattice)) {}
 
 std::optional<std::size_t> PrintLayout::columnOf(int i, int j) const {
     static_assert(kLeafDim == 8);
-    const std::size_t column = bins.find(i >> 3, j >> 3);
+    const std::size_t column = columns.bins().find(i >> 3, j >> 3);
     if (column == voxelize::PlanBins::kNone) return std::nullopt;
     return column;
 }
 
 std::size_t PrintLayout::bytes() const {
-    return bins.bytes() + stack.extents.capacity() * sizeof(voxelize::Extent) +
+    return columns.bins().bytes() + stack.extents.capacity() * sizeof(voxelize::Extent) +
            (stack.beads.capacity() + stack.layer.capacity()) * sizeof(std::uint32_t) +
            stack.layers.capacity() * sizeof(voxelize::Layer) + stack.welds.capacity() * sizeof(voxelize::Weld);
 }
@@ -80,7 +80,7 @@ voxelize::LeafContent LeafMaker::make(const openvdb::Coord& origin, std::uint32_
     const auto first = std::lower_bound(stack.layers.begin(), stack.layers.end(), z_min - layout_.reach, below);
     auto last = first;
     while (last != stack.layers.end() && last->center_z < z_max + layout_.reach) ++last;
-    const std::span<const std::uint32_t> all = layout_.bins[*column];
+    const std::span<const std::uint32_t> all = layout_.columns.bins()[*column];
     const std::uint32_t end_rank = stack.first_direct;
     const auto rankOf = [&](auto layer) { return layer != stack.layers.end() ? layer->first : end_rank; };
     const auto from = all.begin() + static_cast<std::ptrdiff_t>(firstNotBelow(all, rankOf(first), stack.beads.size()));

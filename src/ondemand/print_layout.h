@@ -1,11 +1,10 @@
-// Toolpath -> the data to sample the print anywhere (layers, bins), and the evaluation of single leaves.
+// Toolpath -> the data to sample the print anywhere, and the evaluation of single leaves.
 #pragma once
 
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/lattice.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <openvdb/openvdb.h>
 
@@ -31,7 +30,7 @@ struct PrintLayout {
     const voxelize::Lattice lattice;
     const double unit;
     const voxelize::LayerStack stack;
-    const voxelize::PlanBins bins;
+    const voxelize::PrintColumns columns;
     const double reach;  ///< mm: a layer's center plane affects leaves within this distance; of the thickest layer
 };
 
@@ -40,7 +39,9 @@ class LeafMaker {
 public:
     /// `layout` must outlive it. With `owners` its column records them.
     explicit LeafMaker(const PrintLayout& layout, bool owners = false)
-        : layout_(layout), column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit, owners) {}
+        : layout_(layout),
+          column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit,
+                  owners ? voxelize::LeafColumn::Kind::owners : voxelize::LeafColumn::Kind::values) {}
 
     /// Evaluates the leaf from this index-space coordinate, and optionally the plane above it, of the beads below index
     /// `end`. The values are column().planes().

@@ -4,13 +4,11 @@
 #include "base/human_text.h"
 #include "base/memory.h"
 #include "base/parallel_for.h"
+#include "base/progress_meter.h"
 #include "ondemand/print_layout.h"
 #include "voxelize/beads/bead_field.h"
-#include "voxelize/grid/progress_meter.h"
-#include "voxelize/leaf/leaf_column.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
@@ -36,14 +34,14 @@ public:
     }
 
     // The columns of samples from (i, j), a leaf's first, on.
-    void fill(voxelize::LeafColumn& column, int i, int j) {
+    void fill(int i, int j) {
         x0_ = std::max(i, box_.min()[0]);
         x1_ = std::min(i + kDim - 1, box_.max()[0]);
         y0_ = std::max(j, box_.min()[1]);
         y1_ = std::min(j + kDim - 1, box_.max()[1]);
         next_ = box_.min()[2];
         if (const auto bin = layout_.columnOf(i, j)) {
-            column.open(i, j, layout_.bins[*bin], std::numeric_limits<std::uint32_t>::max());
+            voxelize::LeafColumn& column = layout_.columns.open(*bin);
             for (const voxelize::LeafRange& range : column.touched())
                 for (int k = std::max(range.first, floorLeaf(box_.min()[2]));
                      k <= std::min(range.second, floorLeaf(box_.max()[2])); ++k)
@@ -143,19 +141,17 @@ void fillDense(const std::shared_ptr<const gcode::Toolpath>& toolpath, std::span
                const voxelize::Lattice& lattice, const openvdb::CoordBBox& box, float* values,
                const std::function<void(double)>& progress) {
     const ondemand::PrintLayout layout(toolpath, selection, lattice, 1);
-    tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
-        [&] { return voxelize::LeafColumn(*layout.toolpath, layout.stack, layout.lattice, layout.unit); });
     const int first_i = floorLeaf(box.min()[0]);
     const int first_j = floorLeaf(box.min()[1]);
     const int last_i = floorLeaf(box.max()[0]);
     const int last_j = floorLeaf(box.max()[1]);
     const std::size_t along_i = static_cast<std::size_t>(last_i) - static_cast<std::size_t>(first_i) + 1;
     const std::size_t along_j = static_cast<std::size_t>(last_j) - static_cast<std::size_t>(first_j) + 1;
-    voxelize::ProgressMeter meter(along_i * along_j, progress);
+    ProgressMeter meter(along_i * along_j, progress);
     parallelFor(along_i * along_j, 1, [&](std::size_t first, std::size_t last) {
         Pile pile(layout, box, values);
         for (std::size_t n = first; n < last; ++n)
-            pile.fill(columns.local(), (first_i + static_cast<int>(n / along_j)) * kDim,
+            pile.fill((first_i + static_cast<int>(n / along_j)) * kDim,
                       (first_j + static_cast<int>(n % along_j)) * kDim);
         meter.advance(last - first);
     });

@@ -4,7 +4,7 @@
 #include "python/long_call.h"
 
 #include "base/parallel_for.h"
-#include "voxelize/grid/progress_meter.h"
+#include "base/progress_meter.h"
 
 #include <pybind11/pybind11.h>
 
@@ -23,7 +23,7 @@ void forPoints(std::size_t count, const pybind11::object& progress, const Body& 
         return;
     }
     runLong(progress, [&](const Report& report) {
-        voxelize::ProgressMeter meter(count, report);
+        ProgressMeter meter(count, report);
         parallelFor(count, kFew, [&](std::size_t first, std::size_t last) {
             body(first, last);
             meter.advance(last - first);

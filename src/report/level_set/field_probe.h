@@ -47,7 +47,7 @@ public:
                                 static_cast<int>(std::lround((p.z - lattice_.origin_z) / lattice_.voxel_size)));
         if (tree_.getValue(at) < 0) return false;
         if (outside_ == nullptr) return true;
-        const LeafMap::Place place = map_.at(at.x() >> 3, at.y() >> 3, at.z() >> 3);
+        const LeafMap::Place place = map_.positions().at(at.x() >> 3, at.y() >> 3, at.z() >> 3);
         if (!place.leaf) return outside_->ofGap(place.index) == Air::outside;
         return outside_->at(place.index, at.x() & 7, at.y() & 7, at.z() & 7) == Air::outside;
     }

@@ -50,6 +50,8 @@ public:
     const voxelize::LeafMask& any(std::size_t leaf) const { return any_[leaf]; }
 
 private:
+    void findShown(const LeafMap& map, float clearance, int depth);
+
     std::vector<voxelize::LeafMask> shown_, any_;
     std::vector<std::uint8_t> gap_wide_, gap_any_;
 };

@@ -291,11 +291,10 @@ private:
 
 // The gaps of a column that are solid, or pores.
 void addGaps(const LeafMap& map, std::size_t c, const Outside* outside, SolidSums& sums) {
-    const std::size_t count = map.firstLeaf(c + 1) - map.firstLeaf(c);
-    for (std::size_t number = 1; number < count; ++number) {
-        const LeafMap::Range range = map.gapRange(c, number);
-        if (range.low == range.high) continue;
-        const std::size_t gap = map.firstGap(c) + number;
+    const voxelize::LeafPositions& positions = map.positions();
+    for (std::size_t number = 1; number < positions.intervalsOf(c).size(); ++number) {
+        const voxelize::LeafPositions::Range range = positions.gapRange(c, number);
+        const std::size_t gap = positions.firstGap(c) + number;
         const bool solid = map.gapInside(gap);
         const Air air = outside == nullptr ? Air::outside : outside->ofGap(gap);
         if (!solid && air == Air::outside) continue;
@@ -308,7 +307,8 @@ void addGaps(const LeafMap& map, std::size_t c, const Outside* outside, SolidSum
         whole.addWhole(kBits[0xff]);
         for (int k = range.low; k < range.high; ++k)
             for (int x = 0; x < 8; ++x)
-                for (int y = 0; y < 8; ++y) whole.addTo(sums, map.columnI(c) * 8 + x, map.columnJ(c) * 8 + y, k * 8);
+                for (int y = 0; y < 8; ++y)
+                    whole.addTo(sums, positions.columnI(c) * 8 + x, positions.columnJ(c) * 8 + y, k * 8);
     }
 }
 
@@ -340,7 +340,7 @@ SolidSums sumSolid(const LeafMap& map, float background, double voxel, const Out
     }
     sums.first_row = low * 8;
     sums.rows.resize(static_cast<std::size_t>(high - low + 1) * 8);
-    std::vector<SolidSums> parts(std::min(kParts, map.columnCount()));
+    std::vector<SolidSums> parts(std::min(kParts, map.positions().columnCount()));
     parallelFor(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p != end; ++p) {
             SolidSums& part = parts[p];

@@ -3,8 +3,7 @@
 #include "base/parallel_for.h"
 #include "report/plan/plan_bits.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -108,20 +107,17 @@ public:
           stack_(stack),
           pixels_(pixelsOf(lattice)),
           under_(underOf(stack)),
-          bins_(toolpath, stack, pixels_, std::numeric_limits<std::size_t>::max()),
-          bits_(bins_) {}
+          columns_(toolpath, stack, pixels_),
+          bits_(columns_.bins()) {}
 
     PlanContact run() {
         const std::size_t count = stack_.layers.size();
         Sums sums(count);
         {
             tbb::enumerable_thread_specific<Sums> threads([count] { return Sums(count); });
-            tbb::enumerable_thread_specific<voxelize::LeafColumn> columns(
-                [this] { return voxelize::LeafColumn(toolpath_, stack_, pixels_, 1); });
             tbb::enumerable_thread_specific<ColumnFields> fields([this] { return ColumnFields(stack_); });
-            parallelFor(bins_.size(), kPlanGrain, [&](std::size_t first, std::size_t last) {
-                for (std::size_t c = first; c != last; ++c)
-                    measureColumn(c, columns.local(), fields.local(), threads.local());
+            columns_.forEach(voxelize::PrintColumns::kAllBeads, [&](std::size_t c, voxelize::LeafColumn& column) {
+                measureColumn(c, column, fields.local(), threads.local());
             });
             for (const Sums& one : threads)
                 for (std::size_t n = 0; n < count; ++n) {
@@ -135,7 +131,6 @@ public:
 
 private:
     void measureColumn(std::size_t c, voxelize::LeafColumn& column, ColumnFields& fields, Sums& sums) {
-        column.open(bins_.originI(c), bins_.originJ(c), bins_[c], std::numeric_limits<std::uint32_t>::max());
         fields.clear();
         column.forEachField([&](std::uint32_t layer, const PlanField& d) {
             const bool in_outline = measureLayer(c, layer, d, fields, sums);
@@ -255,7 +250,7 @@ private:
     const voxelize::LayerStack& stack_;
     const voxelize::Lattice pixels_;
     const Under under_;
-    const voxelize::PlanBins bins_;
+    const voxelize::PrintColumns columns_;
     PlanBits bits_;
 };
 

@@ -58,6 +58,8 @@ public:
     std::span<const std::uint32_t> operator[](std::size_t column) const {
         return {ranks_.data() + offsets_[column], ranks_.data() + offsets_[column + 1]};
     }
+    /// By column.
+    std::span<const PlanIndex::Square> places() const { return places_; }
     /// In columns, from index 0.
     int columnI(std::size_t column) const { return places_[column].x; }
     int columnJ(std::size_t column) const { return places_[column].y; }

@@ -1,8 +1,6 @@
 #include "voxelize/grid/deposit_balance.h"
 
-#include "base/parallel_for.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 #include "voxelize/swell/open_top.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -15,7 +13,6 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::size_t kBalanceGrain = 16;
 // Integers, because their sum does not depend on the order of threads; mm^3.
 constexpr double kUnit = 1e-9;
 std::int64_t unitsOf(double volume) { return std::llround(volume / kUnit); }
@@ -145,16 +142,8 @@ template <typename Visit>
 void forEachOpenColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, std::uint32_t end,
                        const Visit& visit) {
     const Lattice lattice = measuringLattice();
-    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
-    tbb::enumerable_thread_specific<LeafColumn> columns(
-        [&] { return LeafColumn(toolpath, stack, lattice, LeafColumn::Points::spread); });
-    parallelFor(bins.size(), kBalanceGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = columns.local();
-        for (std::size_t c = first; c != last; ++c) {
-            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
-            visit(column);
-        }
-    });
+    const PrintColumns columns(toolpath, stack, lattice, 1, LeafColumn::Kind::spread);
+    columns.forEach(end, [&visit](std::size_t, LeafColumn& column) { visit(column); });
 }
 
 // What the open tops of a column hold more, mm times points.

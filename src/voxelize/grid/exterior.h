@@ -9,9 +9,7 @@
 // depth, are shown whatever their width: grooves, steps, the sides of layers.
 #pragma once
 
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
-#include "voxelize/leaf/leaf_positions.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -28,8 +26,7 @@ struct ExteriorCounts {
     std::size_t kept = 0;         ///< leaves
     std::size_t kept_voxels = 0;  ///< active ones
     int rounds = 0;
-    double flood_seconds = 0;     ///< thread time: masks and queues
-    double evaluate_seconds = 0;  ///< thread time: distances
+    double evaluate_seconds = 0;  ///< sum over the threads: distances
 };
 
 struct ExteriorRule {
@@ -54,13 +51,12 @@ using LeavesByColumn = std::vector<std::vector<std::unique_ptr<Leaf>>>;
 /// every other voxel is inside. Parallel; the result does not depend on the number of threads. The number of leaves is
 /// unknown in advance: `progress` gets the share of all positions reached so far, and 1 at the end; one thread at a
 /// time.
-ExteriorCounts buildReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, LeavesByColumn& leaves,
-                              const std::function<void(double)>& progress = {});
+ExteriorCounts buildReachable(const PrintColumns& columns, std::uint32_t end, const ExteriorRule& rule,
+                              LeavesByColumn& leaves, const std::function<void(double)>& progress = {});
 
 /// Counts what buildReachable would keep. Reads the values from the whole grid of the same beads, which must not change
 /// meanwhile, and evaluates no distance.
-ExteriorCounts countReachable(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const ExteriorRule& rule, const openvdb::FloatTree& whole);
+ExteriorCounts countReachable(const PrintColumns& columns, std::uint32_t end, const ExteriorRule& rule,
+                              const openvdb::FloatTree& whole);
 
 }  // namespace stratum::voxelize

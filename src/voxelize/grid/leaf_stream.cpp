@@ -1,10 +1,10 @@
 #include "voxelize/grid/leaf_stream.h"
 
 #include "base/parallel_for.h"
+#include "base/progress_meter.h"
 #include "voxelize/grid/cell_volume.h"
 #include "voxelize/grid/enclosed_volume.h"
 #include "voxelize/grid/leaf_blocks.h"
-#include "voxelize/grid/progress_meter.h"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +20,10 @@ constexpr std::size_t kBoundGrain = 16;  // columns
 // Makes the leaves of one block after the other.
 class Blocks {
 public:
-    Blocks(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end, const LeafBounds& bounds,
-           LeafReceiver& receiver, bool measure, std::size_t entries, const std::function<void(double)>& progress)
-        : bins_(bins),
-          columns_(columns),
+    Blocks(const PrintColumns& columns, std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver,
+           bool measure, std::size_t entries, const std::function<void(double)>& progress)
+        : columns_(columns),
+          bins_(columns.bins()),
           end_(end),
           bounds_(bounds),
           receiver_(receiver),
@@ -77,11 +77,9 @@ private:
     };
 
     void make(Column& to, const LeafRange& heights) {
-        LeafColumn& column = columns_();
-        const std::span<const std::uint32_t> ranks = bins_[to.bin];
+        LeafColumn& column = columns_.open(to.bin, end_);
         const int i = bins_.originI(to.bin);
         const int j = bins_.originJ(to.bin);
-        column.open(i, j, ranks, end_);
         std::array<float, Leaf::SIZE> values;
         std::array<std::uint64_t, 8> active;
         for (const LeafRange& range : column.touched())
@@ -98,7 +96,7 @@ private:
                 ++to.sampled;
                 to.sampled_voxels += insideOf(column.planes());
             }
-        if (bounds_.columns[to.bin].second <= heights.second) meter_.advance(ranks.size());
+        if (bounds_.columns[to.bin].second <= heights.second) meter_.advance(bins_[to.bin].size());
     }
 
     bool takes(std::size_t bin, int k) const {
@@ -119,8 +117,8 @@ private:
         return insideCells(samples, kOwn) * (kLeafDim * kLeafDim) / (kOwn * kOwn);
     }
 
+    const PrintColumns& columns_;
     const PlanBins& bins_;
-    const ColumnSource& columns_;
     const std::uint32_t end_;
     const LeafBounds& bounds_;
     LeafReceiver& receiver_;
@@ -133,7 +131,8 @@ private:
 
 }  // namespace
 
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights) {
+LeafBounds boundLeaves(const PrintColumns& columns, const LeafRange& heights) {
+    const PlanBins& bins = columns.bins();
     LeafBounds all;
     constexpr LeafRange kNone{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     if (bins.size() == 0) return all;
@@ -144,11 +143,10 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     all.columns.assign(bins.size(), kNone);
     std::atomic<std::size_t> leaves{0};
     parallelFor(bins.size(), kBoundGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = columns();
         std::size_t count = 0;
         for (std::size_t c = first; c != last; ++c) {
             const std::size_t block = bins.blockOf(c);
-            const std::span<const LeafRange> ranges = column.bounds(bins[c]);
+            const std::span<const LeafRange> ranges = columns.bounds(c);
             for (const LeafRange& slab : slabs)
                 for (const LeafRange& range : ranges) {
                     const std::size_t leaves_here = leavesIn(slab, range);
@@ -171,9 +169,9 @@ LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const 
     return all;
 }
 
-LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress) {
+LeafStreamReport streamLeaves(const PrintColumns& columns, std::uint32_t end, const LeafBounds& bounds,
+                              LeafReceiver& receiver, bool measure, const std::function<void(double)>& progress) {
+    const PlanBins& bins = columns.bins();
     if (bounds.leaves == 0) return {};
     std::size_t entries = 0;
     forEachBlock(bins, bounds.heights, [&](const LeafBlock& block) {
@@ -183,7 +181,7 @@ LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns,
                 entries += bins[bin].size();
         }
     });
-    Blocks blocks(bins, columns, end, bounds, receiver, measure, entries, progress);
+    Blocks blocks(columns, end, bounds, receiver, measure, entries, progress);
     forEachBlock(bins, bounds.heights, [&](const LeafBlock& block) { blocks.run(block); });
     return blocks.report();
 }

@@ -1,9 +1,8 @@
 // LayerStack -> leaves in the order of a .vdb file, without a grid.
 #pragma once
 
-#include "voxelize/beads/plan_bins.h"
 #include "voxelize/grid/leaf_receiver.h"
-#include "voxelize/leaf/leaf_positions.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +23,7 @@ struct LeafBounds : NodeBounds {
     std::vector<LeafRange> columns;  ///< by column of the bins; empty ones have first > second
 };
 /// Parallel. `heights`: of all beads.
-LeafBounds boundLeaves(const PlanBins& bins, const ColumnSource& columns, const LeafRange& heights);
+LeafBounds boundLeaves(const PrintColumns& columns, const LeafRange& heights);
 
 struct LeafStreamReport {
     std::size_t evaluated = 0;  ///< leaf positions
@@ -35,10 +34,8 @@ struct LeafStreamReport {
 
 /// Makes all leaves of the beads with an index in the toolpath below `end`, with the bits of Voxelizer::printUntil(),
 /// and gives them to `receiver`. Columns that reach into more than one of OpenVDB's upper nodes are opened once for
-/// each. Parallel; calls and their order do not depend
-/// on the number of threads.
-LeafStreamReport streamLeaves(const PlanBins& bins, const ColumnSource& columns, std::uint32_t end,
-                              const LeafBounds& bounds, LeafReceiver& receiver, bool measure,
-                              const std::function<void(double)>& progress);
+/// each. Parallel; calls and their order do not depend on the number of threads.
+LeafStreamReport streamLeaves(const PrintColumns& columns, std::uint32_t end, const LeafBounds& bounds,
+                              LeafReceiver& receiver, bool measure, const std::function<void(double)>& progress);
 
 }  // namespace stratum::voxelize

@@ -4,8 +4,7 @@
 #include "base/text.h"
 #include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -60,13 +59,12 @@ double estimateBytes(const gcode::Toolpath& toolpath, std::span<const std::uint3
         return leaves * finer * finer * kBytesPerLeaf * kFloodFactor + kBytesOfTree;
     }
     const LayerStack stack = stackLayers(toolpath, selection);
-    const PlanBins bins(toolpath, stack, lattice, std::numeric_limits<std::size_t>::max());
-    LeafColumn column(toolpath, stack, lattice, 1);
+    const PrintColumns columns(toolpath, stack, lattice);
     std::size_t leaves = 0;
-    for (std::size_t c = 0; c < bins.size(); ++c)
-        for (const LeafRange& range : column.bounds(bins[c]))
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        for (const LeafRange& range : columns.bounds(c))
             leaves += static_cast<std::size_t>(range.second - range.first) + 1;
-    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(bins.bytes()) + kBytesOfTree;
+    return static_cast<double>(leaves) * kBytesPerLeaf + static_cast<double>(columns.bins().bytes()) + kBytesOfTree;
 }
 
 int voxelsPerLayerWithin(double budget, const gcode::Toolpath& toolpath, std::span<const std::uint32_t> selection,

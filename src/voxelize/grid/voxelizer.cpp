@@ -2,18 +2,15 @@
 
 #include "base/error.h"
 #include "base/memory.h"
-#include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "voxelize/beads/estimate.h"
 #include "voxelize/beads/layer_stack.h"
-#include "voxelize/beads/plan_bins.h"
 #include "voxelize/grid/exterior.h"
-#include "voxelize/grid/progress_meter.h"
-#include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/print_columns.h"
 
 #include <fmt/format.h>
 #include <openvdb/tools/SignedFloodFill.h>
-#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -30,7 +27,6 @@ namespace {
 
 // With culling, in voxels: the masks cover only the neighbouring leaves.
 constexpr double kDeepestBand = 8;
-constexpr std::size_t kColumnGrain = 16;
 
 using Clock = std::chrono::steady_clock;
 
@@ -67,8 +63,7 @@ struct Voxelizer::State {
                                     kBytesPerActiveVoxel
                               : 0),
           stack(stackIfItFits(toolpath, selection, lattice, options, estimated_bytes)),
-          bins(toolpath, stack, lattice, memoryLimit(options)),
-          scratch([this] { return LeafColumn(toolpath, stack, lattice, options.placement.unit); }),
+          columns(toolpath, stack, lattice, options.placement.unit, LeafColumn::Kind::values, memoryLimit(options)),
           background(static_cast<float>(lattice.background() * options.placement.unit)),
           grid(emptyGrid()) {}
 
@@ -86,10 +81,7 @@ struct Voxelizer::State {
     ExteriorRule exteriorRule() const;
     LeafBounds bounds() {
         if (stack.beads.empty()) return {};
-        return boundLeaves(bins, columnSource(), leavesAround(lattice, stack));
-    }
-    ColumnSource columnSource() {
-        return [this]() -> LeafColumn& { return scratch.local(); };
+        return boundLeaves(columns, leavesAround(lattice, stack));
     }
 
     const gcode::Toolpath& toolpath;
@@ -97,8 +89,7 @@ struct Voxelizer::State {
     const VoxelizeOptions options;
     const double estimated_bytes;
     const LayerStack stack;
-    const PlanBins bins;
-    tbb::enumerable_thread_specific<LeafColumn> scratch;
+    const PrintColumns columns;
     const float background;
     openvdb::FloatGrid::Ptr grid;
     std::uint32_t printed = 0;
@@ -127,27 +118,22 @@ void Voxelizer::State::buildTouched(std::uint32_t end) {
         std::vector<std::unique_ptr<Leaf>> leaves;
         std::vector<openvdb::Coord> inside;
     };
-    std::vector<Built> built(bins.size());
+    std::vector<Built> built(columns.size());
     std::atomic<std::size_t> evaluated{0};
-    ProgressMeter meter(std::max<std::size_t>(bins.entryCount(), 1), options.progress);
-    parallelFor(bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = scratch.local();
+    const auto build = [&](std::size_t c, LeafColumn& column) {
         std::size_t count = 0;
-        for (std::size_t c = first; c != last; ++c) {
-            column.open(bins.originI(c), bins.originJ(c), bins[c], end);
-            for (const LeafRange& range : column.touched(printed))
-                for (int k = range.first; k <= range.second; ++k) {
-                    ++count;
-                    const LeafContent content = column.evaluate(k);
-                    if (content == LeafContent::surface)
-                        built[c].leaves.push_back(column.makeLeaf());
-                    else if (content == LeafContent::inside && printed > 0)
-                        built[c].inside.emplace_back(bins.originI(c), bins.originJ(c), k * kLeafDim);
-                }
-            meter.advance(bins[c].size());
-        }
+        for (const LeafRange& range : column.touched(printed))
+            for (int k = range.first; k <= range.second; ++k) {
+                ++count;
+                const LeafContent content = column.evaluate(k);
+                if (content == LeafContent::surface)
+                    built[c].leaves.push_back(column.makeLeaf());
+                else if (content == LeafContent::inside && printed > 0)
+                    built[c].inside.emplace_back(columns.bins().originI(c), columns.bins().originJ(c), k * kLeafDim);
+            }
         evaluated.fetch_add(count, std::memory_order_relaxed);
-    });
+    };
+    columns.forEach(end, build, options.progress);
     std::size_t made = 0;
     auto accessor = grid->getAccessor();
     for (Built& column : built) {
@@ -173,9 +159,9 @@ void Voxelizer::State::buildReached(std::uint32_t end) {
     const auto start = Clock::now();
     LeavesByColumn leaves;
     grid->tree().clear();
-    const ExteriorCounts counts = buildReachable(bins, columnSource(), end, exteriorRule(), leaves, options.progress);
-    const double share = counts.flood_seconds / (counts.flood_seconds + counts.evaluate_seconds + 1e-9);
-    report.exterior_seconds = share * secondsSince(start);
+    const ExteriorCounts counts = buildReachable(columns, end, exteriorRule(), leaves, options.progress);
+    const double evaluating = counts.evaluate_seconds / tbb::this_task_arena::max_concurrency();
+    report.exterior_seconds = std::max(secondsSince(start) - evaluating, 0.0);
     auto accessor = grid->getAccessor();
     for (auto& column : leaves)
         for (std::unique_ptr<Leaf>& leaf : column) accessor.addLeaf(leaf.release());
@@ -212,7 +198,7 @@ LeafBounds Voxelizer::leafBounds() const { return state_->bounds(); }
 LeafStreamReport Voxelizer::stream(std::uint32_t end, const LeafBounds& bounds, LeafReceiver& receiver, bool measure) {
     const auto start = Clock::now();
     const LeafStreamReport streamed =
-        streamLeaves(state_->bins, state_->columnSource(), end, bounds, receiver, measure, state_->options.progress);
+        streamLeaves(state_->columns, end, bounds, receiver, measure, state_->options.progress);
     state_->streamed = end;
     VoxelizeReport& report = state_->report;
     report.leaf_positions = report.leaves_evaluated = streamed.evaluated;
@@ -224,8 +210,7 @@ openvdb::FloatGrid::Ptr Voxelizer::emptyGrid() const { return state_->emptyGrid(
 
 CullForecast Voxelizer::forecastCull() const {
     State& s = *state_;
-    const ExteriorCounts counts =
-        countReachable(s.bins, s.columnSource(), s.printed, s.exteriorRule(), s.grid->constTree());
+    const ExteriorCounts counts = countReachable(s.columns, s.printed, s.exteriorRule(), s.grid->constTree());
     return {counts.kept, counts.kept_voxels};
 }
 
@@ -236,29 +221,22 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     const bool overfill = std::find(wanted.begin(), wanted.end(), Attribute::overfill) != wanted.end();
     const BeadAttributes values(s.toolpath, wanted,
                                 overfill ? overfillOfBeads(s.toolpath, s.stack) : std::vector<float>());
-    ProgressMeter meter(std::max<std::size_t>(s.bins.entryCount(), 1), s.options.progress);
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-    tbb::enumerable_thread_specific<LeafColumn> owning(
-        [&s] { return LeafColumn(s.toolpath, s.stack, s.lattice, s.options.placement.unit, true); });
-    parallelFor(s.bins.size(), kColumnGrain, [&](std::size_t first, std::size_t last) {
-        LeafColumn& column = owning.local();
+    const PrintColumns owning(s.columns, LeafColumn::Kind::owners);
+    const auto fill = [&](std::size_t c, LeafColumn& column) {
         std::array<std::uint32_t, Leaf::SIZE> owners{};
-        for (std::size_t c = first; c != last; ++c) {
-            column.open(s.bins.originI(c), s.bins.originJ(c), s.bins[c], s.printed);
-            for (const LeafRange& range : column.touched())
-                for (int k = range.first; k <= range.second; ++k) {
-                    const openvdb::Coord origin(s.bins.originI(c), s.bins.originJ(c), k * kLeafDim);
-                    if (s.grid->tree().probeConstLeaf(origin) == nullptr) continue;
-                    column.evaluate(k);
-                    column.owners(owners);
-                    for (std::uint32_t& owner : owners)
-                        if (owner != kNobody) owner = s.stack.beads[owner];
-                    for (std::size_t n = 0; n < wanted.size(); ++n)
-                        fillLeaf(*grids[n], wanted[n], origin, values, owners);
-                }
-            meter.advance(s.bins[c].size());
-        }
-    });
+        for (const LeafRange& range : column.touched())
+            for (int k = range.first; k <= range.second; ++k) {
+                const openvdb::Coord origin(owning.bins().originI(c), owning.bins().originJ(c), k * kLeafDim);
+                if (s.grid->tree().probeConstLeaf(origin) == nullptr) continue;
+                column.evaluate(k);
+                column.owners(owners);
+                for (std::uint32_t& owner : owners)
+                    if (owner != kNobody) owner = s.stack.beads[owner];
+                for (std::size_t n = 0; n < wanted.size(); ++n) fillLeaf(*grids[n], wanted[n], origin, values, owners);
+            }
+    };
+    owning.forEach(s.printed, fill, s.options.progress);
     return grids;
 }
 

@@ -16,6 +16,11 @@ double weldGap(double half_height) { return kWeldGap * 2 * half_height; }
 constexpr std::ptrdiff_t kMostFilling = 512;
 constexpr std::ptrdiff_t kMostPartners = 8;
 
+// Whether the points of the plan are not the samples of leaves.
+bool spreadOver(LeafColumn::Kind kind) {
+    return kind == LeafColumn::Kind::spread || kind == LeafColumn::Kind::spread_without_swell;
+}
+
 }  // namespace
 
 LeafRange leavesAround(const Lattice& lattice, double z_min, double z_max) {
@@ -39,34 +44,17 @@ LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack) {
 }
 
 LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
-                       bool owners)
+                       Kind kind)
     : toolpath_(toolpath),
       stack_(stack),
       lattice_(lattice),
       scale_(scale),
       band_(lattice.background()),
-      with_owners_(owners),
-      with_swell_(stack.swell != nullptr),
-      grid_(static_cast<float>(lattice.voxel_size * scale)),
-      half_extent_(0.5 * (kLeafDim - 1) * lattice.voxel_size) {
-    prepare();
-}
-
-LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, Points points)
-    : toolpath_(toolpath),
-      stack_(stack),
-      lattice_(lattice),
-      scale_(1),
-      band_(lattice.background()),
-      with_owners_(false),
-      with_swell_(stack.swell != nullptr && points == Points::spread),
-      grid_(ColumnGrid::spread(static_cast<float>(lattice.voxel_size))),
-      half_extent_(0.5 * (kLeafDim + 1) * lattice.voxel_size) {
-    prepare();
-}
-
-void LeafColumn::prepare() {
-    const LayerStack& stack = stack_;
+      with_owners_(kind == Kind::owners),
+      with_swell_(stack.swell != nullptr && kind != Kind::spread_without_swell),
+      grid_(spreadOver(kind) ? ColumnGrid::spread(static_cast<float>(lattice.voxel_size * scale))
+                             : ColumnGrid(static_cast<float>(lattice.voxel_size * scale))),
+      half_extent_(0.5 * (spreadOver(kind) ? kLeafDim + 1 : kLeafDim - 1) * lattice.voxel_size) {
     for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight() + layer.most_rise);
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];

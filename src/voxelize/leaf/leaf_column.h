@@ -12,6 +12,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -34,17 +35,24 @@ LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack);
 /// are kept in a window that moves up with the leaves, so memory is that of the layers that overlap one leaf.
 class LeafColumn {
 public:
-    /// `scale` is in world units a mm. The references must outlive the object. With `owners` the nearest bead of each
-    /// voxel is recorded as well; see owners().
+    enum class Kind : std::uint8_t {
+        values,                ///< of leaves
+        owners,                ///< and the nearest bead of each voxel; see owners()
+        spread,                ///< for measurements: plan fields at ColumnGrid::spread()
+        spread_without_swell,  ///< the same without what LayerStack::swell adds
+    };
+    /// `scale` is in world units a mm. The references must outlive the object.
     LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, double scale,
-               bool owners = false);
-    /// For measurements in mm: plan fields at ColumnGrid::spread(), with or without what LayerStack::swell adds.
-    enum class Points : std::uint8_t { spread, spread_without_swell };
-    LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack, const Lattice& lattice, Points points);
+               Kind kind = Kind::values);
 
     /// Opens the column whose first voxel is (i, j), reached by the beads of these ranks. Beads with an index in the
     /// toolpath of `end` or more are left out.
     void open(int i, int j, std::span<const std::uint32_t> ranks, std::uint32_t end);
+
+    /// Whether that column is open for the beads below `end`, and this leaf not below one that was evaluated.
+    bool mayEvaluate(int i, int j, std::uint32_t end, int leaf_k) const {
+        return i == i_ && j == j_ && end == end_ && leaf_k > leaf_k_;
+    }
 
     /// The leaves that the open column's beads from index `begin` on can touch: ascending and disjoint. Valid until the
     /// next call.
@@ -66,7 +74,7 @@ public:
     const LeafPlanes& planes() const { return phi_; }
 
     /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; of
-    /// equally near beads the earlier one. Only with `owners`, and only where a bead is within the band.
+    /// equally near beads the earlier one. Only of that kind, and only where a bead is within the band.
     void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
 
     /// World units a mm.
@@ -131,7 +139,6 @@ private:
         std::uint32_t rank;
     };
 
-    void prepare();
     double sampleZ(int k) const { return lattice_.origin_z + k * lattice_.voxel_size; }
     LeafRange leafRange(double z_min, double z_max) const { return leavesAround(lattice_, z_min, z_max); }
     void mergeRanges();
@@ -175,8 +182,9 @@ private:
     std::vector<std::size_t> weld_offsets_;  // CSR over stack_.welds by upper layer
 
     // The open column.
-    int i_ = 0, j_ = 0, leaf_k_ = 0;
-    double middle_x_ = 0, middle_y_ = 0;  // mm
+    int i_ = 0, j_ = 0;
+    int leaf_k_ = std::numeric_limits<int>::max();  // evaluated last; the largest before a column is open
+    double middle_x_ = 0, middle_y_ = 0;            // mm
     std::span<const std::uint32_t> ranks_;
     std::uint32_t end_ = 0;
     std::vector<ColumnLayer> column_layers_;

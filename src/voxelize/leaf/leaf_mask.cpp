@@ -133,22 +133,6 @@ LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, in
     return middleOf(reached, steps);
 }
 
-LeafMask dilateFaces(const Neighbourhood& around) {
-    const auto at = [&](int dx, int dy, int dz, std::size_t x) {
-        const LeafMask* mask = around[neighbourIndex(dx, dy, dz)];
-        return mask == nullptr ? std::uint64_t{0} : mask->word[x];
-    };
-    LeafMask out;
-    for (std::size_t x = 0; x < 8; ++x) {
-        const std::uint64_t own = at(0, 0, 0, x);
-        out.word[x] = own | (x > 0 ? at(0, 0, 0, x - 1) : at(-1, 0, 0, 7)) |
-                      (x < 7 ? at(0, 0, 0, x + 1) : at(1, 0, 0, 0)) | (own << 8) | (own >> 8) |
-                      (at(0, -1, 0, x) >> 56) | (at(0, 1, 0, x) << 56) | ((own & lowZ(1)) << 1) |
-                      ((own & highZ(1)) >> 1) | ((at(0, 0, -1, x) & highZ(7)) >> 7) | ((at(0, 0, 1, x) & lowZ(7)) << 7);
-    }
-    return out;
-}
-
 LeafMask floodWithin(const LeafMask& open, const LeafMask& seeds) {
     LeafMask reached;
     for (std::size_t x = 0; x < 8; ++x) reached.word[x] = seeds.word[x] & open.word[x];

@@ -44,9 +44,6 @@ LeafMask dilateBall(const Neighbourhood& around, double reach);
 /// corners through `open` (a geodesic dilation). Seeds count as reached, open or not.
 LeafMask spreadThrough(const Neighbourhood& open, const Neighbourhood& seeds, int steps);
 
-/// The middle leaf of the neighbourhood's dilation by the six face neighbours.
-LeafMask dilateFaces(const Neighbourhood& around);
-
 /// The bits of `open` that `seeds` reach through `open` over faces, inside one leaf. `seeds` outside `open` are
 /// dropped.
 LeafMask floodWithin(const LeafMask& open, const LeafMask& seeds);

@@ -302,7 +302,7 @@ Lattice cellLattice() {
 TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const PlanBins& bins, int x, int y) {
     static const ColumnSums kSums;
     const Lattice lattice = cellLattice();
-    LeafColumn column(toolpath, stack, lattice, LeafColumn::Points::spread_without_swell);
+    LeafColumn column(toolpath, stack, lattice, 1, LeafColumn::Kind::spread_without_swell);
     Layers layers;
     std::vector<std::uint32_t> ranks;
     std::vector<OpenTop> tops;

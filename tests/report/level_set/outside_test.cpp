@@ -104,7 +104,7 @@ TEST(Outside, AClosedPoreAndOneWithASlit) {
         const LeafMap map(grid);
         const Outside outside(map, 0.6, 1, 3);
         const auto at = [&](int x, int y, int z) {
-            const LeafMap::Place place = map.at(x >> 3, y >> 3, z >> 3);
+            const LeafMap::Place place = map.positions().at(x >> 3, y >> 3, z >> 3);
             EXPECT_TRUE(place.leaf);
             return outside.at(place.index, x & 7, y & 7, z & 7);
         };

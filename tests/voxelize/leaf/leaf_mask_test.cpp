@@ -91,15 +91,6 @@ TEST(LeafMask, AnyWithinLooksAsFarAsAsked) {
         }
 }
 
-TEST(LeafMask, BesidesIsAFaceAway) {
-    const Block block = randomBlock(0.02, 7);
-    const auto masks = block.masks();
-    expectMiddle(dilateFaces(pointersTo(masks)), [&](int x, int y, int z) {
-        return block.get(x, y, z) || block.get(x - 1, y, z) || block.get(x + 1, y, z) || block.get(x, y - 1, z) ||
-               block.get(x, y + 1, z) || block.get(x, y, z - 1) || block.get(x, y, z + 1);
-    });
-}
-
 TEST(LeafMask, SpreadThroughTakesThatManySteps) {
     for (const int steps : {1, 3, 4, 8}) {
         const Block open = randomBlock(0.2, 9);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <mutex>
 
-namespace stratum::voxelize {
+namespace stratum {
 
 /// Calls back at most once a percent, one thread at a time.
 class ProgressMeter {
@@ -27,4 +27,4 @@ private:
     std::mutex mutex_;
 };
 
-}  // namespace stratum::voxelize
+}  // namespace stratum
