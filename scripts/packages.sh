@@ -1,6 +1,7 @@
 # Sourced by the other scripts: installs Debian packages that are missing, and is quick when none is.
 
 # install_packages [--available] NAME...: with --available without those that this release of Debian does not have.
+# A|B: the one that the release has.
 install_packages() {
     local missing=() wanted=() name available=no
     if [[ "$1" == --available ]]; then
@@ -8,7 +9,7 @@ install_packages() {
         shift
     fi
     for name in "$@"; do
-        dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'ok installed' || missing+=("$name")
+        dpkg-query -W -f='${Status} ' ${name//|/ } 2>/dev/null | grep -q 'ok installed' || missing+=("$name")
     done
     [ ${#missing[@]} -eq 0 ] && return 0
     local run=()
@@ -18,6 +19,8 @@ install_packages() {
     fi
     "${run[@]}" apt-get update -q >/dev/null
     for name in "${missing[@]}"; do
+        [[ $name != *'|'* || -n "$(apt-cache madison "${name%%|*}")" ]] || name=${name#*|}
+        name=${name%%|*}
         if [[ $available == yes && -z "$(apt-cache madison "$name")" ]]; then
             echo "This release of Debian has no $name: the tests that need it are skipped."
         else
@@ -42,7 +45,7 @@ BUILD_PACKAGES=(clang lld ccache cmake ninja-build libopenvdb-dev libnanovdb-dev
 [[ ${STRATUM_CXX:-} != g++ ]] || BUILD_PACKAGES+=(g++)
 # What the tests need besides: the test library and the real programs that our files must work in. The daemons of Slurm
 # are started by their test, not as services of the machine. GCC compiles the programs of others that use our libraries.
-TEST_PACKAGES=(g++ admesh calculix-ccx ffmpeg lib3mf1 libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
+TEST_PACKAGES=(g++ admesh calculix-ccx ffmpeg 'lib3mf1|lib3mf1t64' libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
     prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium appstream desktop-file-utils
     shared-mime-info libxml2-utils mmdebstrap xvfb locales libgl1-mesa-dri)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.

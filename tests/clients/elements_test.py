@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 
-from run_tools import BIN, check, gcode, run, write_box
+from run_tools import BIN, check, gcode, run, skip_without, write_box
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_elements_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
@@ -110,6 +110,34 @@ def deflection(per_layer, *, elastic, along="z", width=WIDTH, off=0.0):
     return moved, theory, made
 
 
+# What no face joins is another piece; sets are those of the reader.
+_, made = elements(gcode("tile.gcode"), "one", "--voxel-size", "0.4", "--features", "+skirt,+perimeter,+external-perimeter")
+_, every = elements(gcode("tile.gcode"), "all", "--voxel-size", "0.4", "--features",
+                    "+skirt,+perimeter,+external-perimeter", "--all-pieces")
+check(made["pieces"] > 1 and made["elements"] + made["removed_elements"] == every["elements"],
+      f"the largest of {made['pieces']} pieces is kept, {made['removed_elements']} elements are left out and said")
+with open(os.path.join(FOLDER, "all.inp"), encoding="ascii") as file:
+    text = file.read()
+for name in ("LAYER_1", "FEATURE_EXTERNAL_PERIMETER", "FEATURE_PERIMETER", "TOOL_0"):
+    check(f"*ELSET, ELSET={name}," in text and f"*NSET, NSET={name}," in text, f"  {name}")
+
+# What can't be: a message, no file.
+old = write("old.inp", "by gcode2vdb 0.1: old")
+for options, words in ((["--max-nodes", "100"], "--voxel-size"), (["--elastic", "3500,0.7"], "stable"),
+                       (["--elastic", "1,2,3"], "nine"), (["--grids", "layer"], "sets of layers"), (["--unit", "m"], "mm, N"),
+                       (["--interior", "cull"], "solid"), (["--up", "y"], "as printed"), (["--usda"], "volume"),
+                       (["--snapshots", "50%"], "--layers"), (["--voxel-size", "0.001"], "--voxel-size")):
+    done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", old, *options], capture_output=True, text=True)
+    check(done.returncode == 2 and words in done.stderr, f"{' '.join(options)}: {done.stderr.strip().splitlines()[-1]}")
+with open(old, encoding="ascii") as file:
+    check(file.read() == "by gcode2vdb 0.1: old", "the old file stays")
+done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", os.path.join(FOLDER, "a.vdb"), "--elastic", "3500"],
+                      capture_output=True, text=True)
+check(done.returncode == 2 and ".inp" in done.stderr, "--elastic is for elements")
+
+# What CalculiX computes of them.
+skip_without(("ccx", "prusa-slicer"))
+
 errors = {}
 for per_layer in (1, 2, 3):
     moved, theory, made = deflection(per_layer, elastic=f"{YOUNG},{POISSON}")
@@ -189,28 +217,3 @@ check(all(modulus <= 1.02 * share for share, modulus, _ in steps), "and stays be
 (low_share, low, _), (high_share, high, _) = steps[0], steps[-1]
 exponent = math.log(high / low) / math.log(high_share / low_share)
 check(1 <= exponent <= 3, f"as share^{exponent:.2f}, between 1 and 3")
-
-# What no face joins is another piece; sets are those of the reader.
-_, made = elements(gcode("tile.gcode"), "one", "--voxel-size", "0.4", "--features", "+skirt,+perimeter,+external-perimeter")
-_, every = elements(gcode("tile.gcode"), "all", "--voxel-size", "0.4", "--features",
-                    "+skirt,+perimeter,+external-perimeter", "--all-pieces")
-check(made["pieces"] > 1 and made["elements"] + made["removed_elements"] == every["elements"],
-      f"the largest of {made['pieces']} pieces is kept, {made['removed_elements']} elements are left out and said")
-with open(os.path.join(FOLDER, "all.inp"), encoding="ascii") as file:
-    text = file.read()
-for name in ("LAYER_1", "FEATURE_EXTERNAL_PERIMETER", "FEATURE_PERIMETER", "TOOL_0"):
-    check(f"*ELSET, ELSET={name}," in text and f"*NSET, NSET={name}," in text, f"  {name}")
-
-# What can't be: a message, no file.
-old = write("old.inp", "by gcode2vdb 0.1: old")
-for options, words in ((["--max-nodes", "100"], "--voxel-size"), (["--elastic", "3500,0.7"], "stable"),
-                       (["--elastic", "1,2,3"], "nine"), (["--grids", "layer"], "sets of layers"), (["--unit", "m"], "mm, N"),
-                       (["--interior", "cull"], "solid"), (["--up", "y"], "as printed"), (["--usda"], "volume"),
-                       (["--snapshots", "50%"], "--layers"), (["--voxel-size", "0.001"], "--voxel-size")):
-    done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", old, *options], capture_output=True, text=True)
-    check(done.returncode == 2 and words in done.stderr, f"{' '.join(options)}: {done.stderr.strip().splitlines()[-1]}")
-with open(old, encoding="ascii") as file:
-    check(file.read() == "by gcode2vdb 0.1: old", "the old file stays")
-done = subprocess.run([GCODE2VDB, gcode("tile.gcode"), "-o", os.path.join(FOLDER, "a.vdb"), "--elastic", "3500"],
-                      capture_output=True, text=True)
-check(done.returncode == 2 and ".inp" in done.stderr, "--elastic is for elements")

@@ -75,6 +75,8 @@ public:
         zip_stat_t status;
         zip_stat_init(&status);
         zip_stat_index(archive_.get(), index, 0, &status);
+        // What stays the same is not written again: versions of libzip give such entries other flags.
+        if (holds(index, status, contents)) return;
         const std::string& kept = contents_.emplace_back(std::move(contents));
         zip_source_t* source = zip_source_buffer(archive_.get(), kept.data(), kept.size(), 0);
         if (source == nullptr) throw std::bad_alloc();
@@ -102,6 +104,15 @@ public:
     }
 
 private:
+    bool holds(zip_uint64_t index, const zip_stat_t& status, const std::string& contents) const {
+        if ((status.valid & ZIP_STAT_SIZE) == 0 || status.size != contents.size()) return false;
+        const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(zip_fopen_index(archive_.get(), index, 0),
+                                                                      &zip_fclose);
+        std::string held(contents.size(), '\0');
+        return file != nullptr &&
+               zip_fread(file.get(), held.data(), held.size()) == static_cast<zip_int64_t>(held.size()) &&
+               held == contents;
+    }
     [[noreturn]] void fail(std::string_view why) const {
         throw InputError(fmt::format("{}: its pictures can't be replaced ({}); export it again", name_, why));
     }
