@@ -1,6 +1,6 @@
 #include "deposit/bead_cutter.h"
 
-#include "deposit/bead_path.h"
+#include "gcode/toolpath/plan_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ gcode::PlanPoint onPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead
     if (fraction <= 0) return {bead.x0, bead.y0};
     if (fraction >= 1) return {bead.x1, bead.y1};
     if (bead.arc >= 0) {
-        const BeadPath path(toolpath, bead);
+        const gcode::PlanPath path(toolpath, bead);
         return path.at(fraction * path.length());
     }
     return {std::lerp(double{bead.x0}, double{bead.x1}, fraction),

@@ -111,7 +111,7 @@ void BeadSupport::setGrid() {
     for (std::size_t n = 0; n < level_.size(); ++n) {
         if (!level_[n]) continue;
         const gcode::Bead& bead = toolpath_.beads[n];
-        const BeadPath path(toolpath_, bead);
+        const gcode::PlanPath path(toolpath_, bead);
         const double side = path.straight() ? 0 : 2 * path.radius();  // as far as an arc can be from its ends
         min_x = std::min(min_x, std::min<double>(bead.x0, bead.x1) - side);
         min_y = std::min(min_y, std::min<double>(bead.y0, bead.y1) - side);
@@ -132,7 +132,7 @@ void BeadSupport::setGrid() {
 // the place between them is within its own bead's half of it from both, so they share that cell.
 template <typename Visit>
 void BeadSupport::visitCells(const gcode::Bead& bead, const Visit& visit) const {
-    const BeadPath path(toolpath_, bead);
+    const gcode::PlanPath path(toolpath_, bead);
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(path.turn()) / kChordTurn)));
     const double off_chord = path.radius() * (1 - std::cos(0.5 * path.turn() / chords));
     const double side = kBeside * 0.5 * static_cast<double>(bead.width) + off_chord + kTouchingRounding;
@@ -224,7 +224,7 @@ bool BeadSupport::gather(std::uint32_t bead, double lowest, double highest, cons
 
 // Appends what the candidates give, until that is the whole path. append(candidate) returns the distances it took.
 template <typename Append>
-void BeadSupport::unite(const BeadPath& path, const std::vector<std::uint32_t>& candidates,
+void BeadSupport::unite(const gcode::PlanPath& path, const std::vector<std::uint32_t>& candidates,
                         std::vector<PathPart>& parts, const Append& append) {
     std::size_t distances = 0;
     std::size_t merge_at = parts.size() + kMergedAfter;
@@ -249,7 +249,7 @@ void BeadSupport::unite(const BeadPath& path, const std::vector<std::uint32_t>& 
 
 void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const {
     const gcode::Bead& upper = toolpath_.beads[bead];
-    const BeadPath path(toolpath_, upper);
+    const gcode::PlanPath path(toolpath_, upper);
     const double height = static_cast<double>(toolpath_.runOf(upper).height);
     const double lowest = upper.z0 - height - std::max(kSupportClearance, touching(height));
     const auto carries = [&](std::uint32_t lower) { return below(toolpath_.beads[lower], upper); };
@@ -259,7 +259,7 @@ void BeadSupport::searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, 
     }
     unite(path, search.candidates, parts, [&](std::uint32_t n) {
         const gcode::Bead& lower = toolpath_.beads[n];
-        return path.partsNear(BeadPath(toolpath_, lower), reach(lower, upper), parts);
+        return partsNear(path, gcode::PlanPath(toolpath_, lower), reach(lower, upper), parts);
     });
 }
 
@@ -278,7 +278,7 @@ void BeadSupport::searchBelowAll() {
             std::vector<PathPart>& kept = below_parts_[bead / kSearchBlock];
             if (parts.empty()) {
                 below_[bead] = kNone;
-            } else if (covers(parts, BeadPath(toolpath_, toolpath_.beads[bead]).length())) {
+            } else if (covers(parts, gcode::PlanPath(toolpath_, toolpath_.beads[bead]).length())) {
                 below_[bead] = kWhole;
             } else {
                 below_[bead] = static_cast<std::uint32_t>(kept.size());
@@ -294,7 +294,7 @@ void BeadSupport::fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) co
     const std::uint32_t found = below_[bead];
     if (found == kNone) return;
     if (found == kWhole) {
-        parts.push_back({0, BeadPath(toolpath_, toolpath_.beads[bead]).length()});
+        parts.push_back({0, gcode::PlanPath(toolpath_, toolpath_.beads[bead]).length()});
         return;
     }
     for (auto part = below_parts_[bead / kSearchBlock].begin() + found; part->from <= part->to; ++part)
@@ -304,7 +304,7 @@ void BeadSupport::fromBelow(std::uint32_t bead, std::vector<PathPart>& parts) co
 void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const {
     fromBelow(bead, parts);
     const gcode::Bead& middle = toolpath_.beads[bead];
-    const BeadPath path(toolpath_, middle);
+    const gcode::PlanPath path(toolpath_, middle);
     if (covers(parts, path.length())) return;
     const auto neighbours = [&](std::uint32_t n) { return n != bead && holds(toolpath_.beads[n], middle); };
     if (!gather(bead, middle.z0 - kTouchingRounding, middle.z0 + kTouchingRounding, neighbours, search)) {
@@ -316,7 +316,8 @@ void BeadSupport::find(std::uint32_t bead, std::vector<PathPart>& parts, Search&
         std::size_t distances = 0;
         const gcode::Bead& neighbour = toolpath_.beads[n];
         for (const PathPart& held : search.neighbour_parts)
-            distances += path.partsBeside(BeadPath(toolpath_, neighbour), held, reachBeside(neighbour, middle), parts);
+            distances +=
+                partsBeside(path, gcode::PlanPath(toolpath_, neighbour), held, reachBeside(neighbour, middle), parts);
         return distances;
     });
 }

@@ -1,7 +1,7 @@
 // Which parts of a level bead have plastic or the bed below them, or lie beside a bead that has.
 #pragma once
 
-#include "deposit/bead_path.h"
+#include "deposit/path_parts.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <cstdint>
@@ -60,7 +60,7 @@ public:
     bool level(std::uint32_t bead) const { return level_[bead]; }
 
     /// `parts`: the supported parts of a level bead, ascending and apart, in mm of its path: those of fromBelow(), and
-    /// those beside (BeadPath::partsBeside) a bead that has support from below there, for the outer line of an
+    /// those beside (partsBeside) a bead that has support from below there, for the outer line of an
     /// overhanging wall is glued to the inner one. This goes one bead far, so that bridges hang: their lines next to a
     /// supported perimeter are held along it, but hold no others. Print order and features make no difference.
     void find(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const;
@@ -96,8 +96,8 @@ private:
     template <typename Accept>
     bool gather(std::uint32_t bead, double lowest, double highest, const Accept& accept, Search& search) const;
     template <typename Append>
-    static void unite(const BeadPath& path, const std::vector<std::uint32_t>& candidates, std::vector<PathPart>& parts,
-                      const Append& append);
+    static void unite(const gcode::PlanPath& path, const std::vector<std::uint32_t>& candidates,
+                      std::vector<PathPart>& parts, const Append& append);
     void searchBelow(std::uint32_t bead, std::vector<PathPart>& parts, Search& search) const;
     void searchBelowAll();
 

@@ -1,8 +1,8 @@
 #include "deposit/hanging_spans.h"
 
 #include "base/parallel_for.h"
-#include "deposit/bead_path.h"
 #include "deposit/bead_support.h"
+#include "gcode/toolpath/plan_path.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <algorithm>
@@ -122,7 +122,7 @@ void findSpans(const gcode::Toolpath& toolpath, const BeadSupport& support, std:
         chain.clear(static_cast<std::uint32_t>(begin));
         for (std::size_t n = begin; n == begin || follows(n); ++n) {
             support.find(static_cast<std::uint32_t>(n), parts, search);
-            chain.add(BeadPath(toolpath, toolpath.beads[n]).length(), parts);
+            chain.add(gcode::PlanPath(toolpath, toolpath.beads[n]).length(), parts);
         }
         chain.collect(hanging);
     }

@@ -1,6 +1,6 @@
 #include "deposit/sag.h"
 
-#include "deposit/bead_path.h"
+#include "gcode/toolpath/plan_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ void Sag::lay(const BeadPiece& piece, BeadCutter& cutter) {
         return;
     }
     source_ = piece;
-    length_ = BeadPath(toolpath_, toolpath_.beads[piece.bead]).length();
+    length_ = gcode::PlanPath(toolpath_, toolpath_.beads[piece.bead]).length();
     pieces_.clear();
     weights_.clear();
     const double begin = piece.from * length_;

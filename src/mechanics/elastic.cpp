@@ -1,7 +1,7 @@
 #include "mechanics/elastic.h"
 
 #include "base/error.h"
-#include "base/split.h"
+#include "base/text.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,21 +13,12 @@
 namespace stratum::ondemand {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double lap(Clock::time_point& last) {
-    const auto now = Clock::now();
-    const double seconds = std::chrono::duration<double>(now - last).count();
-    last = now;
-    return seconds;
-}
-
 // Distances to beads change by at most the way, and so does their least one. Around it there is no more than the gap
 // that a weld closes and rounding. Filled grooves, ends that widen and helices have other fields.
 double signSlackOf(const PrintLayout& layout) {
     const gcode::Toolpath& toolpath = *layout.toolpath;
     const auto other = [&toolpath](const gcode::Bead& bead) {
-        return gcode::widening(toolpath, bead) != 0 || (voxelize::curved(toolpath, bead) && bead.z0 != bead.z1);
+        return gcode::widening(toolpath, bead) != 0 || (bead.arc >= 0 && bead.z0 != bead.z1);
     };
     if (toolpath.deposit.settles() || std::any_of(toolpath.beads.begin(), toolpath.beads.end(), other))
         return std::numeric_limits<double>::infinity();
@@ -59,12 +49,11 @@ PrintField::PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::spa
       sign_slack_(signSlackOf(layout_)),
       name_(std::move(name)),
       threads_(std::make_unique<Threads>(layout_)) {
-    auto last = start_;
-    times_.bins = lap(last);
+    times_.bins = watch_.lap();
     active_ = findActiveBox(layout_);
-    times_.box = lap(last);
+    times_.box = watch_.lap();
     map_ = mapBricks(layout_, active_);
-    times_.map = lap(last);
+    times_.map = watch_.lap();
 }
 
 PrintField::~PrintField() = default;

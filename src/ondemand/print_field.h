@@ -1,13 +1,13 @@
 // Toolpath -> a level set that is sampled on demand, for pictures without a grid.
 #pragma once
 
+#include "base/stopwatch.h"
 #include "gcode/toolpath/toolpath.h"
 #include "march/file/leaf_field.h"
 #include "ondemand/brick_map.h"
 #include "ondemand/print_layout.h"
 #include "voxelize/beads/placement.h"
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -60,7 +60,7 @@ private:
     struct Threads;
 
     const openvdb::math::Transform::Ptr transform_;
-    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    Stopwatch watch_;
     PrintFieldTimes times_;
     const PrintLayout layout_;
     const float background_;

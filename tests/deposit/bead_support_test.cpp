@@ -68,7 +68,7 @@ double slowBeyondBelow(const gcode::Toolpath& toolpath, const BeadSupport& suppo
 double slowBeyondBeside(const gcode::Toolpath& toolpath, const BeadSupport& support, std::uint32_t n, double s,
                         bool& arcs) {
     const gcode::Bead& bead = toolpath.beads[n];
-    const BeadPath path(toolpath, bead);
+    const gcode::PlanPath path(toolpath, bead);
     const gcode::PlanPoint place = path.at(s);
     const gcode::PlanPoint before = path.at(s - 1e-5);
     const gcode::PlanPoint after = path.at(s + 1e-5);
@@ -173,7 +173,7 @@ TEST(BeadSupport, AgreesWithBruteForce) {
             const gcode::Bead& upper = toolpath.beads[n];
             support.find(n, all, search);
             support.fromBelow(n, below);
-            const BeadPath path(toolpath, upper);
+            const gcode::PlanPath path(toolpath, upper);
             expectApart(below, path.length());
             expectApart(all, path.length());
             constexpr int kPlaces = 40;
@@ -206,11 +206,11 @@ TEST(BeadSupport, EndsOfPartsAreAtTheReach) {
     int ends = 0;
     for (const gcode::Bead& upper : toolpath.beads) {
         for (const gcode::Bead& lower : toolpath.beads) {
-            const BeadPath path(toolpath, upper);
-            const BeadPath other(toolpath, lower);
+            const gcode::PlanPath path(toolpath, upper);
+            const gcode::PlanPath other(toolpath, lower);
             const double reach = BeadSupport::reach(lower, upper);
             parts.clear();
-            path.partsNear(other, reach, parts);
+            partsNear(path, other, reach, parts);
             for (const PathPart& part : parts)
                 for (const double end : {part.from, part.to}) {
                     const gcode::PlanPoint place = path.at(end);

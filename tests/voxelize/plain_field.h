@@ -25,7 +25,7 @@ public:
             const voxelize::Layer& layer = stack_.layers[l];
             for (std::uint32_t rank = layer.first; rank < layer.last; ++rank) {
                 const std::uint32_t bead = stack_.beads[rank];
-                const double rho = voxelize::PlanPath(toolpath_, toolpath_.beads[bead]).distance(x, y);
+                const double rho = gcode::PlanPath(toolpath_, toolpath_.beads[bead]).distance(x, y);
                 d[l] = std::min(d[l], rho - (toolpath_.beads[bead].width / 2 - layer.radius));
             }
             phi = std::min(phi, std::hypot(std::max(d[l], 0.0), z - layer.center_z) - layer.radius);

@@ -1,6 +1,6 @@
 #include "convert/model_comparison.h"
 
-#include "base/split.h"
+#include "base/text.h"
 #include "choices.h"
 #include "progress.h"
 

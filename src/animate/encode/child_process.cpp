@@ -1,7 +1,7 @@
 #include "animate/encode/child_process.h"
 
 #include "base/error.h"
-#include "base/split.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 

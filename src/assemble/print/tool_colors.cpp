@@ -1,7 +1,6 @@
 #include "assemble/print/tool_colors.h"
 
 #include "base/error.h"
-#include "base/split.h"
 #include "base/text.h"
 #include "shade/palette/color_name.h"
 

@@ -2,16 +2,12 @@
 // Sources: NIST RS274/NGC 3.5.3; Marlin G2_G3.cpp (which of the two centers R means).
 #pragma once
 
+#include "gcode/toolpath/plan_path.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <optional>
 
 namespace stratum::gcode {
-
-struct PlanPoint {
-    double x = 0;  ///< mm
-    double y = 0;  ///< mm
-};
 
 /// Largest distance of the end from the circle: this share of the radius, or this many mm if that is more. Slicers
 /// write three decimals; an arc with a larger error is damaged or not an arc.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 #include <utility>
+#include "gcode/toolpath/plan_path.h"
 
 namespace stratum::gcode {
 namespace {
@@ -122,23 +123,14 @@ private:
     // Calls visit() for the cells along a bead.
     template <typename Visit>
     void alongBead(std::uint32_t index, const Visit& visit) const {
-        const Bead& bead = toolpath_.beads[index];
-        const double length = std::min(beadLength(toolpath_, bead), 1e5);
+        const PlanPath path(toolpath_, toolpath_.beads[index]);
+        const double length = std::min(beadLength(toolpath_, toolpath_.beads[index]), 1e5);
         const int steps = std::max(1, static_cast<int>(std::ceil(length / (0.5 * cell_))));
         PlanCell last;
         for (int n = 0; n <= steps; ++n) {
-            const double t = static_cast<double>(n) / steps;
-            double x = bead.x0 + t * (bead.x1 - bead.x0);
-            double y = bead.y0 + t * (bead.y1 - bead.y0);
-            if (bead.arc >= 0) {
-                const Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
-                const double dx = bead.x0 - arc.center_x;
-                const double dy = bead.y0 - arc.center_y;
-                x = arc.center_x + std::cos(t * arc.sweep) * dx - std::sin(t * arc.sweep) * dy;
-                y = arc.center_y + std::sin(t * arc.sweep) * dx + std::cos(t * arc.sweep) * dy;
-            }
-            const PlanCell cell{static_cast<std::int32_t>(std::floor(std::clamp(x / cell_, -1e9, 1e9))),
-                                static_cast<std::int32_t>(std::floor(std::clamp(y / cell_, -1e9, 1e9)))};
+            const PlanPoint place = path.at(path.length() * n / steps);
+            const PlanCell cell{static_cast<std::int32_t>(std::floor(std::clamp(place.x / cell_, -1e9, 1e9))),
+                                static_cast<std::int32_t>(std::floor(std::clamp(place.y / cell_, -1e9, 1e9)))};
             if (n == 0 || cell.key() != last.key()) visit(cell);
             last = cell;
         }

@@ -1,5 +1,7 @@
 #include "gcode/toolpath/toolpath.h"
 
+#include "gcode/toolpath/plan_path.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -39,29 +41,15 @@ Feature featureNamed(std::string_view name) {
 }
 
 double beadLength(const Toolpath& toolpath, const Bead& bead) {
-    double plan = 0;
-    if (bead.arc < 0) {
-        plan = std::hypot(bead.x1 - bead.x0, bead.y1 - bead.y0);
-    } else {
-        const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-        const double radius = 0.5 * (std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y) +
-                                     std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y));
-        plan = radius * std::abs(arc.sweep);
-    }
+    const double plan = PlanPath(toolpath, bead).length();
     const double rise = bead.z1 - bead.z0;
     return rise == 0 ? plan : std::hypot(plan, rise);
 }
 
 PathDirection pathDirection(const Toolpath& toolpath, const Bead& bead, double x, double y) {
-    const double climb = bead.z1 - bead.z0;
-    if (bead.arc < 0) return {bead.x1 - bead.x0, bead.y1 - bead.y0, climb};
-    const Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-    const double away_x = x - arc.center_x;
-    const double away_y = y - arc.center_y;
-    const double away = std::hypot(away_x, away_y);
-    if (!(away > 0)) return {0, 0, climb};
-    const double plan = arc.sweep * std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y);
-    return {-away_y / away * plan, away_x / away * plan, climb};
+    const PlanPath path(toolpath, bead);
+    const PlanPoint plan = path.direction(path.nearest(x, y));
+    return {path.length() * plan.x, path.length() * plan.y, bead.z1 - bead.z0};
 }
 
 double beadSeconds(const Toolpath& toolpath, const Bead& bead) {

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
-#include "base/split.h"
+#include "base/text.h"
 #include "shade/frame.h"
 
 #include <fmt/format.h>

@@ -7,6 +7,7 @@
 //     phi(p) = hypot(max(d, 0), max(|z - z_c| - a, 0)) + min(max(d, |z - z_c| - a), 0) - r,     d = rho - c
 #pragma once
 
+#include "gcode/toolpath/plan_path.h"
 #include "gcode/toolpath/toolpath.h"
 
 #include <algorithm>
@@ -29,44 +30,6 @@ struct Bounds {
     }
     double extent(int axis) const { return max[axis] - min[axis]; }
     double center(int axis) const { return 0.5 * (min[axis] + max[axis]); }
-};
-
-/// A bead's path in the plan: a line segment or a circular arc. Distances are closed form; arcs are not tessellated.
-class PlanPath {
-public:
-    PlanPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
-
-    /// Distance in mm from (x, y) to the path.
-    double distance(double x, double y) const {
-        if (radius_ > 0) return arcDistance(x, y);
-        const double px = x - x0_;
-        const double py = y - y0_;
-        const double t = std::clamp((px * dx_ + py * dy_) * inverse_length2_, 0.0, 1.0);
-        const double qx = px - t * dx_;
-        const double qy = py - t * dy_;
-        return std::sqrt(qx * qx + qy * qy);
-    }
-
-    /// Fraction 0..1 along the path of the point nearest to (x, y).
-    double parameter(double x, double y) const;
-
-    /// Length in the plane, mm.
-    double length() const { return length_; }
-
-    /// Extent of the center line in x and y, mm; the z members are not set.
-    void bounds(double (&min)[2], double (&max)[2]) const;
-
-private:
-    bool withinSweep(double vx, double vy) const;
-    double arcDistance(double x, double y) const;
-
-    double x0_, y0_, x1_, y1_;
-    double dx_, dy_;          // chord
-    double inverse_length2_;  // 0 for a point: then every t is 0
-    double length_;
-    // Arc only; radius_ == 0 marks a straight path.
-    double center_x_ = 0, center_y_ = 0, radius_ = 0, sweep_ = 0;
-    double start_x_ = 0, start_y_ = 0, end_x_ = 0, end_y_ = 0;  // unit directions from the center
 };
 
 /// Cross-section of a bead: the flats reach half_flat to each side of the path, the corners have `radius`, the straight
@@ -117,7 +80,7 @@ public:
     /// Box of the solid, mm.
     Bounds bounds() const;
 
-    const PlanPath& path() const { return path_; }
+    const gcode::PlanPath& path() const { return path_; }
     /// Distance in the plan to the flat, mm: negative over it.
     double planOffset(double x, double y) const;
     /// The mean, if the bead widens.
@@ -134,7 +97,7 @@ public:
     double reach() const { return reach_; }
 
 private:
-    PlanPath path_;
+    gcode::PlanPath path_;
     double half_flat_, radius_, half_side_;
     EndFlats flats_;
     double x0_, y0_, dx_, dy_;  // mm, center line in the plane

@@ -103,7 +103,7 @@ public:
     ColumnRange range(const gcode::Bead& bead, double limit) const {
         double min[2] = {std::min(bead.x0, bead.x1), std::min(bead.y0, bead.y1)};
         double max[2] = {std::max(bead.x0, bead.x1), std::max(bead.y0, bead.y1)};
-        if (bead.arc >= 0) PlanPath(toolpath_, bead).bounds(min, max);
+        if (bead.arc >= 0) gcode::PlanPath(toolpath_, bead).bounds(min, max);
         return {first(min[0] - limit), last(max[0] + limit), first(min[1] - limit), last(max[1] + limit)};
     }
 
@@ -113,7 +113,7 @@ public:
         const double reach = limit(bead);
         const ColumnRange columns = range(bead, reach);
         if (bead.arc >= 0) {
-            const PlanPath path(toolpath_, bead);
+            const gcode::PlanPath path(toolpath_, bead);
             for (int j = columns.j0; j <= columns.j1; ++j)
                 forEachNearRing(bead, reach, columns, j, [&](int i) {
                     if (path.distance(i * edge_ + half_, j * edge_ + half_) <= reach) visit(i, i, j);

@@ -6,11 +6,10 @@
 
 namespace stratum::voxelize {
 
-bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
-    if (bead.arc < 0) return false;
-    const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-    return std::hypot(bead.x0 - arc.center_x, bead.y0 - arc.center_y) > 0 &&
-           std::hypot(bead.x1 - arc.center_x, bead.y1 - arc.center_y) > 0;
+std::optional<gcode::PlanPath> arcOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
+    if (bead.arc < 0) return std::nullopt;
+    const gcode::PlanPath path(toolpath, bead);
+    return path.straight() ? std::nullopt : std::optional(path);
 }
 
 LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double y, double half_extent, double scale) {
@@ -54,23 +53,14 @@ LocalTaper localTaper(const gcode::Bead& bead, const EndFlats& flats, double x, 
     return taper;
 }
 
-LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_flat, double x, double y,
-                  double half_extent, double scale) {
-    const double from_x = bead.x0 - arc.center_x;
-    const double from_y = bead.y0 - arc.center_y;
-    const double to_x = bead.x1 - arc.center_x;
-    const double to_y = bead.y1 - arc.center_y;
-    const double from = std::hypot(from_x, from_y);
-    const double to = std::hypot(to_x, to_y);
-    const double radius = 0.5 * (from + to);
-    const double vx = x - arc.center_x;
-    const double vy = y - arc.center_y;
+LocalArc localArc(const gcode::PlanPath& path, double half_flat, double x, double y, double half_extent, double scale) {
+    const double radius = path.radius();
+    const auto [ax, ay] = path.startSide();
+    const auto [bx, by] = path.endSide();
+    const double vx = x - path.center().x;
+    const double vy = y - path.center().y;
     const double v = std::hypot(vx, vy);
-    const double turn = arc.sweep < 0 ? -1.0 : 1.0;
-    const double ax = from_x / from;
-    const double ay = from_y / from;
-    const double bx = to_x / to;
-    const double by = to_y / to;
+    const double turn = path.turn() < 0 ? -1.0 : 1.0;
     const auto world = [scale](double mm) { return static_cast<float>(mm * scale); };
     LocalArc local{};
     local.near_center = v < 4 * half_extent;
@@ -95,8 +85,8 @@ LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_fl
     local.ty = static_cast<float>(-turn * bx);
     local.t0 = world(turn * (vx * by - vy * bx));
     local.half_flat = world(half_flat);
-    local.wide = std::abs(arc.sweep) > std::numbers::pi;
-    local.full = std::abs(arc.sweep) >= 2 * std::numbers::pi;
+    local.wide = std::abs(path.turn()) > std::numbers::pi;
+    local.full = std::abs(path.turn()) >= 2 * std::numbers::pi;
     return local;
 }
 

@@ -5,8 +5,11 @@
 // leaf.
 #pragma once
 
+#include "gcode/toolpath/plan_path.h"
 #include "gcode/toolpath/toolpath.h"
 #include "voxelize/beads/bead_field.h"
+
+#include <optional>
 
 namespace stratum::voxelize {
 
@@ -42,8 +45,8 @@ struct LocalArc {
     bool full;  ///< a whole turn: no ends
 };
 
-/// Whether the bead's path is an arc; an arc that starts or ends at its own center is treated as its chord.
-bool curved(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
+/// The bead's path if it is an arc.
+std::optional<gcode::PlanPath> arcOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead);
 
 /// `x`, `y` (mm): the middle of the column's samples. `half_extent` (mm): its samples lie within that in x and y.
 /// `scale`: world units a mm. `half_flat` in mm.
@@ -51,8 +54,7 @@ LocalLine localLine(const gcode::Bead& bead, double half_flat, double x, double 
 /// `flats`: half the flat at the ends, mm. The path is longer than their difference.
 LocalTaper localTaper(const gcode::Bead& bead, const EndFlats& flats, double x, double y, double half_extent,
                       double scale);
-/// For curved() beads only.
-LocalArc localArc(const gcode::Bead& bead, const gcode::Arc& arc, double half_flat, double x, double y,
-                  double half_extent, double scale);
+/// `path`: an arc.
+LocalArc localArc(const gcode::PlanPath& path, double half_flat, double x, double y, double half_extent, double scale);
 
 }  // namespace stratum::voxelize

@@ -36,17 +36,13 @@ public:
         addPoint(bead.x1, bead.y1, bead.z1, half_width, section);
         if (bead.arc < 0) return;
         // Pieces that are short enough that the circle stays within a hundredth of its radius of them.
-        const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
+        const gcode::PlanPath path(toolpath, bead);
         constexpr double kStep = 0.25;  // radians
-        const int pieces = static_cast<int>(std::abs(arc.sweep) / kStep) + 1;
-        const double rx = bead.x0 - arc.center_x;
-        const double ry = bead.y0 - arc.center_y;
+        const int pieces = static_cast<int>(std::abs(path.turn()) / kStep) + 1;
         for (int n = 1; n < pieces; ++n) {
             const double share = static_cast<double>(n) / pieces;
-            const double c = std::cos(share * arc.sweep);
-            const double s = std::sin(share * arc.sweep);
-            addPoint(arc.center_x + c * rx - s * ry, arc.center_y + s * rx + c * ry,
-                     std::lerp(double{bead.z0}, double{bead.z1}, share), half_width, section);
+            const gcode::PlanPoint place = path.at(share * path.length());
+            addPoint(place.x, place.y, std::lerp(double{bead.z0}, double{bead.z1}, share), half_width, section);
         }
     }
 

@@ -38,7 +38,7 @@ double mostColumns(const gcode::Toolpath& toolpath, const gcode::Bead& bead, dou
     const double dx = bead.x1 - bead.x0;
     const double dy = bead.y1 - bead.y0;
     double length = std::sqrt(dx * dx + dy * dy);
-    if (bead.arc >= 0) length = PlanPath(toolpath, bead).length();
+    if (bead.arc >= 0) length = gcode::PlanPath(toolpath, bead).length();
     return (length / edge + across) * across;
 }
 

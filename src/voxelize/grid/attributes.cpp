@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
-#include "base/split.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "gcode/slicer/bead_colors.h"
 #include "gcode/summary.h"
 #include "voxelize/beads/bead_field.h"

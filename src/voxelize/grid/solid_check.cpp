@@ -19,13 +19,9 @@ struct Point {
 // The point halfway along a bead's center line.
 Point middleOf(const gcode::Toolpath& toolpath, const gcode::Bead& bead) {
     const double z = 0.5 * (bead.z0 + bead.z1) - sectionOf(toolpath, bead).drop;
-    if (bead.arc < 0) return {0.5 * (bead.x0 + bead.x1), 0.5 * (bead.y0 + bead.y1), z};
-    const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-    const double dx = bead.x0 - arc.center_x;
-    const double dy = bead.y0 - arc.center_y;
-    const double cosine = std::cos(0.5 * arc.sweep);
-    const double sine = std::sin(0.5 * arc.sweep);
-    return {arc.center_x + cosine * dx - sine * dy, arc.center_y + sine * dx + cosine * dy, z};
+    const gcode::PlanPath path(toolpath, bead);
+    const gcode::PlanPoint place = path.at(0.5 * path.length());
+    return {place.x, place.y, z};
 }
 
 struct Nearby {

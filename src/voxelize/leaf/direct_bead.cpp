@@ -70,7 +70,7 @@ void LeafColumn::expandDirect(const DirectBead& direct, int k0, std::span<PlanFi
     PlanField d;
     PlanField sides2;
     PlanField center_z;
-    if (!curved(toolpath_, bead)) {
+    if (field.path().straight()) {
         const double half_extent = 0.5 * (kLeafDim - 1) * lattice_.voxel_size;
         LocalLine line = localLine(bead, field.halfFlat(), middle_x_, middle_y_, half_extent, scale_);
         const double dx = bead.x1 - bead.x0;

@@ -175,13 +175,12 @@ void LeafColumn::gatherPaths(const ColumnLayer& source, bool with_ranks) {
             const EndFlats flats = endFlats(toolpath_, bead, half_flat);
             tapers_.push_back(localTaper(bead, flats, middle_x_, middle_y_, half_extent_, scale_));
             if (with_ranks) taper_ids_.push_back(rank);
-        } else if (!curved(toolpath_, bead)) {
+        } else if (const auto arc = arcOf(toolpath_, bead)) {
+            arcs_.push_back(localArc(*arc, half_flat, middle_x_, middle_y_, half_extent_, scale_));
+            if (with_ranks) arc_ids_.push_back(rank);
+        } else {
             lines_.push_back(localLine(bead, half_flat, middle_x_, middle_y_, half_extent_, scale_));
             if (with_ranks) line_ids_.push_back(rank);
-        } else {
-            const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
-            arcs_.push_back(localArc(bead, arc, half_flat, middle_x_, middle_y_, half_extent_, scale_));
-            if (with_ranks) arc_ids_.push_back(rank);
         }
     }
 }

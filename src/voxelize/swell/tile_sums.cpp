@@ -150,19 +150,19 @@ public:
         const gcode::Bead& bead = toolpath_.beads[index];
         const double volume = gcode::laidVolume(toolpath_, index);
         const double height = 2 * stack_.layers[stack_.layer[rank]].halfHeight();
-        const PlanPath path(toolpath_, bead);
+        const gcode::PlanPath path(toolpath_, bead);
         // A disc at a place is as long as it is wide.
         const double length =
             std::max(path.length(), std::min(std::sqrt(volume / height), static_cast<double>(bead.width)));
         if (!(volume > 0) || !(length > 0)) return;
-        const double at_ends = feedEnds(index, volume, path.length(), sums);
+        const double at_ends = feedEnds(index, volume, path, sums);
         const double along = volume - at_ends;
         const double width = along / (height * length);
         const int steps = std::max(static_cast<int>(std::ceil(length / kStep)), 1);
         const double part = along / (steps * kAcross);
         const auto [from, to] = stepsInTile(bead, length, width, steps);
         for (int n = from; n < to; ++n) {
-            const Place place = placeAt(bead, (n + 0.5) / steps, length);
+            const Place place = placeAt(path, (n + 0.5) / steps, length);
             for (int m = 0; m < kAcross; ++m) {
                 const double aside = ((m + 0.5) / kAcross - 0.5) * width;
                 addPoint(place.x - aside * place.uy, place.y + aside * place.ux, part, sums.surplus);
@@ -179,10 +179,10 @@ private:
 
     // Where the flow is simulated, the half discs at free ends are part of a bead's volume: lays them there, and
     // returns their volume.
-    double feedEnds(std::uint32_t index, double volume, double length, TileSums::Layer& sums) const {
+    double feedEnds(std::uint32_t index, double volume, const gcode::PlanPath& path, TileSums::Layer& sums) const {
         const gcode::Bead& bead = toolpath_.beads[index];
         const double discs = volume - gcode::beadVolume(toolpath_, bead);
-        if (toolpath_.flow.empty() || !(length > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
+        if (toolpath_.flow.empty() || !(path.length() > 0) || !(discs > 0) || discs > 0.5 * volume) return 0;
         const auto meets = [](const gcode::Bead& a, const gcode::Bead& b) {
             constexpr double kSame = 1e-4;  // mm
             return std::hypot(double{a.x1} - double{b.x0}, double{a.y1} - double{b.y0}) < kSame && a.z1 == b.z0;
@@ -195,7 +195,7 @@ private:
         const double past = 2 * width / (3 * std::numbers::pi);  // the centroid of a half disc
         for (const bool at_end : {false, true}) {
             if (!(at_end ? free_end : free_start)) continue;
-            const Place place = placeAt(bead, at_end ? 1 : 0, length);
+            const Place place = placeAt(path, at_end ? 1 : 0, 0);
             const double sign = at_end ? past : -past;
             for (int m = 0; m < kAcross; ++m) {
                 const double aside = ((m + 0.5) / kAcross - 0.5) * 0.8 * width;
@@ -206,23 +206,16 @@ private:
         return discs;
     }
 
-    Place placeAt(const gcode::Bead& bead, double t, double length) const {
-        const double dx = double{bead.x1} - double{bead.x0};
-        const double dy = double{bead.y1} - double{bead.y0};
-        if (bead.arc < 0) {
-            const double chord = std::hypot(dx, dy);
-            if (!(chord > 0)) return {bead.x0 + (t - 0.5) * length, bead.y0, 1, 0};
-            return {bead.x0 + t * dx, bead.y0 + t * dy, dx / chord, dy / chord};
+    // `length`: of the path, or of a disc at its place, in the direction of x.
+    static Place placeAt(const gcode::PlanPath& path, double t, double length) {
+        if (!(path.length() > 0)) {
+            const gcode::PlanPoint at = path.at(0);
+            return {at.x + (t - 0.5) * length, at.y, 1, 0};
         }
-        const gcode::Arc& arc = toolpath_.arcs[static_cast<std::size_t>(bead.arc)];
-        const double from_x = bead.x0 - arc.center_x;
-        const double from_y = bead.y0 - arc.center_y;
-        const double radius = std::max(std::hypot(from_x, from_y), 1e-9);
-        const double cosine = std::cos(t * arc.sweep);
-        const double sine = std::sin(t * arc.sweep);
-        const double vx = cosine * from_x - sine * from_y;
-        const double vy = sine * from_x + cosine * from_y;
-        return {arc.center_x + vx, arc.center_y + vy, -vy / radius, vx / radius};
+        const double mm = t * path.length();
+        const gcode::PlanPoint at = path.at(mm);
+        const gcode::PlanPoint along = path.direction(mm);
+        return {at.x, at.y, along.x, along.y};
     }
 
     // Steps of a straight bead that may lay something in the tile; all of an arc.

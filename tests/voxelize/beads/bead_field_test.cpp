@@ -29,7 +29,7 @@ TEST(PlanPath, ArcDistanceAgreesWithSampledPath) {
     for (const double sweep : {0.01, 0.7, -0.7, 3.0, -3.0, std::numbers::pi, 4.0, -5.5, 2 * std::numbers::pi}) {
         gcode::Toolpath toolpath;
         addArc(toolpath, 1, -2, 4, 0.4, sweep, 0.2, 0.2, 0.5, 0.2);
-        const PlanPath path(toolpath, toolpath.beads[0]);
+        const gcode::PlanPath path(toolpath, toolpath.beads[0]);
         EXPECT_NEAR(path.length(), 4 * std::abs(sweep), 1e-12);
         double min[2];
         double max[2];
@@ -55,7 +55,7 @@ TEST(PlanPath, ArcDistanceAgreesWithSampledPath) {
 TEST(PlanPath, PointPathIsADistanceToThePoint) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 3, 4, 0.2, 3, 4, 0.2, 0.5, 0.2);
-    EXPECT_DOUBLE_EQ(PlanPath(toolpath, toolpath.beads[0]).distance(0, 0), 5);
+    EXPECT_DOUBLE_EQ(gcode::PlanPath(toolpath, toolpath.beads[0]).distance(0, 0), 5);
 }
 
 TEST(BeadField, StadiumHasItsWidthAndHeight) {

@@ -115,7 +115,7 @@ void expectEveryColumn(const gcode::Toolpath& toolpath) {
     const Footprints footprints(toolpath, 0.4, 0.175, 0.15, Footprints::Reach::solid);
     const double reach = footprints.limit(bead);
     const ColumnRange all = footprints.range(bead, reach);
-    const PlanPath path(toolpath, bead);
+    const gcode::PlanPath path(toolpath, bead);
     std::vector<std::pair<int, int>> expected;
     for (int j = all.j0; j <= all.j1; ++j)
         for (int i = all.i0; i <= all.i1; ++i)

@@ -21,15 +21,14 @@ void expectExact(const gcode::Toolpath& toolpath, double x, double y) {
     const ColumnGrid grid(static_cast<float>(kVoxel));
     PlanField d;
     std::fill(std::begin(d.v), std::end(d.v), 1e30f);
-    if (curved(toolpath, bead)) {
-        const gcode::Arc& arc = toolpath.arcs[static_cast<std::size_t>(bead.arc)];
-        const LocalArc local[] = {localArc(bead, arc, 0.125, x, y, kHalfExtent, 1)};
+    if (const auto arc = arcOf(toolpath, bead)) {
+        const LocalArc local[] = {localArc(*arc, 0.125, x, y, kHalfExtent, 1)};
         minimumOfArcs(grid, local, d, nullptr, nullptr);
     } else {
         const LocalLine local[] = {localLine(bead, 0.125, x, y, kHalfExtent, 1)};
         minimumOfLines(grid, local, d, nullptr, nullptr);
     }
-    const PlanPath path(toolpath, bead);
+    const gcode::PlanPath path(toolpath, bead);
     for (std::size_t c = 0; c < kColumnSamples; ++c) {
         const double exact = path.distance(x + (static_cast<double>(c / 8) - 3.5) * kVoxel,
                                            y + (static_cast<double>(c % 8) - 3.5) * kVoxel) -
@@ -138,8 +137,7 @@ TEST(LeafKernels, EveryInstructionSetGivesTheSameBytes) {
         if (bead.arc < 0)
             lines.push_back(localLine(bead, 0.125, 0.1, 0.2, kHalfExtent, 1));
         else
-            arcs.push_back(
-                localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], 0.125, 0.1, 0.2, kHalfExtent, 1));
+            arcs.push_back(localArc(gcode::PlanPath(toolpath, bead), 0.125, 0.1, 0.2, kHalfExtent, 1));
         ids.push_back(static_cast<std::uint32_t>(ids.size()));
     }
     for (const gcode::Bead& bead : toolpath.beads)

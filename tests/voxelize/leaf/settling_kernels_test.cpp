@@ -36,9 +36,7 @@ BeadPlan planOf(const ColumnGrid& grid, const gcode::Toolpath& toolpath, const g
     if (bead.arc < 0)
         planOfLine(grid, localLine(bead, kHalfFlat, 0, 0, kGrooveExtent, 1), plan);
     else
-        planOfArc(grid,
-                  localArc(bead, toolpath.arcs[static_cast<std::size_t>(bead.arc)], kHalfFlat, 0, 0, kGrooveExtent, 1),
-                  plan);
+        planOfArc(grid, localArc(gcode::PlanPath(toolpath, bead), kHalfFlat, 0, 0, kGrooveExtent, 1), plan);
     return plan;
 }
 
@@ -47,7 +45,7 @@ TEST(SettlingKernels, DistancesAndDirectionsAreThoseOfThePath) {
     const gcode::Toolpath toolpath = randomBeads(300);
     for (const gcode::Bead& bead : toolpath.beads) {
         const BeadPlan plan = planOf(grid, toolpath, bead);
-        const PlanPath path(toolpath, bead);
+        const gcode::PlanPath path(toolpath, bead);
         double least = 1e9;
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const double x = (static_cast<double>(c / 8) - 3.5) * kGrooveVoxel;

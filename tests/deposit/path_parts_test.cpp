@@ -1,4 +1,4 @@
-#include "deposit/bead_path.h"
+#include "deposit/path_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 namespace stratum::deposit {
 namespace {
 
-BeadPath segment(double x0, double y0, double x1, double y1) {
+gcode::PlanPath segment(double x0, double y0, double x1, double y1) {
     return {gcode::Toolpath{}, gcode::Bead{.x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1, .arc = -1}};
 }
 
 // From (radius, 0) about the origin.
-BeadPath arc(double radius, double sweep) {
+gcode::PlanPath arc(double radius, double sweep) {
     gcode::Toolpath toolpath;
     toolpath.arcs.push_back({0, 0, sweep});
     return {
@@ -22,9 +22,10 @@ BeadPath arc(double radius, double sweep) {
         gcode::Bead{.x0 = radius, .y0 = 0, .x1 = radius * std::cos(sweep), .y1 = radius * std::sin(sweep), .arc = 0}};
 }
 
-void expectParts(const BeadPath& path, const BeadPath& other, double reach, const std::vector<PathPart>& expected) {
+void expectParts(const gcode::PlanPath& path, const gcode::PlanPath& other, double reach,
+                 const std::vector<PathPart>& expected) {
     std::vector<PathPart> parts;
-    path.partsNear(other, reach, parts);
+    partsNear(path, other, reach, parts);
     ASSERT_EQ(parts.size(), expected.size());
     for (std::size_t n = 0; n < parts.size(); ++n) {
         EXPECT_NEAR(parts[n].from, expected[n].from, 2e-6);
@@ -32,9 +33,10 @@ void expectParts(const BeadPath& path, const BeadPath& other, double reach, cons
     }
 }
 
-void expectBeside(const BeadPath& path, const BeadPath& other, PathPart held, double reach, PathPart expected) {
+void expectBeside(const gcode::PlanPath& path, const gcode::PlanPath& other, PathPart held, double reach,
+                  PathPart expected) {
     std::vector<PathPart> parts;
-    path.partsBeside(other, held, reach, parts);
+    partsBeside(path, other, held, reach, parts);
     ASSERT_FALSE(parts.empty());
     // The parts of two segments adjoin.
     std::sort(parts.begin(), parts.end(), [](const PathPart& a, const PathPart& b) { return a.from < b.from; });
@@ -47,18 +49,18 @@ void expectBeside(const BeadPath& path, const BeadPath& other, PathPart held, do
     EXPECT_NEAR(to, expected.to, 2e-6);
 }
 
-void expectNothingBeside(const BeadPath& path, const BeadPath& other, double reach) {
+void expectNothingBeside(const gcode::PlanPath& path, const gcode::PlanPath& other, double reach) {
     std::vector<PathPart> parts;
-    path.partsBeside(other, {0, other.length()}, reach, parts);
+    partsBeside(path, other, {0, other.length()}, reach, parts);
     for (const PathPart& part : parts) EXPECT_LT(part.to - part.from, 1e-9);
 }
 
-TEST(BeadPath, PlacesAndDistances) {
+TEST(PathParts, PlacesAndDistances) {
     EXPECT_EQ(segment(1, 1, 4, 5).length(), 5);
     EXPECT_NEAR(segment(1, 1, 4, 5).at(2.5).y, 3, 1e-12);
     EXPECT_NEAR(segment(0, 0, 4, 0).distance(7, 4), 5, 1e-12);
     EXPECT_NEAR(segment(2, 2, 2, 2).distance(5, 6), 5, 1e-12);
-    const BeadPath clockwise = arc(2, -std::numbers::pi / 2);
+    const gcode::PlanPath clockwise = arc(2, -std::numbers::pi / 2);
     EXPECT_NEAR(clockwise.length(), std::numbers::pi, 1e-12);
     EXPECT_NEAR(clockwise.at(clockwise.length()).y, -2, 1e-12);
     EXPECT_NEAR(clockwise.distance(3, -3), std::hypot(3, 3) - 2, 1e-12);
@@ -73,8 +75,8 @@ TEST(BeadPath, PlacesAndDistances) {
     EXPECT_TRUE(arc(0, 1).straight());
 }
 
-TEST(BeadPath, PartsNearASegment) {
-    const BeadPath path = segment(0, 0, 10, 0);
+TEST(PathParts, PartsNearASegment) {
+    const gcode::PlanPath path = segment(0, 0, 10, 0);
     expectParts(path, segment(3, -5, 3, 5), 1, {{2, 4}});
     expectParts(path, segment(3, 1, 6, 1), 1, {{3, 6}});  // touches along all of it
     expectParts(path, segment(3, 0, 6, 0), 1, {{2, 7}});
@@ -87,7 +89,7 @@ TEST(BeadPath, PartsNearASegment) {
     expectParts(path, path, 1, {{0, 10}});
 }
 
-TEST(BeadPath, PartsNearAnArc) {
+TEST(PathParts, PartsNearAnArc) {
     // A line through a ring is near it twice.
     expectParts(segment(-10, 0, 10, 0), arc(5, 2 * std::numbers::pi), 1, {{4, 6}, {14, 16}});
     expectParts(arc(5, std::numbers::pi), arc(5.5, std::numbers::pi), 1, {{0, 5 * std::numbers::pi}});
@@ -97,8 +99,8 @@ TEST(BeadPath, PartsNearAnArc) {
                 {{0, near}, {5 * std::numbers::pi - near, 5 * std::numbers::pi}});
 }
 
-TEST(BeadPath, PartsBesideASegment) {
-    const BeadPath path = segment(0, 0, 10, 0);
+TEST(PathParts, PartsBesideASegment) {
+    const gcode::PlanPath path = segment(0, 0, 10, 0);
     const double beyond_end = std::sqrt(1 - 0.9 * 0.9);
     expectBeside(path, segment(2, 0.9, 7, 0.9), {0, 5}, 1, {2 - beyond_end, 7 + beyond_end});
     expectBeside(path, segment(7, 0.9, 2, 0.9), {0, 5}, 1, {2 - beyond_end, 7 + beyond_end});
@@ -116,11 +118,11 @@ TEST(BeadPath, PartsBesideASegment) {
     expectNothingBeside(path, segment(5, -4, 5, 4), 1);   // a crossing
     expectNothingBeside(path, segment(3, -4, 7, 4), 1);
     std::vector<PathPart> parts;
-    segment(4, 0.8, 4, 0.8).partsBeside(path, {5, 6}, 1, parts);
+    partsBeside(segment(4, 0.8, 4, 0.8), path, {5, 6}, 1, parts);
     EXPECT_TRUE(parts.empty());
 }
 
-TEST(BeadPath, PartsBesideAnArc) {
+TEST(PathParts, PartsBesideAnArc) {
     const double half = std::numbers::pi;
     expectBeside(arc(5, half), arc(5.5, half), {0, 5.5 * half}, 1, {0, 5 * half});
     expectBeside(arc(5, half), arc(5.5, half), {1.1, 5.5}, 1, {1, 5});
