@@ -1,6 +1,6 @@
 """Mutated files of every kind through the real tools: they end by themselves with 0, 1, 2 or 3, in bounded time and memory.
 
-STRATUM_MUTATIONS is how many of each kind are run (6), STRATUM_MUTATION_SEED where the random numbers begin,
+STRATUM_MUTATIONS is how many of each kind are run (2), STRATUM_MUTATION_SEED where the random numbers begin,
 STRATUM_MUTATION_KINDS a regular expression that the kinds match (all); a finding is kept, and its command is printed."""
 
 import gzip
@@ -20,7 +20,7 @@ from run_tools import BIN, SOURCE, check, gcode, write_box
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_mutation_")
 KEPT = os.environ.get("STRATUM_FINDINGS", os.path.join(tempfile.gettempdir(), "stratum_findings"))
-COUNT = int(os.environ.get("STRATUM_MUTATIONS", "6"))
+COUNT = int(os.environ.get("STRATUM_MUTATIONS", "2"))
 SEED = int(os.environ.get("STRATUM_MUTATION_SEED", "1"))
 KINDS = re.compile(os.environ.get("STRATUM_MUTATION_KINDS", ""))
 CPU_SECONDS = 10.0  # of a run beyond its honest twin
