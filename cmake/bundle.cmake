@@ -11,6 +11,19 @@ foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
   target_link_options(${tool} PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(${tool} PROPERTIES INSTALL_RPATH "$ORIGIN/../${bundled_folder}")
 endforeach()
+# Without it a tool's start is for the most part look-ups of libopenvdb's own functions.
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+  install(CODE "
+    file(GLOB libraries \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${bundled_folder}/libopenvdb.so*\")
+    foreach(library \${libraries})
+      if(NOT IS_SYMLINK \"\${library}\")
+        execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/bind_own_functions.py \"\${library}\"
+          COMMAND_ERROR_IS_FATAL ANY)
+      endif()
+    endforeach()
+  " COMPONENT bundle)
+endif()
 # The licences of those libraries, as Debian's packages state them.
 install(CODE [[
   set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")

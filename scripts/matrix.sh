@@ -75,9 +75,12 @@ case $what in
 assert stratum.render(\"hull.gcode\", size=(64, 48), spp=1, brdf=\"pla-blue\").srgb.std() > 5"' ;;
     tarball) commands='
         for tool in bin/gcode2vdb bin/vdbtrace bin/vdbview bin/vdbmerge bin/vdbstudy; do $tool --version | head -n 1; done
+        TIMEFORMAT="100 times --version: %R s"
+        time for n in {1..100}; do bin/gcode2vdb --version >/dev/null; done
         bin/gcode2vdb hull.gcode -o hull.vdb
         bin/vdbtrace hull.vdb -o hull.png --size 320x240 --brdf pla-blue
-        ls -l hull.vdb hull.png' ;;
+        ls -l hull.vdb hull.png
+        md5sum hull.vdb hull.png' ;;
 esac
 
 export commands

@@ -87,7 +87,8 @@ py::object comparePrint(const ToolpathObject& print, const py::object& model, co
         voxelize::VoxelizeOptions outside;
         outside.interior = voxelize::Interior::cull;
         outside.progress = report;
-        const std::vector<std::uint32_t> part = gcode::beadsOfPart(*print.toolpath, plan.selection());
+        const std::vector<std::uint32_t> part =
+            gcode::beadsUpTo(gcode::Purpose::part, gcode::purposesOf(*print.toolpath), plan.selection());
         const auto grid = voxelize::voxelize(*print.toolpath, part, plan.lattice(), outside);
         compare::CompareOptions measured = options;
         measured.line_width = gcode::meanWidth(*print.toolpath, part);

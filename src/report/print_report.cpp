@@ -246,12 +246,11 @@ private:
 
     // The selected beads of the part but those that iron what is there.
     std::vector<std::uint32_t> wallBeads() const {
-        const std::vector<gcode::Purpose> purposes = gcode::purposesOf(toolpath_);
-        std::vector<std::uint32_t> beads;
-        for (const std::uint32_t bead : selection_)
-            if (purposes[bead] == gcode::Purpose::part &&
-                toolpath_.runOf(toolpath_.beads[bead]).feature != gcode::Feature::ironing)
-                beads.push_back(bead);
+        std::vector<std::uint32_t> beads =
+            gcode::beadsUpTo(gcode::Purpose::part, gcode::purposesOf(toolpath_), selection_);
+        std::erase_if(beads, [this](std::uint32_t bead) {
+            return toolpath_.runOf(toolpath_.beads[bead]).feature == gcode::Feature::ironing;
+        });
         return beads;
     }
 

@@ -438,6 +438,11 @@ if all(shutil.which(program) for program in ("prusa-gcodeviewer", "Xvfb", "local
     layers = TEXT.split(b";LAYER_CHANGE")
     write("before.gcode", b";LAYER_CHANGE".join([*layers[:4], layers[-1]]))
     pictured(path("before.gcode"), SIZES, "after.gcode")
+    # It shows the number of the last line: there are as many lines without the pictures.
+    with open(path("before.gcode"), "rb") as file, open(path("after.gcode"), "rb") as pictures:
+        first, rest = file.read().split(b"\n", 1)
+        more = pictures.read().count(b"\n") - rest.count(b"\n") - 1
+    write("before.gcode", first + b"\n" + b";\n" * more + rest)
     viewers = [Viewer(path(name), locale) for name in ("before.gcode", "after.gcode")]
     try:
         screens = shown(viewers, 150)

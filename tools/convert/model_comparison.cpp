@@ -80,7 +80,8 @@ ModelComparison compareWithModel(const ConvertCommand& o, const gcode::Toolpath&
     const ProgressNote note("comparing", o.common.quiet);
     voxelize::VoxelizeOptions outside;
     outside.interior = voxelize::Interior::cull;
-    const std::vector<std::uint32_t> part = gcode::beadsOfPart(toolpath, selection);
+    const std::vector<std::uint32_t> part =
+        gcode::beadsUpTo(gcode::Purpose::part, gcode::purposesOf(toolpath), selection);
     const openvdb::FloatGrid::Ptr grid = voxelize::voxelize(toolpath, part, lattice, outside);
     compare::CompareOptions options;
     options.line_width = gcode::meanWidth(toolpath, part);

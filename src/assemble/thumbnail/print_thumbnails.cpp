@@ -17,7 +17,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace stratum::assemble {
 namespace {
@@ -38,20 +40,22 @@ StageOptions stageOf(int width, int height) {
 
 // What slicers leave out of their thumbnails, too: skirts, prime lines and wipe towers.
 std::shared_ptr<const gcode::Toolpath> withoutWhatIsBeside(std::shared_ptr<const gcode::Toolpath> toolpath) {
-    const std::vector<gcode::Purpose> purposes = gcode::purposesOf(*toolpath);
-    const auto beside = [&purposes](std::size_t bead) { return purposes[bead] == gcode::Purpose::beside; };
-    const auto left_out = std::count(purposes.begin(), purposes.end(), gcode::Purpose::beside);
-    if (left_out == 0 || static_cast<std::size_t>(left_out) == purposes.size()) return toolpath;
+    std::vector<std::uint32_t> all(toolpath->beads.size());
+    std::iota(all.begin(), all.end(), 0U);
+    const std::vector<std::uint32_t> beads = gcode::beadsUpTo(gcode::Purpose::brim, gcode::purposesOf(*toolpath), all);
+    if (beads.size() == all.size()) return toolpath;
     auto part = std::make_shared<gcode::Toolpath>(*toolpath);
-    const auto leaveOut = [&beside](auto& of_beads) {
-        std::size_t kept = 0;
-        for (std::size_t n = 0; n < of_beads.size(); ++n)
-            if (!beside(n)) of_beads[kept++] = of_beads[n];
-        of_beads.resize(kept);
+    const auto leaveOut = [&beads](auto& of_beads) {
+        if (of_beads.empty()) return;
+        for (std::size_t n = 0; n < beads.size(); ++n) of_beads[n] = of_beads[beads[n]];
+        of_beads.resize(beads.size());
     };
     leaveOut(part->beads);
     leaveOut(part->timing);
     leaveOut(part->flow);
+    for (gcode::ColorChange& change : part->color_changes)
+        change.first_bead =
+            static_cast<std::uint32_t>(std::lower_bound(beads.begin(), beads.end(), change.first_bead) - beads.begin());
     return part;
 }
 

@@ -28,11 +28,7 @@ LevelSetPlan::LevelSetPlan(const gcode::Toolpath& toolpath, LevelSetChoices choi
 std::vector<std::uint32_t> LevelSetPlan::selected() {
     std::vector<std::uint32_t> all = voxelize::selectBeads(toolpath_, voxelize::selectionOf(choices_.print, toolpath_));
     if (!choices_.part_alone) return all;
-    std::vector<std::uint32_t> part;
-    part.reserve(all.size());
-    std::copy_if(all.begin(), all.end(), std::back_inserter(part),
-                 [this](std::uint32_t bead) { return purposes()[bead] != gcode::Purpose::beside; });
-    if (part.empty()) return all;
+    std::vector<std::uint32_t> part = gcode::beadsUpTo(gcode::Purpose::brim, purposes(), all);
     left_out_ = all.size() - part.size();
     return part;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -303,13 +304,14 @@ std::vector<Purpose> purposesOf(const Toolpath& toolpath) {
     return purposes;
 }
 
-std::vector<std::uint32_t> beadsOfPart(const Toolpath& toolpath, std::span<const std::uint32_t> selection) {
-    const std::vector<Purpose> purposes = purposesOf(toolpath);
-    std::vector<std::uint32_t> part;
-    for (const std::uint32_t bead : selection)
-        if (purposes[bead] == Purpose::part) part.push_back(bead);
-    if (part.empty()) part.assign(selection.begin(), selection.end());
-    return part;
+std::vector<std::uint32_t> beadsUpTo(Purpose last, std::span<const Purpose> purposes,
+                                     std::span<const std::uint32_t> selection) {
+    std::vector<std::uint32_t> kept;
+    kept.reserve(selection.size());
+    std::copy_if(selection.begin(), selection.end(), std::back_inserter(kept),
+                 [&](std::uint32_t bead) { return purposes[bead] <= last; });
+    if (kept.empty()) kept.assign(selection.begin(), selection.end());
+    return kept;
 }
 
 }  // namespace stratum::gcode

@@ -9,6 +9,7 @@
 
 namespace stratum::gcode {
 
+/// From what is the part to what is not.
 enum class Purpose : std::uint8_t {
     part,
     support,  ///< and rafts
@@ -25,7 +26,9 @@ enum class Purpose : std::uint8_t {
 /// Towers without a tag cannot be told from parts, and count as such.
 std::vector<Purpose> purposesOf(const Toolpath& toolpath);
 
-/// Those beads of a selection (indices into toolpath.beads) that are the part's; all if there are none.
-std::vector<std::uint32_t> beadsOfPart(const Toolpath& toolpath, std::span<const std::uint32_t> selection);
+/// Those beads of a selection (indices into Toolpath::beads) with a purpose up to `last`; all if there are none.
+/// `purposes`: purposesOf().
+std::vector<std::uint32_t> beadsUpTo(Purpose last, std::span<const Purpose> purposes,
+                                     std::span<const std::uint32_t> selection);
 
 }  // namespace stratum::gcode

@@ -1,23 +1,19 @@
 #include "voxelize/beads/part_bounds.h"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace stratum::voxelize {
 
 Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpose> purposes,
                   std::span<const std::uint32_t> selection) {
-    std::vector<std::uint32_t> part;
-    std::vector<std::uint32_t> brim;
-    for (const std::uint32_t bead : selection) {
-        if (purposes[bead] == gcode::Purpose::brim)
-            brim.push_back(bead);
-        else if (purposes[bead] != gcode::Purpose::beside)
-            part.push_back(bead);
-    }
-    if (part.empty()) return boundsOf(toolpath, selection);
+    const std::vector<std::uint32_t> part = gcode::beadsUpTo(gcode::Purpose::support, purposes, selection);
     Bounds bounds = boundsOf(toolpath, part);
-    if (brim.empty()) return bounds;
+    std::vector<std::uint32_t> brim;
+    std::copy_if(selection.begin(), selection.end(), std::back_inserter(brim),
+                 [&](std::uint32_t bead) { return purposes[bead] == gcode::Purpose::brim; });
+    if (brim.empty() || part.size() == selection.size()) return bounds;
     const Bounds around = boundsOf(toolpath, brim);
     for (int axis = 0; axis < 2; ++axis) {
         bounds.min[axis] = std::min(bounds.min[axis], std::max(around.min[axis], bounds.min[axis] - kBrimReach));

@@ -44,11 +44,12 @@ TEST(PrintThumbnails, OneForEachSizeInItsCoding) {
     EXPECT_GT(bmp(40, 30, 2), 80);
 }
 
-// Two layers of lines, with a skirt around them if asked for: no tag says what it is.
+// Four layers of lines in two colors, with a skirt around them if asked for: no tag says what it is.
 std::shared_ptr<const gcode::Toolpath> untagged(bool skirt) {
     std::string text = "G21\nG90\nM83\n";
     for (int layer = 0; layer < 4; ++layer) {
         text += fmt::format("G1 Z{:.1f} F3000\n", 0.2 * (layer + 1));
+        if (layer == 2) text += "M600\n";
         if (skirt && layer == 0) text += "G0 X40 Y40\nG1 X80 E2\nG1 Y80 E2\nG1 X40 E2\nG1 Y40 E2\n";
         for (int line = 0; line < 12; ++line)
             text += fmt::format("G0 X55 Y{0:.1f}\nG1 X65 Y{0:.1f} E0.4\n", 57 + 0.4 * line);

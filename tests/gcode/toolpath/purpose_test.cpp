@@ -158,11 +158,11 @@ TEST(Purpose, BeadsOfThePart) {
     const Toolpath toolpath = Program().up(0.2).loop(-5, -5, 25, 25).box(0, 0, 20, 20, 1, 8).read();
     std::vector<std::uint32_t> all(toolpath.beads.size());
     std::iota(all.begin(), all.end(), 0U);
-    const auto beads = beadsOfPart(toolpath, all);
+    const auto beads = beadsUpTo(Purpose::part, purposesOf(toolpath), all);
     EXPECT_EQ(beads.size(), all.size() - 4);
     EXPECT_EQ(beads.front(), 4U);
     // Of a selection that has none, all.
-    EXPECT_EQ(beadsOfPart(toolpath, std::span(all).first(4)).size(), 4U);
+    EXPECT_EQ(beadsUpTo(Purpose::part, purposesOf(toolpath), std::span(all).first(4)).size(), 4U);
 }
 
 }  // namespace
