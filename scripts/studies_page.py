@@ -320,16 +320,6 @@ def plastic_line(folder):
         row = times[len(times) // 2]
         line += ["; planned times differ from stated ones by ", Number(f"{abs(number(row, 'off_percent')):.2g} %", row),
                  " (median)"]
-    cost = Table(folder / "deposit_cost.csv")
-    runs = {}
-    for row in cost.rows:
-        runs.setdefault((row["print"], row["run_number"]), {})[row["beads_are"]] = row
-    pairs = sorted(((number(r["typical"], "read_seconds") + number(r["typical"], "build_seconds"))
-                    / (number(r["capsule"], "read_seconds") + number(r["capsule"], "build_seconds")), r["typical"]["line"], r["typical"])
-                   for r in runs.values() if "typical" in r and "capsule" in r)
-    if pairs:
-        ratio, _, row = pairs[len(pairs) // 2]
-        line += ["; a typical printer's grid takes ", Number(f"{ratio:.2f} ×", row), " the time of capsules"]
     return ["How near is the model to plastic? ", *line, "."] if line else None
 
 

@@ -81,14 +81,11 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
 }
 
 void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
-    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, corners, times, cost");
-    deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume, times and cost")
-        ->required()
-        ->type_name("FILE.gcode");
+    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, roughness, corners, times");
+    deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume and times")->required()->type_name("FILE.gcode");
     deposit->add_option("--times", o.deposit.timed, "More prints, for their times alone; may be given again")
         ->type_name("FILE");
     deposit->add_option("--layers", o.deposit.layers, "Of the volumes (default 1:20)")->type_name("A:B");
-    addCount(deposit, "--repeats", o.deposit.repeats, "Runs of each effect (default 7)");
     verbs.push_back({deposit, [&o] { return study::studyDeposit(o.deposit, o.study); }});
 }
 
@@ -155,8 +152,8 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
         for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
     const std::string name = (o.study.folder / verb.app->get_name()).string();
-    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv",
-                               "_time.csv", "_cost.csv"})
+    for (const char* ending :
+         {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv", "_time.csv"})
         files.writes(name + ending, "-o");
     files.writes(name + ".html", "-o");
     files.writes(o.common.stats, "--stats");

@@ -77,15 +77,14 @@ struct NeedOptions {
 StudyReport studyNeed(const NeedOptions& options, const StudyOptions& common);
 
 struct DepositOptions {
-    std::vector<std::string> prints;  ///< G-code files, for volume and cost; may be empty: then only what is made here
+    std::vector<std::string> prints;  ///< G-code files, for their volume; may be empty: then only what is made here
     std::vector<std::string> timed;   ///< more of them, in any container, for their times alone
     std::string layers;               ///< of the volumes: "A:B", see voxelize::parseLayers; empty: "1:20"
-    int repeats = 0;                  ///< runs of each cost; 0: 7, or 2 if quick
 };
 
-/// deposit_volume.csv, deposit_roughness.csv, deposit_corner.csv, deposit_time.csv, deposit_cost.csv and deposit.html:
+/// deposit_volume.csv, deposit_roughness.csv, deposit_corner.csv, deposit_time.csv and deposit.html:
 /// volume of union, settled beads and a typical printer against what was fed; Ra and Rz of stacked walls beside
-/// published figures; width of a corner against the lag; stated against planned times; what each effect costs.
+/// published figures; width of a corner against the lag; stated against planned times.
 StudyReport studyDeposit(const DepositOptions& options, const StudyOptions& common);
 
 struct PeerTracers;  // polygons/peer_tracers.h

@@ -1,5 +1,8 @@
 #include "study/study.h"
 
+#include "deposit/printer.h"
+#include "deposit/read_print.h"
+#include "gcode/container/input_bytes.h"
 #include "march/attribute/annotation.h"
 #include "march/brick/brick_intersector.h"
 #include "shade/film/picture.h"
@@ -30,11 +33,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kColumns = "print,sha256,capability,run,convert_cpu,build_cpu,render_cpu,peak_rss_bytes";
-constexpr std::array<const char*, 4> kMeasured{"convert_cpu", "build_cpu", "render_cpu", "peak_rss_bytes"};
+constexpr const char* kColumns = "print,sha256,capability,run,read_cpu,convert_cpu,build_cpu,render_cpu,peak_rss_bytes";
+constexpr std::array<const char*, 5> kMeasured{"read_cpu", "convert_cpu", "build_cpu", "render_cpu", "peak_rss_bytes"};
 
 // What a run does beyond the least.
 struct Setup {
+    gcode::ReadOptions read;
     std::vector<voxelize::Attribute> attributes;
     bool interior_distance = false;
     bool second_object = false;  // the print once more, where no ray goes
@@ -58,6 +62,16 @@ std::vector<Capability> capabilities(const std::string& map) {
     return {
         {kNone, "a matt print in even light", [](Setup&) {}},
         {kNoneAgain, "the same: what differs is noise", [](Setup&) {}},
+        {"section", "--section 50%", [](Setup& s) { deposit::parseSection("50%", s.read.deposit); }},
+        {"settled beads", "--beads settled",
+         [](Setup& s) { s.read.deposit.beads = gcode::DepositModel::Beads::settled; }},
+        {"flow", "--flow-lag 0.015 --pressure-advance 0",
+         [](Setup& s) {
+             s.read.deposit.flow_lag = 0.015;
+             s.read.deposit.pressure_advance = 0;
+         }},
+        {"sag", "--sag 2%", [](Setup& s) { s.read.deposit.sag = 0.02; }},
+        {"typical printer", "--printer typical", [](Setup& s) { deposit::usePrinter("typical", s.read); }},
         {"attribute grids", "--grids layer,width",
          [](Setup& s) {
              s.attributes = {voxelize::Attribute::layer, voxelize::Attribute::width};
@@ -93,10 +107,14 @@ Setup leastSetup(bool quick) {
     return setup;
 }
 
-// In a process of its own: seconds to convert, to build what rays need (material and light included), and to render.
+// In a process of its own: seconds to read, to convert, to build what rays need (material and light included), and to
+// render.
 Row measure(const std::string& print, const Setup& setup) {
     openvdb::initialize();
-    const gcode::Toolpath toolpath = readPrint(print);
+    const gcode::InputBytes file(print);
+    gcode::Toolpath toolpath;
+    const double read =
+        timesOf([&] { toolpath = deposit::readPrint(file.bytes(), file.name(), setup.read, false).toolpath; }).cpu;
     const auto beads = voxelize::selectBeads(toolpath, {});
     const voxelize::Lattice lattice = latticeOf(toolpath, beads, 2);
     openvdb::FloatGrid::Ptr grid;
@@ -126,7 +144,7 @@ Row measure(const std::string& print, const Setup& setup) {
                               shade::RenderResult result = shade::render(*intersector, *scene, options);
                               if (setup.denoise) shade::denoise(result.film);
                           }).cpu;
-    return figures({convert, build, render, static_cast<double>(peakSoFar())});
+    return figures({read, convert, build, render, static_cast<double>(peakSoFar())});
 }
 
 // A sky that brightens upwards, with a lamp: 512 x 256 pixels.
@@ -179,8 +197,8 @@ void addMedians(Page& page, const Table& table, const std::string& print, const 
         rows.push_back(std::move(row));
     }
     page.heading(print);
-    page.table({"capability", "how", "convert CPU s", "%", "build CPU s", "%", "render CPU s", "%", "peak bytes", "%",
-                "least .. largest render CPU s"},
+    page.table({"capability", "how", "read CPU s", "%", "convert CPU s", "%", "build CPU s", "%", "render CPU s", "%",
+                "peak bytes", "%", "least .. largest render CPU s"},
                rows);
 }
 

@@ -12,11 +12,10 @@ StudyReport studyDeposit(const DepositOptions& options, const StudyOptions& comm
     Page page("What the plastic does: models against measurements", common.command);
     page.paragraph(
         "docs/deposit.md has the models. Here is how much of the plastic they account for, how rough, wide and quick "
-        "their prints are beside published and stated figures, and what each costs.");
+        "their prints are beside published and stated figures.");
     using Part = Table (*)(const DepositOptions&, const StudyOptions&, Page&, StudyReport&);
     // First what is measured in processes of its own, which want no threads to have been started before.
-    constexpr std::array<std::pair<const char*, Part>, 5> kParts{{{"deposit_cost", studyEffects},
-                                                                  {"deposit_volume", studyVolume},
+    constexpr std::array<std::pair<const char*, Part>, 4> kParts{{{"deposit_volume", studyVolume},
                                                                   {"deposit_roughness", studyRoughness},
                                                                   {"deposit_corner", studyCorner},
                                                                   {"deposit_time", studyTimes}}};

@@ -15,7 +15,6 @@ Table studyVolume(const DepositOptions& options, const StudyOptions& common, Pag
 Table studyRoughness(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
 Table studyCorner(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
 Table studyTimes(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
-Table studyEffects(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
 
 /// What beads become, by a name of the tables.
 struct BeadModel {

@@ -1,12 +1,8 @@
-// Light in furnaces, under suns, on mirrors and at grazing angles.
+// Light in furnaces, and lamps of all strengths.
 //
 // A mean of random samples is judged by its own standard error s, taken from the spread of blocks of pixels: a right
 // mean is off by more than 5 s once in a million.
 #include "march/brick/brick_intersector.h"
-#include "shade/brdf/brdf.h"
-#include "shade/brdf/lambert.h"
-#include "shade/brdf/plastic.h"
-#include "shade/environment/constant.h"
 #include "shade/integrator/render.h"
 #include "shade/scene/scene.h"
 #include "study/geometry/field_error.h"
@@ -15,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <openvdb/tools/LevelSetSphere.h>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +19,6 @@
 
 namespace stratum::study {
 namespace {
-
-using shade::Color;
 
 constexpr int kSide = 96;  // pixels of the frame
 
@@ -101,51 +94,11 @@ StabilityCase light(std::string name, std::string quantity, double tolerance, st
     return {"light", std::move(name), std::move(quantity), tolerance, std::move(why), std::move(measure)};
 }
 
-// Pixels that are not finite or are negative.
-double badPixels(const shade::Film& film) {
-    int bad = 0;
-    for (const shade::Pixel& pixel : film.pixels())
-        for (int c = 0; c < 3; ++c) bad += std::isfinite(pixel.rgb[c]) && pixel.rgb[c] >= 0 ? 0 : 1;
-    return bad;
-}
-
 double brightest(const shade::Film& film) {
     double most = 0;
     for (const shade::Pixel& pixel : film.pixels())
         for (int c = 0; c < 3; ++c) most = std::max(most, static_cast<double>(pixel.rgb[c]));
     return most;
-}
-
-glm::vec3 at(double cosine, double turn) {
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    return {static_cast<float>(sine * std::cos(turn)), static_cast<float>(sine * std::sin(turn)),
-            static_cast<float>(cosine)};
-}
-
-// A radical inverse: a stratified sequence that needs no state.
-double radicalInverse(unsigned n, unsigned base) {
-    double value = 0;
-    double digit = 1.0 / base;
-    for (; n > 0; n /= base, digit /= base) value += digit * (n % base);
-    return value;
-}
-
-// Of the samples' own values against eval() and pdf(), the largest relative difference.
-double sampleDisagrees(const shade::Brdf& brdf) {
-    double largest = 0;
-    for (unsigned n = 1; n < 20000; ++n) {
-        const glm::vec3 wo = at(n % 3 == 0 ? 1e-4 : radicalInverse(n, 7), 0.2);
-        const auto sample =
-            brdf.sample(wo, static_cast<float>(radicalInverse(n, 5)),
-                        {static_cast<float>(radicalInverse(n, 2)), static_cast<float>(radicalInverse(n, 3))});
-        if (!sample) continue;
-        const auto pdf = static_cast<double>(brdf.pdf(wo, sample->wi));
-        largest = std::max(largest, std::abs(static_cast<double>(sample->pdf) / pdf - 1));
-        const auto f = static_cast<double>(brdf.eval(wo, sample->wi).r);
-        if (f > 0) largest = std::max(largest, std::abs(static_cast<double>(sample->f.r) / f - 1));
-        if (!std::isfinite(largest)) return std::numeric_limits<double>::infinity();
-    }
-    return largest;
 }
 
 // A matt ball of albedo 1 lit from behind the camera with irradiance pi: its middle shines with radiance 1.
@@ -187,35 +140,12 @@ void addFurnaces(std::vector<StabilityCase>& cases) {
     }));
 }
 
-void addSuns(std::vector<StabilityCase>& cases) {
-    for (const double alpha : {0.001, 0.005})
-        for (const int spp : {1, 64})
-            cases.push_back(light(
-                fmt::format("alpha {:g} under a sun of 1e5 : 1, {} spp", alpha, spp),
-                "channels that are not finite or negative", 0, "light is a number, and not below 0", [=] {
-                    Picture picture{bare(fmt::format("plastic:0.5,0.1,0,{}", alpha), "constant:1,1,1"), spp, 8, "path"};
-                    // The sun's radiance is its irradiance over 6.7e-5 sr: 1e5 times the room's.
-                    picture.scene.lights = {"sun:1,2,-1,6.7,6.7,6.7"};
-                    return badPixels(render(*grooves(), picture));
-                }));
+void addLamps(std::vector<StabilityCase>& cases) {
     for (const double irradiance : {1e-6, 1.0, 1e6})
         cases.push_back(
             light(fmt::format("matt ball lit with {:g}", irradiance), "relative error of its middle", 3e-4,
                   "a pixel sees normals within 0.014 and the trilinear one is off by voxel / 2R = 0.01: 1 - cos(0.024)",
                   [=] { return middleOfALitBall(irradiance); }));
-    cases.push_back(light("one sample, one bounce", "channels that are not finite or negative", 0,
-                          "light is a number, and not below 0", [] {
-                              return badPixels(render(*grooves(), {bare("plastic:1,1,1,0.001", "sky"), 1, 1, "path"}));
-                          }));
-}
-
-void addMaterials(std::vector<StabilityCase>& cases) {
-    for (const double alpha : {0.001, 0.05, 1.0})
-        cases.push_back(light(fmt::format("samples of plastic {:g}", alpha), "largest relative difference",
-                              16 * 0x1p-24 / alpha,
-                              "sample() draws a half vector, eval() makes it anew: roundings of 2^-24 over the lobe's "
-                              "width, to the fourth power of their sum",
-                              [=] { return sampleDisagrees(shade::Plastic(Color(0.5F), static_cast<float>(alpha))); }));
 }
 
 }  // namespace
@@ -223,8 +153,7 @@ void addMaterials(std::vector<StabilityCase>& cases) {
 std::vector<StabilityCase> lightCases() {
     std::vector<StabilityCase> cases;
     addFurnaces(cases);
-    addSuns(cases);
-    addMaterials(cases);
+    addLamps(cases);
     return cases;
 }
 

@@ -128,15 +128,5 @@ TEST_F(Deposit, TimesAreThoseOfTheFiles) {
     EXPECT_NEAR(numberOf(times[1], "off_percent"), 0, 5);
 }
 
-TEST_F(Deposit, EachEffectIsMeasuredBesideCapsules) {
-    std::map<std::string, int> runs;
-    for (const auto& row : rows("deposit_cost.csv")) {
-        EXPECT_GT(numberOf(row, "build_seconds"), 0);
-        ++runs[row.at("beads_are")];
-    }
-    EXPECT_EQ(runs, (std::map<std::string, int>{
-                        {"capsule", 2}, {"flow", 2}, {"sag", 2}, {"section", 2}, {"settled", 2}, {"typical", 2}}));
-}
-
 }  // namespace
 }  // namespace stratum::study
