@@ -36,6 +36,7 @@ Series seriesOf(const std::vector<RenderPoint>& points, const std::string& name,
 template <typename X>
 PowerLaw lawOf(const std::vector<RenderPoint>& points, X RenderPoint::*x, double RenderPoint::*y) {
     std::vector<std::pair<double, double>> pairs;
+    pairs.reserve(points.size());
     for (const RenderPoint& p : points) pairs.emplace_back(p.*x, p.*y);
     return fitPowerLaw(pairs);
 }
@@ -55,6 +56,7 @@ RenderResults renderResults(const Table& table) {
     for (const auto& [key, rows] : groups) {
         const auto column = [&, &group = rows](const char* name) {
             std::vector<double> values;
+            values.reserve(group.size());
             for (const Row* row : group) values.push_back(table.number(*row, name));
             return values;
         };

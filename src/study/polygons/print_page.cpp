@@ -170,6 +170,7 @@ void addPrints(Page& page, const Table& table, const std::string& integrator, co
         all.push_back(row);
     }
     std::vector<PrintResult> results;
+    results.reserve(by_name.size());
     for (auto& [name, result] : by_name) results.push_back(std::move(result));
     std::sort(results.begin(), results.end(),
               [](const PrintResult& a, const PrintResult& b) { return a.enclosed < b.enclosed; });
