@@ -2,8 +2,8 @@
 //
 // Each peer traces each set of rays once per round, in turn with the others, so that what disturbs the machine disturbs
 // all. Reported are medians over rounds, their spread, ratios, and how answers differ from the scalar exact ones.
-#include "march_embree.h"
-#include "march_peer.h"
+#include "embree_intersector.h"
+#include "embree_scene.h"
 #include "march_rays.h"
 
 #include "base/input_file.h"
@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/VolumeToMesh.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -26,14 +28,17 @@
 #include <ctime>
 #include <fstream>
 #include <functional>
+#include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace {
 
 using namespace stratum;
-using bench::Peer;
 using Json = nlohmann::ordered_json;
+using IntersectorPtr = std::shared_ptr<const trace::Intersector>;
 
 struct Options {
     std::string grid, gcode, json;
@@ -59,10 +64,62 @@ double cpuSecondsOf(const std::function<void()>& work) {
     return now() - start;
 }
 
+// What is compared: an intersector, asked by streams of rays or ray by ray.
+struct Peer {
+    std::string name;
+    IntersectorPtr intersector;
+    bool streams = true;
+    double build_seconds = 0;
+};
+
+Peer embreePeer(std::string name, const std::function<std::unique_ptr<bench::EmbreeScene>()>& make) {
+    Peer peer{"embree " + std::move(name), nullptr, true, 0};
+    peer.build_seconds = secondsOf([&] { peer.intersector = bench::embreeIntersector(make(), {}); });
+    return peer;
+}
+
+std::unique_ptr<bench::EmbreeScene> meshScene(const openvdb::FloatGrid& grid) {
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec4I> faces;
+    openvdb::tools::volumeToMesh(grid, points, faces, 0.0);
+    std::vector<bench::Corner> corners;
+    for (const openvdb::Vec3s& p : points) corners.push_back({p[0], p[1], p[2]});
+    std::vector<bench::Quad> quads;
+    for (const openvdb::Vec4I& f : faces) quads.push_back({{f[0], f[1], f[2], f[3]}});
+    return bench::quadScene(corners, quads);
+}
+
 struct Answers {
     std::vector<double> t;
     std::vector<std::uint8_t> blocked;
 };
+
+// By all threads, in tiles of 1024 rays.
+void traceRays(const Peer& peer, std::span<const trace::Ray> rays, bool any, Answers& answers) {
+    constexpr std::size_t kChunk = 1024;
+    answers.t.resize(any ? 0 : rays.size());
+    answers.blocked.resize(any ? rays.size() : 0);
+    tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers(
+        [&peer] { return peer.intersector->makeTracer(); });
+    parallelFor((rays.size() + kChunk - 1) / kChunk, 1, [&](std::size_t first_chunk, std::size_t last_chunk) {
+        const std::size_t first = first_chunk * kChunk;
+        const std::size_t count = std::min(last_chunk * kChunk, rays.size()) - first;
+        trace::Tracer& tracer = *tracers.local();
+        if (any && peer.streams) {
+            tracer.occludedStream(rays.subspan(first, count), {answers.blocked.data() + first, count});
+            return;
+        }
+        std::vector<trace::Hit> hits(any ? 0 : count);
+        if (!any && peer.streams) tracer.intersectStream(rays.subspan(first, count), hits);
+        for (std::size_t n = 0; n < count; ++n) {
+            if (any)
+                answers.blocked[first + n] = tracer.occluded(rays[first + n]) ? 1 : 0;
+            else if (!peer.streams && !tracer.intersect(rays[first + n], hits[n]))
+                hits[n].t = std::numeric_limits<double>::infinity();
+            if (!any) answers.t[first + n] = hits[n].t;
+        }
+    });
+}
 
 // How a peer's answers differ from the exact ones.
 struct Difference {
@@ -102,12 +159,12 @@ void run(const Options& o) {
                1e-6 * static_cast<double>(grid->activeVoxelCount()), voxel,
                1e-9 * static_cast<double>(grid->memUsage()), read_seconds, o.threads, o.rounds);
 
-    std::vector<std::unique_ptr<Peer>> peers;
+    std::vector<Peer> peers;
     const auto wanted = [&](const std::string& name) {
         return o.peers.empty() || std::find(o.peers.begin(), o.peers.end(), name) != o.peers.end();
     };
-    std::shared_ptr<const trace::Intersector> brick;  // exact: what the others' answers are compared with
-    std::shared_ptr<const trace::Intersector> quanta;
+    IntersectorPtr brick;  // exact: what the others' answers are compared with
+    IntersectorPtr quanta;
     double brick_cpu = 0;
     double quanta_cpu = 0;
     const auto build = [&grid](auto& made, march::BrickValues values, double& cpu) {
@@ -115,37 +172,39 @@ void run(const Options& o) {
     };
     const double brick_seconds = build(brick, march::BrickValues::Float32, brick_cpu);
     const double quanta_seconds = build(quanta, march::BrickValues::Int16, quanta_cpu);
-    if (wanted("brick scalar")) {
-        peers.push_back(bench::marchPeer("brick scalar, floats", brick, false, brick_seconds));
-        peers.push_back(bench::marchPeer("brick scalar", quanta, false, quanta_seconds));
-    }
-    if (wanted("brick")) {
-        peers.push_back(bench::marchPeer("brick, floats", brick, true, brick_seconds));
-        peers.push_back(bench::marchPeer("brick", quanta, true, quanta_seconds));
-    }
-    if (wanted("vdb")) peers.push_back(bench::marchPeer("vdb", march::makeVdbIntersector(grid), false, 0));
+    for (const bool streams : {false, true})
+        if (const std::string name = streams ? "brick" : "brick scalar"; wanted(name)) {
+            peers.push_back({name + ", floats", brick, streams, brick_seconds});
+            peers.push_back({name, quanta, streams, quanta_seconds});
+        }
+    if (wanted("vdb")) peers.push_back({"vdb", march::makeVdbIntersector(grid), false});
     if (wanted("sphere")) {
-        peers.push_back(bench::marchPeer("sphere", march::makeSphereIntersector(grid, 1), false, 0));
-        peers.push_back(bench::marchPeer("sphere, relaxed", march::makeSphereIntersector(grid), false, 0));
+        peers.push_back({"sphere", march::makeSphereIntersector(grid, 1), false});
+        peers.push_back({"sphere, relaxed", march::makeSphereIntersector(grid), false});
     }
-    if (wanted("mesh")) peers.push_back(bench::embreeMesh(*grid));
+    if (wanted("mesh")) peers.push_back(embreePeer("mesh", [&] { return meshScene(*grid); }));
     if (!o.gcode.empty()) {
         const InputFile file(o.gcode);
         const gcode::Toolpath toolpath = gcode::readToolpath(file.bytes(), o.gcode);
         for (const double split : {0.0, 16.0, 8.0})
-            if (wanted("beads")) peers.push_back(bench::embreeBeads(toolpath, split));
+            if (wanted("beads"))
+                peers.push_back(embreePeer(split > 0 ? fmt::format("beads, {:g}:1", split) : "beads, whole",
+                                           [&] { return bench::beadScene(toolpath, split); }));
         if (wanted("curves")) {
-            peers.push_back(bench::embreeRound(toolpath));
-            peers.push_back(bench::embreeRibbons(toolpath));
+            peers.push_back(embreePeer("round curves", [&] { return bench::roundScene(toolpath); }));
+            peers.push_back(embreePeer("flat curves", [&] { return bench::ribbonScene(toolpath); }));
         }
         for (const int corners : {4, 6, 10})
-            if (wanted("prisms")) peers.push_back(bench::embreePrisms(toolpath, corners, 8));
+            if (wanted("prisms"))
+                peers.push_back(embreePeer(fmt::format("{}-gons, 8:1", corners),
+                                           [&] { return bench::prismScene(toolpath, corners, 8); }));
     }
 
     fmt::print("  reading took {:.2f} s of CPU time, building bricks {:.2f} s, of floats {:.2f} s\n", read_cpu,
                quanta_cpu, brick_cpu);
-    for (const auto& peer : peers)
-        fmt::print("  {:<28} built in {:6.2f} s, {:8.1f} MB\n", peer->name, peer->build_seconds, 1e-6 * peer->bytes);
+    for (const Peer& peer : peers)
+        fmt::print("  {:<28} built in {:6.2f} s, {:8.1f} MB\n", peer.name, peer.build_seconds,
+                   1e-6 * static_cast<double>(peer.intersector->bytes()));
 
     const auto sets = bench::makeRaySets(*brick, o.side, 0.1 * voxel);
     Json report{{"grid", o.grid},
@@ -156,24 +215,11 @@ void run(const Options& o) {
                 {"brick_floats_cpu_seconds", brick_cpu}};
     for (const bench::RaySet& set : sets) {
         if (!o.sets.empty() && std::find(o.sets.begin(), o.sets.end(), set.name) == o.sets.end()) continue;
-        std::vector<std::unique_ptr<bench::Prepared>> prepared;
-        for (const auto& peer : peers) prepared.push_back(peer->prepare(set.rays, set.coherent));
         std::vector<Answers> answers(peers.size());
         std::vector<std::vector<double>> seconds(peers.size());
         for (int round = -1; round < o.rounds; ++round)  // the first warms up
             for (std::size_t p = 0; p < peers.size(); ++p) {
-                answers[p].t.resize(set.any ? 0 : set.rays.size());
-                answers[p].blocked.resize(set.any ? set.rays.size() : 0);
-                constexpr std::size_t kChunk = 1024;  // a tile
-                const std::size_t chunks = (set.rays.size() + kChunk - 1) / kChunk;
-                const double s = cpuSecondsOf([&] {
-                    parallelFor(chunks, 1, [&](std::size_t first, std::size_t last) {
-                        const std::size_t a = first * kChunk;
-                        const std::size_t b = std::min(last * kChunk, set.rays.size());
-                        set.any ? prepared[p]->any(a, b, answers[p].blocked.data())
-                                : prepared[p]->nearest(a, b, answers[p].t.data());
-                    });
-                });
+                const double s = cpuSecondsOf([&] { traceRays(peers[p], set.rays, set.any, answers[p]); });
                 if (round >= 0) seconds[p].push_back(s / o.threads);
             }
         fmt::print("\n{}: {:.2f} M rays\n", set.name, 1e-6 * static_cast<double>(set.rays.size()));
@@ -187,20 +233,20 @@ void run(const Options& o) {
             fmt::print(
                 "  {:<28} {:7.2f} Mrays/s ({:5.2f} to {:5.2f})  {:5.2f} x scalar   missed {:7} extra {:7} "
                 "off {:7}, mean {:.1e} voxel\n",
-                peers[p]->name, rate, count / seconds[p].back(), count / seconds[p].front(), rate / first_rate,
-                d.missed, d.extra, d.off, d.mean_error);
-            report["sets"][set.name][peers[p]->name] = {{"mrays_per_second", rate},
-                                                        {"least", count / seconds[p].back()},
-                                                        {"most", count / seconds[p].front()},
-                                                        {"missed", d.missed},
-                                                        {"extra", d.extra},
-                                                        {"off", d.off},
-                                                        {"mean_error_voxels", d.mean_error}};
+                peers[p].name, rate, count / seconds[p].back(), count / seconds[p].front(), rate / first_rate, d.missed,
+                d.extra, d.off, d.mean_error);
+            report["sets"][set.name][peers[p].name] = {{"mrays_per_second", rate},
+                                                       {"least", count / seconds[p].back()},
+                                                       {"most", count / seconds[p].front()},
+                                                       {"missed", d.missed},
+                                                       {"extra", d.extra},
+                                                       {"off", d.off},
+                                                       {"mean_error_voxels", d.mean_error}};
         }
         report["sets"][set.name]["rays"] = set.rays.size();
     }
-    for (const auto& peer : peers)
-        report["peers"][peer->name] = {{"build_seconds", peer->build_seconds}, {"bytes", peer->bytes}};
+    for (const Peer& peer : peers)
+        report["peers"][peer.name] = {{"build_seconds", peer.build_seconds}, {"bytes", peer.intersector->bytes()}};
     if (!o.json.empty()) std::ofstream(o.json) << report.dump(2) << '\n';
 }
 

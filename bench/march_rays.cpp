@@ -65,7 +65,7 @@ glm::dvec3 cosineDirection(const glm::dvec3& n, std::mt19937& random) {
 
 std::vector<RaySet> makeRaySets(const trace::Intersector& exact, int side, double offset) {
     std::vector<RaySet> sets;
-    sets.push_back({"primary", primaryRays(exact.bounds(), side), false, true});
+    sets.push_back({"primary", primaryRays(exact.bounds(), side)});
     std::vector<std::pair<Ray, Hit>> seen;
     const auto tracer = exact.makeTracer();
     for (const Ray& ray : sets[0].rays) {
@@ -74,7 +74,7 @@ std::vector<RaySet> makeRaySets(const trace::Intersector& exact, int side, doubl
     }
     std::mt19937 random(1);
     const auto cosine = [&](const char* name, std::size_t step, int count, double t_max) {
-        RaySet set{name, {}, true, false};
+        RaySet set{name, {}, true};
         for (std::size_t n = 0; n < seen.size(); n += step)
             for (int k = 0; k < count; ++k) {
                 const auto& [ray, hit] = seen[n];
@@ -87,7 +87,7 @@ std::vector<RaySet> makeRaySets(const trace::Intersector& exact, int side, doubl
     cosine("AO, 1 a hit", 1, 1, kInfinity);
     cosine("AO, 8 a hit", 4, 8, kInfinity);
     cosine("AO, 5 mm", 1, 1, kShort);
-    RaySet mirror{"mirror", {}, false, false};
+    RaySet mirror{"mirror", {}};
     for (const auto& [ray, hit] : seen) {
         const glm::dvec3 normal = glm::dot(hit.normal, ray.direction) > 0 ? -hit.normal : hit.normal;
         mirror.rays.push_back({hit.position + offset * normal, glm::normalize(glm::reflect(ray.direction, normal))});

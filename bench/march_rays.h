@@ -12,8 +12,7 @@ namespace stratum::bench {
 struct RaySet {
     std::string name;
     std::vector<trace::Ray> rays;
-    bool any = false;       ///< only whether there is a hit is asked
-    bool coherent = false;  ///< neighbours run side by side
+    bool any = false;  ///< only whether there is a hit is asked
 };
 
 /// Primary rays of a picture of `side` x `side` pixels from an oblique view, in tiles of 32 x 32; then, from their hits

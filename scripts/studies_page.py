@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the ten lines of docs/studies/README.md, and index.html with the same lines, from the studies' CSV files.
+"""Writes the ten lines of docs/studies/README.md from the studies' CSV files.
 
     scripts/studies_page.py STUDIES_FOLDER [--check]
 
-Every number links to the row that it was measured in: in README.md to the line of the CSV file (GitHub and browsers show
-it), in index.html to the row of the study's page. Lines whose table is missing or of an older form say so. --check writes
-nothing and fails if README.md would change.
+Every number links to the line of the CSV file that it was measured in (GitHub and browsers show it). Lines whose table is
+missing or of an older form say so. --check writes nothing and fails if README.md would change.
 """
 import csv
-import html
 import math
 import pathlib
 import re
@@ -46,8 +44,8 @@ def prints_table(folder):
 class Number:
     """A number as it is shown, and the row that it is of."""
 
-    def __init__(self, text, row, page=None):
-        self.text, self.row, self.page = text, row, page
+    def __init__(self, text, row):
+        self.text, self.row = text, row
 
 
 def number(row, key):
@@ -116,8 +114,8 @@ def prints_line(folder):
     low, middle, high = matches[0], matches[len(matches) // 2], matches[-1]
     ahead = sum(ratio > 1 for ratio, _, _ in matches)
     line = ["When is marching better than polygons? For prints, path traced with 32 samples: the level set is ",
-            Number(f"{low[0]:.2f}", low[1], "polygons"), " to ", Number(f"{high[0]:.2f}", high[1], "polygons"),
-            " × as fast as the best of beads and prisms (median ", Number(f"{middle[0]:.2f}", middle[1], "polygons"),
+            Number(f"{low[0]:.2f}", low[1]), " to ", Number(f"{high[0]:.2f}", high[1]),
+            " × as fast as the best of beads and prisms (median ", Number(f"{middle[0]:.2f}", middle[1]),
             f"), ahead in {ahead} of {len(matches)} cases of print and threads"]
     fewer = [own["spp"] for _, own, _ in matches if own["spp"] != "32"]
     if fewer:
@@ -125,7 +123,7 @@ def prints_line(folder):
     first = print_matches(table, "path", lambda row: number(row, "first_look_cpu"), spp=1)
     if first:
         one = first[len(first) // 2]
-        line += ["; for a first look of one sample it is ", Number(f"{one[0]:.2f}", one[1], "polygons"),
+        line += ["; for a first look of one sample it is ", Number(f"{one[0]:.2f}", one[1]),
                  " × as fast (median)"]
     return line + ["."]
 
@@ -150,7 +148,7 @@ def scenes_line(folder):
         if found:
             middle = found[len(found) // 2]
             what = "without a hierarchy" if "every" in other else "in Embree's hierarchy"
-            line += [", " if line else "", f"{words} is ", Number(f"{middle[0]:.2g}", middle[1], "polygons"),
+            line += [", " if line else "", f"{words} is ", Number(f"{middle[0]:.2g}", middle[1]),
                      f" × as fast as round meshes {what}"]
     return ["For shapes of a few spheres and boxes (medians of the scenes): ", *line, "."] if line else None
 
@@ -167,8 +165,8 @@ def seeing_line(folder):
         if rows:
             look = min(rows, key=lambda r: number(r, "first_look_cpu"))
             row = rows[len(rows) // 2]
-            shown += ["; " if shown else "", f"{words} ", Number(f"{number(look, 'first_look_cpu'):.2g} s", look, "polygons"),
-                      " to a first look, ", Number(f"{print_total(row):.2g} s", row, "polygons"), " for 32 samples"]
+            shown += ["; " if shown else "", f"{words} ", Number(f"{number(look, 'first_look_cpu'):.2g} s", look),
+                      " to a first look, ", Number(f"{print_total(row):.2g} s", row), " for 32 samples"]
     return ["What does a print cost to see? CPU time from its beads: ", *shown, "."] if shown else None
 
 
@@ -179,17 +177,17 @@ def memory_line(folder):
         return None
     row = max(kept, key=lambda r: number(r, "part_mm3"))
     line = [f"In memory a print of {number(row, 'part_mm3') / 1e3:.3g} cm³ of plastic takes ",
-            Number(f"{number(row, 'grid_bytes') / number(row, 'part_mm3'):.0f} bytes a mm³", row, "memory"),
+            Number(f"{number(row, 'grid_bytes') / number(row, 'part_mm3'):.0f} bytes a mm³", row),
             f" at {number(row, 'voxel_mm'):g} mm"]
     culled = table.where(print=row["print"], interior="cull", voxels_per_layer="2")
     if culled:
-        line += [", ", Number(f"{number(culled[0], 'grid_bytes') / number(row, 'part_mm3'):.0f}", culled[0], "memory"),
+        line += [", ", Number(f"{number(culled[0], 'grid_bytes') / number(row, 'part_mm3'):.0f}", culled[0]),
                  " without what the outside can't see"]
     streamed = table.where(print=row["print"], interior="keep, no grid", voxels_per_layer="2", status="ok")
     if streamed:
         line += ["; written without a grid its process has ",
-                 Number(f"{number(streamed[0], 'peak_rss_bytes') / 1e6:.0f} MB", streamed[0], "memory"), " at most, instead of ",
-                 Number(f"{number(row, 'peak_rss_bytes') / 1e6:.0f}", row, "memory")]
+                 Number(f"{number(streamed[0], 'peak_rss_bytes') / 1e6:.0f} MB", streamed[0]), " at most, instead of ",
+                 Number(f"{number(row, 'peak_rss_bytes') / 1e6:.0f}", row)]
     off = []
     for name in {r["print"] for r in table.rows}:
         for way in ("keep", "cull"):
@@ -201,7 +199,7 @@ def memory_line(folder):
     if off:
         worst = max(off, key=lambda pair: abs(pair[0]))
         line += ["; a power law of the coarser sizes foretells the finest within ",
-                 Number(f"{abs(100 * worst[0]):.2g} %", worst[1], "memory")]
+                 Number(f"{abs(100 * worst[0]):.2g} %", worst[1])]
     return line + ["."]
 
 
@@ -217,9 +215,9 @@ def voxel_line(folder):
             row = rows[0]
             gone = number(row, "narrow_share") + (1 - number(row, "narrow_share")) * number(row, "lost_share")
             line += ["; " if line else "", f"{beads}, {number(row, 'voxel_mm'):g} mm: ",
-                     Number(micrometres(number(row, "mean_mm")), row, "geometry"), " there and ",
-                     Number(micrometres(number(row, "back_mean_mm")), row, "geometry"), " back on the mean, ",
-                     Number(f"{100 * gone:.0f} %", row, "geometry"), " of the exact surface not there"]
+                     Number(micrometres(number(row, "mean_mm")), row), " there and ",
+                     Number(micrometres(number(row, "back_mean_mm")), row), " back on the mean, ",
+                     Number(f"{100 * gone:.0f} %", row), " of the exact surface not there"]
     return ["Which voxel for which error? ", *line,
             " (slits between beads, narrower than two voxels)."] if line else None
 
@@ -230,9 +228,9 @@ def falling_line(folder):
     line = []
     if len(rows) > 2:
         line += ["of surfaces as the voxel to the power ",
-                 Number(f"{law([(number(r, 'voxel_mm'), number(r, 'mean_mm')) for r in rows])[1]:.2f}", rows[-1], "geometry"),
+                 Number(f"{law([(number(r, 'voxel_mm'), number(r, 'mean_mm')) for r in rows])[1]:.2f}", rows[-1]),
                  " and the time to ",
-                 Number(f"{law([(number(r, 'seconds'), number(r, 'mean_mm')) for r in rows])[1]:.2f}", rows[-1], "geometry")]
+                 Number(f"{law([(number(r, 'seconds'), number(r, 'mean_mm')) for r in rows])[1]:.2f}", rows[-1])]
     render = Table(folder / "render.csv").where(variant="brick")
     points = {}
     for row in render:
@@ -240,7 +238,7 @@ def falling_line(folder):
     if len(points) > 2:
         cpu = [(statistics.median(number(r, "cpu_seconds") for r in group), statistics.mean(number(r, "rel_mse") for r in group))
                for _, group in sorted(points.items())]
-        line += [", of pictures (relMSE) as the CPU time to ", Number(f"{law(cpu)[1]:.2f}", points[max(points)][0], "render")]
+        line += [", of pictures (relMSE) as the CPU time to ", Number(f"{law(cpu)[1]:.2f}", points[max(points)][0])]
     return ["How does error fall with time? ", *line, "."] if line else None
 
 
@@ -263,7 +261,7 @@ def picture_line(folder):
         if found:
             spp, cpu, error, spread, row = found
             line += ["; " if line else "", f"{words}, {spp} samples: relMSE ",
-                     Number(f"{error:.1e} ± {spread:.0e}", row, "render"), " in ", Number(f"{cpu:.2g} CPU s", row, "render")]
+                     Number(f"{error:.1e} ± {spread:.0e}", row), " in ", Number(f"{cpu:.2g} CPU s", row)]
     return [f"A picture of {table.rows[0]['size']} pixels: ", *line, "."] if line else None
 
 
@@ -277,17 +275,15 @@ def stable_line(folder):
         families.setdefault(row["family"], []).append(row)
     line = [f"What is stable? Of {len(table.rows)} stiff and extreme cases {len(failed)} fail their tolerance: "]
     for n, (family, rows) in enumerate(families.items()):
-        line += [", " if n else "", Number(f"{len(rows)} of {family}", rows[0], "stability")]
+        line += [", " if n else "", Number(f"{len(rows)} of {family}", rows[0])]
     return line + ["."]
 
 
 def left_out_line(folder):
-    off = Table(folder / "need_off.csv")
     line = []
-    if off.rows:
-        worst = max(off.rows, key=lambda r: number(r, "percent"))
-        line += ["A capability that is off takes at most ", Number(f"{number(worst, 'percent'):.2g} %", worst, "need"),
-                 f" of a run's instructions ({worst['capability']}; {len(off.rows)} capabilities)"]
+    for row in Table(folder / "need_off.csv").rows:
+        line += [", " if line else "With all capabilities off a ", f"{row['work']} takes ",
+                 Number(f"{number(row, 'instructions') / 1e6:.0f} M", row), " instructions"]
     need = Table(folder / "need.csv")
 
     def median(capability):
@@ -297,10 +293,10 @@ def left_out_line(folder):
     if names and need.where(capability="none"):
         dearest = max(names, key=median)
         line += [". " if line else "", f"Of those that are on, {dearest} takes the most: ",
-                 Number(f"{median(dearest) / median('none'):.1f} ×", need.where(capability=dearest)[0], "need"),
+                 Number(f"{median(dearest) / median('none'):.1f} ×", need.where(capability=dearest)[0]),
                  " the CPU time of a picture without any. The same picture twice differs by ",
                  Number(percent(100 * (median("none, once more") / median("none") - 1)),
-                        need.where(capability="none, once more")[0], "need")]
+                        need.where(capability="none, once more")[0])]
     return ["What does a picture pay for what it does not use? ", *line, "."] if line else None
 
 
@@ -314,27 +310,16 @@ def plastic_line(folder):
         if rows:
             row = rows[len(rows) // 2]
             line += [", " if line else "beside what was fed the level set holds ", f"{name} ",
-                     Number(percent(number(row, "of_fed_percent")), row, "deposit")]
+                     Number(percent(number(row, "of_fed_percent")), row)]
     rough = Table(folder / "deposit_roughness.csv").where(layer_mm="0.2", section_percent="100", flow_percent="100")
     if rough:
-        line += ["; a wall of 0.2 mm layers has Ra ", Number(f"{number(rough[0], 'ra_um'):.1f} µm", rough[0], "deposit"),
+        line += ["; a wall of 0.2 mm layers has Ra ", Number(f"{number(rough[0], 'ra_um'):.1f} µm", rough[0]),
                  " (published 15.3 to 18.1)"]
     times = sorted((r for r in Table(folder / "deposit_time.csv").where(status="ok")), key=lambda r: abs(number(r, "off_percent")))
     if times:
         row = times[len(times) // 2]
-        line += ["; planned times differ from stated ones by ", Number(f"{abs(number(row, 'off_percent')):.2g} %", row, "deposit"),
+        line += ["; planned times differ from stated ones by ", Number(f"{abs(number(row, 'off_percent')):.2g} %", row),
                  " (median)"]
-    cost = Table(folder / "deposit_cost.csv")
-    runs = {}
-    for row in cost.rows:
-        runs.setdefault((row["print"], row["run_number"]), {})[row["beads_are"]] = row
-    pairs = sorted(((number(r["typical"], "read_seconds") + number(r["typical"], "build_seconds"))
-                    / (number(r["capsule"], "read_seconds") + number(r["capsule"], "build_seconds")), r["typical"]["line"], r["typical"])
-                   for r in runs.values() if "typical" in r and "capsule" in r)
-    if pairs:
-        ratio, _, row = pairs[len(pairs) // 2]
-        row = runs[row["print"], "1"]["typical"]  # the page has a row for all runs of a print, by its first
-        line += ["; a typical printer's grid takes ", Number(f"{ratio:.2f} ×", row, "deposit"), " the time of capsules"]
     return ["How near is the model to plastic? ", *line, "."] if line else None
 
 
@@ -358,22 +343,6 @@ def as_markdown(parts):
                    f"[{p.text}]({place(p.row)}{p.row['table']}.csv?plain=1#L{p.row['line']})" for p in parts)
 
 
-def as_html(parts):
-    return "".join(html.escape(p) if isinstance(p, str) else
-                   f"<a href='{place(p.row)}{p.page}.html#{p.row['table']}-L{p.row['line']}'>{html.escape(p.text)}</a>"
-                   for p in parts)
-
-
-def runs_line(folder):
-    runs = Table(folder / "runs.csv").rows + Table(folder / "one_thread" / "runs.csv").rows
-    if not runs:
-        return "Measured before runs were recorded: each page says on which machine, when and by which command."
-    machines = {r["machine"] for r in runs}
-    machines = sorted(m for m in machines if not any(other != m and other.startswith(m) for other in machines))
-    return (f"Measured from {min(r['date'] for r in runs)} to {max(r['date'] for r in runs)}, on {'; '.join(machines)}. Each row "
-            "names its run, and [runs.csv](runs.csv) its date, version, machine and command.")
-
-
 def main():
     lines = []
     for name, make in LINES:
@@ -381,7 +350,7 @@ def main():
             lines.append(make(FOLDER) or [f"({name}: {OLD})"])
         except KeyError:  # a column that older tables lack
             lines.append([f"({name}: {OLD})"])
-    text = "\n".join(f"{n}. {as_markdown(line)}" for n, line in enumerate(lines, 1)) + "\n\n" + runs_line(FOLDER)
+    text = "\n".join(f"{n}. {as_markdown(line)}" for n, line in enumerate(lines, 1))
     readme = FOLDER / "README.md"
     old = readme.read_text(encoding="utf-8") if readme.exists() else "# Studies\n\n<!-- ten lines -->\n<!-- /ten lines -->\n"
     pattern = re.compile(r"(<!-- ten lines -->\n).*?(<!-- /ten lines -->)", re.S)
@@ -391,15 +360,6 @@ def main():
     if "--check" in sys.argv:
         sys.exit(0 if new == old else f"{readme}: its lines are not those of the tables; run scripts/studies_page.py")
     readme.write_text(new, encoding="utf-8")
-    pages = sorted(p.relative_to(FOLDER).as_posix() for p in FOLDER.glob("**/*.html") if p.name != "index.html")
-    (FOLDER / "index.html").write_text(
-        "<!doctype html>\n<html lang='en'><head><meta charset='utf-8'>"
-        "<meta name='viewport' content='width=device-width, initial-scale=1'><title>Studies</title>\n"
-        "<style>body{font:15px/1.45 sans-serif;max-width:52em;margin:2em auto;padding:0 1em;color:#222;overflow-wrap:anywhere}"
-        "li{margin:.6em 0}</style></head>\n<body><h1>Studies</h1>\n<ol>\n"
-        + "".join(f"<li>{as_html(line)}</li>\n" for line in lines)
-        + "</ol>\n<p>" + " · ".join(f"<a href='{p}'>{p.removesuffix('.html')}</a>" for p in pages)
-        + "</p>\n</body></html>\n", encoding="utf-8")
 
 
 if len(sys.argv) < 2:

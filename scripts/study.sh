@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# All studies, into a folder (default docs/studies). --quick is a look at each, for continuous integration. --fresh forgets
-# what was measured there; without it a run that was stopped goes on. More prints for the studies of memory, of what the
-# plastic does and of beads beside level sets may follow, or folders of them for the latter alone:
-# scripts/study.sh [--quick] [--fresh] [FOLDER [PRINT.gcode|FOLDER...]]
+# All studies, into a folder (default docs/studies), whose tables and pages they replace. --quick is a look at each, for
+# continuous integration. More prints for the studies of memory, of what the plastic does and of beads beside level sets may
+# follow, or folders of them for the latter alone:
+# scripts/study.sh [--quick] [FOLDER [PRINT.gcode|FOLDER...]]
 # Peers (Embree) take part where bench_vdbstudy is built (-DSTRATUM_BENCH=ON), light is that of $STRATUM_ENV if that names
 # a map; $STRATUM_POLYGONS may hold more options of that study, such as "--spp 4 --frames 3". Files whose stated times are
 # compared, besides the prints, are those of data/gcode and $STRATUM_TIMES. The ten lines of FOLDER/README.md are written
@@ -10,12 +10,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=()
-fresh=()
 while [[ "${1:-}" == --* ]]; do
     case $1 in
         --quick) quick=(--quick) ;;
-        --fresh) fresh=(--fresh) ;;
-        *) echo "study.sh: $1 is no option; --quick and --fresh are" >&2; exit 2 ;;
+        *) echo "study.sh: $1 is no option; --quick is" >&2; exit 2 ;;
     esac
     shift
 done
@@ -38,8 +36,7 @@ times+=(${STRATUM_TIMES:-})
 files=()
 for given in "$@"; do [[ -f $given && $given != *.json ]] && files+=("$given"); done
 mkdir -p "$folder"
-[[ ${#fresh[@]} -gt 0 ]] && rm -f "$folder/runs.csv" "$folder/one_thread/runs.csv"
-options=(-o "$folder" "${quick[@]}" "${fresh[@]}")
+options=(-o "$folder" "${quick[@]}" --force)
 "$study" memory "$print" "${files[@]}" "${options[@]}"
 "$study" geometry "$print" --layers 1:20 --points "$points" "${options[@]}"
 "$study" render "$print" "${options[@]}"
@@ -52,7 +49,7 @@ compare() {  # FOLDER [OPTION...]
     local into=$1
     shift
     # shellcheck disable=SC2086  # options, word by word
-    "$polygons" polygons "${prints[@]}" "$@" ${STRATUM_ENV:+--env "$STRATUM_ENV"} ${STRATUM_POLYGONS:-} -o "$into" "${quick[@]}" "${fresh[@]}"
+    "$polygons" polygons "${prints[@]}" "$@" ${STRATUM_ENV:+--env "$STRATUM_ENV"} ${STRATUM_POLYGONS:-} -o "$into" "${quick[@]}" --force
 }
 prints=("${@:-$print}")
 compare "$folder" --scenes data/scenes/roukema_*.json

@@ -27,7 +27,7 @@ MAY_INCLUDE = {
     "serve": {"base"},
     "python": {"compare", "report", "base", "gcode", "motion", "deposit", "voxelize", "export", "trace", "march", "ondemand", "shade", "assemble"},
     "view": {"base", "gcode", "voxelize", "trace", "march", "ondemand", "shade", "assemble", "serve"},
-    "study": {"base", "gcode", "motion", "deposit", "voxelize", "export", "report", "trace", "march", "ondemand", "shade", "assemble", "view"},
+    "study": {"base", "gcode", "motion", "deposit", "voxelize", "export", "report", "trace", "march", "ondemand", "shade", "assemble"},
 }
 WITHOUT_OPENVDB = {"base", "gcode", "motion", "deposit", "trace", "shade", "serve"}
 MOST_LINES = 450

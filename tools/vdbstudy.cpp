@@ -7,13 +7,8 @@
 #include "run_files.h"
 
 #include "base/error.h"
-#include "study/cost/memory.h"
-#include "study/cost/need.h"
-#include "study/deposit/deposit.h"
-#include "study/geometry/geometry.h"
-#include "study/picture/render.h"
-#include "study/polygons/polygons.h"
-#include "study/stability/stability.h"
+#include "study/polygons/peer_tracers.h"
+#include "study/study.h"
 
 #include <fmt/format.h>
 
@@ -28,8 +23,8 @@ namespace {
 using namespace stratum;
 
 constexpr const char* kExamples = R"(
-Each study writes NAME.csv, row by row, and NAME.html, one page that holds all
-it shows. A study that was stopped goes on with the rows that it has.
+Each study writes its tables, NAME.csv, and NAME.html, one page that holds all
+it shows.
 
 Examples:
   vdbstudy memory part.gcode -o studies       bytes against voxel size
@@ -59,6 +54,21 @@ struct Verb {
     std::function<study::StudyReport()> work;
 };
 
+// A list of numbers, with commas between, from `least` to `most`.
+template <typename Number>
+void addList(CLI::App* verb, const char* name, std::vector<Number>& values, const char* help, Number least,
+             Number most) {
+    verb->add_option(name, values, help)
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(least, most))
+        ->type_name("N,...");
+}
+
+void addCount(CLI::App* verb, const char* name, auto& value, const char* help, int most = 1000) {
+    verb->add_option(name, value, help)->check(CLI::Range(1, most))->type_name("N");
+}
+
 // What every study takes.
 CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help) {
     CLI::App* verb = app.add_subcommand(name, help);
@@ -66,22 +76,16 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
         ->required()
         ->type_name("DIR");
     verb->add_flag("--quick", o.study.quick, "Less of everything: a look, not a measurement");
-    verb->add_flag("--fresh", o.study.fresh, "Measure again what an earlier run has measured");
     tools::addCommonOptions(*verb, o.common);
     return verb;
 }
 
 void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
-    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, corners, times, cost");
-    deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume, times and cost")
-        ->required()
-        ->type_name("FILE.gcode");
+    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, roughness, corners, times");
+    deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume and times")->required()->type_name("FILE.gcode");
     deposit->add_option("--times", o.deposit.timed, "More prints, for their times alone; may be given again")
         ->type_name("FILE");
     deposit->add_option("--layers", o.deposit.layers, "Of the volumes (default 1:20)")->type_name("A:B");
-    deposit->add_option("--repeats", o.deposit.repeats, "Runs of each effect (default 7)")
-        ->check(CLI::Range(1, 1000))
-        ->type_name("N");
     verbs.push_back({deposit, [&o] { return study::studyDeposit(o.deposit, o.study); }});
 }
 
@@ -89,44 +93,26 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
     std::vector<Verb> verbs;
     CLI::App* memory = addVerb(app, o, "memory", "Bytes against voxel size, in memory and on disk");
     memory->add_option("PRINT", o.memory.prints, "Prints to convert")->required()->type_name("FILE.gcode");
-    memory->add_option("--voxels-per-layer", o.memory.voxels_per_layer, "Sizes (default 1,2,3,4)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(1, 64))
-        ->type_name("N,...");
+    addList(memory, "--voxels-per-layer", o.memory.voxels_per_layer, "Sizes (default 1,2,3,4)", 1, 64);
     verbs.push_back({memory, [&o] { return study::studyMemory(o.memory, o.study); }});
     CLI::App* geometry = addVerb(app, o, "geometry", "From the beads' exact surface to the level set");
     geometry->add_option("PRINT", o.geometry.print, "A print; its level beads count")
         ->required()
         ->type_name("FILE.gcode");
     geometry->add_option("--layers", o.geometry.layers, "Only these layers")->type_name("A:B");
-    geometry->add_option("--voxels-per-layer", o.geometry.counts, "Sizes (default 1,2,3,4,6,8)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(0.5, 64.0))
-        ->type_name("N,...");
-    geometry->add_option("--points", o.geometry.points, "On the surface (default 40000)")
-        ->check(CLI::Range(1, 100000000))
-        ->type_name("N");
+    addList(geometry, "--voxels-per-layer", o.geometry.counts, "Sizes (default 1,2,3,4,6,8)", 0.5, 64.0);
+    addCount(geometry, "--points", o.geometry.points, "On the surface (default 40000)", 100000000);
     verbs.push_back({geometry, [&o] { return study::studyGeometry(o.geometry, o.study); }});
     CLI::App* render = addVerb(app, o, "render", "Error of pictures against run time");
     render->add_option("PRINT", o.render.print, "A print")->required()->type_name("FILE.gcode");
-    render->add_option("--voxels-per-layer", o.render.per_layer, "Sizes (default 1,2,4,8)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::Range(1, 64))
-        ->type_name("N,...");
-    render->add_option("--seeds", o.render.seeds, "Pictures of each kind (default 5)")
-        ->check(CLI::Range(1, 1000))
-        ->type_name("N");
+    addList(render, "--voxels-per-layer", o.render.per_layer, "Sizes (default 1,2,4,8)", 1, 64);
+    addCount(render, "--seeds", o.render.seeds, "Pictures of each kind (default 5)");
     verbs.push_back({render, [&o] { return study::studyRender(o.render, o.study); }});
     CLI::App* stability = addVerb(app, o, "stability", "Stiff and extreme cases, each with a verdict");
     verbs.push_back({stability, [&o] { return study::studyStability(o.study); }});
     CLI::App* need = addVerb(app, o, "need", "What a scene does not use, and its cost");
     need->add_option("PRINT", o.need.prints, "Prints to convert and render")->required()->type_name("FILE.gcode");
-    need->add_option("--repeats", o.need.repeats, "Runs of each (default 7)")
-        ->check(CLI::Range(1, 1000))
-        ->type_name("N");
+    addCount(need, "--repeats", o.need.repeats, "Runs of each (default 7)");
     verbs.push_back({need, [&o] { return study::studyNeed(o.need, o.study); }});
     addDeposit(app, o, verbs);
     CLI::App* polygons = addVerb(app, o, "polygons", "Level sets and formulas beside polygons and beads");
@@ -144,12 +130,8 @@ std::vector<Verb> addVerbs(CLI::App& app, Options& o) {
         ->allow_extra_args(false)
         ->check(tools::oneOf({"path", "ao"}))
         ->type_name("NAME,...");
-    polygons->add_option("--spp", o.polygons.spp, "Samples a pixel of the path-traced prints (default 32)")
-        ->check(CLI::Range(1, 65536))
-        ->type_name("N");
-    polygons->add_option("--frames", o.polygons.frames, "Of each scene (default 10)")
-        ->check(CLI::Range(1, 1000))
-        ->type_name("N");
+    addCount(polygons, "--spp", o.polygons.spp, "Samples a pixel of the path-traced prints (default 32)", 65536);
+    addCount(polygons, "--frames", o.polygons.frames, "Of each scene (default 10)");
     verbs.push_back({polygons, [&o] { return study::studyPolygons(o.polygons, study::peerTracers(), o.study); }});
     return verbs;
 }
@@ -170,9 +152,9 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
         for (const auto& print : *inputs) files.reads(print);
     for (const auto& print : {o.geometry.print, o.render.print}) files.reads(print);
     const std::string name = (o.study.folder / verb.app->get_name()).string();
-    for (const char* ending : {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv",
-                               "_time.csv", "_cost.csv"})
-        files.appends(name + ending, "-o");
+    for (const char* ending :
+         {".csv", "_scenes.csv", "_prints.csv", "_volume.csv", "_roughness.csv", "_corner.csv", "_time.csv"})
+        files.writes(name + ending, "-o");
     files.writes(name + ".html", "-o");
     files.writes(o.common.stats, "--stats");
     tools::makeFolder(o.study.folder);
@@ -182,13 +164,11 @@ void run(const Verb& verb, Options& o, int argc, char** argv) {
     for (const std::string& finding : report.findings)
         if (!o.common.quiet) tools::tellError(fmt::format("vdbstudy: {}\n", finding));
     const double seconds = watch.lap();
-    tools::say(o.common,
-               fmt::format("{}: {} rows ({} from an earlier run), {} findings, {:.1f} s", verb.app->get_name(),
-                           report.rows, report.resumed, report.findings.size(), seconds));
+    tools::say(o.common, fmt::format("{}: {} rows, {} findings, {:.1f} s", verb.app->get_name(), report.rows,
+                                     report.findings.size(), seconds));
     tools::say(o.common, fmt::format("  {}\n  {}", report.csv.string(), report.html.string()));
     tools::writeStats(o.common, {{"study", verb.app->get_name()},
                                  {"rows", report.rows},
-                                 {"resumed", report.resumed},
                                  {"findings", report.findings},
                                  {"csv", report.csv.string()},
                                  {"html", report.html.string()},

@@ -204,6 +204,20 @@ TEST(Flow, ExtremesStayFinite) {
     for (const double lag : {0.0, 0.05, 2.0}) expectSound(readText(program, withLag(lag)));
 }
 
+TEST(Flow, ExtremeProgramsKeepTheirPlastic) {
+    // Retracts and primes after every millimetre; moves of a micrometre; primes what was never retracted, and rests.
+    std::string stringing = "M83\nG1 Z0.2 F600\n";
+    for (int n = 0; n < 1000; ++n)
+        stringing +=
+            fmt::format("G1 X{} E0.03 F1800\nG1 E-0.8 F2400\nG1 X{} F9000\nG1 E0.8 F2400\n", 2 * n + 1, 2 * n + 2);
+    std::string micrometres = "M83\nG1 Z0.2 F600\nG1 X10 E0.3 F1800\n";
+    for (int n = 1; n <= 2000; ++n) micrometres += fmt::format("G1 X{:.3f} E0.00003\n", 10 + 1e-3 * n);
+    const std::string priming =
+        "M83\nG1 Z0.2 F600\nG1 X10 E0.3 F1800\nG1 E5 F300\nG4 S2\nG1 X20 E0.3\nG1 E-20 F2400\nG1 X30 E0.3\n";
+    for (const std::string& program : {stringing, micrometres + "G1 X30 E0.6\n", priming})
+        for (const double lag : {0.0, 1e-6, 0.04, 10.0}) expectSound(readText(program, withLag(lag)));
+}
+
 // A damaged amount of E: without a bound the parts of a millimetre would be metres wide.
 TEST(Flow, PartsAreNoWiderThanAHundredHeights) {
     gcode::ReadOptions options;

@@ -64,6 +64,23 @@ TEST(Planner, ASingleMoveIsItsTrapezoid) {
     EXPECT_NEAR(plan.seconds, 0.1 + 97.5 / 50, 1e-12);
 }
 
+TEST(Planner, AMoveFromRestToRestHasItsClosedForm) {
+    for (const double acceleration : {1e-3, 1.0, 1e3, 1e7})
+        for (const double length : {1e-4, 1.0, 1e4}) {
+            constexpr double kSpeed = 100;
+            Motions program;
+            program.limits.rule = CornerRule::corner_velocity;
+            program.limits.speed.fill(1e9);
+            program.limits.acceleration.fill(1e9);
+            program.limits.printing = program.limits.travel = program.limits.retracting = acceleration;
+            program.limits.cruise_ratio = 0;
+            program.moves.push_back(straight(length, 0, 0, 0, kSpeed));
+            const double exact = length >= kSpeed * kSpeed / acceleration ? length / kSpeed + kSpeed / acceleration
+                                                                          : 2 * std::sqrt(length / acceleration);
+            EXPECT_NEAR(planned(program).seconds / exact, 1, 64 * 0x1p-53) << length << " " << acceleration;
+        }
+}
+
 TEST(Planner, TwoMovesAtARightAngle) {
     // Each 100 mm: from rest to 5 mm/s at the corner (square corner velocity), and from there to rest.
     const PlanList plan =

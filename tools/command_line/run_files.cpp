@@ -41,11 +41,11 @@ void RunFiles::reads(const std::string& path) {
 }
 
 void RunFiles::writes(const std::string& path, std::string_view option) {
-    appends(path, option);
+    use(path, option);
     if (!path.empty()) Replacement::check(path);
 }
 
-void RunFiles::appends(const std::string& path, std::string_view option) {
+void RunFiles::use(const std::string& path, std::string_view option) {
     if (path.empty()) return;
     const bool standard = isStandardOutput(path);
     const std::string identity = standard ? "-" : identityOf(path);

@@ -19,10 +19,10 @@ public:
     /// Throws UsageError if the file is read or written by this run already, or may not be replaced (Replacement). ""
     /// is no file.
     void writes(const std::string& path, std::string_view option);
-    /// The same for a table that gets more lines: an old one stays.
-    void appends(const std::string& path, std::string_view option);
 
 private:
+    void use(const std::string& path, std::string_view option);
+
     struct Use {
         std::string path, option;
         bool read = false;

@@ -1,5 +1,8 @@
 #include "study/cost/own_process.h"
 
+#include "base/error.h"
+#include "study/cost/times.h"
+
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -108,6 +111,15 @@ Outcome inOwnProcess(const std::function<std::string()>& work, double seconds) {
     else
         outcome.text = message.substr(1);
     return outcome;
+}
+
+Row rowInOwnProcess(const std::string& what, int threads, const std::function<Row()>& work) {
+    const Outcome outcome = inOwnProcess([&] {
+        const tbb::global_control limit = limitThreads(threads);
+        return csvLine(work());
+    });
+    if (!outcome.failure.empty()) throw InputError(fmt::format("{}: {}", what, outcome.failure));
+    return parseCsvLine(outcome.text);
 }
 
 }  // namespace stratum::study

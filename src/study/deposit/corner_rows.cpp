@@ -14,10 +14,8 @@
 namespace stratum::study {
 namespace {
 
-const Row kCornerColumns{"jerk_mm_s",   "lag_s",      "advance_s",        "corner_width_mm",
-                         "width_ratio", "outline_mm", "start_width_ratio"};
-constexpr std::size_t kCornerKeys = 3;
-enum CornerColumn : std::size_t { kJerk, kLag, kAdvance, kCornerWidthMm, kWidthRatio, kOutline, kStartRatio };
+constexpr const char* kCornerColumns =
+    "jerk_mm_s,lag_s,advance_s,corner_width_mm,width_ratio,outline_mm,start_width_ratio";
 
 struct CornerCase {
     double jerk;     // mm/s
@@ -81,70 +79,47 @@ Row cornerOf(const CornerCase& c) {
     const gcode::Toolpath toolpath = deposit::readPrint(cornerProgram(c.jerk), "corner", read, false).toolpath;
     const double width = widthsNear(toolpath, kCornerAt, kCornerAt).first;
     const double start = widthsNear(toolpath, kCornerAt - 30, kCornerAt).second;
-    return {fmt::format("{:.6f}", width), fmt::format("{:.6f}", width / kCornerWidth),
-            fmt::format("{:.6f}", outlineAt(toolpath) - kCornerWidth / 2), fmt::format("{:.6f}", start / kCornerWidth)};
+    return figures({c.jerk, c.lag, c.advance, width, width / kCornerWidth, outlineAt(toolpath) - kCornerWidth / 2,
+                    start / kCornerWidth});
 }
 
-void writeCorner(Page& page, const ResultTable& table) {
+}  // namespace
+
+Table studyCorner(const DepositOptions&, const StudyOptions& common, Page& page, StudyReport& report) {
+    Table table(kCornerColumns);
+    const std::vector<CornerCase> all = cornersToMeasure(common.quick);
+    Plot plot{
+        "Width at a 90-degree corner", "lag of the flow, s", "width at the corner / line's width", false, false, {}};
+    for (const double jerk : {1.0, 8.0})
+        for (const bool advanced : {false, true})
+            plot.series.push_back(
+                {fmt::format("jerk {:g} mm/s, {}", jerk, advanced ? "K = T" : "no advance"), {}, advanced});
+    for (const CornerCase& c : all) {
+        table.add(cornerOf(c));
+        const double ratio = table.number(table.rows().back(), "width_ratio");
+        for (const bool advanced : {false, true})
+            if (c.lag == 0 || (c.advance > 0) == advanced)
+                plot.series[(c.jerk > 1 ? 2U : 0U) + (advanced ? 1U : 0U)].points.emplace_back(c.lag, ratio);
+        // What the tests promise of an advance that cancels the lag.
+        constexpr double kNoBulge = 1e-3;
+        if (c.lag == c.advance && std::abs(ratio - 1) > kNoBulge)
+            report.findings.push_back(
+                fmt::format("a corner with K = T = {:g} s is {} of its line's width", c.lag, ratio));
+        if (common.progress)
+            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(all.size()));
+    }
     page.heading("Corners");
     page.paragraph(fmt::format(
         "Two lines of 30 mm, {:g} x {:g} mm, that meet at 90 degrees; 60 mm/s, 1000 mm/s\u00b2, classic jerk. The "
         "nozzle slows down at the corner and the flow lags behind it (--flow-lag), so the line is widest there: its "
         "width within one line's width of the corner, over the commanded one. With a pressure advance K as long as the "
-        "lag T (--pressure-advance) nothing of it is left. \"Outline\" is how far the outside of the corner stands out "
-        "on its bisector, \"start\" the narrowest width at the beginning of the first line. Published are trends: "
-        "bulges that grow with the slow-down and thin starts (Comminal et al. 2019, doi 10.1016/j.addma.2019.06.005; "
-        "Kuipers et al. 2020, arXiv 2004.13497); no figure of theirs is of this corner.",
+        "lag T (--pressure-advance) nothing of it is left. The outline is how far the outside of the corner stands out "
+        "on its bisector, the last column the narrowest width at the beginning of the first line. Published are "
+        "trends: bulges that grow with the slow-down and thin starts (Comminal et al. 2019, doi "
+        "10.1016/j.addma.2019.06.005; Kuipers et al. 2020, arXiv 2004.13497); no figure of theirs is of this corner.",
         kCornerWidth, kCornerHeight));
-    Plot plot{
-        "Width at a 90-degree corner", "lag of the flow, s", "width at the corner / line's width", false, false, {}};
-    for (const char* jerk : {"1", "8"})
-        for (const bool advanced : {false, true}) {
-            Series series{fmt::format("jerk {} mm/s, {}", jerk, advanced ? "K = T" : "no advance"), {}, advanced};
-            for (const Row& row : table.rows())
-                if (row[kJerk] == jerk && (numberIn(row, kAdvance) > 0 || numberIn(row, kLag) == 0) == advanced)
-                    series.points.emplace_back(numberIn(row, kLag), numberIn(row, kWidthRatio));
-                else if (row[kJerk] == jerk && !advanced && numberIn(row, kLag) == 0)
-                    series.points.emplace_back(0, numberIn(row, kWidthRatio));
-            plot.series.push_back(std::move(series));
-        }
     page.plot(plot);
-    std::vector<Row> cells;
-    std::vector<std::size_t> lines;
-    for (const Row& row : table.rows()) {
-        cells.push_back({row[kJerk], row[kLag], row[kAdvance], fmt::format("{:.3f}", numberIn(row, kCornerWidthMm)),
-                         fmt::format("{:.3f}", numberIn(row, kWidthRatio)),
-                         fmt::format("{:+.3f}", numberIn(row, kOutline)),
-                         fmt::format("{:.3f}", numberIn(row, kStartRatio)), row.back()});
-        lines.push_back(table.lineOf(row));
-    }
-    page.table({"jerk mm/s", "lag T s", "advance K s", "width mm", "over the line's", "outline mm",
-                "start over the line's", "run"},
-               cells, {}, lines, "deposit_corner");
-}
-
-}  // namespace
-
-PartTable studyCorner(const StudyOptions& common, Page& page, StudyReport& report) {
-    auto table = std::make_unique<ResultTable>(common, "deposit_corner.csv", kCornerColumns, kCornerKeys);
-    const std::vector<CornerCase> all = cornersToMeasure(common.quick);
-    double done = 0;
-    for (const CornerCase& c : all) {
-        Row row{fmt::format("{:g}", c.jerk), fmt::format("{:g}", c.lag), fmt::format("{:g}", c.advance)};
-        if (table->find(row) == nullptr) {
-            const Row cells = cornerOf(c);
-            row.insert(row.end(), cells.begin(), cells.end());
-            table->add(row);
-        }
-        const Row& known = *table->find(row);
-        // What the tests promise of an advance that cancels the lag.
-        constexpr double kNoBulge = 1e-3;
-        if (c.lag == c.advance && std::abs(numberIn(known, kWidthRatio) - 1) > kNoBulge)
-            report.findings.push_back(
-                fmt::format("a corner with K = T = {:g} s is {} of its line's width", c.lag, known[kWidthRatio]));
-        if (common.progress) common.progress(++done / static_cast<double>(all.size()));
-    }
-    writeCorner(page, *table);
+    page.table(table);
     return table;
 }
 

@@ -2,23 +2,19 @@
 #pragma once
 
 #include "deposit/read_print.h"
-#include "study/deposit/deposit.h"
 #include "study/report/page.h"
-#include "study/report/result_table.h"
+#include "study/report/table.h"
+#include "study/study.h"
 
-#include <memory>
 #include <string>
 
 namespace stratum::study {
 
-/// Each goes on with the rows of its table, measures the others, and adds to the page and the findings. The table is
-/// returned, to be counted. Throws InputError, UsageError, OutputError.
-using PartTable = std::unique_ptr<ResultTable>;
-PartTable studyVolume(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
-PartTable studyRoughness(const StudyOptions& common, Page& page, StudyReport& report);
-PartTable studyCorner(const StudyOptions& common, Page& page, StudyReport& report);
-PartTable studyTimes(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
-PartTable studyEffects(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
+/// Each measures its table, and adds to the page and the findings. Throws InputError, UsageError, OutputError.
+Table studyVolume(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
+Table studyRoughness(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
+Table studyCorner(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
+Table studyTimes(const DepositOptions& options, const StudyOptions& common, Page& page, StudyReport& report);
 
 /// What beads become, by a name of the tables.
 struct BeadModel {

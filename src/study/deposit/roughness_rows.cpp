@@ -4,8 +4,8 @@
 #include "study/deposit/deposit_parts.h"
 #include "study/deposit/made_programs.h"
 #include "study/deposit/published.h"
-#include "study/geometry/geometry.h"
 #include "study/geometry/handmade.h"
+#include "study/geometry/surface_error.h"
 #include "study/print.h"
 #include "voxelize/grid/exterior.h"
 #include "voxelize/grid/voxelizer.h"
@@ -22,23 +22,9 @@
 namespace stratum::study {
 namespace {
 
-const Row kRoughnessColumns{"layer_mm",  "section_percent", "flow_percent", "per_layer",   "lines",      "ra_um",
-                            "ra_low_um", "ra_high_um",      "rz_um",        "shape_ra_um", "off_percent"};
-constexpr std::size_t kRoughnessKeys = 4;
-enum RoughnessColumn : std::size_t {
-    kLayerMm,
-    kSectionPercent,
-    kFlowPercent,
-    kRoughnessCount,
-    kRoughnessLineCount,
-    kRa,
-    kRaLow,
-    kRaHigh,
-    kRz,
-    kShapeRa,
-    kRoughnessOff
-};
-
+constexpr const char* kRoughnessColumns =
+    "layer_mm,section_percent,flow_percent,per_layer,lines,ra_um,ra_low_um,ra_high_um,rz_um,shape_ra_um,"
+    "off_percent";
 struct Wall {
     double layer;    // mm
     int section;     // %, of half the layer: the corners' radius
@@ -84,13 +70,9 @@ Row roughnessOf(const Wall& wall, int per_layer) {
     const double mean = std::accumulate(ra.begin(), ra.end(), 0.0) / count;
     const auto [low, high] = std::minmax_element(ra.begin(), ra.end());
     const double shape = 1e3 * wallRoughness(wall.layer, 0.5 * wall.layer * 0.01 * wall.section);
-    return {std::to_string(ra.size()),
-            fmt::format("{:.4f}", mean),
-            fmt::format("{:.4f}", *low),
-            fmt::format("{:.4f}", *high),
-            fmt::format("{:.4f}", rz / count),
-            fmt::format("{:.4f}", shape),
-            fmt::format("{:+.3f}", (mean / shape - 1) * 100)};
+    return figures({wall.layer, static_cast<double>(wall.section), static_cast<double>(wall.flow),
+                    static_cast<double>(per_layer), count, mean, *low, *high, rz / count, shape,
+                    (mean / shape - 1) * 100});
 }
 
 double publishedMean(const PublishedRoughness& published) {
@@ -98,14 +80,14 @@ double publishedMean(const PublishedRoughness& published) {
            static_cast<double>(published.ra_um.size());
 }
 
-void plotRoughness(Page& page, const ResultTable& table) {
+void plotRoughness(Page& page, const Table& table) {
     Plot plot{"Ra of walls", "layer height, mm", "Ra, \u00b5m", false, false, {}};
     for (const char* section : {"100", "75", "50", "25"}) {
         Series series{fmt::format("corners of {} % of h / 2", section), {}};
         for (const Row& row : table.rows()) {
-            if (row[kSectionPercent] != section || row[kFlowPercent] != "100") continue;
-            series.points.emplace_back(numberIn(row, kLayerMm), numberIn(row, kRa));
-            series.bars.emplace_back(numberIn(row, kRaLow), numberIn(row, kRaHigh));
+            if (table.text(row, "section_percent") != section || table.text(row, "flow_percent") != "100") continue;
+            series.points.emplace_back(table.number(row, "layer_mm"), table.number(row, "ra_um"));
+            series.bars.emplace_back(table.number(row, "ra_low_um"), table.number(row, "ra_high_um"));
         }
         if (!series.points.empty()) plot.series.push_back(std::move(series));
     }
@@ -164,21 +146,15 @@ double wallRoughness(double height, double radius) {
     return sum;
 }
 
-PartTable studyRoughness(const StudyOptions& common, Page& page, StudyReport&) {
-    auto table = std::make_unique<ResultTable>(common, "deposit_roughness.csv", kRoughnessColumns, kRoughnessKeys);
+Table studyRoughness(const DepositOptions&, const StudyOptions& common, Page& page, StudyReport&) {
+    Table table(kRoughnessColumns);
     const std::vector<Wall> walls = wallsToMeasure(common.quick);
-    double done = 0;
     for (const Wall& wall : walls) {
         // Corners of two voxels; of one in a quick look.
         const int per_layer = std::max(common.quick ? 4 : 8, (common.quick ? 200 : 400) / wall.section);
-        Row row{fmt::format("{:g}", wall.layer), std::to_string(wall.section), std::to_string(wall.flow),
-                std::to_string(per_layer)};
-        if (table->find(row) == nullptr) {
-            const Row cells = roughnessOf(wall, per_layer);
-            row.insert(row.end(), cells.begin(), cells.end());
-            table->add(std::move(row));
-        }
-        if (common.progress) common.progress(++done / static_cast<double>(walls.size()));
+        table.add(roughnessOf(wall, per_layer));
+        if (common.progress)
+            common.progress(static_cast<double>(table.rows().size()) / static_cast<double>(walls.size()));
     }
     page.heading("Roughness");
     page.paragraph(fmt::format(
@@ -187,21 +163,9 @@ PartTable studyRoughness(const StudyOptions& common, Page& page, StudyReport&) {
         "largest of all lines); \"shape\" is Ra of the exact section by quadrature, \"off\" what the level set "
         "differs from it.",
         kWallWidth));
-    plotRoughness(page, *table);
+    plotRoughness(page, table);
     addPublished(page);
-    std::vector<Row> cells;
-    std::vector<std::size_t> lines;
-    for (const Row& row : table->rows()) {
-        cells.push_back({row[kLayerMm], row[kSectionPercent], row[kFlowPercent], row[kRoughnessCount],
-                         row[kRoughnessLineCount], fmt::format("{:.2f}", numberIn(row, kRa)),
-                         fmt::format("{:.2f} .. {:.2f}", numberIn(row, kRaLow), numberIn(row, kRaHigh)),
-                         fmt::format("{:.2f}", numberIn(row, kRz)), fmt::format("{:.2f}", numberIn(row, kShapeRa)),
-                         fmt::format("{:+.1f}", numberIn(row, kRoughnessOff)), row.back()});
-        lines.push_back(table->lineOf(row));
-    }
-    page.table({"layer mm", "section %", "flow %", "voxels a layer", "lines", "Ra \u00b5m", "least .. largest",
-                "Rz \u00b5m", "shape's Ra \u00b5m", "off %", "run"},
-               cells, {}, lines, "deposit_roughness");
+    page.table(table);
     return table;
 }
 

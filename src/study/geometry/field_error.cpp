@@ -63,17 +63,4 @@ voxelize::Lattice plainLattice(double voxel_size, double layer_height, double ha
     return lattice;
 }
 
-double largestDifference(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b) {
-    double largest = 0;
-    for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-        const auto accessor = other->getConstAccessor();
-        for (auto voxel = one->cbeginValueOn(); voxel; ++voxel) {
-            if (!accessor.isValueOn(voxel.getCoord())) return std::numeric_limits<double>::infinity();
-            largest = std::max(largest, std::abs(static_cast<double>(*voxel) -
-                                                 static_cast<double>(accessor.getValue(voxel.getCoord()))));
-        }
-    }
-    return largest;
-}
-
 }  // namespace stratum::study

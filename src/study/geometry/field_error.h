@@ -21,8 +21,4 @@ double fieldTolerance(const gcode::Toolpath& toolpath, const voxelize::Lattice& 
 /// A lattice through z = 0.
 voxelize::Lattice plainLattice(double voxel_size, double layer_height, double half_width = 3);
 
-/// The largest difference of the values of two grids on one lattice, mm; infinite where one has a leaf's active voxel
-/// that the other has not.
-double largestDifference(const openvdb::FloatGrid& a, const openvdb::FloatGrid& b);
-
 }  // namespace stratum::study

@@ -1,5 +1,5 @@
+#include "study/geometry/surface_error.h"
 #include "base/parallel_for.h"
-#include "study/geometry/geometry.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

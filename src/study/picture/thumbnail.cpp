@@ -1,6 +1,11 @@
 #include "study/picture/thumbnail.h"
 
-#include "shade/film/picture.h"
+#include "base/base64.h"
+#include "shade/film/jpeg_writer.h"
+#include "shade/film/tonemap.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace stratum::study {
 
@@ -18,8 +23,11 @@ shade::Film thumbnail(const shade::Film& film, int factor) {
     return small;
 }
 
-void writeThumbnail(const std::filesystem::path& path, const shade::Film& film, int factor) {
-    shade::PictureFile(path).write(thumbnail(film, factor), {{"Software", "vdbstudy " STRATUM_VERSION}});
+std::string jpegOf(const shade::Film& film, int factor) {
+    const shade::Film small = thumbnail(film, factor);
+    const std::vector<std::uint8_t> bytes =
+        shade::encodeJpeg(small.width(), small.height(), shade::toDisplay(small), 90);
+    return base64Of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace stratum::study

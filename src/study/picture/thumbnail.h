@@ -1,9 +1,9 @@
-// Pictures small enough for a page.
+// Pictures for a page.
 #pragma once
 
 #include "shade/film/film.h"
 
-#include <filesystem>
+#include <string>
 
 namespace stratum::study {
 
@@ -11,7 +11,7 @@ namespace stratum::study {
 /// too. The film must be a whole frame of at least that many pixels each way.
 shade::Film thumbnail(const shade::Film& film, int factor);
 
-/// Writes that picture with the mark of this program, so that the next study may replace it.
-void writeThumbnail(const std::filesystem::path& path, const shade::Film& film, int factor);
+/// That picture as a JPEG, in base64.
+std::string jpegOf(const shade::Film& film, int factor = 1);
 
 }  // namespace stratum::study

@@ -13,7 +13,7 @@ namespace stratum::study {
 
 /// A peer ready for rays.
 struct Traced {
-    std::unique_ptr<trace::Intersector> intersector;
+    std::shared_ptr<const trace::Intersector> intersector;
     std::size_t primitives = 0;
 };
 

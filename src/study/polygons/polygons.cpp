@@ -39,15 +39,13 @@ StudyReport studyPolygons(const PolygonsOptions& options, const PeerTracers& pee
     PolygonsOptions given = options;
     given.prints = filesOf(options.prints);
     StudyReport report;
-    report.html = common.folder / "polygons.html";
-    report.csv = common.folder / (given.prints.empty() ? "polygons_scenes.csv" : "polygons_prints.csv");
     Page page("Level sets beside polygons and beads", common.command);
     // Prints first: each is measured in a process of its own, which wants no threads to have been started before.
-    std::vector<std::unique_ptr<ResultTable>> tables;
-    if (!given.prints.empty()) tables.push_back(studyPrints(given, peers, common, page, report));
-    if (!given.scenes.empty()) tables.push_back(studyScenes(given, peers, common, page, report));
-    page.runs(*tables.back());
-    page.write(report.html);
+    if (!given.prints.empty())
+        writeTable(common, "polygons_prints", studyPrints(given, peers, common, page, report), report);
+    if (!given.scenes.empty())
+        writeTable(common, "polygons_scenes", studyScenes(given, peers, common, page, report), report);
+    writePage(common, "polygons", page, report);
     return report;
 }
 

@@ -12,10 +12,10 @@
 #include "voxelize/grid/solid_check.h"
 #include "voxelize/grid/voxelizer.h"
 
-#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -76,34 +76,6 @@ void settle(Held& held) {
     held.build.cpu += rays.cpu;
 }
 
-// CPU seconds to have the print ready for rays at 25, 50, 75 and 100 % of its volume.
-double seriesSeconds(const Representation& r, const Print& print, const PeerTracers& peers) {
-    const auto steps = voxelize::parseSnapshots("25%,50%,75%,100%", *print.toolpath);
-    if (r.on_demand)
-        return timesOf([&] {
-                   const Held held = hold(r, print, peers);
-                   for (const voxelize::Snapshot& step : steps)
-                       held.field->printUntil(static_cast<std::uint32_t>(step.bead_count));
-               })
-            .cpu;
-    if (r.per_layer > 0) {
-        const voxelize::Lattice lattice = latticeOf(*print.toolpath, print.beads, r.per_layer);
-        return timesOf([&] {
-                   voxelize::Voxelizer voxelizer(*print.toolpath, print.beads, lattice, culled());
-                   for (const voxelize::Snapshot& step : steps)
-                       march::makeBrickIntersector(*voxelizer.printUntil(static_cast<std::uint32_t>(step.bead_count)));
-               })
-            .cpu;
-    }
-    double sum = 0;
-    for (const voxelize::Snapshot& step : steps) {
-        gcode::Toolpath part = *print.toolpath;
-        part.beads.resize(step.bead_count);
-        sum += timesOf([&] { peers.beads(part, r.corners, r.split); }).cpu;
-    }
-    return sum;
-}
-
 // The same camera, bed and light for all ways to hold a print.
 shade::SceneDescription sceneOf(const Print& print, const trace::Intersector& held, const Shot& shot) {
     const voxelize::Bounds b = voxelize::boundsOf(*print.toolpath, print.beads);
@@ -134,7 +106,7 @@ Separated separate(const Print& print, const trace::Intersector& intersector, co
                    const PeerTracers& peers, const Shot& shot) {
     const int half_width = shot.width / 20;
     const int half_height = shot.height / 20;
-    shade::RenderOptions options = optionsOf(shot, shot.noise_spp);
+    shade::RenderOptions options = optionsOf(shot, kComparedSamples);
     options.crop = shade::PixelBox{shot.width / 2 - half_width, shot.height / 2 - half_height,
                                    shot.width / 2 + half_width, shot.height / 2 + half_height};
     const Held exact = hold({"", 0, 0, 0}, print, peers);
@@ -145,8 +117,6 @@ Separated separate(const Print& print, const trace::Intersector& intersector, co
     return separateNoise(film(intersector, 1), film(intersector, 2), film(*exact.traced.intersector, 3),
                          film(*exact.traced.intersector, 4));
 }
-
-std::string figure(double value) { return fmt::format("{:.4g}", value); }
 
 }  // namespace
 
@@ -160,9 +130,8 @@ Times firstLook(const std::string& path, const Representation& r, const PeerTrac
     return {held.convert.wall + held.build.wall + look.wall, held.convert.cpu + held.build.cpu + look.cpu};
 }
 
-std::vector<std::string> measurePrint(const std::string& path, const Representation& r, const PeerTracers& peers,
-                                      const Shot& shot, const std::optional<Times>& first_look,
-                                      const std::filesystem::path& picture) {
+Row measurePrint(const std::string& path, const Representation& r, const PeerTracers& peers, const Shot& shot,
+                 const Times& first_look) {
     openvdb::initialize();
     std::optional<Print> read;
     const Times parse = timesOf([&] { read.emplace(path); });
@@ -184,35 +153,18 @@ std::vector<std::string> measurePrint(const std::string& path, const Representat
         held.build = {held.build.wall + making.wall, held.build.cpu + making.cpu};
         render = {render.wall - making.wall, render.cpu - making.cpu};
     }
-    const std::size_t peak = peakSoFar();
-    const std::size_t bytes = held.traced.intersector->bytes();
-    if (!picture.empty()) writeThumbnail(picture, result.film, kThumbnail);
-    std::string noise;
-    std::string bias;
-    if (shot.noise_spp > 0 && peers.beads) {
-        const Separated apart = separate(print, *held.traced.intersector, scene, peers, shot);
-        noise = figure(apart.noise);
-        bias = figure(apart.bias);
-    }
+    const auto peak = static_cast<double>(peakSoFar());
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const Separated apart =
+        peers.beads ? separate(print, *held.traced.intersector, scene, peers, shot) : Separated{kNone, kNone};
     const bool whole = r.per_layer > 0 && !r.on_demand;
-    return {fmt::format("{:.5g}", voxelize::depositedVolume(*print.toolpath, print.beads) * 1e-3),
-            whole && shot.volume ? fmt::format("{:.5g}", hold(r, print, peers, true).enclosed_cm3) : "",
-            std::to_string(held.traced.primitives),
-            std::to_string(bytes),
-            std::to_string(peak),
-            figure(parse.cpu),
-            figure(held.convert.cpu),
-            figure(held.build.cpu),
-            figure(render.cpu),
-            first_look ? figure(first_look->cpu) : "",
-            figure(held.convert.wall),
-            figure(held.build.wall),
-            figure(render.wall),
-            first_look ? figure(first_look->wall) : "",
-            std::to_string(result.rays.total()),
-            noise,
-            bias,
-            shot.series ? figure(seriesSeconds(r, print, peers)) : ""};
+    return joined(
+        figures({voxelize::depositedVolume(*print.toolpath, print.beads) * 1e-3,
+                 whole ? hold(r, print, peers, true).enclosed_cm3 : kNone, static_cast<double>(held.traced.primitives),
+                 static_cast<double>(held.traced.intersector->bytes()), peak, parse.cpu, held.convert.cpu,
+                 held.build.cpu, render.cpu, first_look.cpu, held.convert.wall, held.build.wall, render.wall,
+                 first_look.wall, static_cast<double>(result.rays.total()), apart.noise, apart.bias}),
+        {r.per_layer > 0 ? jpegOf(result.film, kThumbnail) : ""});
 }
 
 }  // namespace stratum::study

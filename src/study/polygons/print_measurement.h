@@ -3,13 +3,13 @@
 
 #include "study/cost/times.h"
 #include "study/polygons/peer_tracers.h"
+#include "study/report/table.h"
 
-#include <filesystem>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace stratum::study {
+
+inline constexpr int kComparedSamples = 32;  ///< a pixel: what totals, noise and bias are told for
 
 /// A way to hold a print for rays.
 struct Representation {
@@ -24,21 +24,16 @@ struct Representation {
 struct Shot {
     std::string integrator = "path";
     std::string light;  ///< see shade::makeEnvironment; empty where the integrator looks at none
-    int width = 1280, height = 960, spp = 32;
-    int noise_spp = 0;    ///< samples a pixel of the pictures whose noise and bias are told; 0: they are not
-    bool volume = false;  ///< the volume enclosed, of level sets made whole
-    bool series = false;  ///< time for four stages of the print
+    int width = 1280, height = 960, spp = kComparedSamples;
 };
 
 /// What the first picture takes once the print is read: convert, build, one sample a pixel. For a process of its own,
 /// where nothing has been made yet.
 Times firstLook(const std::string& path, const Representation& r, const PeerTracers& peers, const Shot& shot);
 
-/// All cells from kExtruded on. For a process of its own, whose peak memory is told.
-/// @param first_look  told as it is, if it was measured
-/// @param picture  a small copy for the page; empty: none
-std::vector<std::string> measurePrint(const std::string& path, const Representation& r, const PeerTracers& peers,
-                                      const Shot& shot, const std::optional<Times>& first_look,
-                                      const std::filesystem::path& picture);
+/// The cells from "extruded_cm3" on, then a small picture as jpegOf() makes it, empty but for level sets. For a process
+/// of its own, whose peak memory is told.
+Row measurePrint(const std::string& path, const Representation& r, const PeerTracers& peers, const Shot& shot,
+                 const Times& first_look);
 
 }  // namespace stratum::study

@@ -4,7 +4,6 @@
 // roundings of samples and of t. A ball's are not: its trilinear zero is off by at most voxel^2 / 8 times the sum of
 // the second derivatives, 2 / R.
 #include "march/brick/brick_intersector.h"
-#include "march/reference/sphere_intersector.h"
 #include "study/stability/stability_case.h"
 
 #include <fmt/format.h>
@@ -12,7 +11,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -67,7 +65,6 @@ public:
         : intersector_(march::makeBrickIntersector(grid, march::BrickValues::Float32)),
           tracer_(intersector_->makeTracer()) {}
     trace::Tracer* operator->() const { return tracer_.get(); }
-    double surfaceOffset() const { return intersector_->surfaceOffset(); }
 
 private:
     std::unique_ptr<trace::Intersector> intersector_;
@@ -138,92 +135,6 @@ double missesOfABall(double aim) {
     return static_cast<double>(missed) / kRays;
 }
 
-// Rays from inside a closed ball, along lattice planes, edges and at random: the share that gets out.
-double leaks(bool on_lattice) {
-    const TracedField field(*ball());
-    std::mt19937 random(6);
-    std::uniform_real_distribution<double> where(-1, 1);
-    int out = 0;
-    constexpr int kRays = 100000;
-    for (int n = 0; n < kRays; ++n) {
-        trace::Ray ray{{where(random), where(random), where(random)}, randomDirection(random)};
-        if (on_lattice) {
-            ray.origin = kRayVoxel * glm::round(ray.origin / kRayVoxel);
-            ray.direction = glm::dvec3(0);
-            ray.direction[n % 3] = n % 2 == 0 ? 1 : -1;
-            if (n % 4 == 0) ray.direction[(n + 1) % 3] = 1;
-            if (n % 8 == 0) ray.direction[(n + 2) % 3] = -1;
-            ray.direction = glm::normalize(ray.direction);
-        }
-        out += field->occluded(ray) ? 0 : 1;
-    }
-    return static_cast<double>(out) / kRays;
-}
-
-// Rays that leave a ball this far from the origin at their hit: the share that meets it again at once.
-double meetingsAgain(double away) {
-    const auto grid = ball();
-    grid->transform().postTranslate(openvdb::Vec3d(away, -away, away));
-    const TracedField field(*grid);
-    const glm::dvec3 center(away, -away, away);
-    std::mt19937 random(7);
-    int met = 0;
-    constexpr int kRays = 20000;
-    for (int n = 0; n < kRays; ++n) {
-        const glm::dvec3 out = randomDirection(random);
-        trace::Hit hit;
-        if (!field->intersect({center + 5.0 * out, -out}, hit)) return std::numeric_limits<double>::infinity();
-        // Between the normal and nearly along the surface.
-        const glm::dvec3 leave = glm::normalize(hit.normal + 0.95 * randomDirection(random));
-        met += field->occluded({hit.position + field.surfaceOffset() * hit.normal, leave}) ? 1 : 0;
-    }
-    return static_cast<double>(met) / kRays;
-}
-
-// Whether one ray and a stream of rays give the same bits: the share that does not.
-double streamDiffers() {
-    const TracedField field(*ball());
-    std::mt19937 random(8);
-    std::uniform_real_distribution<double> where(-2.5, 2.5);
-    std::vector<trace::Ray> all;
-    all.reserve(5000);
-    for (int n = 0; n < 5000; ++n)
-        all.push_back({{where(random), where(random), where(random)}, randomDirection(random)});
-    std::vector<trace::Hit> hits(all.size());
-    field->intersectStream(all, hits);
-    int other = 0;
-    for (std::size_t n = 0; n < all.size(); ++n) {
-        trace::Hit hit;
-        if (!field->intersect(all[n], hit)) hit.t = std::numeric_limits<double>::infinity();
-        other += std::bit_cast<std::uint64_t>(hit.t) != std::bit_cast<std::uint64_t>(hits[n].t) ? 1 : 0;
-    }
-    return other;
-}
-
-// Intervals that end or begin just before and just behind the surface: answers that are wrong. "Just" is the rounding
-// of t: eight times 2^-53 of the way.
-double wrongIntervals() {
-    const TracedField field(*plane({0, 0, 1}, 0.034));
-    const trace::Ray down{{0.11, 0.23, 1}, {0, 0, -1}};
-    trace::Hit hit;
-    if (!field->intersect(down, hit)) return 99;
-    int wrong = 0;
-    const auto expect = [&](double t_min, double t_max, bool expected) {
-        trace::Ray ray = down;
-        ray.t_min = t_min;
-        ray.t_max = t_max;
-        wrong += field->occluded(ray) != expected ? 1 : 0;
-    };
-    const double rounding = 8 * 0x1p-53 * hit.t;
-    expect(0, hit.t - rounding, false);
-    expect(0, hit.t + rounding, true);
-    expect(hit.t - rounding, 10, true);
-    expect(hit.t + rounding, 10, false);
-    expect(hit.t - rounding, hit.t + rounding, true);
-    expect(5, 4, false);
-    return wrong;
-}
-
 // The largest difference, mm, between a ball's hits and the paper's, for a ball of this voxel (of world units).
 double scaledBall(double scale) {
     const auto grid = ball(static_cast<float>(2 * scale), openvdb::Vec3f(0), static_cast<float>(kRayVoxel * scale));
@@ -269,26 +180,6 @@ double normalOfATiltedPlane() {
     return largest;
 }
 
-// Of two ways to trace, the largest difference of t where both hit head on, mm.
-double againstSphereTracing() {
-    const auto grid = ball();
-    const auto brick = march::makeBrickIntersector(*grid, march::BrickValues::Float32);
-    const auto other = march::makeSphereIntersector(grid);
-    const auto a = brick->makeTracer();
-    const auto b = other->makeTracer();
-    std::mt19937 random(11);
-    double largest = 0;
-    for (int n = 0; n < 5000; ++n) {
-        const glm::dvec3 out = randomDirection(random);
-        trace::Hit exact;
-        trace::Hit near;
-        if (!a->intersect({5.0 * out, -out}, exact) || !b->intersect({5.0 * out, -out}, near))
-            return std::numeric_limits<double>::infinity();
-        largest = std::max(largest, std::abs(exact.t - near.t));
-    }
-    return largest;
-}
-
 void addPlanes(std::vector<StabilityCase>& cases) {
     for (const double angle : {1.5707, 1e-2, 1e-4})
         cases.push_back(rays(fmt::format("plane at {:g} rad", angle), "largest error of the height, mm", kSample,
@@ -305,8 +196,6 @@ void addPlanes(std::vector<StabilityCase>& cases) {
     cases.push_back(rays("normal of a tilted plane", "largest length of the difference",
                          2 * std::sqrt(3.0) * kSample / kRayVoxel, "two samples' roundings over a voxel, on three axes",
                          normalOfATiltedPlane));
-    cases.push_back(rays("intervals that end on the surface", "wrong answers", 0,
-                         "8 roundings of 2^-53 of t decide on which side an end lies", wrongIntervals));
 }
 
 void addBalls(std::vector<StabilityCase>& cases) {
@@ -324,21 +213,6 @@ void addBalls(std::vector<StabilityCase>& cases) {
     cases.push_back(rays("tangent, a hundredth of a voxel outside", "share of rays that hit", 0,
                          "the trilinear interpolant of a convex distance is nowhere below it",
                          [] { return 1 - missesOfABall((2 + 0.01 * kRayVoxel) / 2); }));
-    cases.push_back(rays("out of a closed ball", "share of rays that leak", 0,
-                         "neighbouring cells see the same bits on their face", [] { return leaks(false); }));
-    cases.push_back(rays("out of a closed ball, on the lattice", "share of rays that leak", 0,
-                         "neighbouring cells see the same bits on their face", [] { return leaks(true); }));
-    for (const double away : {0.0, 1e5, 1e9})
-        cases.push_back(rays(fmt::format("leaving a surface {:g} mm from the origin", away),
-                             "share of rays that meet it again", 0,
-                             "the offset is a thousandth of a voxel, or four roundings of the place",
-                             [away] { return meetingsAgain(away); }));
-    cases.push_back(rays("one by one or in a stream", "rays whose bits differ", 0,
-                         "vector and scalar code do the same operations in the same order", streamDiffers));
-    cases.push_back(
-        rays("against sphere tracing", "largest difference of t, mm", 2e-3 * kRayVoxel,
-             "it ends within a thousandth of a voxel; a ball's field has a slope above 1/2 along its normal",
-             againstSphereTracing));
 }
 
 }  // namespace

@@ -7,14 +7,8 @@
 
 namespace stratum::study {
 
-/// Of beads in cases that don't depend on it, mm.
-inline constexpr double kBeadWidth = 0.45, kBeadHeight = 0.2;
-
-/// The bound of fields that are exact but for rounding, in words.
-inline constexpr const char* kRoundings = "8 float roundings of the longest local length (leaf, band or half width)";
-
 struct StabilityCase {
-    std::string family;    ///< toolpath, grid, rays, light, motion, flow, shards or viewer
+    std::string family;    ///< field, rays or light
     std::string name;      ///< unique in its family
     std::string quantity;  ///< what is measured, with its unit
     double tolerance = 0;  ///< the largest value that passes
@@ -23,14 +17,9 @@ struct StabilityCase {
     std::function<double()> measure;
 };
 
-std::vector<StabilityCase> toolpathCases();
-std::vector<StabilityCase> gridCases();
+std::vector<StabilityCase> fieldCases();
 std::vector<StabilityCase> rayCases();
 std::vector<StabilityCase> lightCases();
-std::vector<StabilityCase> motionCases();
-std::vector<StabilityCase> flowCases();
-std::vector<StabilityCase> shardCases();
-std::vector<StabilityCase> viewerCases();
 
 /// All of them, family by family.
 std::vector<StabilityCase> stabilityCases();

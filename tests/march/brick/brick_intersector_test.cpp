@@ -198,6 +198,9 @@ TEST(BrickIntersector, RefusesWhatItCannotTrace) {
             EXPECT_NE(std::string(error.what()).find("(8, 0, 0)"), std::string::npos) << error.what();
         }
     }
+    const auto sheared = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
+    sheared->transform().preShear(0.2, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
+    EXPECT_THROW(makeBrickIntersector(*sheared), InputError);
     auto apart = test::sphereGrid(1, openvdb::Vec3f(0), 0.1F);
     apart->tree().touchLeaf(openvdb::Coord(1 << 29, 1 << 29, 1 << 29));
     EXPECT_THROW(makeBrickIntersector(*apart), InputError);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 namespace stratum {
 namespace {
 
@@ -65,6 +67,28 @@ TEST(Plastic, SamplesItsDensity) {
         const Plastic brdf(Color(0.5f), alpha);
         for (const double c : {0.1, 0.5, 0.95})
             EXPECT_LT(test::chiSquaredZ(brdf, test::direction(c, 1.0), 400000, 3), 4.0) << alpha << " " << c;
+    }
+}
+
+// sample() draws a half vector, and eval() makes it anew: roundings of 2^-24 over the lobe's width, to the fourth power
+// of their sum. Also at grazing angles.
+TEST(Plastic, SamplesHaveTheValuesOfTheirDirections) {
+    for (const float alpha : {0.001f, 0.05f, 1.0f}) {
+        const Plastic brdf(Color(0.5f), alpha);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> unit(0.0f, 0x1.fffffep-1f);
+        const double tolerance = 16 * 0x1p-24 / static_cast<double>(alpha);
+        for (int n = 0; n < 20000; ++n) {
+            const glm::vec3 wo = test::direction(n % 3 == 0 ? 1e-4 : static_cast<double>(unit(random)) + 1e-6, 0.2);
+            const auto sample = brdf.sample(wo, unit(random), {unit(random), unit(random)});
+            if (!sample) continue;
+            const auto pdf = static_cast<double>(brdf.pdf(wo, sample->wi));
+            ASSERT_NEAR(static_cast<double>(sample->pdf) / pdf, 1, tolerance) << alpha << " " << n;
+            const auto f = static_cast<double>(brdf.eval(wo, sample->wi).r);
+            if (f > 0) {
+                ASSERT_NEAR(static_cast<double>(sample->f.r) / f, 1, tolerance) << alpha << " " << n;
+            }
+        }
     }
 }
 

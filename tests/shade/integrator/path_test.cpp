@@ -177,6 +177,21 @@ TEST(Path, BedUnderAnOpenSkyHasItsAlbedo) {
     EXPECT_NEAR(c.r, scene.bed->texture.mean().r, 0.002f);
 }
 
+// The sun's radiance is its irradiance over 6.7e-5 sr: 1e5 times the room's.
+TEST(Path, SharpGlossUnderASunIsFinite) {
+    const auto ball = test::sphere({0, 0, 0}, 1.0);
+    for (const char* brdf : {"plastic:0.5,0.1,0,0.001", "plastic:0.5,0.1,0,0.005"}) {
+        auto scene = test::plainScene(ball, brdf, "constant:1,1,1", false);
+        scene.lights.push_back(
+            std::make_shared<shade::SunLight>(glm::normalize(glm::vec3(1, 2, 3)), Color(6.7f), 0.53f));
+        for (const double y : {0.0, 0.6, 0.97})
+            for (const std::uint32_t samples : {1U, 64U}) {
+                const Color c = mean(ball, scene, towards({y, 0, 5}, {y, 0, 0}), 8, samples);
+                for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(c[k]) && c[k] >= 0.0f) << brdf << " " << y;
+            }
+    }
+}
+
 TEST(Path, NonsenseNormalsStayFinite) {
     const test::FunctionIntersector broken({glm::dvec3(-1), glm::dvec3(1)}, 1e-3,
                                            [](const trace::Ray& ray, trace::Hit& hit) {

@@ -41,7 +41,8 @@ void expectCut(const PixelBox& region, int count) {
 TEST(Shard, ReadsItsShare) {
     EXPECT_EQ(parseShard("0/1"), (Shard{0, 1}));
     EXPECT_EQ(parseShard("7/64"), (Shard{7, 64}));
-    for (const char* bad : {"", "1", "1/", "/1", "1/1", "-1/2", "0/0", "0/-1", "0x/2", "0/2 ", "0/1/2", "0/9999999"})
+    for (const char* bad : {"", "1", "1/", "/1", "1/1", "-1/2", "0/0", "0/-1", "0x/2", "0/2 ", "0/1/2", "0/9999999",
+                            "1e0/2", "a/b", "0/99999999999999999999"})
         EXPECT_THROW(parseShard(bad), UsageError) << bad;
 }
 

@@ -1,10 +1,10 @@
-#include "study/cost/memory.h"
+#include "study/study.h"
 
 #include "base/error.h"
 #include "corpus.h"
 #include "scratch_folder.h"
 #include "study/print.h"
-#include "study/report/result_table.h"
+#include "study/report/table.h"
 #include "voxelize/beads/selection.h"
 #include "voxelize/grid/voxelizer.h"
 
@@ -42,7 +42,6 @@ TEST(Memory, CountsWhatAGridHolds) {
     const StudyReport report = studyMemory({{print}, {1, 2, 3}}, common);
     EXPECT_EQ(last, 1);
     EXPECT_EQ(report.rows, 9U);
-    EXPECT_EQ(report.resumed, 0U);
     const auto rows = rowsOf(report.csv);
     ASSERT_EQ(rows.size(), 10U);
     // The last three: three voxels a layer, kept, culled and without a grid.
@@ -60,7 +59,6 @@ TEST(Memory, CountsWhatAGridHolds) {
         const std::string grid_bytes = cell(rows, n, "grid_bytes");
         EXPECT_EQ(grid_bytes.empty(), cell(rows, n, "interior") == "keep, no grid");
         EXPECT_GT(std::stod(cell(rows, n, "peak_rss_bytes")), grid_bytes.empty() ? 0 : std::stod(grid_bytes));
-        EXPECT_EQ(cell(rows, n, "run"), "1");
     }
     // The same leaves with less memory; what a list of them takes differs.
     EXPECT_EQ(cell(rows, 9, "active_voxels"), cell(rows, 7, "active_voxels"));
@@ -72,26 +70,7 @@ TEST(Memory, CountsWhatAGridHolds) {
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
         files += entry.is_regular_file() ? 1 : 0;
-    EXPECT_EQ(files, 3U);  // table, runs, page: no scratch is left
-}
-
-TEST(Memory, AKilledRunGoesOn) {
-    const test::ScratchFolder folder;
-    const std::string print = (test::dataDir() / "gcode" / "tile.gcode").string();
-    StudyOptions common;
-    common.folder = folder.path();
-    common.progress = [&](double f) {
-        if (f > 0.4) throw std::runtime_error("killed");
-    };
-    EXPECT_THROW(studyMemory({{print}, {1, 2}}, common), std::runtime_error);
-    const auto before = rowsOf(folder / "memory.csv");
-    EXPECT_EQ(before.size(), 4U);
-    common.progress = {};
-    const StudyReport report = studyMemory({{print}, {1, 2}}, common);
-    EXPECT_EQ(report.resumed, 3U);
-    EXPECT_EQ(report.rows, 6U);
-    const auto after = rowsOf(folder / "memory.csv");
-    EXPECT_EQ(after[1], before[1]);  // not measured again: its times are the same
+    EXPECT_EQ(files, 2U);  // table, page: no scratch is left
 }
 
 TEST(Memory, LeavesOutWhatDoesNotFit) {

@@ -1,5 +1,7 @@
 #include "study/cost/own_process.h"
 
+#include "base/error.h"
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -89,6 +91,16 @@ TEST(OwnProcess, SaysHowItEnded) {
         },
         0.2);
     EXPECT_EQ(slow.failure, "took longer than 0.2 s");
+}
+
+TEST(OwnProcess, RowsComeBackAsTheyWere) {
+    EXPECT_EQ(rowInOwnProcess("print", 1, [] { return Row{"a,b", "", "3"}; }), (Row{"a,b", "", "3"}));
+    try {
+        rowInOwnProcess("print", 1, []() -> Row { throw std::runtime_error("no luck"); });
+        FAIL() << "a failure was lost";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "print: no luck");
+    }
 }
 
 }  // namespace

@@ -14,5 +14,10 @@ TEST(Times, WallTimePassesWhileNobodyWorks) {
     EXPECT_LT(times.cpu, 0.05);
 }
 
+TEST(Median, IsTheUpperOfTwoMiddleValues) {
+    EXPECT_EQ(median({3, 1, 2}), 2);
+    EXPECT_EQ(median({4, 1, 3, 2}), 3);
+}
+
 }  // namespace
 }  // namespace stratum::study

@@ -1,9 +1,9 @@
-#include "study/deposit/deposit.h"
+#include "study/study.h"
 
 #include "corpus.h"
 #include "scratch_folder.h"
 #include "study/deposit/deposit_parts.h"
-#include "study/report/result_table.h"
+#include "study/report/table.h"
 
 #include <gtest/gtest.h>
 
@@ -126,22 +126,6 @@ TEST_F(Deposit, TimesAreThoseOfTheFiles) {
     EXPECT_GT(numberOf(times[1], "planned_s"), 0);
     // CuraEngine's 6666 s are no time; its clock behind the layers is.
     EXPECT_NEAR(numberOf(times[1], "off_percent"), 0, 5);
-}
-
-TEST_F(Deposit, EachEffectIsMeasuredBesideCapsules) {
-    std::map<std::string, int> runs;
-    for (const auto& row : rows("deposit_cost.csv")) {
-        EXPECT_GT(numberOf(row, "build_seconds"), 0);
-        ++runs[row.at("beads_are")];
-    }
-    EXPECT_EQ(runs, (std::map<std::string, int>{
-                        {"capsule", 2}, {"flow", 2}, {"sag", 2}, {"section", 2}, {"settled", 2}, {"typical", 2}}));
-}
-
-TEST_F(Deposit, AStoppedStudyGoesOn) {
-    const StudyReport again = studyDeposit(options_, common_);
-    EXPECT_EQ(again.rows, report_.rows);
-    EXPECT_EQ(again.resumed, report_.rows);
 }
 
 }  // namespace

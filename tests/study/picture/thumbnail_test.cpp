@@ -1,6 +1,6 @@
 #include "study/picture/thumbnail.h"
 
-#include "base/own_file.h"
+#include "base/base64.h"
 
 #include <gtest/gtest.h>
 
@@ -25,14 +25,9 @@ TEST(Thumbnail, IsTheMeanOfItsPixels) {
     EXPECT_EQ(small.at(2, 0).alpha, 0.0f);
 }
 
-TEST(Thumbnail, IsAFileThatTheNextStudyMayReplace) {
-    const std::filesystem::path path = std::filesystem::temp_directory_path() / "stratum_study_thumbnail.jpg";
-    std::filesystem::remove(path);
+TEST(Thumbnail, IsAJpegInBase64) {
     const shade::Film film(8, 6, {0, 0, 8, 6}, shade::FilmContent::unit);
-    writeThumbnail(path, film, 2);
-    EXPECT_TRUE(isOwnFile(path));
-    writeThumbnail(path, film, 2);
-    std::filesystem::remove(path);
+    EXPECT_TRUE(bytesOfBase64(jpegOf(film, 2)).starts_with("\xff\xd8"));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "study/report/page.h"
 
-#include "corpus.h"
 #include "scratch_folder.h"
 
 #include <gtest/gtest.h>
@@ -13,17 +12,21 @@ TEST(Page, HoldsAllThatItShowsAndNoFolders) {
     Page page("A & B", command);
     page.heading("One");
     page.table({"name", "value"}, {{"x<y", "1.5"}, {"bad", "failed"}}, "failed");
-    page.picture(test::sourceDir() / "docs/pictures/hull.png", "a hull");
+    page.picture("aGVsbG8=", "a hull");
     const std::string html = page.html();
     EXPECT_NE(html.find("<td class='n'>1.5</td>"), std::string::npos);
     EXPECT_NE(html.find("x&lt;y"), std::string::npos);
     EXPECT_NE(html.find("<tr class='marked'><td>bad"), std::string::npos);
-    EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+    EXPECT_NE(html.find("data:image/jpeg;base64,aGVsbG8="), std::string::npos);
     EXPECT_NE(html.find("<code>vdbstudy memory a.gcode -o out/</code>"), std::string::npos);
     EXPECT_EQ(html.find("/home/"), std::string::npos);
     EXPECT_EQ(html.find("http://"), std::string::npos);
     const test::ScratchFolder folder;
-    page.write(folder / "p.html");
+    StudyOptions common;
+    common.folder = folder.path();
+    StudyReport report;
+    writePage(common, "p", page, report);
+    EXPECT_EQ(report.html, folder / "p.html");
     EXPECT_EQ(std::filesystem::file_size(folder / "p.html"), html.size());
 }
 

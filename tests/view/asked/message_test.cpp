@@ -40,6 +40,8 @@ TEST(Message, OthersAreRefused) {
                              R"({"type": "shown", "more": 1})",
                              R"({"type": "inspect", "x": 2})",
                              R"({"type": "inspect", "y": -1})",
+                             R"({"type": "inspect", "number": 1, "x": NaN, "y": 0})",
+                             R"({"type": "inspect", "number": 1, "x": 1e308, "y": 0})",
                              R"({"type": "open", "file": -1})",
                              R"({"type": "open", "file": 1e30})",
                              R"({"type": "program"})",
@@ -54,7 +56,12 @@ TEST(Message, OthersAreRefused) {
         SCOPED_TRACE(text);
         EXPECT_THROW((void)parseMessage(text), InputError);
     }
-    EXPECT_THROW((void)parseMessage(std::string(60000, '[')), InputError);
+    EXPECT_THROW((void)parseMessage(std::string(1000000, '[')), InputError);
+    std::string nested;
+    for (int n = 0; n < 100000; ++n) nested += "{\"a\":";
+    EXPECT_THROW((void)parseMessage(nested), InputError);
+    const std::string large = R"({"type": "show", "state": {"material": ")" + std::string(1000000, 'a') + "\"}}";
+    EXPECT_THROW((void)parseMessage(large), InputError);
     EXPECT_THROW((void)parseMessage(std::string("{\"type\":\"shown\0\"}", 17)), InputError);
     EXPECT_THROW((void)parseMessage("\xff\xfe"), InputError);
 }

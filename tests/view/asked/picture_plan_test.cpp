@@ -1,8 +1,11 @@
 #include "view/asked/picture_plan.h"
 
+#include "shade/camera/camera.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace stratum::view {
@@ -69,6 +72,24 @@ TEST(PicturePlan, KeysTellWhatMustBeMadeAnew) {
 
 TEST(PicturePlan, ShellLinesKeepTheirWords) {
     EXPECT_EQ(shellLine({"a", "it's", "", "$(x)"}), "a 'it'\\''s' '' '$(x)'");
+}
+
+// From above, from 10 km, from a micrometre, from within.
+TEST(PicturePlan, ExtremeCamerasHaveRays) {
+    for (const char* camera : {R"({"eye": [0, 0, 1000], "look_at": [0, 0, 0], "up": [0, 1, 0]})",
+                               R"({"eye": [1e7, 0, 0], "look_at": [0, 0, 0]})",
+                               R"({"eye": [0, 0, 1e-3], "look_at": [0, 0, 0], "up": [0, 1, 0]})",
+                               R"({"eye": [0, 0, 0], "look_at": [1, 0, 0]})"}) {
+        const ViewState state = parseViewState({{"camera", nlohmann::json::parse(camera)}});
+        EXPECT_EQ(parseViewState(toJson(state)), state) << camera;
+        const trace::Box box{glm::dvec3(-1.0), glm::dvec3(1.0, 2.0, 3.0)};
+        const PicturePlan plan = planPicture(given(), state);
+        const auto ray = shade::Camera::make(plan.options.scene.camera, box, state.width, state.height).ray({0.5, 0.5});
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_TRUE(std::isfinite(ray.origin[axis])) << camera;
+            EXPECT_TRUE(std::isfinite(ray.direction[axis])) << camera;
+        }
+    }
 }
 
 }  // namespace

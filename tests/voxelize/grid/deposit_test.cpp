@@ -150,7 +150,7 @@ TEST_P(Deposit, AgreesWithBruteForce) {
     for (const Case& one : cases())
         for (const double voxel : {0.05, 0.02}) {
             gcode::Toolpath toolpath = make(one);
-            // Brute force knows no swell: study/geometry/settled_solid.h holds that to its formulas.
+            // Brute force knows no swell: study/geometry/exact_solid.h holds that to its formulas.
             if (toolpath.deposit.swells()) toolpath.deposit.beads = DepositModel::Beads::grooves;
             const test::SettledField brute(toolpath);
             const auto beads = test::allBeads(toolpath);

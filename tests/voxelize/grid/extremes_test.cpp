@@ -139,6 +139,17 @@ TEST(Extremes, AMillionBeadsInOneLayerAreASheet) {
             EXPECT_NEAR(accessor.getValue(openvdb::Coord(i, i / 2 + 100, k)), std::abs(0.1 * k - 0.1) - 0.1, 1e-6);
 }
 
+TEST(Extremes, BeadsInAnyOrderMakeTheSame) {
+    const gcode::Toolpath ordered = study::crossedLines(0.45, 0.2);
+    gcode::Toolpath reversed = ordered;
+    std::reverse(reversed.beads.begin(), reversed.beads.end());
+    const auto a = voxelize(ordered, allBeads(ordered), latticeOfHeight(0.05, 0.2));
+    const auto b = voxelize(reversed, allBeads(reversed), latticeOfHeight(0.05, 0.2));
+    EXPECT_EQ(a->activeVoxelCount(), b->activeVoxelCount());
+    const auto accessor = b->getConstAccessor();
+    for (auto voxel = a->cbeginValueOn(); voxel; ++voxel) ASSERT_EQ(*voxel, accessor.getValue(voxel.getCoord()));
+}
+
 TEST(Extremes, WhatCannotBeIsRefused) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 0, 0, 0.2, 1000, 1000, 0.2, 0.45, 0.2);
@@ -154,6 +165,12 @@ TEST(Extremes, WhatCannotBeIsRefused) {
         EXPECT_THROW(chooseLattice(toolpath, beads, boundsOf(toolpath, beads), request), UsageError) << bad;
     }
     EXPECT_THROW(voxelize(toolpath, beads, latticeOfHeight(1e-4, 0.2)), UsageError);
+    // Voxels of 0.01 mm are 1e-5 m.
+    VoxelizeOptions metres;
+    metres.placement.unit = 0.001;
+    gcode::Toolpath small;
+    addBead(small, 0, 0, 0.2, 1, 0, 0.2, 0.45, 0.2);
+    EXPECT_THROW(voxelize(small, allBeads(small), latticeOfHeight(0.01, 0.2), metres), UsageError);
 }
 
 }  // namespace

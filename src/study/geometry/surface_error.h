@@ -1,23 +1,13 @@
-// How far the level set is from the beads that it was made of.
+// How far a level set is from the beads that it was made of.
 #pragma once
 
 #include "study/geometry/exact_solid.h"
-#include "study/study.h"
-
 #include "trace/intersector.h"
 
 #include <span>
-#include <string>
 #include <vector>
 
 namespace stratum::study {
-
-struct GeometryOptions {
-    std::string print;           ///< a G-code file
-    std::string layers;          ///< "A:B", see voxelize::parseLayers; empty: all
-    std::vector<double> counts;  ///< voxels a layer, need not be whole; empty: 1, 2, 3, 4, 6, 8, or 1, 2, 4 if quick
-    std::size_t points = 0;      ///< on the union's surface; 0: 40000, or 4000 if quick
-};
 
 /// Spread of what was measured at many points.
 struct Spread {
@@ -41,11 +31,5 @@ SurfaceError surfaceError(const trace::Intersector& level_set, std::span<const E
 
 /// The way back: absolute distances of the union at the hits of rays from outside, mm.
 Spread backwardError(const trace::Intersector& level_set, const ExactSolid& exact, std::size_t rays);
-
-/// geometry.csv and geometry.html: errors against voxel size, on lattices aligned with the layers and half a voxel off,
-/// for several half-widths, as floats and halves, of the beads' union and of settled beads, each against its own exact
-/// surface; and against run time. Both ways: from the exact surface to the level set, with the share of it that is not
-/// there, and back. Level beads only. Throws InputError, UsageError, OutputError.
-StudyReport studyGeometry(const GeometryOptions& options, const StudyOptions& common);
 
 }  // namespace stratum::study
