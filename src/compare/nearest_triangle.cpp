@@ -79,7 +79,8 @@ std::vector<TriangleTree::Run> TriangleTree::runs(std::uint32_t leaf) const {
             const Triangle& t = mesh_.triangles[end++];
             sum += mesh_.corner(t, 0) + mesh_.corner(t, 1) + mesh_.corner(t, 2);
         } while (end < count && end - begin < leaf && joined(mesh_.triangles[end - 1], mesh_.triangles[end]));
-        runs.push_back({sum / (3.0 * (end - begin)), begin, end});
+        const glm::vec3 middle(sum / (3.0 * (end - begin)));
+        runs.push_back({{middle.x, middle.y, middle.z}, begin, end});
         begin = end;
     }
     return runs;
@@ -90,19 +91,20 @@ std::uint32_t TriangleTree::build(std::span<Run> runs) {
     const auto number = static_cast<std::uint32_t>(nodes_.size());
     nodes_.push_back(runs.size() == 1 ? leafOf(runs.front()) : Node{});
     if (runs.size() == 1) return number;
-    glm::vec3 low = runs.front().middle;
-    glm::vec3 high = low;
-    for (const Run& run : runs) {
-        low = glm::min(low, run.middle);
-        high = glm::max(high, run.middle);
-    }
-    const glm::vec3 size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    std::array<float, 3> low = runs.front().middle;
+    std::array<float, 3> high = low;
+    for (const Run& run : runs)
+        for (std::size_t n = 0; n < 3; ++n) {
+            low[n] = std::min(low[n], run.middle[n]);
+            high[n] = std::max(high[n], run.middle[n]);
+        }
+    const std::array<float, 3> size = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    const std::size_t axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
     const std::size_t half = runs.size() / 2;
-    std::nth_element(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(half), runs.end(),
-                     [axis](const Run& a, const Run& b) {
-                         return std::pair(a.middle[axis], a.begin) < std::pair(b.middle[axis], b.begin);
-                     });
+    std::nth_element(
+        runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(half), runs.end(), [axis](const Run& a, const Run& b) {
+            return a.middle[axis] < b.middle[axis] || (a.middle[axis] == b.middle[axis] && a.begin < b.begin);
+        });
     const std::uint32_t left = build(runs.first(half));
     const std::uint32_t right = build(runs.subspan(half));
     Node& node = nodes_[number];

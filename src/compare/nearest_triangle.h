@@ -3,6 +3,7 @@
 
 #include "compare/triangle_mesh.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -49,7 +50,7 @@ private:
         std::uint32_t right;       // the left child is the next node; 0 for leaves
     };
     struct Run {
-        glm::vec3 middle;
+        std::array<float, 3> middle;
         std::uint32_t begin, end;  // triangles
     };
     std::vector<Run> runs(std::uint32_t leaf) const;

@@ -58,14 +58,18 @@ void limitMemory([[maybe_unused]] const std::string& name) {
 
 [[noreturn]] void runChild(int to, const std::string& name, const std::function<std::string()>& read) {
     (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGXFSZ}) (void)::signal(signal, SIG_DFL);
+    for (const int signal :
+         {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU, SIGXFSZ, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL})
+        (void)::signal(signal, SIG_DFL);
     const rlimit no_core{0, 0};
     const rlimit seconds{kMostSeconds, kMostSeconds};
     (void)::setrlimit(RLIMIT_CORE, &no_core);
     (void)::setrlimit(RLIMIT_CPU, &seconds);
     limitMemory(name);
-    // What an assertion says means nothing to people.
-    if (const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC); null >= 0) (void)::dup2(null, STDERR_FILENO);
+    // What an assertion says means nothing to people. It also empties the copy of the parent's buffer of standard
+    // output.
+    if (const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC); null >= 0)
+        for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) (void)::dup2(null, stream);
     bool done = false;
     try {
         const std::string bytes = read();

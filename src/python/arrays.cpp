@@ -39,6 +39,18 @@ std::string shapeOf(const py::array& array) {
     return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
 
+// Under a mask there is a placeholder, which would be read as data. Records have a mask a field.
+void refuseMasked(const py::handle& array, std::string_view name) {
+    if (!py::hasattr(array, "mask") || !py::isinstance(array, py::module_::import("numpy.ma").attr("MaskedArray")))
+        return;
+    const auto mask = py::module_::import("numpy").attr("ascontiguousarray")(array.attr("mask"));
+    if (mask.attr("view")("bool").attr("any")().cast<bool>())
+        throw UsageError(
+            fmt::format("{}: has masked values; leave out what they belong to, e.g. by numpy.ma.compress_rows(), or "
+                        "give them values by .filled()",
+                        name));
+}
+
 }  // namespace
 
 template <>
@@ -135,6 +147,7 @@ std::vector<Record> recordsOf(const py::handle& array, std::string_view name, st
     if (!py::isinstance<py::array>(array))
         throw UsageError(fmt::format("{}: expected a NumPy array of {}; make one with numpy.zeros(n, stratum.{})", name,
                                      type_name, type_name));
+    refuseMasked(array, name);
     const auto given = py::reinterpret_borrow<py::array>(array);
     if (given.ndim() != 1)
         throw UsageError(
@@ -155,6 +168,7 @@ template std::vector<gcode::Run> recordsOf(const py::handle&, std::string_view, 
 template std::vector<gcode::Arc> recordsOf(const py::handle&, std::string_view, std::string_view);
 
 std::vector<glm::dvec3> pointsOf(const py::handle& array, std::string_view name) {
+    refuseMasked(array, name);
     const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(array);
     if (!numbers) {
         PyErr_Clear();

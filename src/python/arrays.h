@@ -46,7 +46,8 @@ pybind11::array_t<Value> arrayOf(std::vector<Value>&& values, std::vector<pybind
     return pybind11::array_t<Value>(std::move(shape), kept->data(), owner);
 }
 
-/// A copy of records of that type. Throws UsageError, with the remedy, for another shape or type.
+/// A copy of records of that type. Throws UsageError, with the remedy, for another shape or type
+/// and for masked values.
 /// @param name  of the argument, for messages
 /// @param type_name  of the type in this module
 template <typename Record>
@@ -56,7 +57,7 @@ extern template std::vector<gcode::Run> recordsOf(const pybind11::handle&, std::
 extern template std::vector<gcode::Arc> recordsOf(const pybind11::handle&, std::string_view, std::string_view);
 
 /// A copy of an array of shape (N, 3) of finite numbers: of another thread's writing nothing is seen. Throws
-/// UsageError.
+/// UsageError, also for masked values.
 std::vector<glm::dvec3> pointsOf(const pybind11::handle& array, std::string_view name);
 
 }  // namespace stratum::python

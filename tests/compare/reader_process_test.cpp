@@ -3,8 +3,11 @@
 #include "base/error.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <stdexcept>
@@ -43,6 +46,42 @@ TEST(ReaderProcess, ACrashEndsTheCopyAlone) {
               }).find("a.3mf"),
               std::string::npos);
     EXPECT_NE(refusalOf([]() -> std::string { std::abort(); }).find("crashed"), std::string::npos);
+}
+
+// An assertion's message empties the buffers: what the parent has not written yet must come out once, from the parent.
+TEST(ReaderProcess, ACrashWritesNothingOfTheParents) {
+    testing::internal::CaptureStdout();
+    std::fputs("once", stdout);
+    EXPECT_NE(refusalOf([]() -> std::string {
+                  std::fflush(stdout);
+                  std::abort();
+              }).find("crashed"),
+              std::string::npos);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "once");
+}
+
+volatile std::sig_atomic_t told_by_handler = -1;  // a file descriptor
+
+TEST(ReaderProcess, ACrashRunsNoHandlerOfTheParents) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::pipe(ends.data()), 0);
+    told_by_handler = ends[1];
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) {
+        auto* const before = std::signal(signal, [](int) {
+            (void)!::write(told_by_handler, "x", 1);
+            ::_exit(1);
+        });
+        EXPECT_NE(refusalOf([signal]() -> std::string {
+                      std::raise(signal);
+                      return {};
+                  }).find("crashed"),
+                  std::string::npos);
+        (void)std::signal(signal, before);
+    }
+    ::close(ends[1]);
+    char byte = 0;
+    EXPECT_EQ(::read(ends[0], &byte, 1), 0) << "a handler ran";
+    ::close(ends[0]);
 }
 
 #ifndef STRATUM_SANITIZED

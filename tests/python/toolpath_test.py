@@ -245,6 +245,9 @@ class Arrays(unittest.TestCase):
         self.refuses("numpy.zeros", beads=[1, 2, 3])
         self.refuses("dtype stratum.bead_dtype.*field by field", beads=np.zeros((10, 9)).reshape(-1))
         self.refuses(r"not the shape \(10, 1\); use .reshape", lambda g: g.update(beads=g["beads"].reshape(10, 1)))
+        masked = np.ma.masked_array(box_of_beads(10)[0])
+        masked["x1"][3] = np.ma.masked
+        self.refuses("beads: has masked values", beads=masked)
         self.refuses("is empty", lambda g: g.update(beads=g["beads"][:0]))
         self.refuses("dtype stratum.run_dtype", runs=np.zeros(1, stratum.arc_dtype))
         for bad in (np.nan, np.inf, 1e9):

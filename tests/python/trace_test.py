@@ -112,6 +112,11 @@ class Tracing(unittest.TestCase):
                 (np.zeros((2, 3)), np.ones((3, 3)), "2 and 3 rows")):
             with self.assertRaisesRegex(stratum.UsageError, text):
                 shape.trace(origins, directions)
+        hidden = np.ma.masked_array(np.zeros((2, 3)), mask=[[0, 0, 0], [0, 1, 0]])
+        with self.assertRaisesRegex(stratum.UsageError, "origins: has masked values.*filled"):
+            shape.trace(hidden, np.ones((2, 3)))
+        seen = np.ma.masked_array(np.zeros((2, 3)), mask=False)
+        self.assertEqual(len(shape.trace(seen, np.ones((2, 3))).t), 2)
         with self.assertRaisesRegex(stratum.UsageError, "t_min"):
             shape.trace([[0, 0, 0]], [[0, 0, 1]], t_min=2, t_max=1)
 

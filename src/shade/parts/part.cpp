@@ -15,9 +15,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <exception>
+#include <limits>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
 
 namespace stratum::shade {
 namespace {
@@ -28,15 +32,31 @@ constexpr const char* kAttribute = "StratumPart";
 constexpr int kFormat = 4;
 constexpr std::size_t kMostPixels = std::size_t{1} << 30;  // 32768 x 32768, what a render may have
 
+/// A number that its type holds, where Json::get() casts any.
+template <typename Number>
+Number numberOf(const Json& json) {
+    bool held = false;
+    if constexpr (std::is_floating_point_v<Number>)
+        held = json.is_number() && std::abs(json.get<double>()) <= double{std::numeric_limits<Number>::max()};
+    else if (json.is_number_unsigned())
+        held = std::in_range<Number>(json.get<std::uint64_t>());
+    else if (json.is_number_integer())
+        held = std::in_range<Number>(json.get<std::int64_t>());
+    if (!held) throw std::runtime_error("one of its numbers is out of range");
+    return json.get<Number>();
+}
+
 Json jsonOf(const PixelBox& box) { return {box.x0, box.y0, box.x1, box.y1}; }
 
 PixelBox boxOf(const Json& json) {
-    return {json.at(0).get<int>(), json.at(1).get<int>(), json.at(2).get<int>(), json.at(3).get<int>()};
+    return {numberOf<int>(json.at(0)), numberOf<int>(json.at(1)), numberOf<int>(json.at(2)), numberOf<int>(json.at(3))};
 }
 
 Json jsonOf(const Color& color) { return {color.r, color.g, color.b}; }
 
-Color colorOf(const Json& json) { return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()}; }
+Color colorOf(const Json& json) {
+    return {numberOf<float>(json.at(0)), numberOf<float>(json.at(1)), numberOf<float>(json.at(2))};
+}
 
 Json jsonOf(const Legend& legend) {
     Json entries = Json::array();
@@ -48,7 +68,12 @@ Json jsonOf(const Legend& legend) {
 }
 
 Legend legendOf(const Json& json) {
-    Legend legend{json.at("title"), json.at("unit"), {}, {}, json.at("least"), json.at("most")};
+    Legend legend{json.at("title"),
+                  json.at("unit"),
+                  {},
+                  {},
+                  numberOf<double>(json.at("least")),
+                  numberOf<double>(json.at("most"))};
     for (const Json& entry : json.at("entries"))
         legend.entries.push_back({entry.at(0).get<std::string>(), colorOf(entry.at(1))});
     for (const Json& color : json.at("ramp")) legend.ramp.push_back(colorOf(color));
@@ -73,16 +98,16 @@ PartWhole wholeOf(const Json& json) {
     PartWhole whole;
     whole.version = json.at("version");
     whole.scene = json.at("scene");
-    whole.width = json.at("size").at(0);
-    whole.height = json.at("size").at(1);
+    whole.width = numberOf<int>(json.at("size").at(0));
+    whole.height = numberOf<int>(json.at("size").at(1));
     whole.region = boxOf(json.at("region"));
     if (!json.at("crop").is_null()) whole.crop = boxOf(json.at("crop"));
     whole.linear = json.at("linear");
     whole.denoised = json.at("denoised");
-    whole.exposure = json.at("exposure");
-    if (!json.at("bare_bed").is_null()) whole.bare_bed = json.at("bare_bed").get<float>();
+    whole.exposure = numberOf<double>(json.at("exposure"));
+    if (!json.at("bare_bed").is_null()) whole.bare_bed = numberOf<float>(json.at("bare_bed"));
     if (!json.at("legend").is_null()) whole.legend = legendOf(json.at("legend"));
-    whole.shards = json.at("shards");
+    whole.shards = numberOf<int>(json.at("shards"));
     return whole;
 }
 
@@ -114,17 +139,17 @@ Part partOf(const std::string& text, const Metadata& metadata) {
     Json json = Json::parse(text);
     Part part;
     part.metadata = metadata;
-    if (json.at("format").get<int>() != kFormat) throw std::runtime_error("its format is of another version");
+    if (numberOf<int>(json.at("format")) != kFormat) throw std::runtime_error("its format is of another version");
     part.whole = wholeOf(json.at("whole"));
-    part.index = json.at("index");
+    part.index = numberOf<int>(json.at("index"));
     part.piece = boxOf(json.at("piece"));
-    part.samples = json.at("samples");
-    part.pixels = json.at("pixels");
-    part.content = static_cast<FilmContent>(json.at("content").get<int>());
+    part.samples = numberOf<std::uint64_t>(json.at("samples"));
+    part.pixels = numberOf<std::uint64_t>(json.at("pixels"));
+    part.content = static_cast<FilmContent>(numberOf<int>(json.at("content")));
     for (const Json& layer : json.at("layers")) {
         part.layers.push_back({layer.at(0).get<std::string>(), layer.at(1).get<std::vector<std::string>>(), {}});
     }
-    part.crc = json.at("crc");
+    part.crc = numberOf<std::uint32_t>(json.at("crc"));
     json.erase("crc");
     part.head = crcOf(json, metadata);
     return part;
@@ -141,6 +166,7 @@ void check(const Part& part) {
     size.width = whole.width;
     size.height = whole.height;
     size.validate();
+    ToneOptions{whole.exposure}.validate();
     if (!inside(whole.region, {0, 0, whole.width, whole.height}) || (whole.crop && !inside(*whole.crop, whole.region)))
         throw std::runtime_error("its region is not in the picture");
     if (part.index < 0 || part.index >= whole.shards || part.pixels < 1 || part.content < FilmContent::radiance ||
@@ -247,10 +273,12 @@ std::string differenceOf(const Part& part, const Part& other) {
         return fmt::format("one of {} shards, not of {}", part.whole.shards, other.whole.shards);
     if (part.whole.scene != other.whole.scene)
         return "of another scene: the input files, the options, the seed or the frame differ";
-    Metadata metadata = part.metadata;
-    metadata[kMeanSamples] = other.metadata.contains(kMeanSamples) ? other.metadata.at(kMeanSamples) : std::string();
-    if (jsonOf(part.whole) != jsonOf(other.whole) || metadata != other.metadata || part.content != other.content ||
-        layersOf(part.layers) != layersOf(other.layers))
+    const auto shared = [](Metadata metadata) {
+        metadata.erase(kMeanSamples);
+        return metadata;
+    };
+    if (jsonOf(part.whole) != jsonOf(other.whole) || shared(part.metadata) != shared(other.metadata) ||
+        part.content != other.content || layersOf(part.layers) != layersOf(other.layers))
         return "of another picture of the same scene";
     return {};
 }
