@@ -46,20 +46,7 @@ public:
     bool intersect(const Ray& ray, Hit& hit) override {
         const Part part = clip(ray, box_);
         if (part.empty()) return false;
-        RTCRayHit one{};
-        const glm::dvec3 origin = ray.origin + part.begin * ray.direction;
-        one.ray = {static_cast<float>(origin.x),
-                   static_cast<float>(origin.y),
-                   static_cast<float>(origin.z),
-                   0.0F,
-                   static_cast<float>(ray.direction.x),
-                   static_cast<float>(ray.direction.y),
-                   static_cast<float>(ray.direction.z),
-                   0.0F,
-                   static_cast<float>(part.end - part.begin),
-                   ~0U,
-                   0,
-                   0};
+        RTCRayHit one{single(ray, part), {}};
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
         rtcIntersect1(scene_, &context, &one);
@@ -70,9 +57,12 @@ public:
     }
 
     bool occluded(const Ray& ray) override {
-        std::uint8_t blocked = 0;
-        occludedStream({&ray, 1}, {&blocked, 1});
-        return blocked != 0;
+        const Part part = clip(ray, box_);
+        if (part.empty()) return false;
+        RTCRay one = single(ray, part);
+        RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+        rtcOccluded1(scene_, &context, &one);
+        return one.tfar < 0;
     }
 
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
@@ -109,6 +99,15 @@ public:
     }
 
 private:
+    static RTCRay single(const Ray& ray, const Part& part) {
+        const glm::vec3 origin(ray.origin + part.begin * ray.direction);
+        const glm::vec3 direction(ray.direction);
+        return {origin.x,    origin.y,    origin.z,
+                0.0F,        direction.x, direction.y,
+                direction.z, 0.0F,        static_cast<float>(part.end - part.begin),
+                ~0U,         0,           0};
+    }
+
     static RTCIntersectContext contextOf(RTCIntersectContextFlags flags) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
