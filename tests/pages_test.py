@@ -1,4 +1,4 @@
-"""The pages name what is there: links and their anchors, paths of the repository, counts and versions."""
+"""The pages name what is there: links and their anchors, paths of the repository, counts, versions and code of the examples."""
 
 import glob
 import os
@@ -9,7 +9,7 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PAGES = sorted(glob.glob(os.path.join(ROOT, "docs", "**", "*.md"), recursive=True)) + [
-    os.path.join(ROOT, name) for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    os.path.join(ROOT, name) for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")]
 # Files of other projects that the pages name.
 OTHERS = {"configfile.py", "toolhead.py", "GCodeProcessor.cpp", "Plater.cpp", "GCode.cpp", "bbs_3mf.cpp", "CreateThumbnail.py",
           "doc/specifications.md", "src/libslic3r/GCode/Thumbnails.hpp"}
@@ -95,7 +95,7 @@ def check_paths(page, text):
         for word in re.split(r"[\s,;:=\"']+", span):
             word = word.strip("().")
             whole = re.fullmatch(rf"[\w.*/-]+\.{CODE}", word)
-            folder = re.fullmatch(r"(?:src|docs|tests|tools|scripts|data|bench|cmake|python)/[\w./*-]*", word)
+            folder = re.fullmatch(r"(?:src|docs|tests|tools|scripts|data|bench|cmake|python|examples)/[\w./*-]*", word)
             if (whole or folder) and not is_there(word, page):
                 tell(page, f"names {word}, which is not there")
     # Commands in blocks run scripts and read the project's data.
@@ -162,6 +162,17 @@ def check_picture_of_rooms():
         tell(os.path.join(ROOT, "docs/architecture.md"), f"rooms.svg is old, see {drawn[0] ^ drawn[1]}; run scripts/rooms.py")
 
 
+def check_examples():
+    """The C++ that is shown is compiled: it stands in a file of examples/, line by line."""
+    examples = [read("examples", name) for name in os.listdir(os.path.join(ROOT, "examples")) if name.endswith(".cpp")]
+    blocks = re.findall(r"^```cpp\n(.*?)^```", read("docs/cpp.md"), re.M | re.S)
+    for block in blocks:
+        if not any(block in example for example in examples):
+            tell(os.path.join(ROOT, "docs/cpp.md"), f"shows code that no example has: {block.splitlines()[0].strip()}")
+    if not blocks:
+        tell(os.path.join(ROOT, "docs/cpp.md"), "shows no code")
+
+
 def check_versions():
     version = re.search(r"project\([^)]*VERSION (\d+\.\d+\.\d+)", read("CMakeLists.txt"), re.S).group(1)
     if not re.search(rf"^## {re.escape(version)}$", read("CHANGELOG.md"), re.M):
@@ -181,6 +192,7 @@ for page in PAGES:
 check_counts()
 check_picture_of_rooms()
 check_versions()
+check_examples()
 for problem in sorted(set(problems)):
     print(problem)
 print(f"{len(PAGES)} pages, {len(set(problems))} problems")

@@ -14,7 +14,7 @@ from run_tools import BIN, SOURCE, check, gcode, run
 
 BUILD = os.path.dirname(BIN)
 FOLDER = tempfile.mkdtemp(prefix="stratum_install_")
-CONSUMER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "consumer")
+CONSUMER = os.path.join(SOURCE, "examples")
 TOOLS = ("gcode2vdb", "vdbtrace", "vdbview", "vdbmerge", "vdbstudy")
 # The consumers' own flags; what they compile is looked up first if there is a cache.
 CONFIGURE = ["-GNinja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0"]

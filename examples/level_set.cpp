@@ -1,7 +1,7 @@
 // G-code -> level set -> one ray from above -> a material, through every library.
 #include <gcode/container/input_bytes.h>
 #include <gcode/reader.h>
-#include <march/reference/vdb_intersector.h>
+#include <march/brick/brick_intersector.h>
 #include <shade/brdf/brdf.h>
 #include <voxelize/beads/lattice.h>
 #include <voxelize/beads/selection.h>
@@ -20,7 +20,7 @@ int main(int, char** argv) {
     const voxelize::Lattice lattice = voxelize::chooseLattice(toolpath, beads, bounds, {});
     voxelize::Voxelizer voxelizer(toolpath, beads, lattice, {});
     const auto grid = voxelizer.printUntil(static_cast<std::uint32_t>(toolpath.beads.size()));
-    const auto scene = march::makeVdbIntersector(grid);
+    const auto scene = march::makeBrickIntersector(*grid);
     const trace::Box box = scene->bounds();
     trace::Ray ray;
     ray.origin = {(box.min.x + box.max.x) / 2 + 0.013, (box.min.y + box.max.y) / 2 + 0.017, box.max.z + 1};
