@@ -59,7 +59,7 @@ struct Machine {
     double jerk = 8;
     int layers = 12;
     std::vector<double> wrong{1};  // factors of the layers' times, in turn
-    std::string head{};  // given, or GCC 14 warns where it is left out
+    std::string head{};            // given, or GCC 14 warns where it is left out
 };
 
 // The times behind the layers are those of the machine.
