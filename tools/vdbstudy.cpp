@@ -81,7 +81,7 @@ CLI::App* addVerb(CLI::App& app, Options& o, const char* name, const char* help)
 }
 
 void addDeposit(CLI::App& app, Options& o, std::vector<Verb>& verbs) {
-    CLI::App* deposit = addVerb(app, o, "deposit", "What the plastic does: volume, roughness, corners, times");
+    CLI::App* deposit = addVerb(app, o, "deposit", "The plastic: volume, roughness, corners, times");
     deposit->add_option("PRINT", o.deposit.prints, "Prints, for volume and times")->required()->type_name("FILE.gcode");
     deposit->add_option("--times", o.deposit.timed, "More prints, for their times alone; may be given again")
         ->type_name("FILE");
