@@ -31,7 +31,7 @@ private:
     std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel);
     void fill(Owned& leaf, const openvdb::Coord& origin);
 
-    static constexpr std::size_t kSide = 8;
+    static constexpr std::size_t kSide = 16;
     const PrintField& field_;
     const openvdb::math::MapBase::ConstPtr map_;
     LeafMaker maker_;
