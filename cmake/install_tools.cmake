@@ -63,7 +63,7 @@ install(PROGRAMS data/print_farm/stratum-thumbnails DESTINATION ${CMAKE_INSTALL_
 install(FILES data/print_farm/stratum-thumbnails@.path data/print_farm/stratum-thumbnails@.service
   DESTINATION lib/systemd/system COMPONENT ${with_system})
 # With all that they link to, as it lies in the sources: pictures, and the pages and tables of the studies.
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tools)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/stratum-viewer RENAME copyright COMPONENT viewer)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${with_system})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${with_system})

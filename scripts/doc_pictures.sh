@@ -78,6 +78,33 @@ for camera in "--eye 94,88,16 --look-at 101,97,2.4" "--eye 118,88,10 --look-at 1
     done
 done
 tiles deposit 4 data/gcode/tile.gcode "${pairs[@]}"
+# One layer of lines, 10 mm squares of them in four directions: gloss without and with a direction.
+if asked gloss; then
+    awk 'BEGIN {
+        print "M83\nG1 Z0.2 F6000\n;LAYER_CHANGE\n;Z:0.2\n;HEIGHT:0.2\n;TYPE:Top solid infill\n;WIDTH:0.42"
+        for (n = 0; n < 4; ++n) {
+            c = cos(n * 3.14159265 / 4); s = sin(n * 3.14159265 / 4)
+            for (k = -18; k <= 18; ++k) {
+                d = 0.377 * k; from = -99; to = 99
+                clip(c, -d * s); clip(s, d * c)
+                if (to - from < 0.3) continue
+                x = 100 + n % 2 * 11 - d * s; y = 100 + int(n / 2) * 11 + d * c
+                printf "G0 X%.3f Y%.3f F9000\nG1 X%.3f Y%.3f E%.5f F1800\n", x + from * c, y + from * s, x + to * c, y + to * s,
+                    (to - from) * 0.0314
+            }
+        }
+    }
+    # Of the line, what lies within 5 mm along one axis.
+    function clip(along, at,   a, b) {
+        if (along * along < 1e-9) { if (at * at > 25) to = from; return }
+        a = (-5 - at) / along; b = (5 - at) / along
+        if (a > b) { at = a; a = b; b = at }
+        if (a > from) from = a
+        if (b < to) to = b
+    }' >"$work/lines.gcode"
+    lines='--printer typical --size 450x300 --spp 128 --env sky:35,90 --eye 105.5,84,20 --look-at 105.5,104.5,0.2 --fov 42'
+    tiles gloss 2 "$work/lines.gcode" "$lines --brdf fdm:0.05,0.12,0.3,0.22,1" "$lines --brdf fdm:0.05,0.12,0.3,0.22,2.5"
+fi
 # What photographs of extrusion tests show: flow, pressure advance, narrow infill. Sliced here: needs OpenSCAD and PrusaSlicer.
 if asked plastic; then
     install_packages openscad prusa-slicer
