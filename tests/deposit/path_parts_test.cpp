@@ -55,26 +55,6 @@ void expectNothingBeside(const gcode::PlanPath& path, const gcode::PlanPath& oth
     for (const PathPart& part : parts) EXPECT_LT(part.to - part.from, 1e-9);
 }
 
-TEST(PathParts, PlacesAndDistances) {
-    EXPECT_EQ(segment(1, 1, 4, 5).length(), 5);
-    EXPECT_NEAR(segment(1, 1, 4, 5).at(2.5).y, 3, 1e-12);
-    EXPECT_NEAR(segment(0, 0, 4, 0).distance(7, 4), 5, 1e-12);
-    EXPECT_NEAR(segment(2, 2, 2, 2).distance(5, 6), 5, 1e-12);
-    const gcode::PlanPath clockwise = arc(2, -std::numbers::pi / 2);
-    EXPECT_NEAR(clockwise.length(), std::numbers::pi, 1e-12);
-    EXPECT_NEAR(clockwise.at(clockwise.length()).y, -2, 1e-12);
-    EXPECT_NEAR(clockwise.distance(3, -3), std::hypot(3, 3) - 2, 1e-12);
-    EXPECT_NEAR(clockwise.distance(0, 2), std::hypot(2, 2), 1e-12);
-    EXPECT_NEAR(arc(2, 2 * std::numbers::pi).distance(0, -0.5), 1.5, 1e-12);
-    EXPECT_EQ(segment(1, 1, 5, 1).nearest(9, 3), 4);
-    EXPECT_EQ(segment(1, 1, 5, 1).nearest(2, 3), 1);
-    EXPECT_NEAR(clockwise.nearest(3, -3), 0.5 * clockwise.length(), 1e-12);
-    EXPECT_EQ(clockwise.nearest(-1, -5), clockwise.length());
-    EXPECT_EQ(clockwise.nearest(5, 1), 0);
-    EXPECT_EQ(arc(0, 1).length(), 0);
-    EXPECT_TRUE(arc(0, 1).straight());
-}
-
 TEST(PathParts, PartsNearASegment) {
     const gcode::PlanPath path = segment(0, 0, 10, 0);
     expectParts(path, segment(3, -5, 3, 5), 1, {{2, 4}});

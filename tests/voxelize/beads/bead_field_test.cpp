@@ -12,52 +12,6 @@ namespace {
 using test::addArc;
 using test::addBead;
 
-// Nearest of many points along an arc; the sampling error is below radius * step^2 / 8.
-double sampledArcDistance(double cx, double cy, double radius, double from, double sweep, double x, double y) {
-    double best = 1e300;
-    constexpr int kSteps = 20000;
-    for (int s = 0; s <= kSteps; ++s) {
-        const double angle = from + sweep * s / kSteps;
-        best = std::min(best, std::hypot(x - cx - radius * std::cos(angle), y - cy - radius * std::sin(angle)));
-    }
-    return best;
-}
-
-TEST(PlanPath, ArcDistanceAgreesWithSampledPath) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> where(-8, 8);
-    for (const double sweep : {0.01, 0.7, -0.7, 3.0, -3.0, std::numbers::pi, 4.0, -5.5, 2 * std::numbers::pi}) {
-        gcode::Toolpath toolpath;
-        addArc(toolpath, 1, -2, 4, 0.4, sweep, 0.2, 0.2, 0.5, 0.2);
-        const gcode::PlanPath path(toolpath, toolpath.beads[0]);
-        EXPECT_NEAR(path.length(), 4 * std::abs(sweep), 1e-12);
-        double min[2];
-        double max[2];
-        path.bounds(min, max);
-        for (int n = 0; n < 40; ++n) {
-            const double x = where(random);
-            const double y = where(random);
-            const double expected = sampledArcDistance(1, -2, 4, 0.4, sweep, x, y);
-            EXPECT_NEAR(path.distance(x, y), expected, 1e-6) << "sweep " << sweep << " at " << x << ", " << y;
-            const double angle = 0.4 + sweep * path.parameter(x, y);
-            EXPECT_NEAR(std::hypot(x - 1 - 4 * std::cos(angle), y + 2 - 4 * std::sin(angle)), expected, 1e-6);
-        }
-        for (int s = 0; s <= 100; ++s) {
-            const double angle = 0.4 + sweep * s / 100;
-            EXPECT_GE(1 + 4 * std::cos(angle), min[0] - 1e-9);
-            EXPECT_LE(1 + 4 * std::cos(angle), max[0] + 1e-9);
-            EXPECT_GE(-2 + 4 * std::sin(angle), min[1] - 1e-9);
-            EXPECT_LE(-2 + 4 * std::sin(angle), max[1] + 1e-9);
-        }
-    }
-}
-
-TEST(PlanPath, PointPathIsADistanceToThePoint) {
-    gcode::Toolpath toolpath;
-    addBead(toolpath, 3, 4, 0.2, 3, 4, 0.2, 0.5, 0.2);
-    EXPECT_DOUBLE_EQ(gcode::PlanPath(toolpath, toolpath.beads[0]).distance(0, 0), 5);
-}
-
 TEST(BeadField, StadiumHasItsWidthAndHeight) {
     gcode::Toolpath toolpath;
     addBead(toolpath, 0, 0, 0.3, 10, 0, 0.3, 0.5, 0.2);
