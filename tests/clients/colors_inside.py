@@ -21,6 +21,8 @@ for path in sys.argv[sys.argv.index("--") + 1 :]:
         bpy.ops.wm.obj_import(filepath=path, forward_axis="Y", up_axis="Z")
     elif ending == ".glb":
         bpy.ops.import_scene.gltf(filepath=path)
+    elif bpy.app.version >= (4, 0):
+        bpy.ops.wm.ply_import(filepath=path)
     else:
         bpy.ops.import_mesh.ply(filepath=path)
     result = {"file": os.path.basename(path), "materials": {}, "triangles": 0, "low": [1e9] * 3, "high": [-1e9] * 3}
