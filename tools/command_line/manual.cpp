@@ -299,6 +299,8 @@ void addManual(CLI::App& app, const Brief& brief) {
            },
            "For the build: prints the man page or the completion")
         ->check(CLI::IsMember({"man", "bash"}))
+        // Before required arguments are missed, which versions of CLI11 look for at different times.
+        ->trigger_on_parse()
         ->group("");
 }
 
