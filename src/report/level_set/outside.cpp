@@ -16,10 +16,15 @@ using voxelize::LeafMask;
 
 constexpr std::size_t kGrain = 64;
 
+// The samples whose distance from the plastic is at least that.
 LeafMask openSamples(const Leaf& leaf, float least) {
     LeafMask mask;
     voxelize::maskFrom(leaf.buffer().data(), least, mask.word.data());
     return mask;
+}
+
+LeafFlood::Passable passableFrom(const LeafMap& map, float least) {
+    return [&map, least](std::size_t, int, std::size_t n) { return openSamples(map.leaf(n), least); };
 }
 
 std::vector<std::uint8_t> gapsOf(const LeafFlood& flood, std::size_t count) {
@@ -45,9 +50,7 @@ Outside::Outside(const LeafMap& map, double clearance, double voxel, double back
     const int steps =
         std::max(voxelize::ExteriorRule{}.depth, static_cast<int>(std::ceil(kIntoGroove * clearance / voxel)) + 1);
     findShown(map, static_cast<float>(clearance), std::min(steps, voxelize::kFarthestReach));
-    const LeafFlood::Passable passable = [&map](std::size_t, int, std::size_t n) {
-        return openSamples(map.leaf(n), 0);
-    };
+    const LeafFlood::Passable passable = passableFrom(map, 0);
     LeafFlood flood(map.positions(), passable, map.solidGaps());
     flood.run();
     any_.resize(map.leafCount());
@@ -58,9 +61,7 @@ Outside::Outside(const LeafMap& map, double clearance, double voxel, double back
 }
 
 void Outside::findShown(const LeafMap& map, float clearance, int depth) {
-    const LeafFlood::Passable passable = [&map, clearance](std::size_t, int, std::size_t n) {
-        return openSamples(map.leaf(n), clearance);
-    };
+    const LeafFlood::Passable passable = passableFrom(map, clearance);
     LeafFlood wide(map.positions(), passable, map.solidGaps());
     wide.run();
     gap_wide_ = gapsOf(wide, map.positions().gapCount());

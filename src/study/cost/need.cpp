@@ -70,7 +70,7 @@ std::vector<Capability> capabilities(const std::string& map) {
              s.read.deposit.flow_lag = 0.015;
              s.read.deposit.pressure_advance = 0;
          }},
-        {"sag", "--sag 2%", [](Setup& s) { s.read.deposit.sag = 0.02; }},
+        {"sag", "--sag 0.02", [](Setup& s) { s.read.deposit.sag = 0.02; }},
         {"typical printer", "--printer typical", [](Setup& s) { deposit::usePrinter("typical", s.read); }},
         {"attribute grids", "--grids layer,width",
          [](Setup& s) {

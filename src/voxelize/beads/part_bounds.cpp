@@ -13,6 +13,7 @@ Bounds partBounds(const gcode::Toolpath& toolpath, std::span<const gcode::Purpos
     std::vector<std::uint32_t> brim;
     std::copy_if(selection.begin(), selection.end(), std::back_inserter(brim),
                  [&](std::uint32_t bead) { return purposes[bead] == gcode::Purpose::brim; });
+    // All are taken where nothing but a brim and what is beside the part is selected.
     if (brim.empty() || part.size() == selection.size()) return bounds;
     const Bounds around = boundsOf(toolpath, brim);
     for (int axis = 0; axis < 2; ++axis) {

@@ -3,13 +3,13 @@
 #include "base/parallel_for.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace stratum::voxelize {
 namespace {
 
 constexpr std::size_t kFloodGrain = 8;  // columns
 constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+constexpr int kSides = 4;  // of the faces: those across x and y
 constexpr std::uint64_t kLowZ = 0x0101010101010101U;
 constexpr std::uint64_t kHighZ = 0x8080808080808080U;
 
@@ -90,11 +90,16 @@ void LeafFlood::begin() {
     }
 }
 
+// The column beyond a face of a leaf, its own for those along z; kNowhere where none is.
+std::size_t LeafFlood::columnBeyond(std::size_t c, int face) const {
+    if (face >= kSides) return c;
+    return positions_.columnAt(positions_.columnI(c) + kFaces[face][0], positions_.columnJ(c) + kFaces[face][1]);
+}
+
 bool LeafFlood::freeBeside(std::size_t c) const {
-    return std::any_of(std::begin(kFaces), std::begin(kFaces) + 4, [&](const auto& step) {
-        return positions_.columnAt(positions_.columnI(c) + step[0], positions_.columnJ(c) + step[1]) ==
-               LeafPositions::kNowhere;
-    });
+    for (int face = 0; face < kSides; ++face)
+        if (columnBeyond(c, face) == LeafPositions::kNowhere) return true;
+    return false;
 }
 
 void LeafFlood::reachGap(std::size_t c, std::size_t number) {
@@ -123,9 +128,8 @@ void LeafFlood::leaveGap(const Gap& gap) {
     const auto own = positions_.intervalsOf(gap.column);
     if (gap.number > 0) queue(gap.column, own[gap.number - 1].slotOf(own[gap.number - 1].last));
     if (gap.number < own.size()) queue(gap.column, own[gap.number].slot);
-    for (int face = 0; face < 4; ++face) {
-        const std::size_t beside = positions_.columnAt(positions_.columnI(gap.column) + kFaces[face][0],
-                                                       positions_.columnJ(gap.column) + kFaces[face][1]);
+    for (int face = 0; face < kSides; ++face) {
+        const std::size_t beside = columnBeyond(gap.column, face);
         if (beside == LeafPositions::kNowhere) continue;
         const auto intervals = positions_.intervalsOf(beside);
         for (const LeafPositions::Interval& interval : intervals)
@@ -161,10 +165,9 @@ LeafMask LeafFlood::load(std::size_t slot) const {
 LeafMask LeafFlood::seedsOf(std::size_t c, int k, const LeafMask& own) const {
     LeafMask seeds = own;
     for (int face = 0; face < 6; ++face) {
-        const auto& step = kFaces[face];
+        const std::size_t beyond = columnBeyond(c, face);
         const LeafPositions::Place place =
-            face < 4 ? positions_.at(positions_.columnI(c) + step[0], positions_.columnJ(c) + step[1], k)
-                     : positions_.at(c, k + step[2]);
+            beyond == LeafPositions::kNowhere ? LeafPositions::Place{} : positions_.at(beyond, k + kFaces[face][2]);
         if (place.leaf) {
             addFrom(load(place.index), face, seeds);
         } else if (place.index == LeafPositions::kNowhere || reachedGap(place.index)) {
@@ -198,15 +201,13 @@ void LeafFlood::visit(std::size_t c, int k, std::size_t slot) {
         std::uint64_t any = 0;
         for (std::size_t x = 0; x < 8; ++x) any |= gained.word[x] & on.word[x];
         if (any == 0) continue;
-        const auto& step = kFaces[face];
-        const std::size_t beside =
-            face < 4 ? positions_.columnAt(positions_.columnI(c) + step[0], positions_.columnJ(c) + step[1]) : c;
-        if (beside == LeafPositions::kNowhere) continue;
-        const LeafPositions::Place place = positions_.at(beside, k + step[2]);
+        const std::size_t beyond = columnBeyond(c, face);
+        if (beyond == LeafPositions::kNowhere) continue;
+        const LeafPositions::Place place = positions_.at(beyond, k + kFaces[face][2]);
         if (place.leaf)
-            queue(beside, place.index);
+            queue(beyond, place.index);
         else
-            reachGap(beside, place.index - positions_.firstGap(beside));
+            reachGap(beyond, place.index - positions_.firstGap(beyond));
     }
 }
 

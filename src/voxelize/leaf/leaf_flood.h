@@ -46,6 +46,7 @@ private:
     static constexpr std::uint32_t kUnasked = 0xffffffff;
 
     void begin();
+    std::size_t columnBeyond(std::size_t c, int face) const;
     bool freeBeside(std::size_t c) const;
     void reachGap(std::size_t c, std::size_t number);
     void queue(std::size_t c, std::size_t slot);
