@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
-#include "march/file/vdb_check.h"
+#include "march/file/vdb_walker.h"
 #include "march/file/whole_grid.h"
 
 #include <fmt/format.h>
@@ -93,15 +93,16 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
                                               const openvdb::FloatGrid& surface) {
     openvdb::GridBase::Ptr grid;
     std::string seen;
+    const std::string where = path.string();
     const InputFile input(path);
-    checkVdb(input, VdbDepth::heads, "", path.string());
+    VdbCursor cursor(input, where);
+    const VdbHeads heads = walkVdbHeads(cursor);
     try {
-        openvdb::io::File file(path.string());
-        file.open(/*delayLoad=*/false);
-        for (auto it = file.beginName(); it != file.endName(); ++it) seen += (seen.empty() ? "" : ", ") + it.gridName();
-        if (file.hasGrid(name)) {
-            grid = file.readGridMetadata(name);
-            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(file, name, *grid, input);
+        for (const VdbGrid& in_file : heads.grids) {
+            seen += (seen.empty() ? "" : ", ") + nameOf(in_file);
+            if (nameOf(in_file) != name) continue;
+            grid = headOf(heads, in_file);
+            if (grid && visit(*grid, [](const auto&) {})) grid = readWholeGrid(heads, in_file, input, where);
         }
     } catch (const InputError&) {
         throw;

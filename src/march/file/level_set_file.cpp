@@ -4,6 +4,7 @@
 #include "base/input_file.h"
 #include "march/file/grid_axes.h"
 #include "march/file/vdb_check.h"
+#include "march/file/vdb_walker.h"
 #include "march/file/whole_grid.h"
 
 #include <fmt/format.h>
@@ -28,39 +29,34 @@ constexpr double kMostShear = 1e-5;   // rounding error of a transform from 32-b
 
 // The selected grid of a file.
 struct Choice {
-    std::string name;
+    const VdbGrid* grid = nullptr;
     openvdb::GridBase::ConstPtr head;  // no voxels
 };
 
-Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
-    const std::string& where = file.filename();
-    std::string wanted = name;
+Choice chooseGrid(const VdbHeads& heads, const std::string& where, const std::string& name) {
+    Choice choice;
     std::string seen;
-    openvdb::GridBase::ConstPtr head;
     int candidates = 0;
     std::set<std::string> names;
-    for (auto it = file.beginName(); it != file.endName(); ++it) {
+    for (const VdbGrid& grid : heads.grids) {
+        const std::string grid_name = nameOf(grid);
         // OpenVDB adds a number to duplicate names: name[0], name[1].
-        const std::string plain = openvdb::io::GridDescriptor::stripSuffix(it.gridName());
+        const std::string plain = openvdb::io::GridDescriptor::stripSuffix(grid_name);
         const bool twice = !names.insert(plain.substr(0, plain.find('['))).second;
         if (twice && (name.empty() || plain.substr(0, plain.find('[')) == name))
             throw InputError(fmt::format("{}: has two grids named {}; name them apart, nobody can say which is meant",
                                          where, plain.substr(0, plain.find('['))));
-        const auto meta = file.readGridMetadata(it.gridName());
-        seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", it.gridName(), meta->type());
-        if (it.gridName() == name) head = meta;
-        const bool level_set = meta->getGridClass() == openvdb::GRID_LEVEL_SET && meta->isType<openvdb::FloatGrid>();
-        if (!level_set) continue;
-        if (name.empty() && it.gridName() == "surface") {
-            wanted = "surface";
-            head = meta;
+        const openvdb::GridBase::Ptr head = headOf(heads, grid);
+        seen += fmt::format("{}{} ({})", seen.empty() ? "" : ", ", grid_name, grid.type);
+        if (grid_name == name) choice = {&grid, head};
+        if (!head || head->getGridClass() != openvdb::GRID_LEVEL_SET || !head->isType<openvdb::FloatGrid>()) continue;
+        if (name.empty() && grid_name == "surface") {
+            choice = {&grid, head};
             candidates = 1;
             break;
         }
         ++candidates;
-        if (!name.empty()) continue;
-        wanted = it.gridName();
-        head = meta;
+        if (name.empty()) choice = {&grid, head};
     }
     if (name.empty() && candidates > 1)
         throw InputError(
@@ -68,13 +64,14 @@ Choice chooseGrid(openvdb::io::File& file, const std::string& name) {
     if (name.empty() && candidates == 0)
         throw InputError(fmt::format("{}: has no level set of floats; make one with gcode2vdb. It has: {}", where,
                                      seen.empty() ? "nothing" : seen));
-    if (!head) throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, wanted, seen));
-    if (!head->isType<openvdb::FloatGrid>())
+    if (choice.grid == nullptr)
+        throw InputError(fmt::format("{}: has no grid named {}. It has: {}", where, name, seen));
+    if (!choice.head || !choice.head->isType<openvdb::FloatGrid>())
         throw InputError(fmt::format("{}: the grid {} does not hold floats. It has: {}", where, name, seen));
-    return {wanted, head};
+    return choice;
 }
 
-// Calls `read` with the opened file, the selected grid, whose tree has not been checked, and the file.
+// Calls `read` with the heads of the file's grids, the selected one, whose tree has not been checked, and the file.
 template <typename Read>
 auto withGrid(const std::filesystem::path& path, const std::string& name, const Read& read) {
     const std::string where = path.string();
@@ -82,12 +79,10 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
     if (!std::filesystem::is_regular_file(path, ignored))
         throw InputError(fmt::format("{}: is not a file; check the name", where));
     InputFile input(path);
-    checkVdb(input, VdbDepth::heads, "", where);
+    VdbCursor cursor(input, where);
+    const VdbHeads heads = walkVdbHeads(cursor);
     try {
-        openvdb::io::File file(where);
-        // Without OpenVDB's delayed loading, which copies the file and builds the whole tree nevertheless.
-        file.open(/*delayLoad=*/false);
-        return read(file, chooseGrid(file, name), input);
+        return read(heads, chooseGrid(heads, where, name), input);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -99,17 +94,18 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
 }  // namespace
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto grid = withGrid(path, name, [](openvdb::io::File& file, const Choice& choice, const InputFile& input) {
-        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(file, choice.name, *choice.head, input));
+    auto grid = withGrid(path, name, [&path](const VdbHeads& heads, const Choice& choice, const InputFile& input) {
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(heads, *choice.grid, input, path.string()));
     });
     requireTraceable(*grid, path.string());
     return grid;
 }
 
 std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, const std::string& name) {
-    auto file = withGrid(path, name, [&path](openvdb::io::File&, const Choice& choice, InputFile& input) {
-        checkVdb(input, VdbDepth::nodes, choice.name, path.string());
-        return LeafFile::open(std::move(input), choice.name, *choice.head);
+    auto file = withGrid(path, name, [&path](const VdbHeads&, const Choice& choice, InputFile& input) {
+        const std::string grid = nameOf(*choice.grid);
+        checkVdb(input, VdbDepth::nodes, grid, path.string());
+        return LeafFile::open(std::move(input), grid, *choice.head);
     });
     if (file) requireTraceable(file->head(), file->leafCount(), path.string());
     return file;
@@ -118,14 +114,9 @@ std::shared_ptr<const LeafFile> openLevelSet(const std::filesystem::path& path, 
 bool hasGrid(const std::filesystem::path& path, const std::string& name) {
     const std::string where = path.string();
     const InputFile input(path);
-    checkVdb(input, VdbDepth::heads, "", where);
-    try {
-        openvdb::io::File file(where);
-        file.open(/*delayLoad=*/false);
-        return file.hasGrid(name);
-    } catch (const std::exception& error) {
-        throw InputError(fmt::format("{}: is not a readable .vdb file ({}); is it cut short?", where, error.what()));
-    }
+    VdbCursor cursor(input, where);
+    const std::vector<VdbGrid> grids = walkVdbHeads(cursor).grids;
+    return std::any_of(grids.begin(), grids.end(), [&name](const VdbGrid& grid) { return nameOf(grid) == name; });
 }
 
 void requireTraceable(const openvdb::FloatGrid& grid, const std::string& where) {

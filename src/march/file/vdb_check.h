@@ -17,7 +17,7 @@ enum class VdbDepth : std::uint8_t {
 
 /// OpenVDB 10 takes lengths, counts and places as a file gives them: names of 4 GB, lists of 2^31 grids, metadata
 /// packed into less memory than they unpack to, transforms of one kind read as another. This walks through what it is
-/// going to read (file formats 222 to 224, see vdb_walker.h) and throws InputError, beginning with `where`, unless all
+/// going to read (file formats 222 to 225, see vdb_walker.h) and throws InputError, beginning with `where`, unless all
 /// of it is in the file and fits together. What is packed is not unpacked: of zlib and Blosc it checks the sizes alone.
 /// @param name  of the grid whose tree is about to be read, and with it, if it is an instance, its parent's. Trees of
 ///              other values than float, int32 and Vec3f are not looked at: don't read them.

@@ -5,6 +5,7 @@
 
 #include <blosc.h>
 #include <fmt/format.h>
+#include <openvdb/io/GridDescriptor.h>
 
 #include <array>
 #include <cmath>
@@ -15,8 +16,10 @@
 namespace stratum::march {
 namespace {
 
-constexpr std::uint32_t kOldest = 222, kNewest = 224;  // formats; 222 is of 2013
-constexpr std::int32_t kFarthest = 1 << 30;            // voxels: farther ones have neighbours that no int can count
+// Formats: 222 is of 2013; 225, of OpenVDB 13, differs from 224 only in that grids of halves may be in it.
+constexpr std::uint32_t kOldest = 222, kNewest = 225;
+constexpr std::string_view kSizes = "file_delayed_load";
+constexpr std::int32_t kFarthest = 1 << 30;  // voxels: farther ones have neighbours that no int can count
 
 // --- metadata and transforms ----------------------------------------------------------------------------------------
 
@@ -45,9 +48,9 @@ std::uint64_t checkLeafSizes(VdbCursor value, std::uint32_t compression) {
 }
 
 void checkMetadata(VdbCursor& cursor, VdbGrid* grid) {
-    constexpr std::string_view kSizes = "file_delayed_load";
     constexpr std::string_view kHalf = "is_saved_as_half_float";
     bool half = false;
+    const std::uint64_t first = cursor.offset();
     for (auto rest = cursor.read<std::uint32_t>(); rest > 0; --rest) {
         const std::string name = cursor.text();
         const std::string type = cursor.text();
@@ -68,7 +71,17 @@ void checkMetadata(VdbCursor& cursor, VdbGrid* grid) {
         if (type != "bool") cursor.fail(fmt::format("{} that is neither true nor false", kHalf));
         half = value[0] != 0;
     }
-    if (grid != nullptr && half != grid->half) cursor.fail("half-float flags disagree");
+    if (grid == nullptr) return;
+    if (half != grid->half) cursor.fail("half-float flags disagree");
+    grid->metadata = cursor.since(first);
+}
+
+// A stream of bytes that OpenVDB reads.
+std::istringstream streamOf(std::string_view bytes, const VdbHeads& heads) {
+    std::istringstream in{std::string(bytes)};
+    in.exceptions(std::ios::badbit | std::ios::failbit);
+    openvdb::io::setVersion(in, {}, heads.format);
+    return in;
 }
 
 /// Its bytes.
@@ -196,13 +209,24 @@ VdbHeads walkVdbHeads(VdbCursor& cursor) {
     return heads;
 }
 
+std::string nameOf(const VdbGrid& grid) { return openvdb::io::GridDescriptor::nameAsString(grid.name); }
+
 openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid) {
-    std::istringstream in{std::string(grid.transform)};
-    in.exceptions(std::ios::badbit | std::ios::failbit);
-    openvdb::io::setVersion(in, {}, heads.format);
+    auto in = streamOf(grid.transform, heads);
     auto transform = openvdb::math::Transform::createLinearTransform();
     transform->read(in);
     return transform;
+}
+
+openvdb::GridBase::Ptr headOf(const VdbHeads& heads, const VdbGrid& grid) {
+    if (!openvdb::GridBase::isRegistered(grid.type)) return nullptr;
+    openvdb::GridBase::Ptr head = openvdb::GridBase::createGrid(grid.type);
+    auto in = streamOf(grid.metadata, heads);
+    openvdb::io::setDataCompression(in, grid.compression);
+    head->readMeta(in);
+    head->removeMeta(std::string(kSizes));  // which is of the file
+    head->setTransform(transformOf(heads, grid));
+    return head;
 }
 
 std::uint64_t VdbValueFormat::storedOf(int kind, std::string_view active) const {

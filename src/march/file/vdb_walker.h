@@ -1,4 +1,4 @@
-// A walk through .vdb files, formats 222 to 224, that checks every length and count: to check a file before OpenVDB
+// A walk through .vdb files, formats 222 to 225, that checks every length and count: to check a file before OpenVDB
 // reads it, and to read leaves one at a time.
 //
 // Follows io::Archive, io::GridDescriptor, MetaMap, Transform; Tree, RootNode, InternalNode and
@@ -72,6 +72,7 @@ struct VdbGrid {
     /// with their number.
     std::optional<std::uint64_t> listed;
     std::string_view sizes;
+    std::string_view metadata;
     std::string_view transform;
     std::uint64_t tree = 0;
 };
@@ -89,8 +90,14 @@ VdbHeads walkVdbHeads(VdbCursor& cursor);
 /// short arrays with zeros and leaves the shortest as they are.
 std::uint64_t listedArrayBytes(std::uint64_t length);
 
+/// As people know it: grids of one name have a number each, "name[1]".
+std::string nameOf(const VdbGrid& grid);
+
 /// As OpenVDB reads it.
 openvdb::math::Transform::Ptr transformOf(const VdbHeads& heads, const VdbGrid& grid);
+
+/// The grid without voxels: metadata and transform. Null if OpenVDB has no grids of its type.
+openvdb::GridBase::Ptr headOf(const VdbHeads& heads, const VdbGrid& grid);
 
 // --- values ----------------------------------------------------------------------------------------------------------
 

@@ -226,28 +226,27 @@ openvdb::GridBase::Ptr readAs(const openvdb::GridBase& head, const VdbGrid& in_f
 
 }  // namespace
 
-openvdb::GridBase::Ptr readWholeGrid(openvdb::io::File& file, const std::string& name, const openvdb::GridBase& head,
-                                     const VdbBytes& bytes) {
-    const std::string where = file.filename();
-    VdbCursor cursor(bytes, where);
-    const VdbHeads heads = walkVdbHeads(cursor);
-    const auto named = [&name](const VdbGrid& grid) {
-        return openvdb::io::GridDescriptor::stripSuffix(grid.name) == name;
-    };
-    const auto in_file = std::find_if(heads.grids.begin(), heads.grids.end(), named);
-    if (in_file != heads.grids.end() && std::count_if(in_file, heads.grids.end(), named) == 1 &&
-        in_file->parent.empty()) {
-        openvdb::GridBase::Ptr grid = readAs<openvdb::FloatGrid>(head, *in_file, bytes, where);
-        if (!grid) grid = readAs<openvdb::Int32Grid>(head, *in_file, bytes, where);
-        if (!grid) grid = readAs<openvdb::Vec3SGrid>(head, *in_file, bytes, where);
-        if (grid) {
+openvdb::GridBase::Ptr readWholeGrid(const VdbHeads& heads, const VdbGrid& grid, const VdbBytes& bytes,
+                                     const std::string& where) {
+    const std::string name = openvdb::io::GridDescriptor::stripSuffix(grid.name);
+    const auto of_the_name = std::count_if(heads.grids.begin(), heads.grids.end(), [&name](const VdbGrid& other) {
+        return openvdb::io::GridDescriptor::stripSuffix(other.name) == name;
+    });
+    if (of_the_name == 1 && grid.parent.empty()) {
+        const openvdb::GridBase::Ptr head = headOf(heads, grid);
+        openvdb::GridBase::Ptr read = readAs<openvdb::FloatGrid>(*head, grid, bytes, where);
+        if (!read) read = readAs<openvdb::Int32Grid>(*head, grid, bytes, where);
+        if (!read) read = readAs<openvdb::Vec3SGrid>(*head, grid, bytes, where);
+        if (read) {
             // Not the head's: a copy of a transform differs in its last bits.
-            grid->setTransform(transformOf(heads, *in_file));
-            return grid;
+            read->setTransform(transformOf(heads, grid));
+            return read;
         }
     }
     checkVdb(bytes, VdbDepth::leaves, name, where);
-    return file.readGrid(name);
+    openvdb::io::File file(where);
+    file.open(/*delayLoad=*/false);
+    return file.readGrid(nameOf(grid));
 }
 
 }  // namespace stratum::march

@@ -72,7 +72,7 @@ public:
 
 private:
     // The overload that returns only a time returns that of the *previous* ray in OpenVDB 10.0.1 (it is read before
-    // the ray is traced; fixed in 13.0.1). The position is correct, and t is computed from it.
+    // the ray is traced; fixed in 13). The position is correct, and t is computed from it.
     bool nearest(const trace::Ray& ray, openvdb::Vec3d& index) {
         // OpenVDB scales times to index space: infinite ones are avoided.
         const double t_max = std::min(ray.t_max, glm::length(ray.origin - center_) + diagonal_);

@@ -160,6 +160,20 @@ TEST_F(VdbCheck, RefusesOtherFormats) {
     EXPECT_NE(refusal("not a vdb at all, but long enough to be one"), "");
     bytes[8] = static_cast<char>(221);
     EXPECT_NE(refusal(bytes).find("format 221"), std::string::npos);
+    bytes[8] = static_cast<char>(226);
+    EXPECT_NE(refusal(bytes).find("format 226"), std::string::npos);
+}
+
+// OpenVDB 13 writes format 225, and each grid of floats as before.
+TEST_F(VdbCheck, AcceptsTheFormatOfOpenVdb13) {
+    const auto grid = test::rubble(0.1F, true);
+    std::string bytes = bytesOf({grid}, kMaskFlag | kBloscFlag);
+    bytes[8] = static_cast<char>(225);
+    EXPECT_EQ(refusal(bytes), "");
+    std::ofstream(folder_ / "newer.vdb", std::ios::binary) << bytes;
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(readLevelSet(folder_ / "newer.vdb")->activeVoxelCount(), grid->activeVoxelCount());
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 }  // namespace

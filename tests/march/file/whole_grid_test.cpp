@@ -108,9 +108,12 @@ protected:
 
     openvdb::GridBase::Ptr read(const std::string& name) const {
         const std::string all = bytes();
-        io::File file(path_.string());
-        file.open(/*delayLoad=*/false);
-        return readWholeGrid(file, name, *file.readGridMetadata(name), std::string_view(all));
+        const std::string where = path_.string();
+        VdbCursor cursor(std::string_view(all), where);
+        const VdbHeads heads = walkVdbHeads(cursor);
+        for (const VdbGrid& grid : heads.grids)
+            if (nameOf(grid) == name) return readWholeGrid(heads, grid, std::string_view(all), where);
+        throw InputError("no grid " + name);
     }
     openvdb::GridBase::Ptr readByOpenVdb(const std::string& name) const {
         const std::string all = bytes();
@@ -324,13 +327,12 @@ TEST_F(WholeGrid, RefusesEveryCut) {
     const std::string good = bytes();
     const std::string where = "a.vdb";
     VdbCursor cursor(std::string_view(good), where);
-    const auto tree = static_cast<std::size_t>(walkVdbHeads(cursor).grids.at(0).tree);
+    const VdbHeads heads = walkVdbHeads(cursor);
+    const auto tree = static_cast<std::size_t>(heads.grids.at(0).tree);
     for (int n = 0; n < 40; ++n) {
         const std::size_t cut = tree + (good.size() - tree) * static_cast<std::size_t>(n) / 40;
-        io::File file(path_.string());
-        file.open(/*delayLoad=*/false);
-        const auto head = file.readGridMetadata("surface");
-        EXPECT_THROW(readWholeGrid(file, "surface", *head, std::string_view(good).substr(0, cut)), InputError) << n;
+        EXPECT_THROW(readWholeGrid(heads, heads.grids[0], std::string_view(good).substr(0, cut), where), InputError)
+            << n;
     }
 }
 
