@@ -6,12 +6,13 @@ if(STRATUM_BUNDLE)
   include(cmake/bundle.cmake)
 endif()
 set(manuals)
+string(REPLACE ";" " " emulator "${CMAKE_CROSSCOMPILING_EMULATOR}")
 foreach(tool gcode2vdb vdbtrace vdbview vdbmerge vdbstudy)
   set(man ${PROJECT_BINARY_DIR}/manuals/${tool}.1.gz)
   set(completion ${PROJECT_BINARY_DIR}/manuals/${tool}.bash)
   add_custom_command(OUTPUT ${man} ${completion} VERBATIM
     COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/manuals
-    COMMAND sh -c "set -e; '$<TARGET_FILE:${tool}>' --write-manual man | '${GZIP}' -9n > '${man}'"
+    COMMAND sh -c "set -e; ${emulator} '$<TARGET_FILE:${tool}>' --write-manual man | '${GZIP}' -9n > '${man}'"
     COMMAND ${tool} --write-manual bash > ${completion}
     DEPENDS ${tool}
     COMMENT "Manual of ${tool}")

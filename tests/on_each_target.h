@@ -21,7 +21,13 @@ protected:
     void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
-inline auto allTargets() { return testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128); }
+inline auto allTargets() {
+#if HWY_ARCH_ARM_A64
+    return testing::Values(HWY_NEON, HWY_EMU128);
+#else
+    return testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128);
+#endif
+}
 
 inline std::string targetName(const testing::TestParamInfo<std::int64_t>& target) {
     return hwy::TargetName(target.param);

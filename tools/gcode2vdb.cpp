@@ -20,6 +20,7 @@
 #include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
@@ -98,14 +99,14 @@ void addWhatOptions(CLI::App& app, tools::ConvertCommand& o) {
         ->group(what);
     app.add_flag("--interior-distance", o.interior_distance, "Signed distances inside too, to offset or simulate")
         ->group(what);
+    const std::vector<std::string_view> grids = voxelize::attributeNames();
+    std::vector<std::string> grid_words(grids.begin(), grids.end());
+    grid_words.insert(grid_words.end(), {"surface", "deviation"});
     tools::completes(
-        app.add_option(
-            "--grids", o.grids,
-            "Grids of the same voxels: layer, time, feature, tool, object, width, speed, flow, overfill, layer_time, "
-            "temperature, fan, deviation, color (default if several), or surface"),
-        tools::Completion::list,
-        {"surface", "layer", "time", "feature", "tool", "object", "width", "speed", "flow", "overfill", "layer_time",
-         "temperature", "fan", "color", "deviation"})
+        app.add_option("--grids", o.grids,
+                       fmt::format("Grids of the same voxels: {}, deviation, or surface (default: color, if several)",
+                                   fmt::join(grids, ", "))),
+        tools::Completion::list, grid_words)
         ->type_name("LIST")
         ->group(what);
     app.add_option(

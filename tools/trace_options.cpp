@@ -14,6 +14,7 @@
 #include "gcode/container/input_bytes.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/palette/color_name.h"
+#include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -198,19 +199,17 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("LENGTH")
         ->group(kLight);
     std::vector<std::string> materials = shade::brdfNames();
-    materials.insert(materials.end(),
-                     {"lambert:", "plastic:", "fdm:", "metal:", "matte:", "silk:", "glitter:", "translucent:"});
-    completes(
-        app.add_option(
-            "--brdf", o.scene.brdf,
-            "lambert:R,G,B, plastic:R,G,B,ALPHA (GGX alpha), fdm:R,G,B,ALPHA[,RATIO] (gloss along lines), "
-            "metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, "
-            "glitter:R,G,B[,FLAKE_MM], "
-            "translucent:R,G,B,MEAN_FREE_PATH_MM[,G] (light goes "
-            "through; also natural-pla, clear-petg, lithophane-white), a measured table (Mini-Diff, Zemax, ASTM E1392, "
-            "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: the filament's colours if "
-            "the file states them)"),
-        Completion::preset, materials)
+    std::string forms;
+    for (const auto& [form, meaning] : shade::brdfForms()) {
+        materials.emplace_back(form.substr(0, form.find(':') + 1));
+        forms += fmt::format("{}{}, ", form, meaning.empty() ? "" : fmt::format(" ({})", meaning));
+    }
+    completes(app.add_option("--brdf", o.scene.brdf,
+                             forms + "a measured table (Mini-Diff, Zemax, ASTM E1392, "
+                                     "MERL, EXR), the name of one in data/brdf, e.g. pla-blue, or a colour (default: "
+                                     "the filament's colours if "
+                                     "the file states them)"),
+              Completion::preset, materials)
         ->type_name("SPEC|FILE|NAME")
         ->group(kLight);
     app.add_option(
@@ -221,12 +220,10 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->type_name("COLOR,...")
         ->group(kLight);
     addColorList(app, kLight);
+    const std::vector<std::string_view> attributes = voxelize::attributeNames();
     completes(app.add_option("--color-by", o.scene.color_by,
-                             "Colours by a grid of gcode2vdb --grids: tool, feature, layer, object, speed, width, "
-                             "flow, overfill, time, layer_time, temperature, fan, color"),
-              Completion::word,
-              {"tool", "feature", "layer", "object", "speed", "width", "flow", "overfill", "time", "layer_time",
-               "temperature", "fan", "color"})
+                             fmt::format("Colours by a grid of gcode2vdb --grids: {}", fmt::join(attributes, ", "))),
+              Completion::word, {attributes.begin(), attributes.end()})
         ->type_name("NAME")
         ->group(kLight);
     app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the picture")->group(kLight);

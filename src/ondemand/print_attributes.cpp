@@ -107,12 +107,7 @@ public:
     std::unique_ptr<march::AttributeLookup> makeLookup() const override {
         return std::make_unique<Lookup>(*field_, values_, attribute_);
     }
-    std::size_t bytes() const override {
-        return attribute_ == Attribute::time || attribute_ == Attribute::overfill ||
-                       attribute_ == Attribute::temperature || attribute_ == Attribute::fan
-                   ? field_->layout().toolpath->beads.size() * sizeof(float)
-                   : 0;
-    }
+    std::size_t bytes() const override { return values_.bytes(); }
 
 private:
     const std::shared_ptr<const PrintField> field_;

@@ -3,6 +3,7 @@
 #include "shade/brdf/brdf.h"
 #include "shade/finish/line_gloss.h"
 #include "shade/palette/filament_color.h"
+#include "voxelize/grid/attributes.h"
 
 #include <algorithm>
 
@@ -52,6 +53,7 @@ void ObjectMaterials::use(const std::string& text) {
 void ObjectMaterials::explain(const shade::MaterialOptions& material, const trace::AttributeSummary& summary) {
     lookup_ = true;
     shade::Legend legend = shade::makeLegend(material, summary, materials_.back());
+    if (!legend.ramp.empty()) legend.unit = voxelize::attributeUnit(material.by);
     Json report = reportOf(legend, summary);
     if (std::find(legend_reports_.begin(), legend_reports_.end(), report) != legend_reports_.end()) return;
     legend_reports_.push_back(std::move(report));

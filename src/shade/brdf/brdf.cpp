@@ -21,6 +21,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace stratum::shade {
@@ -51,6 +52,72 @@ std::filesystem::path tableNamed(std::string_view text) {
     return std::filesystem::is_regular_file(path, error) ? path : std::filesystem::path();
 }
 
+constexpr std::string_view kOption = "--brdf";
+
+Color bodyColor(const Preset& preset) {
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
+    return {preset.values[0], preset.values[1], preset.values[2]};
+}
+
+float glossAlpha(const Preset& preset) {
+    requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
+    return preset.values[3];
+}
+
+/// A material by a formula: how it is written, and how it is made of the numbers, of which there are as many as the
+/// form names; those in brackets may be left out.
+struct Formula {
+    BrdfForm form;
+    std::shared_ptr<const Brdf> (*make)(const Preset&);
+};
+
+template <typename Material>
+std::shared_ptr<const Brdf> ofColor(const Preset& preset) {
+    return std::make_shared<Material>(bodyColor(preset));
+}
+
+template <typename Material>
+std::shared_ptr<const Brdf> ofColorAndAlpha(const Preset& preset) {
+    const Color color = bodyColor(preset);
+    return std::make_shared<Material>(color, glossAlpha(preset));
+}
+
+std::shared_ptr<const Brdf> glitter(const Preset& preset) {
+    if (preset.values.size() == 3) return ofColor<Glitter>(preset);
+    requireRange(preset, 3, Glitter::kMinSize, Glitter::kMaxSize, kOption, "the size of flakes in mm");
+    return std::make_shared<Glitter>(bodyColor(preset), static_cast<double>(preset.values[3]));
+}
+
+std::shared_ptr<const Brdf> plasticWithLines(const Preset& preset) {
+    const float alpha = glossAlpha(preset);
+    if (preset.values.size() == 4) return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset), alpha));
+    requireRange(preset, 4, 1.0f, kMostLineRatio, kOption, "RATIO, of alpha across the line to along it,");
+    return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset), alpha, preset.values[4]));
+}
+
+std::shared_ptr<const Brdf> translucent(const Preset& preset) { return makeTranslucent(preset, kOption); }
+
+constexpr std::array<Formula, 8> kFormulas{{
+    {{"lambert:R,G,B", "ideally diffuse"}, ofColor<Lambert>},
+    {{"plastic:R,G,B,ALPHA", "GGX alpha"}, ofColorAndAlpha<Plastic>},
+    {{"fdm:R,G,B,ALPHA[,RATIO]", "gloss along lines"}, plasticWithLines},
+    {{"metal:R,G,B,ALPHA", ""}, ofColorAndAlpha<Metal>},
+    {{"matte:R,G,B", ""}, ofColor<Matte>},
+    {{"silk:R,G,B", ""}, ofColor<Silk>},
+    {{"glitter:R,G,B[,FLAKE_MM]", ""}, glitter},
+    {{"translucent:R,G,B,MEAN_FREE_PATH_MM[,G]", "light goes through; also natural-pla, clear-petg, lithophane-white"},
+     translucent},
+}};
+
+std::string_view nameOf(std::string_view text) { return text.substr(0, text.find(':')); }
+
+/// Null if there is none of that name.
+const Formula* formulaNamed(std::string_view name) {
+    const auto found = std::find_if(kFormulas.begin(), kFormulas.end(),
+                                    [name](const Formula& formula) { return nameOf(formula.form.form) == name; });
+    return found == kFormulas.end() ? nullptr : &*found;
+}
+
 std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     if (const std::filesystem::path table = tableNamed(text); !table.empty()) return readBrdfFile(table);
     std::error_code error;
@@ -60,20 +127,18 @@ std::shared_ptr<const Brdf> readNamed(std::string_view text) {
     const bool none = namesIn(tableFolder()).empty();
     const std::vector<std::string> known = brdfNames();
     std::vector<std::string_view> names(known.begin(), known.end());
-    names.insert(names.end(), {"lambert", "plastic", "fdm", "metal", "matte", "silk", "glitter", "translucent"});
+    std::string forms;
+    for (const BrdfForm& form : brdfForms()) {
+        names.push_back(nameOf(form.form));
+        forms.append(form.form).append(", ");
+    }
     throw UsageError(fmt::format(
-        "--brdf {}: is neither a file nor a material; write lambert:R,G,B, plastic:R,G,B,ALPHA, fdm:R,G,B,ALPHA, "
-        "metal:R,G,B,ALPHA, matte:R,G,B, silk:R,G,B, glitter:R,G,B[,FLAKE_MM], "
-        "translucent:R,G,B,MEAN_FREE_PATH_MM, a colour (#ff6600, teal), a file, or one of: {}{}{}",
-        text, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
-        didYouMean(text.substr(0, text.find(':')), names)));
+        "--brdf {}: is neither a file nor a material; write {}a colour (#ff6600, teal), a file, or one of: {}{}{}",
+        text, forms, fmt::join(known, ", "), none ? fmt::format(" ({} has no tables)", tableFolder().string()) : "",
+        didYouMean(nameOf(text), names)));
 }
 
-bool isFormula(std::string_view text) {
-    const std::string_view name = text.substr(0, text.find(':'));
-    return name == "lambert" || name == "plastic" || name == "fdm" || name == "metal" || name == "matte" ||
-           name == "silk" || name == "glitter" || isTranslucent(text);
-}
+bool isFormula(std::string_view text) { return formulaNamed(nameOf(text)) != nullptr || isTranslucent(text); }
 
 }  // namespace
 
@@ -82,6 +147,13 @@ std::vector<std::string> brdfNames() {
     for (std::string& name : translucentNames()) names.push_back(std::move(name));
     std::sort(names.begin(), names.end());
     return names;
+}
+
+std::vector<BrdfForm> brdfForms() {
+    std::vector<BrdfForm> forms;
+    forms.reserve(kFormulas.size());
+    for (const Formula& formula : kFormulas) forms.push_back(formula.form);
+    return forms;
 }
 
 bool isBrdfPreset(std::string_view text) { return isFormula(text) || !tableNamed(text).empty(); }
@@ -112,42 +184,18 @@ Color reflectanceFactor(const Brdf& brdf) {
 const char* const kDefaultBrdf = "plastic:0.82,0.21,0.03,0.22";
 
 std::shared_ptr<const Brdf> makeBrdf(std::string_view text) {
-    constexpr std::string_view kOption = "--brdf";
     if (text.empty()) text = kDefaultBrdf;
-    if (isTranslucent(text)) return makeTranslucent(text, kOption);
-    if (!isFormula(text)) return readNamed(text);
+    const Formula* formula = formulaNamed(nameOf(text));
+    if (formula == nullptr)
+        return isTranslucent(text) ? makeTranslucent(parsePreset(text, kOption), kOption) : readNamed(text);
+    const std::string_view form = formula->form.form;
     const Preset preset = parsePreset(text, kOption);
-    const auto bodyColor = [&] {
-        for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
-        return Color(preset.values[0], preset.values[1], preset.values[2]);
+    const auto numbers = [](std::string_view part) {
+        return part.empty() ? 0 : static_cast<std::size_t>(1 + std::count(part.begin(), part.end(), ','));
     };
-    if (preset.name == "lambert") {
-        requireValues(preset, 3, kOption, "lambert:R,G,B");
-        return std::make_shared<Lambert>(bodyColor());
-    }
-    if (preset.name == "matte" || preset.name == "silk") {
-        requireValues(preset, 3, kOption, preset.name + ":R,G,B");
-        if (preset.name == "silk") return std::make_shared<Silk>(bodyColor());
-        return std::make_shared<Matte>(bodyColor());
-    }
-    if (preset.name == "glitter") {
-        if (preset.values.size() != 4) requireValues(preset, 3, kOption, "glitter:R,G,B or glitter:R,G,B,FLAKE_MM");
-        if (preset.values.size() == 3) return std::make_shared<Glitter>(bodyColor());
-        requireRange(preset, 3, Glitter::kMinSize, Glitter::kMaxSize, kOption, "the size of flakes in mm");
-        return std::make_shared<Glitter>(bodyColor(), static_cast<double>(preset.values[3]));
-    }
-    if (preset.name == "fdm") {
-        if (preset.values.size() != 5) requireValues(preset, 4, kOption, "fdm:R,G,B,ALPHA or fdm:R,G,B,ALPHA,RATIO");
-        requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
-        if (preset.values.size() == 4) return std::make_shared<Plastic>(plasticOfLines(bodyColor(), preset.values[3]));
-        requireRange(preset, 4, 1.0f, kMostLineRatio, kOption, "RATIO, of alpha across the line to along it,");
-        return std::make_shared<Plastic>(plasticOfLines(bodyColor(), preset.values[3], preset.values[4]));
-    }
-    const bool metal = preset.name == "metal";
-    requireValues(preset, 4, kOption, metal ? "metal:R,G,B,ALPHA" : "plastic:R,G,B,ALPHA");
-    requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
-    if (metal) return std::make_shared<Metal>(bodyColor(), preset.values[3]);
-    return std::make_shared<Plastic>(bodyColor(), preset.values[3]);
+    const std::string_view least = form.substr(0, form.find('['));
+    if (preset.values.size() != numbers(form)) requireValues(preset, numbers(least), kOption, form);
+    return formula->make(preset);
 }
 
 }  // namespace stratum::shade

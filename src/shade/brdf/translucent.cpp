@@ -73,15 +73,13 @@ bool isTranslucent(std::string_view text) {
            std::any_of(kNamed.begin(), kNamed.end(), [text](const NamedMedium& named) { return named.name == text; });
 }
 
-std::shared_ptr<const Translucent> makeTranslucent(std::string_view text, std::string_view option) {
+std::shared_ptr<const Translucent> makeTranslucent(const Preset& preset, std::string_view option) {
     const auto make = [](const Color& color, double mean_free_path, float asymmetry) {
         const Medium inside{scatteringAlbedo(color, asymmetry), mean_free_path, asymmetry};
         return std::make_shared<Translucent>(inside, color, filamentSurface());
     };
     for (const NamedMedium& named : kNamed)
-        if (named.name == text) return make(named.color, named.mean_free_path, 0.0f);
-    const Preset preset = parsePreset(text, option);
-    if (preset.values.size() != 5) requireValues(preset, 4, option, "translucent:R,G,B,MEAN_FREE_PATH_MM[,G]");
+        if (named.name == preset.name) return make(named.color, named.mean_free_path, 0.0f);
     for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
     requireRange(preset, 3, Translucent::kMinMeanFreePath, Translucent::kMaxMeanFreePath, option, "MEAN_FREE_PATH_MM");
     if (preset.values.size() == 5)

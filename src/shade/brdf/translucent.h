@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shade/brdf/brdf.h"
+#include "shade/brdf/preset.h"
 #include "shade/brdf/rough_interface.h"
 
 #include <memory>
@@ -84,7 +85,8 @@ std::vector<std::string> translucentNames();
 /// Whether the text of --brdf begins like one: `translucent:` or the name of a preset.
 bool isTranslucent(std::string_view text);
 
-/// translucent:R,G,B,MEAN_FREE_PATH_MM[,G], or a preset: natural-pla, clear-petg, lithophane-white. Throws UsageError.
-std::shared_ptr<const Translucent> makeTranslucent(std::string_view text, std::string_view option);
+/// Of R, G, B, MEAN_FREE_PATH_MM and, if there are five numbers, G; or a preset by its name: natural-pla, clear-petg,
+/// lithophane-white. Throws UsageError.
+std::shared_ptr<const Translucent> makeTranslucent(const Preset& preset, std::string_view option);
 
 }  // namespace stratum::shade

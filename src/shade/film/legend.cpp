@@ -47,16 +47,6 @@ std::string titleOf(const Legend& legend) {
 
 }  // namespace
 
-std::string unitOfAttribute(const std::string& attribute) {
-    if (attribute == "width" || attribute == "deviation") return "mm";
-    if (attribute == "speed") return "mm/s";
-    if (attribute == "time" || attribute == "layer_time") return "s";
-    if (attribute == "temperature") return "C";  // the font is ASCII
-    if (attribute == "fan") return "%";
-    if (attribute == "flow") return "mm^3/s";
-    return {};
-}
-
 void draw(const Legend& legend, int width, int height, std::vector<std::uint8_t>& rgb) {
     const Sizes s(height);
     Canvas canvas{width, height, rgb};

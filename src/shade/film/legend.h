@@ -22,10 +22,6 @@ struct Legend {
     double least = 0.0, most = 0.0;
 };
 
-/// The unit of a print's attribute: "mm" of width and deviation, "mm/s" of speed, "s" of time and layer_time, "C" of
-/// temperature, "%" of fan; nothing for others.
-std::string unitOfAttribute(const std::string& attribute);
-
 /// Draws it into the upper left corner of an 8-bit sRGB picture, on a light panel, in a size relative to the picture's
 /// height. Entries that don't fit are left out, and the last line states their number.
 /// @param rgb  3 * width * height bytes, row by row from the top

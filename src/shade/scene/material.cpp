@@ -225,7 +225,6 @@ Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary&
         for (const int value : summary.values)
             legend.entries.push_back({nameOf(value, options, summary), colorOfInteger(value, summary)});
     } else {
-        legend.unit = unitOfAttribute(options.by);
         legend.least = summary.least;
         legend.most = summary.most;
         for (std::size_t n = 0; n < kRampSteps; ++n) legend.ramp.push_back(rampOf(summary, n));

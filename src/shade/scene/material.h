@@ -69,7 +69,7 @@ private:
 ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::string& scene_brdf, std::size_t attribute,
                                   const trace::AttributeSummary& summary);
 
-/// The legend of that material's colors: the attribute's values, or its ramp.
+/// The legend of that material's colors: the attribute's values, or its ramp, whose unit the caller knows.
 Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary& summary,
                   const ObjectMaterial& material);
 

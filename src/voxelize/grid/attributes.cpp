@@ -22,9 +22,6 @@
 namespace stratum::voxelize {
 namespace {
 
-constexpr std::array<std::string_view, 13> kNames{"layer",       "time",  "feature", "tool",     "object",
-                                                  "width",       "speed", "flow",    "overfill", "layer_time",
-                                                  "temperature", "fan",   "color"};
 constexpr float kGrey = 0.8f;
 
 // IEC 61966-2-1, by a table, because every voxel needs a color.
@@ -84,12 +81,106 @@ std::vector<float> valuesOfBeads(const gcode::Toolpath& toolpath, const std::vec
     return values;
 }
 
-// mm^2, of the bead's section.
-float areaOf(const gcode::Toolpath& toolpath, std::uint32_t index) {
-    const gcode::Bead& bead = toolpath.beads[index];
-    return static_cast<float>(
-        gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height)));
+// The functions below give a value of each bead.
+
+std::vector<float> starts(const gcode::Toolpath& toolpath) {
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (const gcode::BeadTiming& timing : toolpath.timing) values.push_back(static_cast<float>(timing.start));
+    if (!values.empty()) return values;
+    double time = 0;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        values.push_back(static_cast<float>(time));
+        time += gcode::beadSeconds(toolpath, bead);
+    }
+    return values;
 }
+
+std::vector<float> widths(const gcode::Toolpath& toolpath) {
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (const gcode::Bead& bead : toolpath.beads)
+        values.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
+    return values;
+}
+
+float speedOf(const gcode::Toolpath& toolpath, std::size_t bead) {
+    const float seconds = toolpath.timing.empty() ? 0 : toolpath.timing[bead].seconds;
+    if (!(seconds > 0)) return toolpath.runOf(toolpath.beads[bead]).speed;
+    return static_cast<float>(gcode::beadLength(toolpath, toolpath.beads[bead])) / seconds;
+}
+
+std::vector<float> speeds(const gcode::Toolpath& toolpath) {
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (std::size_t bead = 0; bead < toolpath.beads.size(); ++bead) values.push_back(speedOf(toolpath, bead));
+    return values;
+}
+
+std::vector<float> flows(const gcode::Toolpath& toolpath) {
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (std::size_t n = 0; n < toolpath.beads.size(); ++n) {
+        const gcode::Bead& bead = toolpath.beads[n];
+        const double area =
+            gcode::sectionArea(static_cast<double>(bead.width), static_cast<double>(toolpath.runOf(bead).height));
+        values.push_back(toolpath.flow.empty() ? static_cast<float>(area) * speedOf(toolpath, n)
+                                               : toolpath.flow[n].rate);
+    }
+    return values;
+}
+
+std::vector<float> layerTimes(const gcode::Toolpath& toolpath) {
+    const std::vector<double> seconds = gcode::layerSeconds(toolpath);
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (const gcode::Bead& bead : toolpath.beads)
+        values.push_back(static_cast<float>(seconds[toolpath.runOf(bead).layer]));
+    return values;
+}
+
+std::vector<float> temperatures(const gcode::Toolpath& toolpath) {
+    return valuesOfBeads(toolpath, toolpath.temperatures, true, "a temperature of a nozzle");
+}
+
+std::vector<float> fans(const gcode::Toolpath& toolpath) {
+    return valuesOfBeads(toolpath, toolpath.fans, false, "a fan");
+}
+
+std::int32_t layerOf(const gcode::Run& run) { return static_cast<std::int32_t>(run.layer); }
+std::int32_t featureOf(const gcode::Run& run) { return static_cast<std::int32_t>(run.feature); }
+std::int32_t toolOf(const gcode::Run& run) { return run.tool; }
+std::int32_t objectOf(const gcode::Run& run) { return run.object; }
+
+// All that is known of an attribute; a new one is a line here, and its place in the enum.
+struct Facts {
+    std::string_view name;
+    AttributeKind kind = AttributeKind::integer;
+    std::string_view unit;
+    bool uses_timing = false;
+    std::int32_t (*integer)(const gcode::Run&) = nullptr;
+    std::vector<float> (*numbers)(const gcode::Toolpath&) = nullptr;  // null: given to BeadAttributes
+};
+
+constexpr auto kInteger = AttributeKind::integer;
+constexpr auto kNumber = AttributeKind::number;
+constexpr std::array<Facts, kAttributeCount> kFacts{{
+    {"layer", kInteger, "", false, layerOf, nullptr},
+    {"time", kNumber, "s", true, nullptr, starts},
+    {"feature", kInteger, "", false, featureOf, nullptr},
+    {"tool", kInteger, "", false, toolOf, nullptr},
+    {"object", kInteger, "", false, objectOf, nullptr},
+    {"width", kNumber, "mm", false, nullptr, widths},
+    {"speed", kNumber, "mm/s", true, nullptr, speeds},
+    {"flow", kNumber, "mm^3/s", true, nullptr, flows},
+    {"overfill", kNumber, "", false, nullptr, nullptr},
+    {"layer_time", kNumber, "s", true, nullptr, layerTimes},
+    {"temperature", kNumber, "C", false, nullptr, temperatures},  // the font of legends is ASCII
+    {"fan", kNumber, "%", false, nullptr, fans},
+    {"color", AttributeKind::color, "", false, nullptr, nullptr},
+}};
+
+const Facts& factsOf(Attribute attribute) { return kFacts[static_cast<std::size_t>(attribute)]; }
 
 template <typename Grid>
 openvdb::GridBase::Ptr emptyGrid(const openvdb::FloatGrid& surface) {
@@ -111,100 +202,59 @@ void fill(openvdb::GridBase& base, const openvdb::Coord& origin, std::span<const
 
 }  // namespace
 
-AttributeKind attributeKind(Attribute attribute) {
-    switch (attribute) {
-        case Attribute::time:
-        case Attribute::width:
-        case Attribute::speed:
-        case Attribute::flow:
-        case Attribute::overfill:
-        case Attribute::layer_time:
-        case Attribute::temperature:
-        case Attribute::fan:
-            return AttributeKind::number;
-        case Attribute::color:
-            return AttributeKind::color;
-        default:
-            return AttributeKind::integer;
-    }
+AttributeKind attributeKind(Attribute attribute) { return factsOf(attribute).kind; }
+std::string_view attributeName(Attribute attribute) { return factsOf(attribute).name; }
+bool usesTiming(Attribute attribute) { return factsOf(attribute).uses_timing; }
+
+std::vector<std::string_view> attributeNames() {
+    std::vector<std::string_view> names;
+    names.reserve(kFacts.size());
+    for (const Facts& facts : kFacts) names.push_back(facts.name);
+    return names;
 }
 
-std::string_view attributeName(Attribute attribute) { return kNames[static_cast<std::size_t>(attribute)]; }
+std::string_view attributeUnit(std::string_view name) {
+    if (name == "deviation") return "mm";
+    const auto known =
+        std::find_if(kFacts.begin(), kFacts.end(), [name](const Facts& facts) { return facts.name == name; });
+    return known == kFacts.end() ? std::string_view() : known->unit;
+}
 
 std::vector<Attribute> parseGrids(std::string_view text) {
+    const std::vector<std::string_view> names = attributeNames();
     std::vector<Attribute> attributes;
     for (const std::string_view name : splitList(text)) {
         if (name == "surface") continue;
-        const auto known = std::find(kNames.begin(), kNames.end(), name);
-        if (known == kNames.end())
+        const auto known = std::find(names.begin(), names.end(), name);
+        if (known == names.end())
             throw UsageError(fmt::format("--grids {}: expected names separated by commas, of surface, {}{}", name,
-                                         fmt::join(kNames, ", "), didYouMean(name, kNames)));
-        const auto attribute = static_cast<Attribute>(known - kNames.begin());
+                                         fmt::join(names, ", "), didYouMean(name, names)));
+        const auto attribute = static_cast<Attribute>(known - names.begin());
         if (std::find(attributes.begin(), attributes.end(), attribute) == attributes.end())
             attributes.push_back(attribute);
     }
     return attributes;
 }
 
-bool usesTiming(Attribute attribute) {
-    return attribute == Attribute::time || attribute == Attribute::speed || attribute == Attribute::flow ||
-           attribute == Attribute::layer_time;
-}
-
 BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
                                std::vector<float> overfill)
-    : toolpath_(toolpath), overfill_(std::move(overfill)) {
-    const auto wanted = [attributes](Attribute attribute) {
-        return std::find(attributes.begin(), attributes.end(), attribute) != attributes.end();
-    };
-    if (wanted(Attribute::width)) {
-        width_.reserve(toolpath.beads.size());
-        for (const gcode::Bead& bead : toolpath.beads)
-            width_.push_back(static_cast<float>(2 * sectionOf(toolpath, bead).halfWidth()));
-    }
-    if (wanted(Attribute::color) && !toolpath.color_changes.empty()) color_ = colorsOfBeads(toolpath);
-    if (wanted(Attribute::layer_time))
-        for (const double seconds : gcode::layerSeconds(toolpath)) layer_time_.push_back(static_cast<float>(seconds));
-    if (wanted(Attribute::temperature))
-        temperature_ = valuesOfBeads(toolpath, toolpath.temperatures, true, "a temperature of a nozzle");
-    if (wanted(Attribute::fan)) fan_ = valuesOfBeads(toolpath, toolpath.fans, false, "a fan");
-    if (!wanted(Attribute::time)) return;
-    start_.reserve(toolpath.beads.size());
-    for (const gcode::BeadTiming& timing : toolpath.timing) start_.push_back(static_cast<float>(timing.start));
-    if (!start_.empty()) return;
-    double time = 0;
-    for (const gcode::Bead& bead : toolpath.beads) {
-        start_.push_back(static_cast<float>(time));
-        time += gcode::beadSeconds(toolpath, bead);
+    : toolpath_(toolpath) {
+    for (const Attribute attribute : attributes) {
+        auto& numbers = numbers_[static_cast<std::size_t>(attribute)];
+        if (attribute == Attribute::overfill) numbers = std::move(overfill);
+        if (const Facts& facts = factsOf(attribute); facts.numbers != nullptr) numbers = facts.numbers(toolpath);
+        if (attribute == Attribute::color && !toolpath.color_changes.empty()) color_ = colorsOfBeads(toolpath);
     }
 }
 
 std::int32_t BeadAttributes::integer(Attribute attribute, std::uint32_t bead) const {
-    const gcode::Run& run = toolpath_.runOf(toolpath_.beads[bead]);
-    switch (attribute) {
-        case Attribute::layer:
-            return static_cast<std::int32_t>(run.layer);
-        case Attribute::feature:
-            return static_cast<std::int32_t>(run.feature);
-        case Attribute::object:
-            return run.object;
-        default:
-            return run.tool;
-    }
+    return factsOf(attribute).integer(toolpath_.runOf(toolpath_.beads[bead]));
 }
 
-float BeadAttributes::number(Attribute attribute, std::uint32_t bead) const {
-    if (attribute == Attribute::time) return start_[bead];
-    if (attribute == Attribute::width) return width_[bead];
-    if (attribute == Attribute::overfill) return overfill_[bead];
-    if (attribute == Attribute::layer_time) return layer_time_[toolpath_.runOf(toolpath_.beads[bead]).layer];
-    if (attribute == Attribute::temperature) return temperature_[bead];
-    if (attribute == Attribute::fan) return fan_[bead];
-    if (attribute == Attribute::flow && !toolpath_.flow.empty()) return toolpath_.flow[bead].rate;
-    const float per_mm = attribute == Attribute::flow ? areaOf(toolpath_, bead) : 1;
-    const float seconds = toolpath_.timing.empty() ? 0 : toolpath_.timing[bead].seconds;
-    if (!(seconds > 0)) return per_mm * toolpath_.runOf(toolpath_.beads[bead]).speed;
-    return per_mm * static_cast<float>(gcode::beadLength(toolpath_, toolpath_.beads[bead])) / seconds;
+std::size_t BeadAttributes::bytes() const {
+    std::size_t bytes = color_.size() * sizeof(color_[0]);
+    for (const std::vector<float>& numbers : numbers_) bytes += numbers.size() * sizeof(float);
+    return bytes;
 }
 
 openvdb::Vec3f BeadAttributes::color(std::uint32_t bead) const {

@@ -5,6 +5,8 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -30,9 +32,15 @@ enum class Attribute : std::uint8_t {
     color,        ///< Vec3f: linear sRGB of the filament from the file's settings, 0.8 gray where it has none
 };
 
+constexpr std::size_t kAttributeCount = static_cast<std::size_t>(Attribute::color) + 1;
+
 /// Parses "surface,layer,tool". The surface is always written and may be named. Throws UsageError with the names.
 std::vector<Attribute> parseGrids(std::string_view text);
 std::string_view attributeName(Attribute attribute);
+/// Of all of them.
+std::vector<std::string_view> attributeNames();
+/// Of a grid of gcode2vdb of that name, `deviation` included: "mm", "mm/s"; empty if it has none.
+std::string_view attributeUnit(std::string_view name);
 /// Whether its values follow from a plan of the motion where there is one.
 bool usesTiming(Attribute attribute);
 
@@ -49,18 +57,17 @@ public:
                    std::vector<float> overfill = {});
 
     std::int32_t integer(Attribute attribute, std::uint32_t bead) const;
-    float number(Attribute attribute, std::uint32_t bead) const;
+    float number(Attribute attribute, std::uint32_t bead) const {
+        return numbers_[static_cast<std::size_t>(attribute)][bead];
+    }
     openvdb::Vec3f color(std::uint32_t bead) const;
+    /// Of memory.
+    std::size_t bytes() const;
 
 private:
     const gcode::Toolpath& toolpath_;
-    std::vector<float> start_;  // by bead, seconds; only with Attribute::time
-    std::vector<float> width_;  // by bead, mm; only with Attribute::width
-    std::vector<float> overfill_;
-    std::vector<float> layer_time_;      // by layer, seconds; only with Attribute::layer_time
-    std::vector<float> temperature_;     // by bead; only with Attribute::temperature
-    std::vector<float> fan_;             // by bead; only with Attribute::fan
-    std::vector<openvdb::Vec3f> color_;  // by bead; only with Attribute::color, if filaments change
+    std::array<std::vector<float>, kAttributeCount> numbers_;  // by attribute and bead; of what was asked for
+    std::vector<openvdb::Vec3f> color_;                        // by bead; if asked for, and filaments change
 };
 
 /// Empty grids of the right types over the active voxels of `surface`, with names and metadata, in the given order.

@@ -105,6 +105,14 @@ TEST(Attributes, TimeAndSpeedAreThePlans) {
     EXPECT_EQ(values.number(Attribute::speed, 2), 60);  // one that takes no time
 }
 
+TEST(Attributes, UnitsAreThoseOfTheirGrids) {
+    EXPECT_EQ(attributeUnit("speed"), "mm/s");
+    EXPECT_EQ(attributeUnit("layer_time"), "s");
+    EXPECT_EQ(attributeUnit("deviation"), "mm");
+    EXPECT_EQ(attributeUnit("layer"), "");
+    EXPECT_EQ(attributeUnit("of somebody else"), "");
+}
+
 TEST(Attributes, UnknownNamesAreListed) {
     try {
         parseGrids("layer,colour");
