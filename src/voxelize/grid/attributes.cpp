@@ -104,6 +104,13 @@ std::vector<float> widths(const gcode::Toolpath& toolpath) {
     return values;
 }
 
+std::vector<float> heights(const gcode::Toolpath& toolpath) {
+    std::vector<float> values;
+    values.reserve(toolpath.beads.size());
+    for (const gcode::Bead& bead : toolpath.beads) values.push_back(toolpath.runOf(bead).height);
+    return values;
+}
+
 float speedOf(const gcode::Toolpath& toolpath, std::size_t bead) {
     const float seconds = toolpath.timing.empty() ? 0 : toolpath.timing[bead].seconds;
     if (!(seconds > 0)) return toolpath.runOf(toolpath.beads[bead]).speed;
@@ -171,6 +178,7 @@ constexpr std::array<Facts, kAttributeCount> kFacts{{
     {"tool", kInteger, "", false, toolOf, nullptr},
     {"object", kInteger, "", false, objectOf, nullptr},
     {"width", kNumber, "mm", false, nullptr, widths},
+    {"height", kNumber, "mm", false, nullptr, heights},
     {"speed", kNumber, "mm/s", true, nullptr, speeds},
     {"flow", kNumber, "mm^3/s", true, nullptr, flows},
     {"overfill", kNumber, "", false, nullptr, nullptr},

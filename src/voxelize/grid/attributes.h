@@ -23,6 +23,7 @@ enum class Attribute : std::uint8_t {
     tool,      ///< Int32: T number
     object,    ///< Int32: index of the labelled object, 0 is none; metadata "names" lists them
     width,     ///< float: mm
+    height,    ///< float: mm, of the bead's section
     speed,     ///< float: mm/s, the bead's length over its time (Toolpath::timing); without a plan, the programmed one
     flow,      ///< float: mm^3/s, mean of the simulated flow (Toolpath::flow); without it, section times speed
     overfill,  ///< float: share of the bead's plastic that has no place in its layer: overfillOfBeads()

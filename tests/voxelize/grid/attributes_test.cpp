@@ -217,6 +217,16 @@ TEST(Attributes, ValuesThatTheProgramSets) {
     EXPECT_EQ(values.number(Attribute::fan, 1), 50.0F);
 }
 
+TEST(Attributes, HeightsOfBeads) {
+    const gcode::Toolpath toolpath = twoTone();
+    const std::vector<Attribute> wanted = parseGrids("height");
+    const BeadAttributes values(toolpath, wanted);
+    for (std::uint32_t bead = 0; bead < 3; ++bead)
+        EXPECT_EQ(values.number(Attribute::height, bead), toolpath.runOf(toolpath.beads[bead]).height);
+    EXPECT_GT(values.number(Attribute::height, 0), 0.0F);
+    EXPECT_EQ(attributeUnit("height"), "mm");
+}
+
 TEST(Attributes, TimesOfLayers) {
     gcode::Toolpath toolpath = twoTone();
     toolpath.layer_count = 3;
