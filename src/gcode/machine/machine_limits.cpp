@@ -1,6 +1,7 @@
 #include "gcode/machine/machine_limits.h"
 
 #include "gcode/text/setting_text.h"
+#include "gcode/text/settings_comments.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@
 namespace stratum::gcode {
 namespace {
 
-constexpr std::size_t kReach = std::size_t{1} << 18;  // as of the other settings
 constexpr std::array<std::string_view, kMotionAxes> kAxisNames{"x", "y", "z", "e"};
 
 // The first of a list is the normal mode's.
@@ -238,26 +238,15 @@ private:
     const bool reprap_;
 };
 
-void readComments(std::string_view part, LimitsReader& reader) {
-    while (!part.empty()) {
-        const auto end = std::min(part.find_first_of("\r\n"), part.size());
-        if (part.front() == ';') reader.comment(part.substr(1, end - 1));
-        part.remove_prefix(std::min(end + 1, part.size()));
-    }
-}
-
 }  // namespace
 
 MachineSettings readMachineSettings(std::string_view bytes, CornerRule rule,
                                     const std::optional<PrinterLimits>& printer, Firmware firmware,
                                     const SlicerLimits& slicer) {
     LimitsReader reader(printer, firmware, slicer);
-    readComments(bytes.substr(0, kReach), reader);
-    if (bytes.size() > kReach) {
-        std::string_view tail = bytes.substr(std::max(kReach, bytes.size() - kReach));
-        tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
-        readComments(tail, reader);
-    }
+    forEachSettingsComment(bytes, [&reader](char mark, std::string_view text) {
+        if (mark == ';') reader.comment(text);
+    });
     return reader.finish(rule);
 }
 

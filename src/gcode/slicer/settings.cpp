@@ -5,6 +5,7 @@
 #include "gcode/slicer/truncation.h"
 #include "gcode/text/number.h"
 #include "gcode/text/setting_text.h"
+#include "gcode/text/settings_comments.h"
 #include "gcode/toolpath/color.h"
 
 #include <algorithm>
@@ -15,8 +16,6 @@
 namespace stratum::gcode {
 namespace {
 
-// Because of thumbnails and Cura's SETTING_3 lines, settings can be this far from the ends.
-constexpr std::size_t kSettingsReach = std::size_t{1} << 18;
 constexpr double kFarthestNozzle = 1000;  // mm from the first one
 
 std::optional<bool> flag(std::string_view text) {
@@ -294,26 +293,16 @@ private:
     }
 };
 
-void readComments(std::string_view part, SettingsReader& reader) {
-    while (!part.empty()) {
-        const auto end = std::min(part.find_first_of("\r\n"), part.size());
-        if (part.front() == ';') reader.comment(part.substr(1, end - 1));
-        if (part.front() == '(') reader.markup(part.substr(1, end - 1));
-        part.remove_prefix(std::min(end + 1, part.size()));
-    }
-}
-
 }  // namespace
 
 Settings readSettings(std::string_view bytes) {
     SettingsReader reader;
-    readComments(bytes.substr(0, kSettingsReach), reader);
-    if (bytes.size() > kSettingsReach) {
-        std::string_view tail = bytes.substr(std::max(kSettingsReach, bytes.size() - kSettingsReach));
-        // The tail may start inside a line, which must not be taken for a comment.
-        tail.remove_prefix(std::min(tail.find_first_of("\r\n"), tail.size()));
-        readComments(tail, reader);
-    }
+    forEachSettingsComment(bytes, [&reader](char mark, std::string_view text) {
+        if (mark == ';')
+            reader.comment(text);
+        else
+            reader.markup(text);
+    });
     Settings settings = reader.finish();
     settings.extrusion = scanExtrusion(bytes);
     if (!settings.relative_e.value_or(false)) settings.extrusion.relative_after_g90 = fallsBackAfterG90(bytes);
