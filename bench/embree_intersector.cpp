@@ -48,8 +48,7 @@ public:
         if (part.empty()) return false;
         RTCRayHit one{single(ray, part), {}};
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-        rtcIntersect1(scene_, &context, &one);
+        intersectOne(scene_, one);
         if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
         store(ray, part, static_cast<double>(one.ray.tfar), {one.hit.Ng_x, one.hit.Ng_y, one.hit.Ng_z}, one.hit.primID,
               hit);
@@ -60,20 +59,18 @@ public:
         const Part part = clip(ray, box_);
         if (part.empty()) return false;
         RTCRay one = single(ray, part);
-        RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-        rtcOccluded1(scene_, &context, &one);
+        occludedOne(scene_, one);
         return one.tfar < 0;
     }
 
     void intersectStream(std::span<const Ray> rays, std::span<Hit> hits) override {
-        RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
         for (std::size_t first = 0; first < rays.size(); first += kPacket) {
             RTCRayHit16 packet;
             alignas(64) int valid[kPacket];
             Part parts[kPacket];
             fill(rays.subspan(first, std::min(kPacket, rays.size() - first)), packet.ray, valid, parts);
             std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-            rtcIntersect16(valid, scene_, &context, &packet);
+            intersectPacket(scene_, Rays::coherent, valid, packet);
             for (std::size_t k = 0; k < kPacket && first + k < rays.size(); ++k) {
                 Hit& hit = hits[first + k];
                 if (valid[k] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID)
@@ -86,13 +83,12 @@ public:
     }
 
     void occludedStream(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
-        RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
         for (std::size_t first = 0; first < rays.size(); first += kPacket) {
             RTCRay16 packet;
             alignas(64) int valid[kPacket];
             Part parts[kPacket];
             fill(rays.subspan(first, std::min(kPacket, rays.size() - first)), packet, valid, parts);
-            rtcOccluded16(valid, scene_, &context, &packet);
+            occludedPacket(scene_, valid, packet);
             for (std::size_t k = 0; k < kPacket && first + k < rays.size(); ++k)
                 blocked[first + k] = valid[k] != 0 && packet.tfar[k] < 0 ? 1 : 0;
         }
@@ -106,13 +102,6 @@ private:
                 0.0F,        direction.x, direction.y,
                 direction.z, 0.0F,        static_cast<float>(part.end - part.begin),
                 ~0U,         0,           0};
-    }
-
-    static RTCIntersectContext contextOf(RTCIntersectContextFlags flags) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags = flags;
-        return context;
     }
 
     void fill(std::span<const Ray> rays, RTCRay16& packet, int* valid, Part* parts) const {

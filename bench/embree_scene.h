@@ -1,9 +1,8 @@
 // Embree's scenes: a mesh, or beads, analytic or tessellated.
 #pragma once
 
+#include "embree_queries.h"
 #include "gcode/toolpath/toolpath.h"
-
-#include <embree3/rtcore.h>
 
 #include <cstddef>
 #include <cstdint>
