@@ -353,7 +353,6 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
 
         bounce_rays.clear();
         bounce_rays.reserve(bounces.size());
-        next_paths.reserve(bounces.size());
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
         surfaces_.nearestBounced(bounce_rays, tracer, hits);
@@ -404,6 +403,7 @@ void PathIntegrator::catchShadows(std::span<const SurfacePoint> points, std::spa
 void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits,
                                    std::span<Color> sums, std::vector<Path>& next_paths) const {
     next_paths.clear();
+    next_paths.reserve(bounces.size());
     for (std::size_t k = 0; k < bounces.size(); ++k) {
         const Path& path = *bounces[k].from->path;
         Color& sum = sums[path.pixel];
