@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of README.md, docs/gallery.md, docs/shading.md, docs/colors.md and docs/thumbnails.md, made anew with the tools of this tree. Those of files
+# The pictures of README.md, docs/gallery.md, docs/shading.md, docs/colors.md, docs/films.md and docs/thumbnails.md, made anew with the tools of this tree. Those of files
 # of the corpus are left as they are where it is not there. Minutes.
 # scripts/doc_pictures.sh [NAME...]   only these, e.g. gallery_gear
 set -euo pipefail
@@ -56,6 +56,7 @@ if asked growing; then
     "$bin/vdbtrace" data/gcode/hull.gcode --film "$out/growing.png" --nozzle --turntable --grow time --size 240x180 \
         --seconds 3 --fps 8
 fi
+tiles hot_ends 2 data/gcode/two_tone.gcode '--size 360x270 --printed 60% --nozzle' '--size 360x270 --printed 60% --clear-nozzle'
 if asked lamp; then
     "$bin/vdbtrace" data/gcode/vase.gcode --brdf natural-pla --light rectangle:100,100,24,4,0,0,0,0,14,11,7.5,4.5 \
         --env constant:0.16,0.2,0.28 --exposure 0.2 --size 480x600 --spp 96 -o "$out/lamp.jpg"

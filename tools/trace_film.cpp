@@ -8,6 +8,7 @@
 #include "animate/encode/film_file.h"
 #include "animate/kept_frames.h"
 #include "animate/moving_scene.h"
+#include "animate/pace.h"
 #include "assemble/shape/file_facts.h"
 #include "base/error.h"
 #include "gcode/container/input_bytes.h"
@@ -120,13 +121,15 @@ private:
         motion.frames = film.frames;
         motion.grow = !film.grow.empty();
         motion.turns = film.turn ? film.turns : 0.0;
+        motion.held = film.held;
         motion.nozzle = o_.nozzle;
+        const double ease = film.ease * film.rate;  // frames
+        motion.ease = ease / static_cast<double>(film.frames);
         motion.path = film.keys;
-        if (motion.grow) {
-            reading.prints.series = static_cast<int>(film.frames);
-            reading.prints.series_by_time = film.grow == "time";
-            reading.prints.series_of_selection = true;
-        }
+        if (motion.grow)
+            reading.prints.growth = {
+                *valueOf(kGrowths, film.grow),
+                animate::growthShares(film.frames, film.held, ease / static_cast<double>(film.frames - film.held))};
         const assemble::StageOptions options = stageOptionsOf(o_);
         const int turns = film.turn ? static_cast<int>(film.frames) : 1;
         reading.prints.pixel_spread = [&](const voxelize::Bounds& print, const voxelize::Bounds& part,
@@ -194,7 +197,8 @@ private:
         if (bar->callback()) rendering = [&](double done) { bar->show(share(0.9 * done)); };
         (void)watch_.lap();
         scene_->show(n);
-        const Rendered rendered = renderPicture(o_, *scene_->objects().intersector, scene_->scene(), rendering, {});
+        const Rendered rendered = renderPicture(o_, *scene_->objects().intersector, scene_->scene(), rendering, {},
+                                                [&](shade::Film& film) { scene_->drawOver(film, whiteOf(o_)); });
         const auto& legends = scene_->objects().legends;
         std::vector<std::uint8_t> pixels = shade::displayPixels(
             rendered.result.film, o_.tone, o_.legend && !legends.empty() ? &legends.front() : nullptr);
@@ -233,7 +237,9 @@ private:
                     {"grow", o_.film.grow.empty() ? Json() : Json(o_.film.grow)},
                     {"turns", o_.film.turn ? o_.film.turns : 0.0},
                     {"camera_path", o_.film.camera_path.empty() ? Json() : Json(o_.film.camera_path)},
-                    {"nozzle", o_.nozzle},
+                    {"held", o_.film.held},
+                    {"ease_seconds", o_.film.ease},
+                    {"nozzle", nameOf(assemble::kHotEnds, o_.nozzle)},
                     {"rendered", rendered_},
                     {"repeated", repeated_},
                     {"reused", reused_}}},
@@ -285,6 +291,25 @@ private:
     double keep_seconds_ = 0.0, encode_seconds_ = 0.0;
 };
 
+// How many frames show the finished print, and whether there is time to ease.
+void planPace(FilmCommand& film) {
+    constexpr double kUsual = 1.0, kShort = 4.0;  // seconds
+    if (film.hold && film.grow.empty())
+        throw UsageError("--hold: shows the end of a print that grows; write --grow time");
+    if (film.ease > 0 && film.grow.empty() && !film.turn)
+        throw UsageError("--ease: is for a print that grows and for --turntable; the keys of --camera-path have times");
+    if (!film.grow.empty()) {
+        const double hold = film.hold.value_or(film.seconds >= kShort ? kUsual : 0.0);
+        film.held = static_cast<std::size_t>(std::round(hold * film.rate));
+        if (film.held > 0 && film.held >= film.frames)
+            throw UsageError(
+                fmt::format("--hold {}: the film has {:g} s, and the print must grow in them", hold, film.seconds));
+    }
+    const double moving = static_cast<double>(film.frames - film.held) / film.rate;
+    if (film.ease > 0.5 * moving)
+        throw UsageError(fmt::format("--ease {}: half of what moves at most, which takes {:g} s", film.ease, moving));
+}
+
 }  // namespace
 
 void planFilm(TraceCommand& o) {
@@ -312,6 +337,7 @@ void planFilm(TraceCommand& o) {
         throw UsageError(
             fmt::format("--film {}: has {:.0f} frames; a film has at most {:.0f}", film.output, frames, kMostFrames));
     film.frames = static_cast<std::size_t>(frames);
+    planPace(film);
     o.scene.camera.all_around = film.turn;
     o.linear = false;
     animate::requireFilm(film.output, formatOf(o, 0));

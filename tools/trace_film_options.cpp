@@ -7,7 +7,7 @@
 
 namespace stratum::tools {
 
-void addFilmOptions(CLI::App& app, FilmCommand& film, bool& nozzle) {
+void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndKind& nozzle) {
     const char* group = "Film";
     app.add_option(
            "--film", film.output,
@@ -25,17 +25,38 @@ void addFilmOptions(CLI::App& app, FilmCommand& film, bool& nozzle) {
         ->type_name("N")
         ->group(group);
     app.add_option("--grow", film.grow,
-                   "G-code: the print grows bead by bead, by the time that it takes to print, or by filament")
-        ->check(oneOf({"time", "filament"}))
-        ->type_name("time|filament")
+                   "G-code: the print grows bead by bead, by the time that it takes to print, by filament, or at a "
+                   "steady pace upwards, each layer in the same time")
+        ->check(oneOf(kGrowths))
+        ->type_name("time|filament|layers")
+        ->group(group);
+    app.add_option("--hold", film.hold,
+                   "G-code: how long the finished print is shown at the end (default 1, of films of less than 4 s 0)")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->type_name("S")
+        ->group(group);
+    app.add_option(
+           "--ease", film.ease,
+           "The print grows, and the camera turns, ever faster during the first S seconds and slower during the "
+           "last (default 0: evenly)")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->type_name("S")
         ->group(group);
     app.add_option("--camera-path", film.camera_path,
                    "The camera moves smoothly through {\"keys\": [{\"time\": 0, \"eye\": [X,Y,Z], \"look_at\": ..., "
                    "\"up\": ..., \"fov\": ...}, ...]}")
         ->type_name("FILE.json")
         ->group(group);
-    app.add_flag("--nozzle", nozzle, "G-code: a hot end stands where the last bead ends; of pictures, too")
-        ->group(group);
+    const auto hot_end = [&](const char* name, assemble::HotEndKind kind, const char* help) {
+        return app
+            .add_flag_callback(
+                name, [&nozzle, kind] { nozzle = kind; }, help)
+            ->group(group);
+    };
+    auto* metal = hot_end("--nozzle", assemble::HotEndKind::metal,
+                          "G-code: a hot end stands where the last bead ends; of pictures, too");
+    hot_end("--clear-nozzle", assemble::HotEndKind::clear, "The same of glass, through which the part is seen")
+        ->excludes(metal);
 }
 
 std::string givenFilmOptions(const FilmCommand& film) {
@@ -43,6 +64,8 @@ std::string givenFilmOptions(const FilmCommand& film) {
     if (film.seconds_given) given.emplace_back("--seconds");
     if (film.rate > 0) given.emplace_back("--fps");
     if (!film.grow.empty()) given.emplace_back("--grow");
+    if (film.hold) given.emplace_back("--hold");
+    if (film.ease > 0) given.emplace_back("--ease");
     if (!film.camera_path.empty()) given.emplace_back("--camera-path");
     return fmt::format("{}", fmt::join(given, ", "));
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -100,18 +101,24 @@ Json raysReport(const shade::RayCounts& rays) {
 }
 
 Rendered renderPicture(const TraceCommand& o, const trace::Intersector& print, const shade::SceneDescription& scene,
-                       const std::function<void(double)>& rendering, const std::function<void(double)>& denoising) {
+                       const std::function<void(double)>& rendering, const std::function<void(double)>& denoising,
+                       const DrawOver& over) {
     Stopwatch watch;
     Rendered rendered;
     rendered.result = shade::render(print, scene, renderOptionsOf(o), progressOf(rendering));
     rendered.render_seconds = watch.lap();
-    if (!o.denoise.value_or(false) || o.shard.pieces) return rendered;
+    if (o.shard.pieces) return rendered;
     shade::Film& film = rendered.result.film;
-    shade::denoise(film, progressOf(denoising));
-    if (o.render.crop && film.region() != *o.render.crop) film = film.part(*o.render.crop);
+    if (o.denoise.value_or(false)) {
+        shade::denoise(film, progressOf(denoising));
+        if (o.render.crop && film.region() != *o.render.crop) film = film.part(*o.render.crop);
+    }
+    if (over) over(film);
     rendered.denoise_seconds = watch.lap();
     return rendered;
 }
+
+double whiteOf(const TraceCommand& o) { return std::exp2(-o.tone.exposure); }
 
 Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::TracedObjects& objects,
                  const shade::SceneDescription& scene, int threads) {
@@ -131,7 +138,7 @@ Json renderFrame(const TraceCommand& o, const Frame& frame, const assemble::Trac
                 if (!std::exchange(begun, true)) bar.emplace("denoising", o.common.quiet);
                 bar->show(done);
             };
-        return renderPicture(o, *objects.intersector, scene, rendering, denoising);
+        return renderPicture(o, *objects.intersector, scene, rendering, denoising, frame.over);
     }();
     const shade::RenderResult& result = rendered.result;
     seconds.render = rendered.render_seconds;

@@ -22,12 +22,18 @@ struct Rendered {
     double render_seconds = 0.0, denoise_seconds = 0.0;
 };
 
+/// Draws what stands before a finished picture.
+using DrawOver = std::function<void(shade::Film&)>;
+
 /// Renders a picture as the command says, and denoises it, unless it is a piece for a merge. Throws what render()
 /// throws.
 /// @param progress  of rendering: fractions
 Rendered renderPicture(const TraceCommand& command, const trace::Intersector& print,
                        const shade::SceneDescription& scene, const std::function<void(double)>& rendering,
-                       const std::function<void(double)>& denoising);
+                       const std::function<void(double)>& denoising, const DrawOver& over);
+
+/// The value of a white surface in the film of a picture.
+double whiteOf(const TraceCommand& command);
 
 /// How much of it, for --stats.
 nlohmann::ordered_json raysReport(const shade::RayCounts& rays);
@@ -36,6 +42,7 @@ struct Frame {
     std::string source;
     std::size_t number = 0;  ///< of the command's pictures, from 0
     double load_seconds = 0.0, build_seconds = 0.0;
+    DrawOver over;  ///< may be empty
 };
 
 /// Renders and writes it. Returns its report. Throws OutputError and what render() throws.

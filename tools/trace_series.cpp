@@ -99,7 +99,7 @@ public:
         if (!o_.render.checkpoint.empty()) o_.render.source = sourceOf(o_, objects.source);
         scene_->objects = objects.materials;
         scene_->labels = objects.labels;
-        if (o_.nozzle) hot_end_.emplace(objects, *scene_);
+        if (o_.nozzle != assemble::HotEndKind::none) hot_end_.emplace(objects, *scene_, o_.nozzle);
         frames(n, objects, watch);
     }
 
@@ -140,7 +140,7 @@ private:
                 growing->show(moment);
                 before_seconds = watch.lap();
             }
-            if (o_.nozzle) objects.intersector = hot_end_->at(moment);
+            if (hot_end_) objects.intersector = hot_end_->at(moment);
             for (std::size_t turn = 0; turn < turns; ++turn) {
                 if (!makes(o_, before + turn)) continue;
                 shade::SceneDescription view = *scene_;
@@ -150,7 +150,10 @@ private:
                 reports_.push_back(renderFrame(
                     o_,
                     {fs::path(o_.inputs[n]).filename().string(), before + turn, first ? objects.load_seconds : 0.0,
-                     (first ? objects.build_seconds : 0.0) + before_seconds},
+                     (first ? objects.build_seconds : 0.0) + before_seconds,
+                     [&](shade::Film& film) {
+                         if (hot_end_) hot_end_->drawOver(moment, view.camera, whiteOf(o_), film);
+                     }},
                     objects, view, threads_));
                 watch.lap();
             }

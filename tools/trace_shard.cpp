@@ -44,6 +44,8 @@ void refuse(const TraceCommand& o, bool pieces) {
         throw UsageError(
             "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise, "
             "or --shard-by frames");
+    if (pieces && o.nozzle == assemble::HotEndKind::clear)
+        throw UsageError("--shard: --clear-nozzle is drawn into whole pictures; use --nozzle, or --shard-by frames");
     if (!pieces && !o.shard.resume) return;
     if (isStandardOutput(o.output))
         throw UsageError("--shard: a part can't go to standard output, nor be resumed there; name a file by -o");
@@ -181,7 +183,8 @@ void identify(TraceCommand& o) {
 
 std::string filmIdentity(const TraceCommand& o) {
     Contents contents;
-    return hashOf(o, fmt::format("a film of {} frames, grow {}", o.film.frames, o.film.grow), o.inputs, contents);
+    return hashOf(o, fmt::format("a film of {} frames, grow {}, hold {}", o.film.frames, o.film.grow, o.film.held),
+                  o.inputs, contents);
 }
 
 std::string recordOf(const TraceCommand& o) {

@@ -1,5 +1,6 @@
 #include "animate/moving_scene.h"
 
+#include "animate/pace.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ MovingScene::MovingScene(assemble::TracedObjects objects, assemble::Stage stage,
     if (motion_.grow) growing_ = assemble::growingPrint(objects_);
     if (motion_.grow && motion_.frames > 1 && (!growing_ || growing_->moments() != motion_.frames))
         throw UsageError("a film of a print that grows needs one print of G-code, and as many moments as frames");
-    if (motion_.nozzle) hot_end_.emplace(objects_, scene_);
+    if (motion_.nozzle != assemble::HotEndKind::none) hot_end_.emplace(objects_, scene_, motion_.nozzle);
     if (!motion_.path.empty()) planCameras(options);
 }
 
@@ -43,17 +44,24 @@ void MovingScene::planCameras(const assemble::StageOptions& options) {
 
 bool MovingScene::repeats(std::size_t n) const {
     if (n == 0 || motion_.turns != 0.0 || !motion_.path.empty()) return false;
+    if (hot_end_ && isHeld(n) != isHeld(n - 1)) return false;
     return !growing_ || growing_->beadsAt(n) == growing_->beadsAt(n - 1);
 }
 
 void MovingScene::show(std::size_t n) {
     if (growing_) growing_->show(n);
-    if (hot_end_) objects_.intersector = hot_end_->at(growing_ ? n : 0);
+    shown_ = n;
+    if (hot_end_) objects_.intersector = isHeld(n) ? hot_end_->alone() : hot_end_->at(growing_ ? n : 0);
     if (!cameras_.empty())
         scene_.camera = cameras_[n];
     else if (motion_.turns != 0.0)
         scene_.camera = first_.turned(
-            360.0 * motion_.turns * static_cast<double>(n) / static_cast<double>(motion_.frames), middle_);
+            360.0 * motion_.turns * paced(static_cast<double>(n) / static_cast<double>(motion_.frames), motion_.ease),
+            middle_);
+}
+
+void MovingScene::drawOver(shade::Film& film, double white) const {
+    if (hot_end_ && !isHeld(shown_)) hot_end_->drawOver(growing_ ? shown_ : 0, scene_.camera, white, film);
 }
 
 }  // namespace stratum::animate

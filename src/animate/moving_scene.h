@@ -16,10 +16,12 @@ namespace stratum::animate {
 /// What moves while the frames pass.
 struct Motion {
     std::size_t frames = 1;
-    bool grow = false;            ///< the print grows: frame n is moment n of its series
-    double turns = 0.0;           ///< revolutions of the camera about the part, counter-clockwise as seen from above
-    bool nozzle = false;          ///< a hot end stands at the end of the last bead
-    std::vector<CameraKey> path;  ///< or the camera goes this way; empty: it does not
+    bool grow = false;     ///< the print grows: frame n is moment n of its series
+    std::size_t held = 0;  ///< the last frames show the finished part alone, without a hot end
+    double turns = 0.0;    ///< revolutions of the camera about the part, counter-clockwise as seen from above
+    double ease = 0.0;     ///< of the turns: see paced()
+    assemble::HotEndKind nozzle = assemble::HotEndKind::none;  ///< stands at the end of the last bead
+    std::vector<CameraKey> path;                               ///< or the camera goes this way; empty: it does not
 };
 
 /// Light, bed and exposure are those of the whole print for all frames. Not while rays are traced.
@@ -36,14 +38,19 @@ public:
     /// Sets the scene to frame n. Cheapest in their order.
     void show(std::size_t n);
 
+    /// Draws what stands before the frame that is shown, see assemble::HotEnd::drawOver().
+    void drawOver(shade::Film& film, double white) const;
+
     /// With the intersector of the frame that is shown.
     const assemble::TracedObjects& objects() const { return objects_; }
     const shade::SceneDescription& scene() const { return scene_; }
 
 private:
     void planCameras(const assemble::StageOptions& options);
+    bool isHeld(std::size_t n) const { return n + motion_.held >= motion_.frames; }
 
     Motion motion_;
+    std::size_t shown_ = 0;
     assemble::TracedObjects objects_;
     std::shared_ptr<assemble::LazyPrint> growing_;
     std::optional<assemble::HotEnd> hot_end_;

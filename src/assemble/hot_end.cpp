@@ -2,10 +2,18 @@
 
 #include "assemble/print/lazy_print.h"
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "shade/brdf/brdf.h"
+#include "trace/box_corners.h"
 #include "trace/convex_solid.h"
 #include "trace/scene_intersector.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -32,24 +40,113 @@ std::vector<Part> makeParts() {
             {trace::makeConeSolid(17, 5, 27, 5), kAluminium}};
 }
 
+constexpr double kHeight = 27.0;      // mm
+constexpr double kPartOfThat = 40.0;  // mm: the larger side of the smallest part under a hot end of full size
+constexpr double kSmallest = 0.25;
+
+double scaleFor(const TracedObjects& objects) {
+    const trace::Box box = objects.part ? *objects.part : objects.intersector->bounds();
+    const glm::dvec3 size = box.max - box.min;
+    return std::clamp(std::max({size.x, size.y, size.z}) / kPartOfThat, kSmallest, 1.0);
+}
+
+std::vector<trace::SceneObject> placedParts(const glm::dvec3& tip, double scale) {
+    std::vector<trace::SceneObject> placed;
+    for (Part& part : makeParts()) placed.push_back({std::move(part.solid), {glm::dmat3(scale), tip}});
+    return placed;
+}
+
+// The pixels of a film that may show what is in a box.
+shade::PixelBox pixelsOf(const trace::Box& box, const shade::Camera& camera, const shade::PixelBox& region) {
+    shade::PixelBox pixels{region.x1, region.y1, region.x0, region.y0};
+    for (const glm::dvec3& corner : trace::cornersOf(box)) {
+        const std::optional<glm::dvec2> at = camera.project(corner);
+        if (!at) return region;
+        const auto within = [](double value, int low, int high) {
+            return static_cast<int>(std::clamp(value, static_cast<double>(low), static_cast<double>(high)));
+        };
+        pixels.x0 = std::min(pixels.x0, within(std::floor(at->x), region.x0, region.x1));
+        pixels.y0 = std::min(pixels.y0, within(std::floor(at->y), region.y0, region.y1));
+        pixels.x1 = std::max(pixels.x1, within(std::ceil(at->x), region.x0, region.x1));
+        pixels.y1 = std::max(pixels.y1, within(std::ceil(at->y), region.y0, region.y1));
+    }
+    return pixels;
+}
+
+// Thin glass that is tinted as a metal: clear where it is seen straight, denser where it is seen at a grazing angle,
+// lit from above over the left shoulder of who looks.
+class Glass {
+public:
+    Glass(const shade::Camera& camera, double white)
+        : white_(white), light_(glm::normalize(glm::dvec3(0, 0, 1) - 0.7 * camera.right() - camera.forward())) {
+        for (const Part& part : makeParts())
+            tints_.push_back(shade::ObjectMaterial(shade::makeBrdf(part.metal)).only().albedo);
+    }
+
+    shade::Pixel seen(const trace::Hit& hit, const glm::dvec3& direction) const {
+        const double grazing = 1.0 - std::abs(glm::dot(hit.normal, direction));
+        const double density = 0.3 + 0.6 * grazing * grazing * grazing;
+        const double shine = 0.3 + 0.7 * std::max(0.0, glm::dot(hit.normal, light_));
+        return {tints_[hit.object] * static_cast<float>(density * shine * white_), static_cast<float>(density)};
+    }
+
+private:
+    double white_;
+    glm::dvec3 light_;
+    std::vector<shade::Color> tints_;
+};
+
 }  // namespace
 
-HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene) : print_(objects.intersector) {
+HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, HotEndKind kind)
+    : print_(objects.intersector), kind_(kind), scale_(scaleFor(objects)) {
     if (objects.prints.empty())
         throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
     layers_ = objects.prints.front();
+    if (kind_ != HotEndKind::metal) return;
     if (scene.objects.empty()) scene.objects.emplace_back(scene.material);
     for (const Part& part : makeParts()) scene.objects.emplace_back(shade::makeBrdf(part.metal));
 }
 
 std::shared_ptr<const trace::Intersector> HotEnd::at(std::size_t moment) const {
-    return withHotEnd(print_, layers_->tipAt(moment));
+    return kind_ == HotEndKind::metal ? withHotEnd(print_, layers_->tipAt(moment), scale_) : print_;
+}
+
+void HotEnd::drawOver(std::size_t moment, const shade::Camera& camera, double white, shade::Film& film) const {
+    if (kind_ != HotEndKind::clear) return;
+    const auto solids = trace::makeSceneIntersector(placedParts(layers_->tipAt(moment), scale_));
+    const shade::PixelBox pixels = pixelsOf(solids->bounds(), camera, film.region());
+    if (pixels.width() <= 0 || pixels.height() <= 0) return;
+    const Glass glass(camera, white);
+    constexpr int kSide = 3;  // samples of a pixel, each way
+    parallelFor(static_cast<std::size_t>(pixels.height()), 8, [&](std::size_t begin, std::size_t end) {
+        const auto hot_end = solids->makeTracer();
+        const auto print = print_->makeTracer();
+        for (int y = pixels.y0 + static_cast<int>(begin); y < pixels.y0 + static_cast<int>(end); ++y)
+            for (int x = pixels.x0; x < pixels.x1; ++x) {
+                shade::Pixel over;
+                for (int n = 0; n < kSide * kSide; ++n) {
+                    trace::Ray ray = camera.ray(
+                        glm::dvec2(x + (n % kSide + 0.5) / kSide, y + (n / kSide + 0.5) / kSide));  // NOLINT: rows
+                    trace::Hit hit;
+                    if (!hot_end->intersect(ray, hit)) continue;
+                    ray.t_max = hit.t;
+                    if (print->occluded(ray)) continue;
+                    const shade::Pixel seen = glass.seen(hit, ray.direction);
+                    over.rgb += seen.rgb / static_cast<float>(kSide * kSide);
+                    over.alpha += seen.alpha / static_cast<float>(kSide * kSide);
+                }
+                shade::Pixel& pixel = film.at(x, y);
+                pixel.rgb = pixel.rgb * (1.0F - over.alpha) + over.rgb;
+                pixel.alpha = pixel.alpha * (1.0F - over.alpha) + over.alpha;
+            }
+    });
 }
 
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
-                                                     const glm::dvec3& tip) {
-    std::vector<trace::SceneObject> objects{{print, {}}};
-    for (Part& part : makeParts()) objects.push_back({std::move(part.solid), {glm::dmat3(1.0), tip}});
+                                                     const glm::dvec3& tip, double scale) {
+    std::vector<trace::SceneObject> objects = placedParts(tip, scale);
+    objects.insert(objects.begin(), {print, {}});
     return trace::makeSceneIntersector(std::move(objects));
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include "assemble/traced_objects.h"
+#include "base/names.h"
+#include "shade/camera/camera.h"
+#include "shade/film/film.h"
 #include "shade/scene/scene.h"
 #include "trace/intersector.h"
 
@@ -12,25 +15,44 @@
 
 namespace stratum::assemble {
 
-/// A print with the hot end that lays it. Immutable.
+enum class HotEndKind {
+    none,
+    metal,  ///< solid, with shadow and reflection
+    clear,  ///< drawn over the picture as thin glass, so that the part shows through; no shadow
+};
+inline constexpr Names<HotEndKind, 3> kHotEnds = {
+    {{"none", HotEndKind::none}, {"metal", HotEndKind::metal}, {"clear", HotEndKind::clear}}};
+
+/// A print with the hot end that lays it. It is 27 mm high, and less where the part is smaller than 40 mm: it has two
+/// thirds of its larger side, but a quarter of its size at least. Immutable.
 class HotEnd {
 public:
-    /// Adds its metals to the materials of a scene of those objects. Throws UsageError if none of them is a print.
-    HotEnd(const TracedObjects& objects, shade::SceneDescription& scene);
+    /// Adds the metals of a solid one to the materials of a scene of those objects. Throws UsageError if none of them
+    /// is a print.
+    HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, HotEndKind kind);
 
-    /// The print with the hot end at the end of its last bead at that moment, see LazyPrint.
+    /// What is traced at that moment, see LazyPrint: the print, with a solid hot end at the end of its last bead.
     std::shared_ptr<const trace::Intersector> at(std::size_t moment) const;
+    /// The print as it is without.
+    const std::shared_ptr<const trace::Intersector>& alone() const { return print_; }
+
+    /// Draws a clear hot end into a finished picture of that moment: what of it is before the print covers a third of
+    /// a pixel, more of it towards its silhouette. Of a solid one nothing.
+    /// @param white  the film's value of a white surface
+    void drawOver(std::size_t moment, const shade::Camera& camera, double white, shade::Film& film) const;
 
 private:
     std::shared_ptr<const trace::Intersector> print_;
     std::shared_ptr<const LazyPrint> layers_;
+    HotEndKind kind_;
+    double scale_ = 1.0;
 };
 
 /// The print with a nozzle of brass, 7 mm across flats with a tip 1 mm wide, a block that heats it, a heat break and a
-/// cold end, as solids of closed form: so slender that the print stays in sight.
+/// cold end, as solids of closed form: so slender that the print stays in sight. `scale` times that size.
 /// @param print  object 0, as it is alone; its world space is print space
 /// @param tip    the middle of the nozzle's tip, mm
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
-                                                     const glm::dvec3& tip);
+                                                     const glm::dvec3& tip, double scale = 1.0);
 
 }  // namespace stratum::assemble

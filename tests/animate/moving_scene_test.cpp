@@ -1,11 +1,13 @@
 #include "animate/moving_scene.h"
 
+#include "animate/pace.h"
 #include "assemble/prints.h"
 #include "base/error.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,16 +24,14 @@ assemble::StageOptions smallStage() {
     return options;
 }
 
-assemble::TracedObjects printOf(std::size_t moments) {
+assemble::TracedObjects printOf(std::size_t moments, std::size_t held) {
     assemble::TracingOptions tracing = test::coarseTracing();
-    tracing.prints.series = static_cast<int>(moments);
-    tracing.prints.series_by_time = true;
-    tracing.prints.series_of_selection = true;
+    tracing.prints.growth = {voxelize::GrowthBy::time, growthShares(moments, held, 0)};
     return assemble::readTracedObjects({test::printOf("tile.gcode")}, tracing);
 }
 
 MovingScene sceneOf(Motion motion, std::size_t moments = 1) {
-    assemble::TracedObjects objects = printOf(moments);
+    assemble::TracedObjects objects = printOf(moments, motion.held);
     const assemble::StageOptions options = smallStage();
     assemble::Stage stage = assemble::makeStage(objects, options);
     return {std::move(objects), std::move(stage), options, std::move(motion)};
@@ -121,7 +121,7 @@ TEST(MovingScene, TheHotEndStandsOnTheLastBead) {
     Motion motion;
     motion.frames = kFrames;
     motion.grow = true;
-    motion.nozzle = true;
+    motion.nozzle = assemble::HotEndKind::metal;
     MovingScene moving = sceneOf(motion, kFrames);
     ASSERT_EQ(moving.scene().objects.size(), 6u);
     const shade::Camera camera = moving.scene().camera;
@@ -132,16 +132,54 @@ TEST(MovingScene, TheHotEndStandsOnTheLastBead) {
         const auto& toolpath = *print.finest().layout().toolpath;
         const gcode::Bead& last = toolpath.beads[print.beadsAt(n) - 1];
         EXPECT_EQ(tip, glm::dvec3(last.x1, last.y1, last.z1));
-        // From the side: the nozzle's sides are 3.5 mm from its axis.
+        // From the side: the nozzle's sides are 3.5 mm from its axis. It is smaller above a part smaller than 40 mm.
+        const trace::Box part = *moving.objects().part;
+        const double scale = std::min(1.0, (part.max.x - part.min.x) / 40);
         trace::Ray ray;
-        ray.origin = tip + glm::dvec3(-100, 0, 4.5);
+        ray.origin = tip + glm::dvec3(-100, 0, 4.5 * scale);
         ray.direction = {1, 0, 0};
         trace::Hit hit;
         ASSERT_TRUE(moving.objects().intersector->makeTracer()->intersect(ray, hit));
         EXPECT_EQ(hit.object, 2u);
-        EXPECT_NEAR(hit.position.x, tip.x - 3.5, 1e-9);
+        EXPECT_NEAR(hit.position.x, tip.x - 3.5 * scale, 1e-9);
         EXPECT_EQ(moving.scene().camera.eye(), camera.eye());
     }
+}
+
+TEST(MovingScene, TheFinishedPartIsHeldWithoutAHotEnd) {
+    for (const auto kind : {assemble::HotEndKind::none, assemble::HotEndKind::metal}) {
+        Motion motion;
+        motion.frames = kFrames;
+        motion.grow = true;
+        motion.held = 4;
+        motion.nozzle = kind;
+        MovingScene moving = sceneOf(motion, kFrames);
+        moving.show(kFrames - 5);
+        const int grown = covered(moving);
+        moving.show(kFrames - 4);
+        if (kind == assemble::HotEndKind::none) {
+            EXPECT_EQ(covered(moving), grown);
+        }
+        EXPECT_LT(moving.objects().intersector->bounds().max.z, moving.objects().part->max.z + 2);
+        EXPECT_EQ(moving.repeats(kFrames - 4), kind == assemble::HotEndKind::none);
+        for (std::size_t n = kFrames - 3; n < kFrames; ++n) EXPECT_TRUE(moving.repeats(n)) << n;
+    }
+}
+
+TEST(MovingScene, EaseTurnsSlowlyAtBothEnds) {
+    Motion motion;
+    motion.frames = 100;
+    motion.turns = 1;
+    motion.ease = 0.25;
+    MovingScene moving = sceneOf(motion);
+    const auto eyeAt = [&](std::size_t n) {
+        moving.show(n);
+        return moving.scene().camera.eye();
+    };
+    const auto step = [&](std::size_t n) { return glm::length(eyeAt(n + 1) - eyeAt(n)); };
+    EXPECT_LT(step(0), 0.05 * step(50));
+    EXPECT_LT(step(98), 0.2 * step(50));
+    EXPECT_NEAR(step(40), step(50), 1e-6 * step(50));
 }
 
 TEST(MovingScene, RefusesWhatDoesNotFit) {

@@ -43,11 +43,58 @@ TEST(HotEnd, IsOfMetalAndLeavesThePrintItsMaterial) {
         readTracedObjects({test::objectOf(test::sourceDir() / "data/gcode/tile.gcode")}, test::coarseTracing());
     shade::SceneDescription scene = makeStage(objects, {}).scene;
     ASSERT_TRUE(scene.objects.empty());
-    const HotEnd hot_end(objects, scene);
+    const HotEnd hot_end(objects, scene, HotEndKind::metal);
     ASSERT_EQ(scene.objects.size(), 6u);
     EXPECT_EQ(scene.objects.front().only().brdf, scene.material);
     const shade::Color brass = scene.objects[1].only().albedo;
     EXPECT_GT(brass.r, brass.b);
+}
+
+TEST(HotEnd, IsSmallerAboveASmallPart) {
+    const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, 0}, 5));
+    const double top = withHotEnd(ball, {0, 0, 5})->bounds().max.z;
+    EXPECT_NEAR(withHotEnd(ball, {0, 0, 5}, 0.25)->bounds().max.z - 5, 0.25 * (top - 5), 1e-9);
+    EXPECT_NEAR(top, 32, 1e-9);
+}
+
+TEST(HotEnd, AClearOneIsDrawnOverThePictureAndLetsThePartThrough) {
+    const TracedObjects objects =
+        readTracedObjects({test::objectOf(test::sourceDir() / "data/gcode/tile.gcode")}, test::coarseTracing());
+    StageOptions options;
+    options.render.width = 80;
+    options.render.height = 60;
+    shade::SceneDescription scene = makeStage(objects, options).scene;
+    const HotEnd clear(objects, scene, HotEndKind::clear);
+    EXPECT_TRUE(scene.objects.empty());
+    EXPECT_EQ(clear.at(0), objects.intersector);
+    const shade::Film empty(80, 60, {0, 0, 80, 60});
+    shade::Film film = empty;
+    for (shade::Pixel& pixel : film.pixels()) pixel = {shade::Color(0.5F), 1.0F};
+    shade::Film twice = film;
+    clear.drawOver(0, scene.camera, 1.0, film);
+    int drawn = 0;
+    for (const shade::Pixel& pixel : film.pixels()) {
+        EXPECT_FLOAT_EQ(pixel.alpha, 1.0F);
+        EXPECT_GE(pixel.rgb.g, 0.5F * 0.09F);  // nine tenths are covered at most
+        EXPECT_LE(pixel.rgb.r, 1.0F);
+        drawn += pixel.rgb != shade::Color(0.5F) ? 1 : 0;
+    }
+    EXPECT_GT(drawn, 20);
+    EXPECT_LT(drawn, 80 * 60 / 2);
+    // Twice as bright a film has twice as bright glass.
+    for (shade::Pixel& pixel : twice.pixels()) pixel.rgb *= 2.0F;
+    clear.drawOver(0, scene.camera, 2.0, twice);
+    for (std::size_t n = 0; n < film.pixels().size(); ++n)
+        EXPECT_NEAR(twice.pixels()[n].rgb.g, 2 * film.pixels()[n].rgb.g, 1e-5);
+    // A crop is the whole picture's pixels, and a solid one draws nothing.
+    shade::Film crop(80, 60, {20, 10, 60, 40});
+    for (shade::Pixel& pixel : crop.pixels()) pixel = {shade::Color(0.5F), 1.0F};
+    const shade::Film before = crop;
+    HotEnd(objects, scene, HotEndKind::metal).drawOver(0, scene.camera, 1.0, crop);
+    EXPECT_EQ(crop.at(30, 20).rgb, before.at(30, 20).rgb);
+    clear.drawOver(0, scene.camera, 1.0, crop);
+    for (int y = 10; y < 40; ++y)
+        for (int x = 20; x < 60; ++x) EXPECT_EQ(crop.at(x, y).rgb, film.at(x, y).rgb);
 }
 
 }  // namespace

@@ -234,6 +234,24 @@ done = call("part.gcode", "-o", "series.png", *QUICK, "--progress-series", "2", 
 check(pixels("series_000.png") != pixels("series_001.png") and done.returncode == 0, "and in a series")
 call("part.gcode", "-o", "mask.exr", *QUICK, "--integrator", "depth", "--nozzle", "--aov", "layer,feature")
 check(os.path.exists(path("mask.exr")), "and where no light is")
+done = call("part.gcode", "-o", "clear.png", *QUICK, "--printed", "50%", "--clear-nozzle")
+plain, solid, clear = pixels("plain.png"), pixels("nozzle.png"), pixels("clear.png")
+drawn = [n for n in range(0, len(plain), 3) if plain[n:n + 3] != clear[n:n + 3]]
+check(done.returncode == 0 and 20 < len(drawn) < len(plain) / 6, f"--clear-nozzle is in {len(drawn)} pixels and changes no other")
+check(clear != solid, "and is another one than --nozzle")
+
+# --- the pace --------------------------------------------------------------------------------------------------------------------------
+stats = film("held.png", "--seconds", "1", "--fps", "8", "--hold", "0.25", "--nozzle")
+shown = pixels("held.png")
+frames = [shown[n * one:(n + 1) * one] for n in range(8)]
+call("part.gcode", "-o", "whole.png", *QUICK)
+check(len(set(frames[:7])) == 7 and frames[6] == frames[7] == pixels("whole.png"), "--hold shows the finished part, without the hot end")
+check(stats["film"]["held"] == 2 and stats["film"]["repeated"] == 1, "and --stats says so")
+check(film("long.png", "--seconds", "4", "--fps", "2")["film"]["held"] == 2, "a second of a film of four is held")
+check(film("short.png", "--seconds", "3.5", "--fps", "2")["film"]["held"] == 0, "none of a shorter one")
+film("layers.png", "--seconds", "1", "--fps", "8", "--grow", "layers")
+film("eased.png", "--seconds", "1", "--fps", "8", "--grow", "layers", "--ease", "0.5")
+check(len({read(name) for name in ("a.png", "layers.png", "eased.png")}) == 3, "--grow layers and --ease have a pace of their own")
 
 # --- clear refusals ----------------------------------------------------------------------------------------------------------------------
 with open(path("typo.json"), "w", encoding="utf-8") as file:
@@ -258,6 +276,14 @@ for arguments, status, text in (
         (["part.gcode", "--film", "x.mp4", "-o", "y.png"], 2, "named by --film"),
         (["part.gcode", "--film", "x.mp4", "--progress-series", "3"], 2, "--grow"),
         (["part.gcode", "--film", "x.mp4", "--grow", "tine"], 2, "time"),
+        (["part.gcode", "--film", "x.mp4", "--seconds", "2", "--hold", "2"], 2, "must grow"),
+        (["part.gcode", "--film", "x.mp4", "--turntable", "--hold", "1"], 2, "--grow time"),
+        (["part.gcode", "--film", "x.mp4", "--seconds", "2", "--ease", "1.5"], 2, "half"),
+        (["part.gcode", "--film", "x.mp4", "--camera-path", "path.json", "--ease", "1"], 2, "have times"),
+        (["part.gcode", "--film", "x.mp4", "--nozzle", "--clear-nozzle"], 2, "--nozzle"),
+        (["part.gcode", "-o", "x.png", "--clear-nozzle", "--integrator", "normal"], 2, "pictures of light"),
+        (["part.gcode", "-o", "x.png", "--clear-nozzle", "--shard", "0/2", "--shard-by", "tiles"], 2, "frames"),
+        (["part.gcode", "-o", "x.png", "--hold", "1", "--ease", "1"], 2, "--hold, --ease"),
         (["part.gcode", "--film", "no/x.mp4"], 1, "does not exist"),
         (["part.gcode", "--film", "part.gcode"], 2, "must end in"),
         (["part.gcode", "--film", "x.mp4", "--shard", "0/2", "--shard-by", "tiles"], 2, "frames"),

@@ -1,11 +1,14 @@
 """Progress on a terminal: every long step has a line of its own, and nothing is left of it among what is said."""
 
+import fcntl
 import os
 import pty
 import re
 import shutil
+import struct
 import subprocess
 import tempfile
+import termios
 
 from run_tools import BIN, check, gcode
 
@@ -15,9 +18,10 @@ VDBTRACE = os.path.join(BIN, "vdbtrace")
 SMALL = ["--size", "64x48", "--spp", "1"]
 
 
-def on_terminal(*command):
-    """All that the command writes to a terminal."""
+def on_terminal(*command, columns=80):
+    """All that the command writes to a terminal of so many columns."""
     ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, cwd=FOLDER)
     os.close(theirs)
     parts = []
@@ -87,5 +91,14 @@ for command, expected in (
     check([step for step in steps(text) if step in expected] == expected, f"  shows {steps(text)}")
     check(text.rstrip("\n").rfind("\r\x1b[K") >= text.rfind("writing"), "  the last line is cleared")
     clean(text, piped(*command))
+# What fills the last column wraps, and what wraps is not cleared.
+for columns in (1, 12, 40, 80):
+    for command in ([VDBTRACE, "tile.gcode", "--size", "320x240", "--spp", "16", "--no-denoise", "--voxel-size", "0.2"],
+                    [GCODE2VDB, "tile.gcode", "--voxel-size", "0.2", "--interior-distance"]):
+        text = on_terminal(*command, columns=columns)
+        lines = re.findall(r"\r\x1b\[K([^\r\x1b]*)(?=\r\x1b)", text)
+        check(lines and max(map(len, lines)) < max(2, columns), f"{columns} columns: at most {max(map(len, lines))}")
+        if columns >= 40 and command[0] == VDBTRACE:
+            check(any("━" in line and line.endswith("s left") for line in lines), "  with a bar and what is left")
 check("\x1b" not in on_terminal(GCODE2VDB, "tile.gcode", "--voxel-size", "0.2", "--quiet"), "--quiet: nothing")
 shutil.rmtree(FOLDER)

@@ -10,7 +10,6 @@
 #include "gcode/toolpath/warning_log.h"
 #include "march/file/vdb_magic.h"
 #include "ondemand/detail_levels.h"
-#include "voxelize/beads/growth.h"
 #include "voxelize/beads/part_bounds.h"
 #include "voxelize/beads/part_outline.h"
 #include "voxelize/beads/selection.h"
@@ -150,7 +149,9 @@ deposit::PrintRead readEither(const gcode::InputBytes& file, const gcode::ReadOp
 ReadProgram readProgram(const std::string& path, const PrintRequest& request, const ReadEvents& events,
                         Warnings& warnings, bool hash) {
     if (request.toolpath) return {request.toolpath, 0, path, ""};
-    const bool timed = request.timed || request.series_by_time || voxelize::needsTiming(request.printed);
+    const bool grows_by_time = request.growth && request.growth->by != voxelize::GrowthBy::volume;
+    const bool timed =
+        request.timed || request.series_by_time || grows_by_time || voxelize::needsTiming(request.printed);
     if (request.kept != nullptr)
         if (const ReadProgram* known = request.kept->program(path, timed, hash)) return *known;
     ReadProgram program;
@@ -187,11 +188,8 @@ public:
         chooseLattice();
         chooseLevels();
         describe();
-        result_.moments = request_.series_of_selection
-                              ? voxelize::growthMoments(
-                                    *toolpath_, selection_, static_cast<std::size_t>(request_.series),
-                                    request_.series_by_time ? voxelize::GrowthBy::time : voxelize::GrowthBy::volume)
-                              : momentsOf(request_.series, request_.series_by_time, *toolpath_);
+        result_.moments = request_.growth ? voxelize::growthMoments(*toolpath_, selection_, *request_.growth)
+                                          : momentsOf(request_.series, request_.series_by_time, *toolpath_);
         result_.tips = tipsOf(result_.moments, selection_, *toolpath_);
         result_.selection = std::move(selection_);
         result_.toolpath = std::move(toolpath_);

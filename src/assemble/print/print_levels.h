@@ -5,6 +5,7 @@
 #include "ondemand/print_field.h"
 #include "shade/camera/pixel_size.h"
 #include "trace/intersector.h"
+#include "voxelize/beads/growth.h"
 #include "voxelize/grid/print_options.h"
 
 #include <glm/vec3.hpp>
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +30,9 @@ struct PrintRequest {
     bool timed = false;           ///< print times of the beads are needed
     int series = 1;               ///< of a growing print: the number of moments; the last one is the end
     bool series_by_time = false;  ///< equal times between them instead of equal volumes
-    /// Exactly that many moments, of the selected beads, of which some may be equal, see voxelize::growthMoments().
-    /// Else they are shares of the whole file, each with more beads than the one before.
-    bool series_of_selection = false;
+    /// A film's moments instead of a series: exactly these, of the selected beads, of which some may be equal. Those of
+    /// a series are shares of the whole file, each with more beads than the one before.
+    std::optional<voxelize::Growth> growth;
     /// The sizes of pixels on a print in the first box, mm, for print.voxel_auto; what else it gets is of the part
     /// alone.
     std::function<shade::PixelSpread(const voxelize::Bounds& print, const voxelize::Bounds& part,

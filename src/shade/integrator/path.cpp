@@ -3,6 +3,7 @@
 #include "shade/camera/sampler_stream.h"
 #include "shade/camera/sampling.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -40,6 +41,12 @@ trace::Ray& PathIntegrator::ShadowRays::add(const Color& value, std::size_t to) 
     light.push_back(value);
     pixel.push_back(to);
     return rays.emplace_back();
+}
+
+void PathIntegrator::ShadowRays::reserve(std::size_t count) {
+    rays.reserve(count);
+    light.reserve(count);
+    pixel.reserve(count);
 }
 
 void PathIntegrator::ShadowRays::clear() {
@@ -116,6 +123,12 @@ void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, Sh
         ray = surfaces_.leave(point, sample->direction);
         ray.t_max = sample->distance;
     }
+}
+
+std::size_t PathIntegrator::raysAVertex() const {
+    const int strategies = scene_.environment->strategies();
+    return static_cast<std::size_t>(bed_light_ ? std::max(strategies, bed_light_->strategies()) : strategies) +
+           scene_.lights.size();
 }
 
 Color PathIntegrator::hitLights(const trace::Ray& ray, double t, float pdf) const {
@@ -302,6 +315,8 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         vertices.clear();
         bounces.clear();
         vertices.reserve(paths.size());
+        bounces.reserve(paths.size());
+        shadow_rays.reserve(paths.size() * raysAVertex());
         for (Path& path : paths) vertices.emplace_back(path);
         // Every step draws the same dimensions in the same order, so that each dimension keeps its stratification.
         gatherGroups(groups, vertices, [](const PathVertex& vertex) { return vertex.path->point.bed; });
@@ -337,6 +352,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         if (only_escape) break;
 
         bounce_rays.clear();
+        bounce_rays.reserve(bounces.size());
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
         surfaces_.nearestBounced(bounce_rays, tracer, hits);
@@ -387,6 +403,7 @@ void PathIntegrator::catchShadows(std::span<const SurfacePoint> points, std::spa
 void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits,
                                    std::span<Color> sums, std::vector<Path>& next_paths) const {
     next_paths.clear();
+    next_paths.reserve(bounces.size());
     for (std::size_t k = 0; k < bounces.size(); ++k) {
         const Path& path = *bounces[k].from->path;
         Color& sum = sums[path.pixel];

@@ -55,6 +55,7 @@ private:
         std::vector<std::size_t> pixel;
         /// Adds a ray and returns it, to be set where it stays.
         trace::Ray& add(const Color& value, std::size_t to);
+        void reserve(std::size_t count);
         void clear();
     };
     /// The current vertex of a path, with its shading frame.
@@ -133,6 +134,8 @@ private:
     /// The pixels of a transparent picture, see ShadowCatcher.
     void catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums, std::span<const Color> bare,
                       std::span<Pixel> pixels) const;
+    /// Shadow rays of a vertex at most.
+    std::size_t raysAVertex() const;
     /// Share of the backdrop in what a camera ray sees.
     float fadeAt(const SurfacePoint& point) const;
     void blendBackdrop(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,

@@ -91,6 +91,7 @@ Json BeadTable::head() const {
     std::copy_if(all.begin(), all.end(), std::back_inserter(part),
                  [this](std::uint32_t bead) { return toolpath_->runOf(toolpath_->beads[bead]).layer > 0; });
     if (part.empty()) part = all;
+    const std::vector<double> shares = voxelize::equalShares(kMoments);
     return {{"type", "beads"},
             {"texels", texels_},
             {"runs", toolpath_->runs.size()},
@@ -105,8 +106,8 @@ Json BeadTable::head() const {
             {"features", std::move(features)},
             {"objects", std::move(objects)},
             {"printed",
-             {{"volume", voxelize::growthMoments(*toolpath_, part, kMoments, voxelize::GrowthBy::volume)},
-              {"time", voxelize::growthMoments(*toolpath_, all, kMoments, voxelize::GrowthBy::time)}}}};
+             {{"volume", voxelize::growthMoments(*toolpath_, part, {voxelize::GrowthBy::volume, shares})},
+              {"time", voxelize::growthMoments(*toolpath_, all, {voxelize::GrowthBy::time, shares})}}}};
 }
 
 std::vector<std::uint32_t> BeadTable::part(std::size_t& bead, std::size_t count) const {
