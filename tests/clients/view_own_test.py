@@ -6,7 +6,7 @@ import tempfile
 import time
 from urllib.parse import quote
 
-from run_tools import check, gcode, skip_without
+from run_tools import check, corpus, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
@@ -90,8 +90,8 @@ def drag(lift):
         until("window.dragged === 10", "ten steps of turning")
 
 
-def agrees(name, view, *options):
-    with viewer.of(gcode(name), "--voxel-size", "0.0125", *options):
+def agrees(name, view, *options, path=None):
+    with viewer.of(path or gcode(name), "--voxel-size", "0.0125", *options):
         drawn_here()
         show(integrator="normal", bed=False, spp=256, camera=view)
         found = page.execute_async_script(COMPARE)

@@ -183,7 +183,10 @@ export class Controls {
   }
 
   #bindLook() {
-    byId("color-by").addEventListener("change", (e) => this.#set("color_by", e.target.value));
+    byId("color-by").addEventListener("change", (e) => {
+      this.state().color_range = null; // it was of another attribute
+      this.#set("color_by", e.target.value);
+    });
     byId("material").addEventListener("change", (e) => this.#set("material", e.target.value === "#" ? byId("color").value : e.target.value));
     byId("color").addEventListener("change", (e) => this.#set("material", e.target.value));
     byId("integrator").addEventListener("change", (e) => this.#set("integrator", e.target.value));
