@@ -36,7 +36,7 @@ export class Legend {
 
   #scale({ least, most, unit, ramp }) {
     const bar = element("div", "ramp");
-    bar.style.background = `linear-gradient(to right, ${ramp.join(", ")})`;
+    bar.style.backgroundImage = `linear-gradient(to right, ${ramp.join(", ")})`;
     const ends = element("form", "ends");
     const inputs = [least, most].map((value, n) => {
       const input = Object.assign(element("input"), { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });

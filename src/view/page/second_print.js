@@ -73,6 +73,7 @@ export class SecondPrint {
     on("no-beads", ({ text }) => (own.refuse(text), this.#say(`It can't be shown here: ${text}.`)));
     on("colors", ({ palette, values, file: places }) => own.paint(palette, values, places));
     on("look", (look) => own.illuminate(look));
+    on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
     on("failed", ({ text }) => this.#say(text));
     on("picture", () => connection.send({ type: "shown" }));
     this.changed();
