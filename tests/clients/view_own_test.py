@@ -173,6 +173,8 @@ try:
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})
     agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5})
+    if huge := corpus("spot_1000cc_0.1mm_grid.gcode.gz"):
+        agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge)
     streams()
 finally:
     page.quit()
