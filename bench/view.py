@@ -5,7 +5,8 @@
 
 For each file: seconds from the start of the process until the page has shown the first picture; frames a second, latency
 from input to frame and size while the view is turned; latency of the layer slider; seconds until the rough and the
-finished picture; memory of the server beside that of vdbtrace; its processor time at rest. --soak turns, slides and
+finished picture; memory of the server beside that of vdbtrace; its processor time at rest. --turning compares, in turns,
+frames that the page draws itself with those that the server streams. --soak turns, slides and
 colours by eight clients without a browser, and prints memory and pictures by the minute. Chromium runs on the same
 processors as the server.
 """
@@ -39,7 +40,7 @@ const tick = () => {
   const t = (performance.now() - begin) / 1000;
   at('pointermove', 300 + 150 * t, 300 + 60 * Math.sin(2 * t), 1);
   if (t < seconds) return requestAnimationFrame(tick);
-  const log = window.vdbviewLog.filter((e) => e.kind === 'moving');
+  const log = window.vdbviewLog.filter((e) => e.kind === 'moving' || e.kind === 'own');
   at('pointerup', 300, 300, 0);
   done(log);
 };
@@ -129,6 +130,27 @@ def measure(folder, path, seconds, page):
           "a processor", flush=True)
 
 
+def turning(folder, path, seconds, page, rounds):
+    """Frames a second and pixels a frame of the page's own drawing and of the stream, one after the other."""
+    process, url = start(folder, path)
+    found = {"": [], "?stream": []}
+    for _ in range(rounds):
+        for query, rates in found.items():
+            page.get("about:blank")
+            page.get(url + query)
+            until(page, "moving" if query else "own")
+            until(page, "final")
+            log = page.execute_async_script(ORBIT, seconds)
+            rates.append((len(log) / seconds, quantile([e["width"] * e["height"] for e in log], 0.5)))
+    process.terminate()
+    process.wait()
+    (own, own_pixels), (stream, stream_pixels) = ([quantile(values, 0.5) for values in zip(*rates)] for rates in found.values())
+    print(f"{os.path.basename(path)}, {rounds} rounds: drawn by the page {own:.1f} frames/s of {own_pixels} pixels "
+          f"({', '.join(f'{rate:.1f}' for rate, _ in found[''])}); streamed {stream:.1f} of {stream_pixels} "
+          f"({', '.join(f'{rate:.1f}' for rate, _ in found['?stream'])}); {own / stream:.2f} x the frames at "
+          f"{own_pixels / stream_pixels:.1f} x the pixels", flush=True)
+
+
 class Socket:
     """A page without a browser: turns, and acknowledges what it gets."""
 
@@ -196,6 +218,7 @@ def main():
     parser.add_argument("bin")
     parser.add_argument("files", nargs="+")
     parser.add_argument("--seconds", type=float, default=5)
+    parser.add_argument("--turning", type=int, default=0, metavar="ROUNDS")
     parser.add_argument("--soak", type=float, default=0)
     options = parser.parse_args()
     if options.soak > 0:
@@ -204,7 +227,10 @@ def main():
         page = window(profile)
         try:
             for path in options.files:
-                measure(options.bin, path, options.seconds, page)
+                if options.turning > 0:
+                    turning(options.bin, path, options.seconds, page, options.turning)
+                else:
+                    measure(options.bin, path, options.seconds, page)
         finally:
             page.quit()
 

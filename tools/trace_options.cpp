@@ -221,10 +221,14 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
         ->group(kLight);
     addColorList(app, kLight);
     const std::vector<std::string_view> attributes = voxelize::attributeNames();
-    completes(app.add_option("--color-by", o.scene.color_by,
-                             fmt::format("Colours by a grid of gcode2vdb --grids: {}", fmt::join(attributes, ", "))),
-              Completion::word, {attributes.begin(), attributes.end()})
-        ->type_name("NAME")
+    auto* by = app.add_option("--color-by", o.scene.color_by,
+                              fmt::format("Colours by a grid of gcode2vdb --grids: {}", fmt::join(attributes, ", ")));
+    completes(by, Completion::word, {attributes.begin(), attributes.end()})->type_name("NAME")->group(kLight);
+    app.add_option("--color-range", o.color_range,
+                   "Values at the ends of the ramp of --color-by, e.g. 20,80; what lies beyond has the end's colour "
+                   "(default: the least and the most)")
+        ->needs(by)
+        ->type_name("MIN,MAX")
         ->group(kLight);
     app.add_flag("--legend", o.legend, "Draws what the colours of --color-by mean into the picture")->group(kLight);
     app.add_option("--normals", o.normals, "geometric, or smooth: without the facets of voxels (default geometric)")
@@ -381,6 +385,12 @@ void applyText(TraceCommand& o) {
     if (!o.crop.empty()) {
         const auto c = parseIntegers(o.crop, 4, ',', "--crop", "X0,Y0,X1,Y1 in pixels");
         o.render.crop = shade::PixelBox{c[0], c[1], c[2], c[3]};
+    }
+    if (!o.color_range.empty()) {
+        const auto ends = parseNumbers(o.color_range, {2}, "--color-range", "MIN,MAX");
+        if (!(ends[0] < ends[1]))
+            throw UsageError(fmt::format("--color-range {}: MIN is not below MAX", o.color_range));
+        o.scene.color_range = {ends[0], ends[1]};
     }
     if (!o.phong.empty()) {
         const auto v = parseNumbers(o.phong, {5}, "--phong", "KA,KD,KS,SHININESS,KR");

@@ -46,9 +46,10 @@ struct TraceCommand {
     std::string scene_text;                       // hash of the scene file, or empty
     std::string said;                             // the options that are given, for checkpoints
     bool legend = false;
-    bool linear = false;  // the output keeps linear values: an .exr. Set when its name is checked
-    std::string turns;    // --turntable, as given
-    int turntable = 1;    // pictures of each camera
+    std::string color_range;  // as given
+    bool linear = false;      // the output keeps linear values: an .exr. Set when its name is checked
+    std::string turns;        // --turntable, as given
+    int turntable = 1;        // pictures of each camera
     assemble::HotEndKind nozzle = assemble::HotEndKind::none;
     bool spp_given = false, exposure_given = false;
     std::optional<bool> denoise;  // empty: as fits the picture

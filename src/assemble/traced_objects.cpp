@@ -92,6 +92,7 @@ MaterialPlan planMaterial(const ObjectOptions& object, const TracingOptions& opt
     MaterialPlan plan{object.material, false, ""};
     if (plan.material.by.empty() && plan.material.brdf.empty() && !object.sdf) {
         plan.material.by = options.color_by;
+        plan.material.range = options.color_range;
         plan.stated_colors = options.file_colors && plan.material.by.empty();
     }
     plan.by = plan.stated_colors ? "color" : plan.material.by;

@@ -34,6 +34,7 @@ TracingOptions tracingFor(const shade::SceneOptions& scene, const shade::RenderO
     options.brdf = scene.brdf.empty() && !showsMaterial(render) ? "lambert:1,1,1" : scene.brdf;
     options.file_colors = scene.brdf.empty() && scene.color_by.empty() && showsMaterial(render);
     options.color_by = scene.color_by;
+    options.color_range = scene.color_range;
     options.smooth_normals = scene.smooth_normals;
     options.labels = shade::labelsOf(render.aovs);
     options.prints.outline = !scene.camera.eye;

@@ -37,8 +37,9 @@ struct TracingOptions {
     bool file_colors = false;  ///< objects without a material of their own have the colors that their files state
     /// "#rrggbb" -> material that stated colors have instead of plain plastic, see toolColorsOf().
     std::map<std::string, std::string> finishes;
-    std::string color_by;         ///< attribute that colors level sets and prints without a material of their own
-    bool smooth_normals = false;  ///< answer Tracer::shadingNormal() without the facets of voxels
+    std::string color_by;  ///< attribute that colors level sets and prints without a material of their own
+    std::optional<std::array<double, 2>> color_range;  ///< values at the ends of its ramp; empty: least and most
+    bool smooth_normals = false;                       ///< answer Tracer::shadingNormal() without the facets of voxels
     /// Bytes of samples at once, of each print and of each large level set.
     std::size_t brick_cache = march::BrickGrid::kNoBound;
     std::vector<shade::Label> labels;    ///< that hits have; every level set must provide them

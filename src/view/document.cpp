@@ -50,6 +50,7 @@ Json factsOf(const gcode::Toolpath& toolpath) {
     if (!toolpath.fans.empty()) facts["attributes"].push_back("fan");
     // As the file states them.
     if (!toolpath.stated.bed.empty()) facts["bed"] = toolpath.stated.bed;
+    if (!toolpath.stated.excluded.empty()) facts["excluded"] = toolpath.stated.excluded;
     if (toolpath.stated.seconds) facts["seconds"] = *toolpath.stated.seconds;
     if (toolpath.stated.grams) facts["grams"] = *toolpath.stated.grams;
     return facts;
@@ -118,6 +119,35 @@ Json Document::programAt(std::uint32_t bead) {
     if (!print || bead >= print->beads.size()) throw InputError("the message: bead: the print has no such bead");
     const std::uint32_t line = print->lineOf(print->beads[bead]);
     return {{"bead", bead}, {"line", line}, {"lines", linesAround(0, line)}};
+}
+
+Json Document::find(const FindMessage& find) {
+    const auto print = find.seconds ? timedToolpath(0) : toolpath(0);
+    if (!print || print->beads.empty()) throw InputError("the input has no lines to search: it is no print");
+    requireFiles();
+    Json json = Json::object();
+    std::uint32_t line = find.line;
+    std::uint32_t bead = 0;
+    if (!find.text.empty()) {
+        const auto found = program_.find(given_.objects.front().vdb, given_.options.tracing.prints.print, find.text,
+                                         find.line, find.back);
+        json = {{"matches", found.count}, {"match", found.place}};
+        if (found.count == 0) return json;
+        line = found.line;
+    }
+    for (std::uint32_t n = 0; n < print->beads.size(); ++n) {
+        const bool before = find.seconds ? static_cast<double>(print->timing[n].start) <= *find.seconds
+                                         : print->lineOf(print->beads[n]) <= line;
+        if (before) bead = n;
+    }
+    if (find.seconds) line = print->lineOf(print->beads[bead]);
+    json["lines"] = linesAround(0, line);
+    if (json["lines"].empty() || json["lines"].back()["number"] < line)
+        throw InputError(fmt::format("the program has no line {}", line));
+    json["line"] = line;
+    json["bead"] = bead;
+    json["layer"] = print->runOf(print->beads[bead]).layer;
+    return json;
 }
 
 Json Document::linesAround(std::size_t object, std::uint32_t line) {

@@ -3,6 +3,7 @@
 
 #include "assemble/print/kept_prints.h"
 #include "gcode/toolpath/toolpath.h"
+#include "view/asked/message.h"
 #include "view/asked/picture_plan.h"
 #include "view/program_lines.h"
 
@@ -43,6 +44,9 @@ public:
     nlohmann::json layers();
     /// The line of a bead, and those around it. Throws InputError.
     nlohmann::json programAt(std::uint32_t bead);
+    /// The line that is asked for, those around it, how many there are of a text and which of them it is, and the bead
+    /// that is laid there, or last before it. Throws InputError.
+    nlohmann::json find(const FindMessage& find);
     /// The lines of an object's program around one of them. Throws InputError.
     nlohmann::json linesAround(std::size_t object, std::uint32_t line);
     /// What the page offers: layers, features, objects, tools, attributes. Of the first print, if there is one.

@@ -1,7 +1,9 @@
 #include "view/program_lines.h"
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace stratum::view {
@@ -17,6 +19,8 @@ std::string shown(std::string_view line) {
         if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = c == '\t' ? ' ' : '?';
     return text;
 }
+
+char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; }
 
 }  // namespace
 
@@ -50,15 +54,50 @@ std::vector<ProgramLine> ProgramText::around(std::uint32_t number, std::uint32_t
     return lines;
 }
 
+ProgramText::Found ProgramText::find(std::string_view text, std::uint32_t line, bool back) const {
+    const auto equal = [](char a, char b) { return small(a) == small(b); };
+    const auto hash = [](char c) { return std::hash<char>()(small(c)); };
+    const std::boyer_moore_horspool_searcher searcher(text.begin(), text.end(), hash, equal);
+    const std::string_view all = program_.text;
+    Found found, last;
+    std::uint32_t number = 1;  // of the line where `next` is
+    auto next = all.begin();
+    for (auto at = std::search(next, all.end(), searcher); at != all.end();
+         at = std::search(next, all.end(), searcher)) {
+        number += static_cast<std::uint32_t>(std::count(next, at, '\n'));
+        last = {number, ++found.count, 0};
+        const bool wanted = back ? number < line : number > line && found.line <= line;
+        if (wanted || (!back && found.count == 1)) std::tie(found.line, found.place) = std::pair(number, found.count);
+        next = std::find(at, all.end(), '\n');  // each line counts once
+    }
+    if (back && found.line == 0) std::tie(found.line, found.place) = std::pair(last.line, last.place);
+    return found;
+}
+
 std::vector<ProgramLine> KeptProgram::around(const std::string& path, const voxelize::PrintOptions& options,
                                              std::uint32_t number, std::uint32_t around) {
+    std::vector<ProgramLine> lines = textOf(path, options).around(number, around);
+    leave();
+    return lines;
+}
+
+ProgramText::Found KeptProgram::find(const std::string& path, const voxelize::PrintOptions& options,
+                                     std::string_view text, std::uint32_t line, bool back) {
+    const ProgramText::Found found = textOf(path, options).find(text, line, back);
+    leave();
+    return found;
+}
+
+const ProgramText& KeptProgram::textOf(const std::string& path, const voxelize::PrintOptions& options) {
     if (text_ == nullptr || text_->path() != path) {
         text_.reset();
         text_ = std::make_unique<ProgramText>(path, options);
     }
-    std::vector<ProgramLine> lines = text_->around(number, around);
+    return *text_;
+}
+
+void KeptProgram::leave() {
     if (text_->bytes() > most_bytes_) text_.reset();
-    return lines;
 }
 
 nlohmann::json KeptProgram::around(const std::string& path, const voxelize::PrintOptions& options,

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace stratum::view {
@@ -29,6 +30,13 @@ public:
 
     /// The lines number - around to number + around, as far as they are there.
     std::vector<ProgramLine> around(std::uint32_t number, std::uint32_t around) const;
+    /// Lines with a text, small and large letters alike.
+    struct Found {
+        std::uint32_t line = 0;  ///< the next one behind `line`, or the last one before it; else from the other end
+        std::size_t place = 0;   ///< of it among them, from 1
+        std::size_t count = 0;   ///< of all; 0: `line` is none
+    };
+    Found find(std::string_view text, std::uint32_t line, bool back) const;
     const std::string& path() const { return path_; }
     std::size_t bytes() const { return program_.text.size(); }
 
@@ -48,11 +56,17 @@ public:
     /// As ProgramText::around().
     std::vector<ProgramLine> around(const std::string& path, const voxelize::PrintOptions& options,
                                     std::uint32_t number, std::uint32_t around);
-    /// The same as JSON for a page, four lines before and after.
+    /// As ProgramText::find().
+    ProgramText::Found find(const std::string& path, const voxelize::PrintOptions& options, std::string_view text,
+                            std::uint32_t line, bool back);
+    /// As around(), as JSON for a page, four lines before and after.
     nlohmann::json around(const std::string& path, const voxelize::PrintOptions& options, std::uint32_t number);
     void forget() { text_.reset(); }
 
 private:
+    const ProgramText& textOf(const std::string& path, const voxelize::PrintOptions& options);
+    void leave();
+
     std::size_t most_bytes_;
     std::unique_ptr<ProgramText> text_;
 };

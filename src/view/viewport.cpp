@@ -72,6 +72,7 @@ void Viewport::ask(Message message) {
             if constexpr (std::is_same_v<Kind, MovesMessage>) moves_asked_ = true;
             if constexpr (std::is_same_v<Kind, LayersMessage>) layers_asked_ = true;
             if constexpr (std::is_same_v<Kind, ProgramMessage>) program_ = it;
+            if constexpr (std::is_same_v<Kind, FindMessage>) find_ = std::move(it);
             if constexpr (std::is_same_v<Kind, ShownMessage>) on_the_way_ = std::max(0, on_the_way_ - 1);
         },
         message);
@@ -87,7 +88,8 @@ bool Viewport::hasWork(bool urgent) const {
     const std::lock_guard lock(mutex_);
     if (!started_) return false;
     const bool may_send = on_the_way_ < kMostOnTheWay;
-    if ((asked_ && may_send) || !inspects_.empty() || program_ || (stage_ == Stage::moving && may_send)) return true;
+    if ((asked_ && may_send) || !inspects_.empty() || program_ || find_ || (stage_ == Stage::moving && may_send))
+        return true;
     if (urgent) return false;
     if (((beads_asked_ || moves_asked_) && may_send) || layers_asked_) return true;
     if (stage_ == Stage::waiting) return Clock::now() >= rest_at_;
@@ -102,7 +104,7 @@ std::optional<Viewport::Clock::time_point> Viewport::worksAt() const {
 
 bool Viewport::overtaken() const {
     const std::lock_guard lock(mutex_);
-    return asked_.has_value() || !inspects_.empty() || program_;
+    return asked_.has_value() || !inspects_.empty() || program_ || find_;
 }
 
 void Viewport::set(Stage stage) {
@@ -154,6 +156,7 @@ void Viewport::fail(const char* text) {
 void Viewport::work(const std::function<void()>& check) {
     std::optional<InspectMessage> inspect;
     std::optional<ProgramMessage> program;
+    std::optional<FindMessage> find;
     Stage stage = Stage::idle;
     bool beads = false;
     bool moves = false;
@@ -169,17 +172,19 @@ void Viewport::work(const std::function<void()>& check) {
         stage = stage_;
         saves = !saves_.empty() || saving_;
         program = std::exchange(program_, std::nullopt);
+        find = std::exchange(find_, std::nullopt);
+        const bool answers = inspect || program || find;
         const bool may_send = on_the_way_ < kMostOnTheWay && stage != Stage::moving;
         beads = beads_asked_ && may_send;
         moves = moves_asked_ && may_send && !beads;
-        layers =
-            !inspect && !program && !beads && !moves && stage != Stage::moving && std::exchange(layers_asked_, false);
-        on_the_way_ += !inspect && !program && (beads || moves) ? 1 : 0;
+        layers = !answers && !beads && !moves && stage != Stage::moving && std::exchange(layers_asked_, false);
+        on_the_way_ += !answers && (beads || moves) ? 1 : 0;
         if (stage == Stage::moving && on_the_way_ >= kMostOnTheWay) stage = Stage::waiting;
     }
     if (program) answer("program", [&] { return document_.programAt(program->bead); });
+    if (find) answer("found", [&] { return document_.find(*find); });
     if (inspect) return answer(*inspect);
-    if (program) return;
+    if (program || find) return;
     if (layers) return answer("layers", [&] { return document_.layers(); });
     if (beads || moves) {
         const bool more = beads ? beads_.sendPart() : moves_.sendPart();

@@ -79,6 +79,7 @@ private:
     std::deque<InspectMessage> inspects_;
     std::deque<SaveMessage> saves_;
     std::optional<ProgramMessage> program_;
+    std::optional<FindMessage> find_;
     bool beads_asked_ = false, moves_asked_ = false, layers_asked_ = false;
     int on_the_way_ = 0;  // pictures and parts of tables that the page has not taken yet
     bool started_ = false;

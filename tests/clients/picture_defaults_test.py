@@ -138,6 +138,11 @@ legend = stats["material"]["legend"][0]
 check(legend["unit"] == "mm/s" and legend["least"] < legend["most"] and len(legend["ramp"]) == 3, f"a ramp: {legend}")
 with open(path("p.png"), "rb") as file:
     with_legend = file.read()
+legend = report(gcode("tile.gcode"), *G, "--color-by", "speed", "--color-range", "10,30.5")["material"]["legend"][0]
+check((legend["least"], legend["most"]) == (10, 30.5), f"its ends as they are given: {legend}")
+for words, fragment in ((["--color-by", "speed", "--color-range", "30,10"], "MIN"), (["--color-range", "1,2"], "--color-by")):
+    done = call(VDBTRACE, gcode("tile.gcode"), "-o", path("r.png"), *G, *words)
+    check(done.returncode == 2 and fragment in done.stderr, f"{words}: exit {done.returncode}: {done.stderr.strip()}")
 report(gcode("tile.gcode"), *G, "--color-by", "speed")
 with open(path("p.png"), "rb") as file:
     check(file.read() != with_legend, "it is in the picture")

@@ -1,6 +1,5 @@
 """Travels, marks, layers and single moves on the viewer's page, in headless Chromium, against the program itself."""
 
-import contextlib
 import json
 import shutil
 import tempfile
@@ -12,7 +11,7 @@ skip_without(("chromium", "chromedriver"), ("selenium",))
 
 from chromium import browser
 from program_counts import Program
-from viewer_page import ViewerPage
+from viewer_page import COLORS, ViewerPage, screen
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_moves_")
 # Counts messages of web sockets by type.
@@ -27,45 +26,12 @@ window.WebSocket = class extends Plain {
   send(data) { const { type } = JSON.parse(data); window.asked[type] = (window.asked[type] ?? 0) + 1; super.send(data); }
 };
 window.WebSocket.OPEN = 1;"""
-# Whether the picture that the page draws has a colour within a pixel of each of these places, 0 to 1.
-COLORS = """
-const [places, wanted, done] = arguments;
-const image = new Image();
-image.src = window.vdbviewDrawn();
-image.decode().then(() => {
-  const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
-  context.drawImage(image, 0, 0);
-  done(places.map(([x, y]) => {
-    const { data } = context.getImageData(Math.round(x * image.width) - 2, Math.round(y * image.height) - 2, 4, 4);
-    for (let n = 0; n < data.length; n += 4)
-      if (wanted.every((value, k) => Math.abs(data[n + k] - value) < 40)) return true;
-    return false;
-  }));
-});"""
 
 
 page = browser(f"{FOLDER}/profile", 760, 560, 400)
 page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT})
 viewer = ViewerPage(page)
-js, until = viewer.js, viewer.until
-
-
-@contextlib.contextmanager
-def drawn(path, view=None):
-    """The page of a print, when it draws."""
-    with viewer.of(path, "--voxel-size", "0.2", query="#" + quote(json.dumps(view or {}))):
-        viewer.drawn_here()
-        yield
-
-
-def toggle(name, on=True):
-    js("""const box = document.querySelector(`#also input[value="${arguments[0]}"]`);
-          if (box.checked !== arguments[1]) box.click();""", name, on)
-
-
-def set_slider(name, value):
-    js("""const s = document.getElementById(arguments[0]); s.value = arguments[1];
-          for (const type of ["input", "change"]) s.dispatchEvent(new Event(type, { bubbles: true }));""", name, value)
+js, until, drawn, toggle, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.toggle, viewer.set_slider
 
 
 def counted(name):
@@ -153,21 +119,6 @@ def layers():
         check(f"0:{minutes:02}:{seconds:02}" in facts and " g " in facts, f"the head: {facts}")
 
 
-def screen(point, camera, aspect):
-    """Where a camera sees a point."""
-    eye, look = camera["eye"], camera["look_at"]
-    unit = lambda v: [c / sum(d * d for d in v) ** 0.5 for c in v]
-    cross = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    dot = lambda a, b: sum(p * q for p, q in zip(a, b))
-    forward = unit([b - a for a, b in zip(eye, look)])
-    right = unit(cross(forward, [0, 0, 1]))
-    up = cross(right, forward)
-    way = [b - a for a, b in zip(eye, point)]
-    from math import radians, tan
-    scale = 2 * dot(way, forward) * tan(radians(camera["fov"]) / 2)
-    return [0.5 + dot(way, right) / (scale * aspect), 0.5 - dot(way, up) / scale]
-
-
 def places():
     """Travels and seams are drawn where the program has them, in front of beads and not through them."""
     program = Program(gcode("tile.gcode"))
@@ -216,7 +167,7 @@ def looks():
                                     ("flow", "flow, mm³/s", None), ("layer_time", "layer time, h:min:s", None)):
             js("const s = document.getElementById('color-by'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", name)
             until(f"document.querySelector('#legend h2')?.textContent === '{title}'", f"the legend says {title}")
-            least, most = js("return [...document.querySelectorAll('#legend .ends span')].map((e) => e.textContent)")
+            least, most = js("return [...document.querySelectorAll('#legend .ends input')].map((e) => e.value)")
             check(not wanted or [least, most] == wanted, f"from {least} to {most}")
             check(name != "layer_time" or (least.count(":") == 2 and most.count(":") == 2), "times as a clock has them")
     with drawn(gcode("vase.gcode")):

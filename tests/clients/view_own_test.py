@@ -6,7 +6,7 @@ import tempfile
 import time
 from urllib.parse import quote
 
-from run_tools import check, gcode, skip_without
+from run_tools import check, corpus, gcode, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
@@ -90,8 +90,8 @@ def drag(lift):
         until("window.dragged === 10", "ten steps of turning")
 
 
-def agrees(name, view, *options):
-    with viewer.of(gcode(name), "--voxel-size", "0.0125", *options):
+def agrees(name, view, *options, path=None):
+    with viewer.of(path or gcode(name), "--voxel-size", "0.0125", *options):
         drawn_here()
         show(integrator="normal", bed=False, spp=256, camera=view)
         found = page.execute_async_script(COMPARE)
@@ -173,6 +173,8 @@ try:
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})
     agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5})
+    if huge := corpus("spot_1000cc_0.1mm_grid.gcode.gz"):
+        agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge)
     streams()
 finally:
     page.quit()

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 namespace stratum::view {
 namespace {
@@ -81,6 +83,25 @@ TEST(ProgramLines, FarIntoTheFile) {
         EXPECT_EQ(lines.back().number, std::min<std::uint32_t>(number + 2, kLines));
         for (const ProgramLine& line : lines) EXPECT_EQ(line.text, "; line " + std::to_string(line.number));
     }
+}
+
+// A text is found in small and large letters, each line once, from the line on in both directions, and round the ends.
+TEST(ProgramLines, ATextIsFound) {
+    const std::string path = ::testing::TempDir() + "program_lines_find.gcode";
+    std::ofstream(path) << "G1 X1\nM106 S9 ; m106\nG1\nm106\nG1 X2\nM106";
+    KeptProgram program;
+    const auto found = [&](std::string_view text, std::uint32_t line, bool back) {
+        const auto one = program.find(path, {}, text, line, back);
+        return std::array<std::size_t, 3>{one.line, one.place, one.count};
+    };
+    EXPECT_EQ(found("m106", 0, false), (std::array<std::size_t, 3>{2, 1, 3}));
+    EXPECT_EQ(found("M106", 2, false), (std::array<std::size_t, 3>{4, 2, 3}));
+    EXPECT_EQ(found("M106", 5, false), (std::array<std::size_t, 3>{6, 3, 3}));
+    EXPECT_EQ(found("M106", 6, false), (std::array<std::size_t, 3>{2, 1, 3}));
+    EXPECT_EQ(found("M106", 6, true), (std::array<std::size_t, 3>{4, 2, 3}));
+    EXPECT_EQ(found("M106", 2, true), (std::array<std::size_t, 3>{6, 3, 3}));
+    EXPECT_EQ(found("g1 x2", 3, true), (std::array<std::size_t, 3>{5, 1, 1}));
+    EXPECT_EQ(found("M107", 3, true), (std::array<std::size_t, 3>{0, 0, 0}));
 }
 
 // The file is read once, and again when it is forgotten; one that is larger than the bound each time.

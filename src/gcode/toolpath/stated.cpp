@@ -39,6 +39,21 @@ std::optional<double> sum(std::string_view text) {
     return good && total > 0 ? std::optional(total) : std::nullopt;
 }
 
+// "0x0,250x0,250x210,0x210"; OrcaSlicer states both forms, PrusaSlicer's without corners that are cut off. Empty if one
+// is none.
+std::vector<std::array<double, 2>> cornersOf(std::string_view outline) {
+    std::vector<std::array<double, 2>> corners;
+    for (const std::string_view part : partsOf(outline, ",")) {
+        const char* p = part.data();
+        const char* const end = p + part.size();
+        std::array<double, 2> corner{};
+        if (!parseNumber(p, end, corner[0]) || p == end || *p != 'x' || !parseNumber(++p, end, corner[1])) return {};
+        if (!(std::max(std::abs(corner[0]), std::abs(corner[1])) <= kWidest)) return {};
+        corners.push_back(corner);
+    }
+    return corners;
+}
+
 // The tool of "Extruder 1 Material", which it removes from the text up to what follows the number.
 std::optional<std::size_t> takeTool(std::string_view& text, std::string_view prefix) {
     if (!text.starts_with(prefix) || text.size() == prefix.size()) return std::nullopt;
@@ -128,7 +143,9 @@ void StatedReader::pair(std::string_view key, std::string_view value) {
     } else if (key == "filament_cost") {
         setNumbers(value, kDearest, facts_.prices);
     } else if (key == "bed_shape" || key == "printable_area") {  // PrusaSlicer's, OrcaSlicer's
-        setBed(value);
+        if (auto corners = cornersOf(value); corners.size() >= 3) facts_.bed = std::move(corners);
+    } else if (key == "bed_exclude_area") {  // BambuStudio's, OrcaSlicer's
+        setExcluded(value);
     } else if (key == "bed_size_x_mm" || key == "bed_size_y_mm") {  // KISSlicer's
         setBedSide(key[9] == 'x' ? 0 : 1, value);
     } else if (key == "printer_model" || key == "printer_name") {
@@ -196,18 +213,14 @@ void StatedReader::setting(std::string_view key, std::string_view value) {
     }
 }
 
-// "0x0,250x0,250x210,0x210"; OrcaSlicer states both forms, PrusaSlicer's without corners that are cut off.
-void StatedReader::setBed(std::string_view outline) {
-    std::vector<std::array<double, 2>> corners;
-    for (const std::string_view part : partsOf(outline, ",")) {
-        const char* p = part.data();
-        const char* const end = p + part.size();
-        std::array<double, 2> corner{};
-        if (!parseNumber(p, end, corner[0]) || p == end || *p != 'x' || !parseNumber(++p, end, corner[1])) return;
-        if (!(std::max(std::abs(corner[0]), std::abs(corner[1])) <= kWidest)) return;
-        corners.push_back(corner);
-    }
-    if (corners.size() >= 3) facts_.bed = std::move(corners);
+// Of more than four corners each four are a rectangle, as the slicer's own plate has them.
+void StatedReader::setExcluded(std::string_view areas) {
+    facts_.excluded.clear();
+    const std::vector<std::array<double, 2>> corners = cornersOf(areas);
+    if (corners.size() < 3) return;
+    const std::size_t each = corners.size() % 4 == 0 ? 4 : corners.size();
+    for (auto first = corners.begin(); first != corners.end(); first += static_cast<std::ptrdiff_t>(each))
+        facts_.excluded.emplace_back(first, first + static_cast<std::ptrdiff_t>(each));
 }
 
 // Of a rectangle from the origin.

@@ -31,7 +31,8 @@ struct StatedFacts {
     std::optional<double> layer_height;        ///< mm
     std::optional<double> first_layer_height;  ///< mm
     std::vector<std::array<double, 2>> bed;    ///< mm, corners of the printable area; empty, or at least three
-    bool programs_left_out = false;            ///< `seconds` is without the user's start and end programs (Cura)
+    std::vector<std::vector<std::array<double, 2>>> excluded;  ///< mm, corners of areas of the bed that stay free
+    bool programs_left_out = false;  ///< `seconds` is without the user's start and end programs (Cura)
 
     bool empty() const;
 };
@@ -48,7 +49,7 @@ private:
     void pair(std::string_view key, std::string_view value);
     void sentence(std::string_view key, std::string_view value);
     void setting(std::string_view key, std::string_view value);
-    void setBed(std::string_view outline);
+    void setExcluded(std::string_view areas);
     void setBedSide(std::size_t axis, std::string_view length);
     void setMaterial(std::size_t tool, std::string_view name);
     static void setNumbers(std::string_view list, double most, std::vector<double>& numbers);

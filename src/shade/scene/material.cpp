@@ -100,10 +100,15 @@ Color between(std::span<const std::uint32_t> stops, double t) {
     return mixed * mixed;
 }
 
-// A place of the ramp of a summary.
-Color rampOf(const trace::AttributeSummary& summary, std::size_t n) {
+// The values at the ends of a ramp.
+std::array<double, 2> endsOf(const MaterialOptions& options, const trace::AttributeSummary& summary) {
+    return options.range.value_or(std::array{summary.least, summary.most});
+}
+
+// A place of the ramp between two values.
+Color rampOf(const std::array<double, 2>& ends, std::size_t n) {
     const double t = static_cast<double>(n) / (kRampSteps - 1);
-    return summary.most > 0 && summary.least == -summary.most ? divergingColor(t) : rampColor(t);
+    return ends[1] > 0 && ends[0] == -ends[1] ? divergingColor(t) : rampColor(t);
 }
 
 }  // namespace
@@ -199,10 +204,11 @@ ObjectMaterial makeObjectMaterial(const MaterialOptions& options, const std::str
                     return n >= 0 && n <= span ? static_cast<std::size_t>(n) + 1 : std::size_t{0};
                 }};
     }
-    for (std::size_t n = 0; n < kRampSteps; ++n) brdfs.push_back(recolored(*base, rampOf(summary, n), text));
+    const std::array<double, 2> ends = endsOf(options, summary);
+    for (std::size_t n = 0; n < kRampSteps; ++n) brdfs.push_back(recolored(*base, rampOf(ends, n), text));
     brdfs.push_back(recolored(*base, kNeutral, text));
-    return {attribute, brdfs, [least, span](const glm::vec3& v) {
-                const double t = span > 0 ? (static_cast<double>(v.x) - least) / span : 0.0;
+    return {attribute, brdfs, [low = ends[0], wide = ends[1] - ends[0]](const glm::vec3& v) {
+                const double t = wide > 0 ? (static_cast<double>(v.x) - low) / wide : 0.0;
                 return 1 + static_cast<std::size_t>(std::lround(std::clamp(t, 0.0, 1.0) * (kRampSteps - 1)));
             }};
 }
@@ -225,9 +231,10 @@ Legend makeLegend(const MaterialOptions& options, const trace::AttributeSummary&
         for (const int value : summary.values)
             legend.entries.push_back({nameOf(value, options, summary), colorOfInteger(value, summary)});
     } else {
-        legend.least = summary.least;
-        legend.most = summary.most;
-        for (std::size_t n = 0; n < kRampSteps; ++n) legend.ramp.push_back(rampOf(summary, n));
+        const std::array<double, 2> ends = endsOf(options, summary);
+        legend.least = ends[0];
+        legend.most = ends[1];
+        for (std::size_t n = 0; n < kRampSteps; ++n) legend.ramp.push_back(rampOf(ends, n));
     }
     return legend;
 }

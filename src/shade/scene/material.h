@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@ namespace stratum::shade {
 struct MaterialOptions {
     std::string brdf;  ///< see makeBrdf; empty: the scene's. With `by`: for values that are not in `each`
     std::string by;    ///< name of the attribute that selects; empty: one material
+    std::optional<std::array<double, 2>> range;  ///< values at the ends of a ramp; empty: the least and the most
     std::map<std::string, std::string>
         each;  ///< value, its name, or "#rrggbb" of a color -> see makeBrdf; empty: `brdf` in a palette's colors
 };

@@ -21,12 +21,13 @@ namespace stratum::shade {
 
 /// The options of a scene, as on the command line. The defaults make a product photo.
 struct SceneOptions {
-    std::string brdf;                  ///< --brdf, see makeBrdf; empty: not given
-    std::string color_by;              ///< --color-by: an attribute of all level sets without a material of their own
-    bool smooth_normals = false;       ///< --normals smooth: shade with Tracer::shadingNormal()
-    std::string env = "studio";        ///< --env, see makeEnvironment
-    double env_rotation = 0.0;         ///< --env-rotation, degrees counter-clockwise as seen from above
-    double env_exposure = 0.0;         ///< --env-exposure, stops
+    std::string brdf;      ///< --brdf, see makeBrdf; empty: not given
+    std::string color_by;  ///< --color-by: an attribute of all level sets without a material of their own
+    std::optional<std::array<double, 2>> color_range;  ///< --color-range: values at the ends of its ramp
+    bool smooth_normals = false;                       ///< --normals smooth: shade with Tracer::shadingNormal()
+    std::string env = "studio";                        ///< --env, see makeEnvironment
+    double env_rotation = 0.0;                         ///< --env-rotation, degrees counter-clockwise as seen from above
+    double env_exposure = 0.0;                         ///< --env-exposure, stops
     std::vector<std::string> lights;   ///< --light, see parseLight and parseAmbient; they add to the environment
     bool bed = true;                   ///< a sweep under the print
     std::optional<double> bed_height;  ///< world units, where the bed lies; empty: restingHeight()

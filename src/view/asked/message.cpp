@@ -8,6 +8,24 @@
 #include <string>
 
 namespace stratum::view {
+namespace {
+
+FindMessage readFind(JsonSection& section) {
+    constexpr std::size_t kMostText = 200;
+    FindMessage find;
+    section.read("text", find.text);
+    if (find.text.size() > kMostText) section.fail("text", "a short text");
+    section.readInteger("line", find.line);
+    section.read("back", find.back);
+    if (section.find("seconds") != nullptr) {
+        section.read("seconds", find.seconds.emplace());
+        if (!(*find.seconds >= 0.0 && *find.seconds < 1e9)) section.fail("seconds", "a time of the print");
+    }
+    if (find.text.empty() && find.line == 0 && !find.seconds) section.fail("text", "a text, a line or seconds");
+    return find;
+}
+
+}  // namespace
 
 Message parseMessage(std::string_view text) {
     static const std::string name = "the message";
@@ -54,6 +72,8 @@ Message parseMessage(std::string_view text) {
         if (section.find("bead") == nullptr) section.fail("bead", "the number of a bead");
         section.readInteger("bead", program.bead);
         message = program;
+    } else if (type == "find") {
+        message = readFind(section);
     } else if (type == "open") {
         OpenMessage open;
         std::uint32_t file = 0;
@@ -61,7 +81,7 @@ Message parseMessage(std::string_view text) {
         open.file = file;
         message = open;
     } else {
-        section.fail("type", "show, inspect, save, cancel, shown, beads, moves, layers, program or open");
+        section.fail("type", "show, inspect, save, cancel, shown, beads, moves, layers, program, find or open");
     }
     section.finish();
     return message;

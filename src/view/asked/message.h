@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -41,13 +43,21 @@ struct LayersMessage {};
 struct ProgramMessage {
     std::uint32_t bead = 0;
 };
+/// Search the program: for the next line with a text behind `line`, for `line` itself, or for what is printed at a
+/// time.
+struct FindMessage {
+    std::string text;               ///< with small and large letters alike; empty: none
+    std::uint32_t line = 0;         ///< from 1; with a text, 0 is before the first
+    bool back = false;              ///< the text before `line` instead of behind it
+    std::optional<double> seconds;  ///< since the start
+};
 /// Look at another of the inputs.
 struct OpenMessage {
     std::size_t file = 0;
 };
 
 using Message = std::variant<ShowMessage, InspectMessage, SaveMessage, CancelMessage, ShownMessage, BeadsMessage,
-                             MovesMessage, LayersMessage, ProgramMessage, OpenMessage>;
+                             MovesMessage, LayersMessage, ProgramMessage, FindMessage, OpenMessage>;
 
 /// Throws InputError for anything else.
 Message parseMessage(std::string_view text);

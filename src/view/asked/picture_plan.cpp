@@ -87,6 +87,10 @@ private:
             scene.color_by = state_.color_by;
             say("--color-by", state_.color_by);
         }
+        if (state_.color_range) {
+            scene.color_range = state_.color_range;
+            say(fmt::format("--color-range={},{}", (*state_.color_range)[0], (*state_.color_range)[1]).c_str());
+        }
         if (!state_.material.empty()) {
             scene.brdf = state_.material;
             say("--brdf", state_.material);

@@ -23,6 +23,7 @@ using Json = nlohmann::json;
 constexpr int kLeastSide = 16, kMostSide = 8192;
 constexpr double kMostPixels = 40e6;
 constexpr double kMostLength = 1e7;  // world units
+constexpr double kMostValue = 1e9;   // of an attribute
 constexpr double kMostBeads = 4294967295.0;
 constexpr std::size_t kMostText = 200, kMostNumbers = 1000;
 
@@ -134,6 +135,12 @@ void readLook(JsonSection& section, ViewState& state) {
             section.fail("color_by", "an attribute");
         }
     }
+    if (const std::vector<double> range = section.numbers("color_range", 2); !range.empty()) {
+        if (!(range[0] < range[1] && std::abs(range[0]) < kMostValue && std::abs(range[1]) < kMostValue))
+            section.fail("color_range", "two numbers, the lower one first");
+        if (state.color_by.empty()) section.fail("color_range", "an attribute in color_by beside it");
+        state.color_range = {range[0], range[1]};
+    }
     state.material = text(section, "material");
     if (!state.material.empty() && !namesMaterial(state.material))
         section.fail("material",
@@ -220,6 +227,7 @@ Json toJson(const ViewState& state) {
               {"spp", state.spp}};
     if (state.printed) json["printed"] = *state.printed;
     if (state.beads) json["beads"] = *state.beads;
+    if (state.color_range) json["color_range"] = *state.color_range;
     if (state.exposure) json["exposure"] = *state.exposure;
     if (state.bed) json["bed"] = *state.bed;
     if (state.bed_surface) json["bed_surface"] = nameOf(shade::kBedSurfaces, *state.bed_surface);

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,12 +39,13 @@ struct ViewState {
     std::vector<std::uint32_t> objects;             ///< numbers; empty: all
     std::vector<std::uint8_t> tools;                ///< T numbers; empty: all
 
-    std::string color_by;            ///< an attribute; kAsGiven
-    std::string material;            ///< text of --brdf that needs no file of the user's; kAsGiven
-    std::string light;               ///< text of --env that needs no file; kAsGiven
-    double light_rotation = 0.0;     ///< degrees
-    std::optional<double> exposure;  ///< stops
-    std::optional<bool> bed;         ///< empty: as given
+    std::string color_by;                              ///< an attribute; kAsGiven
+    std::optional<std::array<double, 2>> color_range;  ///< values at the ends of its ramp
+    std::string material;                              ///< text of --brdf that needs no file of the user's; kAsGiven
+    std::string light;                                 ///< text of --env that needs no file; kAsGiven
+    double light_rotation = 0.0;                       ///< degrees
+    std::optional<double> exposure;                    ///< stops
+    std::optional<bool> bed;                           ///< empty: as given
     std::optional<shade::BedSurface> bed_surface;
     bool smooth = false;  ///< smooth normals
     std::optional<trace::ClipPlane> clip;

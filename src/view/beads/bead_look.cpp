@@ -124,9 +124,13 @@ BeadColors colorsOf(const ViewedPicture& picture, const gcode::Toolpath& toolpat
     BeadColors colors;
     colors.places.reserve(toolpath.beads.size());
     for (std::uint32_t bead = 0; bead < toolpath.beads.size(); ++bead) {
-        const shade::Color color = objects.front().of(valueOf(values, wanted.front(), bead)).albedo;
+        const glm::vec3 value = valueOf(values, wanted.front(), bead);
+        const shade::Color color = objects.front().of(value).albedo;
         const auto [found, fresh] = known.try_emplace(color, static_cast<std::uint16_t>(colors.palette.size()));
-        if (fresh && colors.palette.size() < kMaxColors) colors.palette.push_back(color);
+        if (fresh && colors.palette.size() < kMaxColors) {
+            colors.palette.push_back(color);
+            colors.values.push_back(value.x);
+        }
         colors.places.push_back(found->second);
     }
     return colors;

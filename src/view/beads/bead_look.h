@@ -25,6 +25,7 @@ nlohmann::json lookOf(const ViewedPicture& picture, const PicturePlan& plan, con
 struct BeadColors {
     std::vector<std::uint16_t> places;  ///< by bead
     std::vector<shade::Color> palette;  ///< linear reflectance
+    std::vector<float> values;          ///< of the attribute, by colour: of the first bead that has it
 };
 /// Of the first object of the picture. Empty if it has one colour.
 /// @param attribute  by which the picture is coloured

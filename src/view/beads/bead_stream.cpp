@@ -86,7 +86,8 @@ void BeadStream::sendLook(const ViewedPicture& picture, const PicturePlan& plan,
         if (!by.empty()) colors = colorsOf(picture, *toolpath, by);
         Json palette = Json::array();
         for (const shade::Color& color : colors.palette) palette.push_back({color.r, color.g, color.b});
-        output_.picture({{"type", "colors"}, {"palette", std::move(palette)}}, bytesOf(colors.places));
+        output_.picture({{"type", "colors"}, {"palette", std::move(palette)}, {"values", colors.values}},
+                        bytesOf(colors.places));
         colors_key_ = colors_key;
     }
     Json look = lookOf(picture, plan, lights ? &scene.bareLight() : nullptr);

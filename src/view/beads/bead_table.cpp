@@ -68,6 +68,7 @@ BeadTable::BeadTable(std::shared_ptr<const gcode::Toolpath> toolpath) : toolpath
     for (std::size_t axis = 0; axis < 3; ++axis) grain_[axis] = std::max((high[axis] - low_[axis]) / kSteps, 1e-9);
     runs_ = wordsOf(print);
     for (std::size_t n = 1; n < runs_.size(); n += 4) corners_ = corners_ || runs_[n] != 0;
+    for (const gcode::Run& run : print.runs) runs_.push_back(bitsOf(run.speed));
 }
 
 bool BeadTable::hasExtra(const gcode::Bead& bead) const {

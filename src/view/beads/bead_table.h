@@ -29,7 +29,7 @@ public:
     /// and of time the number of beads that are printed then.
     nlohmann::json head() const;
     /// Four words by run: height and height of the straight sides, mm (floats); layer; feature | tool << 8 | object <<
-    /// 16.
+    /// 16. Behind all of them, by run the programmed speed in mm/s (float).
     const std::vector<std::uint32_t>& runs() const { return runs_; }
     /// Texels of the beads from `bead` on, about `count` of them; `bead` becomes the next one.
     std::vector<std::uint32_t> part(std::size_t& bead, std::size_t count) const;

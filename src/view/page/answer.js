@@ -10,6 +10,12 @@ export function clock(seconds) {
   return `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
 }
 
+/** Of "1:25:13", "25:13" or "13". NaN: it is no such text. */
+export function secondsOf(text) {
+  if (!/^\d+(:[0-5]?\d){0,2}(\.\d+)?$/.test(text)) return NaN;
+  return text.split(":").reduce((sum, part) => 60 * sum + Number(part), 0);
+}
+
 function rowsOf(found, mm) {
   const rows = found.position ? [["Position, mm", point(times(found.position, mm))]] : [];
   const bead = found.bead;
@@ -40,11 +46,26 @@ export function linesOf(lines, here) {
   return list;
 }
 
+/** A nozzle whose tip is at a place of the canvas. */
+function drawHead(context, place, ratio) {
+  if (!place) return;
+  const [x, y] = place;
+  context.beginPath();
+  [[0, 0], [-5, -9], [-5, -20], [5, -20], [5, -9]].forEach(([right, up]) => context.lineTo(x + right * ratio, y + up * ratio));
+  context.closePath();
+  context.lineWidth = 1.5 * ratio;
+  context.strokeStyle = "#111";
+  context.fillStyle = "#e8a13a";
+  context.fill();
+  context.stroke();
+}
+
 export class Answer {
   points = []; // that are marked, of the print
   mm = 1; // a unit of the input's lengths
   lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
   measuring = false;
+  head = null; // where the nozzle is
 
   constructor(place, marks) {
     this.place = place;
@@ -102,7 +123,9 @@ export class Answer {
     canvas.height = Math.round(canvas.clientHeight * ratio);
     const context = canvas.getContext("2d");
     if (this.lines) context.drawImage(this.lines, 0, 0, canvas.width, canvas.height);
-    if (!camera || !this.points.length) return;
+    if (!camera) return;
+    if (this.head) drawHead(context, project(camera, aspect, this.head)?.map((v, n) => v * [canvas.width, canvas.height][n]), ratio);
+    if (!this.points.length) return;
     const places = this.points.map((p) => project(camera, aspect, p)).filter((p) => p !== null).map(([x, y]) => [x * canvas.width, y * canvas.height]);
     const stroke = (path) => {
       for (const [width, color] of [[5 * ratio, "rgba(0,0,0,.65)"], [2.5 * ratio, "#ffd23f"]]) {

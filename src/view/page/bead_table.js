@@ -8,7 +8,8 @@ export class BeadTable {
     const { texels, low, grain, kinds, features, objects, printed, generation } = head;
     Object.assign(this, { texels, low, grain, kinds, features, objects, printed, generation });
     this.words = new Uint32Array(4 * texels);
-    this.runs = new Uint32Array(runs);
+    this.runs = new Uint32Array(runs, 0, 4 * head.runs);
+    this.speeds = new Float32Array(runs, 16 * head.runs); // mm/s, by run
     this.got = 0; // texels
     this.extras = []; // texels that belong to the bead before them, ascending
   }
@@ -88,6 +89,28 @@ export class BeadTable {
     const moments = state.by_time ? this.printed.time : this.printed.volume;
     const end = state.printed >= 100 ? this.texels : this.texelOf(moments[Math.max(1, Math.round(state.printed * 2)) - 1]);
     return [0, end];
+  }
+
+  /** take(texel, run) of each bead that the state shows. */
+  each(state, take) {
+    const shown = this.shown(state);
+    const [first, end] = this.range(state);
+    for (let texel = first; texel < end; ++texel) {
+      const word = this.words[4 * texel + 3];
+      if (shown[word >>> 13]) take(texel, word >>> 13);
+      if (word & 4096) ++texel;
+    }
+  }
+
+  /** Of the path of a bead, mm. */
+  length(texel) {
+    const { words, grain } = this;
+    const [x, y, z, w] = words.subarray(4 * texel, 4 * texel + 4);
+    const ends = [[x & 65535, y & 65535], [x >>> 16, y >>> 16], [z & 65535, z >>> 16]].map(([a, b], axis) => (b - a) * grain[axis]);
+    const sweep = w & 4096 ? asFloat(words[4 * texel + 6]) : 0;
+    if (!sweep) return Math.hypot(...ends);
+    const [right, up] = [0, 1].map((axis) => asFloat(words[4 * texel + 4 + axis]) - ((axis ? x >>> 16 : x & 65535) * grain[axis]));
+    return Math.hypot(Math.hypot(right, up) * sweep, ends[2]);
   }
 
   /** What the table knows of a bead, as the server describes it. */

@@ -4,6 +4,7 @@ export class Connection extends EventTarget {
   #socket = null;
   #wait = 250; // ms until the next attempt
   #timer = 0;
+  #closed = false;
 
   constructor(url) {
     super();
@@ -19,6 +20,13 @@ export class Connection extends EventTarget {
     if (this.ready) this.#socket.send(JSON.stringify(message));
   }
 
+  /** For good. */
+  close() {
+    this.#closed = true;
+    this.#socket.close();
+    clearTimeout(this.#timer);
+  }
+
   #open() {
     const socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
@@ -29,9 +37,11 @@ export class Connection extends EventTarget {
     });
     socket.addEventListener("message", (event) => this.#take(event.data));
     socket.addEventListener("close", async () => {
+      if (this.#closed) return;
       this.#tell("gone");
       // A server that was started anew has another token, and never lets this page in.
       const answer = await fetch(location.pathname, { method: "HEAD" }).catch(() => null);
+      if (this.#closed) return;
       if (answer?.status === 403) return this.#tell("stranger");
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#open(), this.#wait);

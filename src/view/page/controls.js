@@ -2,13 +2,6 @@
 
 const byId = (id) => document.getElementById(id);
 
-function option(value, text) {
-  const element = document.createElement("option");
-  element.value = value;
-  element.textContent = text;
-  return element;
-}
-
 export class Controls {
   #facts = null;
   #box = null;
@@ -40,7 +33,7 @@ export class Controls {
     const print = facts.print;
     for (const group of document.querySelectorAll(".of-prints")) group.hidden = !print;
     const materials = byId("material");
-    materials.replaceChildren(option("", "as the file says"), option("#", "a colour"), ...facts.materials.map((name) => option(name, name)));
+    materials.replaceChildren(new Option("as the file says", ""), new Option("a colour", "#"), ...facts.materials.map((name) => new Option(name, name)));
     if (print) {
       for (const id of ["layer-low", "layer-high", "layer-from", "layer-to"]) byId(id).max = print.layers;
       this.#checks("features", print.features.map((f) => [f.name, f.name.replaceAll("-", " ")]), (list) => (this.state().hidden_features = list.off));
@@ -50,7 +43,7 @@ export class Controls {
       byId("tools-group").hidden = print.tools.length < 2;
     }
     const attributes = print ? print.attributes : ["color", "feature", "layer", "tool", "object", "width", "speed", "flow", "time", "layer_time", "temperature", "fan"];
-    byId("color-by").replaceChildren(option("", "the material"), ...attributes.map((name) => option(name, name === "color" ? "the file's colours" : name.replace("_", " "))));
+    byId("color-by").replaceChildren(new Option("the material", ""), ...attributes.map((name) => new Option(name === "color" ? "the file's colours" : name.replace("_", " "), name)));
     this.show();
   }
 
@@ -106,9 +99,7 @@ export class Controls {
     };
     place.replaceChildren(...entries.map(([value, text]) => {
       const label = document.createElement("label");
-      const box = document.createElement("input");
-      box.type = "checkbox";
-      box.value = value;
+      const box = Object.assign(document.createElement("input"), { type: "checkbox", value });
       box.addEventListener("change", collect);
       label.append(box, text);
       return label;
@@ -183,7 +174,10 @@ export class Controls {
   }
 
   #bindLook() {
-    byId("color-by").addEventListener("change", (e) => this.#set("color_by", e.target.value));
+    byId("color-by").addEventListener("change", (e) => {
+      this.state().color_range = null; // it was of another attribute
+      this.#set("color_by", e.target.value);
+    });
     byId("material").addEventListener("change", (e) => this.#set("material", e.target.value === "#" ? byId("color").value : e.target.value));
     byId("color").addEventListener("change", (e) => this.#set("material", e.target.value));
     byId("integrator").addEventListener("change", (e) => this.#set("integrator", e.target.value));

@@ -1,16 +1,20 @@
 // What the colours mean, in units as people write them.
-import { clock } from "./answer.js";
+import { clock, secondsOf } from "./answer.js";
 
 const UNITS = { "mm^3/s": "mm³/s", C: "°C", s: "h:min:s" };
+const BARS = 32;
 const number = (value, unit) => (unit === "s" ? clock(value) : Number(value.toPrecision(4)).toString());
 
 export class Legend {
   #legends = [];
   #shares = new Map(); // of the filament, by feature
 
-  /** toggle(name) hides a feature or shows it again: hidden() are names. */
-  constructor(place, { hidden, toggle }) {
-    Object.assign(this, { place, hidden, toggle });
+  #by_time = false; // the histogram
+
+  /** toggle(name) hides a feature or shows it again: hidden() are names. range() are the ends of the scale that were
+   * chosen, or null, setRange() sets them; histogram(least, most, count, by_time) as OwnPicture's. */
+  constructor(place, { hidden, toggle, range, setRange, histogram }) {
+    Object.assign(this, { place, hidden, toggle, range, setRange, histogram });
   }
 
   setFeatures(features) {
@@ -22,48 +26,82 @@ export class Legend {
     const old = this.#legends.flatMap((each) => each.entries);
     const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.hidden().includes(name) && !entries.some((each) => each.name === name));
     this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)] }));
-    show(this.place, this.#legends, { shares: this.#shares, hidden: this.hidden(), toggle: this.toggle });
+    this.place.hidden = legends.length === 0;
+    this.place.replaceChildren(...this.#legends.flatMap((each) => [
+      element("h2", "", [each.title.replace("_", " "), UNITS[each.unit] ?? each.unit].filter(Boolean).join(", ")),
+      ...(each.ramp.length ? this.#scale(each) : [this.#list(each)]),
+    ]));
+    this.weigh();
   }
-}
 
-function show(place, legends, { shares, hidden, toggle }) {
-  place.hidden = legends.length === 0;
-  place.replaceChildren();
-  for (const legend of legends) {
-    const title = document.createElement("h2");
-    title.textContent = [legend.title.replace("_", " "), UNITS[legend.unit] ?? legend.unit].filter(Boolean).join(", ");
-    place.append(title);
-    if (legend.ramp.length) {
-      const ramp = document.createElement("div");
-      ramp.className = "ramp";
-      ramp.style.background = `linear-gradient(to right, ${legend.ramp.join(", ")})`;
-      const ends = document.createElement("div");
-      ends.className = "ends";
-      ends.append(...[legend.least, legend.most].map((value) => {
-        const end = document.createElement("span");
-        end.textContent = number(value, legend.unit);
-        return end;
-      }));
-      place.append(ramp, ends);
-      continue;
-    }
-    const list = document.createElement("ul");
-    for (const entry of legend.entries) {
-      const item = document.createElement("li");
-      const swatch = document.createElement("span");
-      swatch.className = "swatch";
-      swatch.style.background = entry.color;
-      item.append(swatch, entry.name);
+  #scale({ least, most, unit, ramp }) {
+    const bar = element("div", "ramp");
+    bar.style.backgroundImage = `linear-gradient(to right, ${ramp.join(", ")})`;
+    const ends = element("form", "ends");
+    const inputs = [least, most].map((value, n) => {
+      const input = Object.assign(element("input"), { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });
+      input.addEventListener("change", () => {
+        const typed = inputs.map((each) => (unit === "s" ? secondsOf(each.value.trim()) : Number(each.value || NaN)));
+        // What was not typed keeps its digits.
+        const range = typed.map((each, k) => (inputs[k] === input ? each : [least, most][k]));
+        if (range[0] < range[1]) this.setRange(range);
+        else input.value = number(value, unit);
+      });
+      return input;
+    });
+    ends.addEventListener("submit", (event) => event.preventDefault());
+    const all = Object.assign(element("button", "", "All"), { type: "button", title: "From the least value to the most", hidden: !this.range() });
+    all.addEventListener("click", () => this.setRange(null));
+    ends.append(inputs[0], all, inputs[1]);
+    const by = element("select", "by");
+    by.append(new Option("by length", ""), new Option("by time", "1"));
+    by.value = this.#by_time ? "1" : "";
+    by.ariaLabel = "Histogram";
+    by.addEventListener("change", () => {
+      this.#by_time = by.value !== "";
+      this.weigh();
+    });
+    return [element("div", "bars"), bar, ends, by];
+  }
+
+  /** The histogram of what is shown now. */
+  weigh() {
+    const bars = this.place.querySelector(".bars");
+    if (!bars) return;
+    const { least, most } = this.#legends.find((each) => each.ramp.length);
+    const sums = this.histogram(least, most, BARS, this.#by_time);
+    bars.hidden = this.place.querySelector(".by").hidden = !sums;
+    if (!sums) return bars.replaceChildren();
+    const highest = Math.max(...sums);
+    const unit = (sum) => (this.#by_time ? clock(sum) : `${(sum / 1000).toFixed(2)} m`);
+    bars.replaceChildren(...sums.map((sum, n) => {
+      const bar = Object.assign(element("i"), { title: `from ${Number((least + ((most - least) * n) / BARS).toPrecision(4))}: ${unit(sum)}` });
+      bar.style.height = `${highest ? (100 * sum) / highest : 0}%`;
+      return bar;
+    }));
+  }
+
+  #list({ title, entries }) {
+    const list = element("ul");
+    for (const { name, color } of entries) {
+      const item = element("li");
+      const swatch = element("span", "swatch");
+      swatch.style.background = color;
+      item.append(swatch, name);
       list.append(item);
-      if (legend.title !== "feature" || !shares.has(entry.name)) continue;
-      item.append(Object.assign(document.createElement("output"), { textContent: `${(100 * shares.get(entry.name)).toFixed(1)} %` }));
+      if (title !== "feature" || !this.#shares.has(name)) continue;
+      item.append(element("output", "", `${(100 * this.#shares.get(name)).toFixed(1)} %`));
       item.setAttribute("role", "checkbox");
-      item.setAttribute("aria-checked", String(!hidden.includes(entry.name)));
+      item.setAttribute("aria-checked", String(!this.hidden().includes(name)));
       item.tabIndex = 0;
-      const press = () => toggle(entry.name);
+      const press = () => this.toggle(name);
       item.addEventListener("click", press);
       item.addEventListener("keydown", (event) => (event.key === " " || event.key === "Enter") && (event.preventDefault(), press()));
     }
-    place.append(list);
+    return list;
   }
+}
+
+function element(tag, className = "", textContent = "") {
+  return Object.assign(document.createElement(tag), { className, textContent });
 }

@@ -3,11 +3,13 @@ import { Answer, clock } from "./answer.js";
 import { OrbitCamera, handleInput, sub, unit } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
 import { KINDS } from "./move_table.js";
 import { OwnPicture, cameraOf } from "./own_picture.js";
 import { Legend } from "./legend.js";
 import { Saving } from "./saving.js";
+import { SecondPrint } from "./second_print.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
 const byId = (id) => document.getElementById(id);
@@ -34,14 +36,39 @@ window.vdbviewCounts = () => own.counts();
 function orbitOf({ eye, look_at, fov }) {
   return OrbitCamera.from({ eye, forward: unit(sub(look_at, eye)), up: [0, 0, 1], fov }, look_at);
 }
-const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`);
+const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname}socket`;
+const connection = new Connection(url);
 const controls = new Controls({ state: () => state, changed: (moving) => ask(moving), hold, eye: () => camera?.eye ?? null });
 const own = new OwnPicture(byId("beads"));
 const streamed = new URLSearchParams(location.search).has("stream"); // as if there were no WebGL2
-const legend = new Legend(byId("legend"), { hidden: () => state.hidden_features, toggle: (name) => controls.toggleFeature(name) });
+const legend = new Legend(byId("legend"), {
+  hidden: () => state.hidden_features,
+  toggle: (name) => controls.toggleFeature(name),
+  range: () => state.color_range,
+  setRange: (range) => {
+    state.color_range = range;
+    ask(false);
+  },
+  histogram: (...of) => own.histogram(state, ...of),
+});
 const motion = new MotionPanel({ state: () => state, changed: (moving) => ask(moving), hold, own, send: (message) => connection.send(message) });
+const second = new SecondPrint({ url, own, state: () => state, changed: () => ask(false) });
+const finder = new Finder({
+  send: (message) => connection.send(message),
+  go: (bead, layer, lines) => {
+    goTo(layer);
+    motion.go(bead, lines);
+  },
+  layer: goTo,
+});
 let movesAsked = false;
 const answer = new Answer(byId("answer"), byId("marks"));
+
+/** The last layer that is shown. */
+function goTo(layer) {
+  const one = byId("one-layer").checked;
+  controls.setLayers(one ? layer : Math.min(state.layers[0] || 1, layer), layer, false);
+}
 
 // ---------------------------------------------------------------- asking
 
@@ -87,7 +114,9 @@ function drawOwn(moving) {
   picture.classList.add("behind");
   byId("loading").hidden = true;
   answer.lines = null;
+  answer.head = own.head(state);
   own.draw(camera, state, shownSize, moving);
+  second.draw(camera, state, shownSize, moving);
   answer.draw(camera, aspect);
   record({ kind: "own", number, at: performance.now(), width: shownSize[0], height: shownSize[1], bytes: 0 });
   if (moving) say(`${shownSize[0]} × ${shownSize[1]}`);
@@ -203,6 +232,7 @@ on("hello", (detail) => {
   saving.forget();
   file = Math.min(file, detail.files.length - 1);
   files.value = String(file);
+  second.setFiles(detail.files, file);
   document.title = `${detail.files[file]} · vdbview`;
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
@@ -216,7 +246,7 @@ function askBeads() {
 on("beads", (detail) => own.begin(detail, detail.file));
 on("bead-part", (detail) => own.add(detail, detail.file));
 on("no-beads", (detail) => own.refuse(detail.text));
-on("colors", (detail) => own.paint(detail.palette, detail.file));
+on("colors", (detail) => own.paint(detail.palette, detail.values, detail.file));
 on("moves", (detail) => own.beginMoves(detail));
 on("move-part", (detail) => own.addMoves(detail, detail.file));
 on("no-moves", (detail) => {
@@ -230,6 +260,7 @@ on("layers", (detail) => {
   tellFacts();
 });
 on("program", (detail) => motion.setProgram(detail));
+on("found", (detail) => finder.take(detail));
 on("look", (detail) => {
   byId("command").textContent = `${detail.command} -o picture.png`;
   if (detail.number !== number) return own.illuminate(detail);
@@ -237,6 +268,7 @@ on("look", (detail) => {
   aspect = detail.width / detail.height;
   latest = detail.number;
   own.illuminate(detail);
+  legend.weigh();
   if (own.ready) drawOwn(false);
 });
 on("loading", (detail) => {
@@ -255,9 +287,12 @@ function tellFacts() {
 }
 on("facts", ({ facts }) => {
   controls.setFacts(facts);
-  if (generation !== facts.generation || !print) motion.setFacts(facts);
+  if (generation !== facts.generation || !print) {
+    motion.setFacts(facts);
+    finder.reset();
+  }
   print = facts.print;
-  own.setBed(print?.bed ?? null);
+  own.setBed(print?.bed ?? null, print?.excluded);
   motion.show();
   tellFacts();
   legend.setFeatures(print?.features ?? []);
@@ -309,9 +344,10 @@ async function copy(text, what) {
   }
 }
 
+const turning = { orbit: () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera()), moved: ask };
+handleInput(byId("second-beads"), { ...turning, clicked: () => {}, key: () => {} });
 handleInput(picture, {
-  orbit: () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera()),
-  moved: ask,
+  ...turning,
   clicked: (x, y) => {
     // At once what the table says; the server answers with the place, the time and the line.
     const texel = answer.measuring ? -1 : own.at(x, y);
@@ -326,7 +362,7 @@ handleInput(picture, {
       f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
       t: () => motion.toggle("travels"), s: () => motion.toggle("seams"), l: () => byId("one-layer").click(), p: () => byId("play").click(),
       "[": () => controls.setLayers(low, high - 1, false), "]": () => controls.setLayers(low, high + 1, false),
-      ",": () => motion.step(-1), ".": () => motion.step(1),
+      ",": () => motion.step(-1), ".": () => motion.step(1), "/": () => finder.open(),
     };
     if (event.key in views) setView(views[event.key]);
     else keys[event.key.toLowerCase()]?.();
@@ -363,6 +399,7 @@ byId("file").addEventListener("change", () => {
   orbit = null;
   latest = 0;
   answer.clear();
+  second.setFiles([...byId("file").options].map((each) => each.textContent), file);
   document.title = `${byId("file").selectedOptions[0].textContent} · vdbview`;
   generation = undefined;
   own.refuse("the beads are not here yet");

@@ -99,6 +99,16 @@ export class MotionPanel {
     this.#move(this.move + by, false);
   }
 
+  /** What is printed up to a bead, with these lines of the program. */
+  go(bead, lines) {
+    byId("moves-group").open = true;
+    this.state().beads = bead + 1;
+    this.state().printed = 100;
+    this.#bead = bead; // whose lines these are
+    byId("program").replaceChildren(lines);
+    this.changed(false);
+  }
+
   #move(move, moving) {
     const count = this.moveCount;
     if (!count) return;

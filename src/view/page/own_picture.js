@@ -1,7 +1,7 @@
 // The picture that this browser draws itself while anything moves; the server's finished one fades in over it.
 import { BeadRenderer } from "./bead_renderer.js";
 import { BeadTable } from "./bead_table.js";
-import { TINTS, bedLines } from "./bed.js";
+import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
 import { cross, sub, unit } from "./camera.js";
 
@@ -23,6 +23,8 @@ export class OwnPicture extends EventTarget {
   #renderer = null;
   #look = null;
   #colors = null;
+  #values = [];
+  #over = null; // see paintOver()
   #key = ""; // of the selection that the renderer has
   #range = [0, 0]; // of its texels
   #shown = null; // of the lines: layers, end
@@ -53,7 +55,7 @@ export class OwnPicture extends EventTarget {
     this.#stop("the beads are on their way");
     this.table = new BeadTable(head, runs);
     this.moves = null;
-    this.#look = this.#colors = null;
+    this.#look = this.#colors = this.#over = null;
   }
   add({ generation }, bytes) {
     if (this.table === null || generation !== this.table.generation) return;
@@ -80,16 +82,46 @@ export class OwnPicture extends EventTarget {
     if (this.moves.count) this.#renderer?.lines.set("moves", { table: this.moves.words, tints });
     this.#tell("moves");
   }
-  /** Corners of the printer's bed, or null. */
-  setBed(corners) {
+  /** Corners of the printer's bed, or null; and of the areas of it that stay free. */
+  setBed(corners, excluded = []) {
     this.bed = corners;
-    this.#renderer?.lines.set("bed", corners && { table: bedLines(corners, 0), tints: TINTS });
+    this.excluded = excluded;
+    this.#renderer?.lines.set("bed", corners && { table: bedLines([corners], 10), tints: BED_TINTS });
+    this.#renderer?.lines.set("excluded", excluded.length ? { table: bedLines(excluded, 2), tints: EXCLUDED_TINTS } : null);
   }
-  paint(palette, bytes) {
+  /** `values` of the attribute by colour. */
+  paint(palette, values, bytes) {
     if (!this.table) return;
     const places = new Uint16Array(bytes);
+    this.#values = values;
     this.#colors = places.length ? [this.table.byTexel(places), palette] : [null, null];
-    this.#renderer?.paint(...this.#colors);
+    if (!this.#over) this.#renderer?.paint(...this.#colors);
+  }
+  /** Other colours for a while, as places by texel and a palette; null: its own again. */
+  paintOver(colors) {
+    this.#over = colors;
+    this.#renderer?.paint(...(colors ?? this.#colors ?? [null, null]));
+  }
+  /** How much of what is shown has values in each of `count` even parts from least to most: mm, or seconds at the
+   * programmed speeds. What lies beyond is in the parts at the ends. Null: not known here. */
+  histogram(state, least, most, count, by_time) {
+    if (!this.ready || !this.#colors?.[0] || !(most > least)) return null;
+    const parts = this.#values.map((value) => (value === null ? -1 : Math.max(0, Math.min(count - 1, Math.floor(((value - least) / (most - least)) * count)))));
+    const sums = new Array(count).fill(0);
+    this.table.each(state, (texel, run) => {
+      const part = parts[this.#colors[0][texel]];
+      if (part >= 0) sums[part] += this.table.length(texel) / (by_time ? this.table.speeds[run] || Infinity : 1);
+    });
+    return sums;
+  }
+  /** Where the nozzle is if a part of the print is shown that ends within its layers; else null. */
+  head(state) {
+    if (!this.ready || (state.beads === null && state.printed >= 100)) return null;
+    const { table } = this;
+    const bead = table.beadOf(table.range(state)[1]) - 1;
+    if (bead < 0) return null;
+    const { layer, to } = table.describe(table.texelOf(bead));
+    return layer >= state.layers[0] && layer <= (state.layers[1] || Infinity) ? to : null;
   }
   illuminate(look) {
     this.#look = { ...this.#look, ...look };
@@ -117,9 +149,9 @@ export class OwnPicture extends EventTarget {
     }
     this.#key = "";
     this.why = "";
-    if (this.#colors) this.#renderer.paint(...this.#colors);
+    this.#renderer.paint(...(this.#over ?? this.#colors ?? [null, null]));
     if (this.#look) this.#renderer.illuminate(this.#look);
-    if (this.bed) this.setBed(this.bed);
+    if (this.bed) this.setBed(this.bed, this.excluded);
     this.#takeMoves();
     this.#tell("changed");
   }
@@ -161,7 +193,8 @@ export class OwnPicture extends EventTarget {
     const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
     this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
     if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio });
-    if (lines.sets.has("bed")) lines.set("bed", { layers: [0, 0], end: ALL, kinds: state.also.length > 0 && state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 });
+    const bed = { layers: [0, 0], end: ALL, kinds: state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 };
+    for (const name of ["bed", "excluded"]) if (lines.sets.has(name)) lines.set(name, bed);
   }
   /** How many moves of each kind are among what is shown; null: not known yet. */
   counts() {

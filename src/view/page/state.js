@@ -11,6 +11,7 @@ export const initial = () => ({
   objects: [],
   tools: [],
   color_by: "",
+  color_range: null,
   material: "",
   light: "",
   light_rotation: 0,
@@ -28,7 +29,7 @@ export const initial = () => ({
 export function toMessage(state, size) {
   const message = { ...state, size };
   delete message.also;
-  for (const key of ["exposure", "bed", "clip", "beads"]) if (message[key] === null) delete message[key];
+  for (const key of ["exposure", "bed", "clip", "beads", "color_range"]) if (message[key] === null) delete message[key];
   return message;
 }
 
@@ -46,6 +47,7 @@ export function toFragment(state, file) {
 function fits(key, value, first) {
   if (key === "camera") return isCamera(value);
   if (key === "clip") return value === null || (Array.isArray(value) && value.length === 4 && value.every(Number.isFinite));
+  if (key === "color_range") return value === null || (Array.isArray(value) && value.length === 2 && value.every(Number.isFinite));
   if (key === "layers") return Array.isArray(value) && value.length === 2 && value.every(Number.isInteger);
   if (["hidden_features", "also"].includes(key)) return Array.isArray(value) && value.every((each) => typeof each === "string");
   if (key === "beads") return value === null || (Number.isInteger(value) && value > 0);

@@ -106,6 +106,18 @@ TEST(Stated, TheBed) {
         EXPECT_TRUE(bedOf(nonsense).empty()) << nonsense;
 }
 
+TEST(Stated, AreasThatStayFree) {
+    using Areas = std::vector<std::vector<std::array<double, 2>>>;
+    const auto areasOf = [](const std::string& comments) { return readSettings(comments).stated.excluded; };
+    EXPECT_EQ(areasOf("; bed_exclude_area = 0x0,18x0,18x28,0x28\n"), (Areas{{{0, 0}, {18, 0}, {18, 28}, {0, 28}}}));
+    EXPECT_EQ(areasOf("; bed_exclude_area = 0x0,5x0,5x5,0x5,9x0,19x0,19x5,9x5\n").at(1),
+              (std::vector<std::array<double, 2>>{{9, 0}, {19, 0}, {19, 5}, {9, 5}}));
+    EXPECT_EQ(areasOf("; bed_exclude_area = 0x0,5x0,2x5\n").at(0).size(), 3U);
+    for (const char* none :
+         {"; bed_exclude_area = \n", "; bed_exclude_area = 0x0\n", "; bed_exclude_area = 0x0,1e9x0,1x1\n"})
+        EXPECT_TRUE(areasOf(none).empty()) << none;
+}
+
 TEST(Stated, TheSummaryBeginsWithIt) {
     const std::string text = summarize(readProgram(
         "M83\nG1 Z.2\nG1 X9 E4\n; estimated printing time (normal mode) = 1h 5m 24s\n; total filament used [g] = "

@@ -24,6 +24,9 @@ TEST(Message, EveryKindIsRead) {
     EXPECT_TRUE(std::holds_alternative<MovesMessage>(parseMessage(R"({"type": "moves"})")));
     EXPECT_TRUE(std::holds_alternative<LayersMessage>(parseMessage(R"({"type": "layers"})")));
     EXPECT_EQ(std::get<ProgramMessage>(parseMessage(R"({"type": "program", "bead": 12})")).bead, 12U);
+    EXPECT_EQ(std::get<FindMessage>(parseMessage(R"({"type": "find", "text": "M106", "line": 3})")).text, "M106");
+    EXPECT_EQ(std::get<FindMessage>(parseMessage(R"({"type": "find", "line": 3})")).line, 3U);
+    EXPECT_EQ(std::get<FindMessage>(parseMessage(R"({"type": "find", "seconds": 0})")).seconds, 0.0);
     EXPECT_EQ(std::get<OpenMessage>(parseMessage(R"({"type": "open", "file": 2})")).file, 2U);
 }
 
@@ -48,6 +51,9 @@ TEST(Message, OthersAreRefused) {
                              R"({"type": "program", "bead": -1})",
                              R"({"type": "program", "bead": 1.5})",
                              R"({"type": "moves", "kind": 1})",
+                             R"({"type": "find"})",
+                             R"({"type": "find", "seconds": -1})",
+                             R"({"type": "find", "line": -1})",
                              R"({"type": "show", "state": {"beads": 0}})",
                              R"({"type": "show", "state": {"beads": 2.5}})",
                              R"({"type": "show", "state": {"beads": 2, "printed": 50}})",

@@ -38,6 +38,7 @@ TEST(PicturePlan, EveryChoiceIsInTheLine) {
     state.objects = {2};
     state.tools = {0, 1};
     state.color_by = "layer";
+    state.color_range = {2, 9.5};
     state.material = "#ff8800";
     state.light = "sky:20,-30";
     state.light_rotation = -10;
@@ -47,10 +48,11 @@ TEST(PicturePlan, EveryChoiceIsInTheLine) {
     state.clip = trace::ClipPlane{{-1, 0, 0}, -90};
     state.spp = 16;
     const std::string line = lineOf(state);
-    for (const char* words : {"--eye=1.25,-2.5,3 --look-at=0,0,0.5", "--fov 35", "--layers 4:", "--printed time:50%",
-                              "--features=-skirt,-infill", "--object 2", "--tool 0 --tool 1", "--color-by layer",
-                              "--brdf '#ff8800'", "--env sky:20,-30", "--env-rotation=-10", "--no-bed",
-                              "--exposure=-0.5", "--normals smooth", "--clip=-1,0,0,-90", "--spp 16"})
+    for (const char* words :
+         {"--eye=1.25,-2.5,3 --look-at=0,0,0.5", "--fov 35", "--layers 4:", "--printed time:50%",
+          "--features=-skirt,-infill", "--object 2", "--tool 0 --tool 1", "--color-by layer --color-range=2,9.5",
+          "--brdf '#ff8800'", "--env sky:20,-30", "--env-rotation=-10", "--no-bed", "--exposure=-0.5",
+          "--normals smooth", "--clip=-1,0,0,-90", "--spp 16"})
         EXPECT_NE(line.find(words), std::string::npos) << words << " in " << line;
 }
 

@@ -27,7 +27,7 @@ TEST(ViewState, AnEmptyOneIsAsGiven) {
 TEST(ViewState, WhatIsWrittenIsReadAgain) {
     const char* text = R"({"size": [640, 360], "camera": {"eye": [1.5, -200, 0.1], "look_at": [0, 0, 3], "fov": 40},
         "layers": [3, 9], "printed": 12.5, "by_time": true, "hidden_features": ["skirt", "infill"], "objects": [2, 1, 2],
-        "tools": [1], "color_by": "feature", "material": "pla-blue", "light": "sky:25,30", "light_rotation": -20,
+        "tools": [1], "color_by": "feature", "color_range": [-1.5, 20], "material": "pla-blue", "light": "sky:25,30", "light_rotation": -20,
         "exposure": 1.5, "bed": true, "bed_surface": "grid", "smooth": true, "clip": [0, 0, 1, 4.5],
         "integrator": "direct", "spp": 64})";
     const ViewState state = parseViewState(Json::parse(text));
@@ -88,6 +88,9 @@ TEST(ViewState, WhatMakesNoPictureIsRefused) {
                              R"({"tools": [256]})",
                              R"({"tools": [0.5]})",
                              R"({"color_by": "feature,layer"})",
+                             R"({"color_range": [1, 2]})",
+                             R"({"color_by": "speed", "color_range": [2, 2]})",
+                             R"({"color_by": "speed", "color_range": [0, 1e30]})",
                              R"({"light_rotation": 1e4})",
                              R"({"exposure": 99})",
                              R"({"bed": "no"})",

@@ -31,7 +31,7 @@ TEST(BeadStream, SendsTheTableInParts) {
     ASSERT_GE(page.bytes.size(), 2U);
     const nlohmann::json& head = page.bytes.front().first;
     EXPECT_EQ(head["type"], "beads");
-    EXPECT_EQ(page.bytes.front().second, 16 * head["runs"].get<std::size_t>());
+    EXPECT_EQ(page.bytes.front().second, 20 * head["runs"].get<std::size_t>());
     std::size_t size = 0;
     for (std::size_t n = 1; n < page.bytes.size(); ++n) size += page.bytes[n].second;
     EXPECT_EQ(size, 16 * head["texels"].get<std::size_t>());

@@ -1,0 +1,54 @@
+// Finds a text, a line, a time or a layer of the program, and goes there.
+import { linesOf, secondsOf } from "./answer.js";
+
+const byId = (id) => document.getElementById(id);
+const HINTS = { text: "M106", line: "1200", time: "1:25:00", layer: "12" };
+
+export class Finder {
+  #line = 0; // that was found last
+
+  /** send(message): to the server; go(bead, layer, lines): shows what is printed up to a bead; layer(number): a layer. */
+  constructor({ send, go, layer }) {
+    Object.assign(this, { send, go, layer });
+    byId("find").addEventListener("submit", (event) => (event.preventDefault(), this.#ask(false)));
+    byId("find-back").addEventListener("click", () => this.#ask(true));
+    byId("find-what").addEventListener("change", () => {
+      byId("find-for").placeholder = HINTS[byId("find-what").value];
+      byId("find-back").disabled = byId("find-what").value !== "text";
+      this.#say("");
+    });
+  }
+
+  open() {
+    byId("find-group").open = true;
+    byId("find-for").focus();
+    byId("find-for").select();
+  }
+  /** Another program. */
+  reset() {
+    this.#line = 0;
+    this.#say("");
+  }
+
+  #say(text) {
+    byId("find-result").textContent = text;
+  }
+  #ask(back) {
+    const what = byId("find-what").value;
+    const wanted = byId("find-for").value.trim();
+    if (!wanted) return;
+    if (what === "text") return this.send({ type: "find", text: wanted, line: this.#line, back });
+    const number = what === "time" ? secondsOf(wanted) : /^\d+$/.test(wanted) ? Number(wanted) : NaN;
+    if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.#say(`That is no ${what}: write it as ${HINTS[what]}.`);
+    if (what === "layer") return this.layer(number);
+    this.send({ type: "find", [what === "time" ? "seconds" : "line"]: number });
+  }
+
+  /** What the server has found. */
+  take(found) {
+    if (found.matches === 0) return this.#say("The program has no such text.");
+    this.#line = found.line;
+    this.#say(`${found.matches ? `${found.match} of ${found.matches}: ` : ""}line ${found.line}, layer ${found.layer}`);
+    this.go(found.bead, found.layer, linesOf(found.lines, found.line));
+  }
+}

@@ -1,0 +1,124 @@
+// Another of the inputs beside the first: the same camera and selection, and what of the beads differs.
+import { Connection } from "./connection.js";
+import { amount, onlyIn } from "./difference.js";
+import { OwnPicture } from "./own_picture.js";
+import { initial, toMessage } from "./state.js";
+
+const byId = (id) => document.getElementById(id);
+const GREY = [0.35, 0.35, 0.35];
+const [GONE, NEW] = [[0.75, 0.03, 0.02], [0.02, 0.45, 0.05]];
+
+export class SecondPrint {
+  #connection = null;
+  #own = null;
+  #asked = ""; // of the look
+  #number = 0;
+  #masks = null; // of what only one of the two has
+
+  /** url: of the socket; own: the first print's picture; state(); changed(): what is beside it has changed. */
+  constructor({ url, own, state, changed }) {
+    Object.assign(this, { url, own, state, changed });
+    byId("second").addEventListener("change", () => this.#open());
+    byId("differs").addEventListener("change", () => {
+      this.#compare();
+      this.changed();
+    });
+    own.addEventListener("changed", () => this.shown && this.#compare());
+  }
+
+  get shown() {
+    return this.#connection !== null;
+  }
+
+  /** The inputs, of which one is shown. */
+  setFiles(names, file) {
+    byId("second").replaceChildren(new Option("nothing", ""), ...names.map((name, n) => new Option(name, String(n))).filter((_, n) => n !== file));
+    byId("second-group").hidden = names.length < 2;
+    if (this.shown) this.#open();
+  }
+
+  #open() {
+    this.#connection?.close();
+    const file = byId("second").value;
+    this.#connection = null;
+    this.#masks = null;
+    this.#asked = "";
+    byId("stage").classList.toggle("two", file !== "");
+    this.#say("");
+    this.own.paintOver(null);
+    if (file === "") return this.changed();
+    const connection = (this.#connection = new Connection(this.url));
+    if (!this.#own) {
+      this.#own = new OwnPicture(byId("second-beads"));
+      this.#own.addEventListener("changed", () => {
+        if (!this.#own.ready) this.#asked = ""; // it has no light
+        this.#compare();
+        this.changed();
+      });
+    }
+    const own = this.#own;
+    own.refuse("the beads are not here yet");
+    const on = (type, take) => connection.addEventListener(type, ({ detail }) => connection === this.#connection && take(detail));
+    let generation;
+    on("hello", () => {
+      connection.send({ type: "open", file: Number(file) });
+      connection.send({ type: "beads" });
+    });
+    on("facts", ({ facts }) => {
+      if (generation !== undefined && generation !== facts.generation) connection.send({ type: "beads" });
+      generation = facts.generation;
+    });
+    on("beads", (head) => own.begin(head, head.file));
+    on("bead-part", (part) => own.add(part, part.file));
+    on("no-beads", ({ text }) => (own.refuse(text), this.#say(`It can't be shown here: ${text}.`)));
+    on("colors", ({ palette, values, file: places }) => own.paint(palette, values, places));
+    on("look", (look) => own.illuminate(look));
+    on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
+    on("failed", ({ text }) => this.#say(text));
+    on("picture", () => connection.send({ type: "shown" }));
+    this.changed();
+  }
+
+  #say(text) {
+    byId("second-info").textContent = text;
+  }
+
+  // The colours of what only one of the two has.
+  #compare() {
+    const [a, b] = [this.own, this.#own];
+    if (!this.shown || !byId("differs").checked || !a.table?.complete || !b?.table?.complete) {
+      a.paintOver(null);
+      return b?.paintOver(null);
+    }
+    if (this.#masks?.from !== a.table || this.#masks.of !== b.table)
+      this.#masks = { from: a.table, of: b.table, gone: onlyIn(a.table, b.table), fresh: onlyIn(b.table, a.table) };
+    a.paintOver([this.#masks.gone, [GREY, GONE]]);
+    b.paintOver([this.#masks.fresh, [GREY, NEW]]);
+  }
+
+  /** Beside the first print, of the same state. */
+  draw(camera, state, size, moving) {
+    if (!this.shown) return;
+    // Numbers of beads, objects and tools are those of the first.
+    const its = { ...state, beads: null, objects: [], tools: [] };
+    this.#askLook(its);
+    if (!this.#own.ready) return;
+    this.#own.draw(camera, its, size, moving);
+    if (!byId("differs").checked) this.#say("");
+    else if (!moving && this.#masks) {
+      const [gone, fresh] = [amount(this.own.table, this.#masks.gone, state), amount(this.#own.table, this.#masks.fresh, its)];
+      const text = ({ beads, length }) => `${beads} ${beads === 1 ? "bead" : "beads"}, ${(length / 1000).toFixed(2)} m`;
+      this.#say(`Red, gone: ${text(gone)}. Green, new: ${text(fresh)}.`);
+    }
+  }
+
+  // Light and colours; the server's picture is not wanted, and small.
+  #askLook(state) {
+    const first = initial();
+    const look = { ...state, layers: first.layers, printed: 100, hidden_features: [], clip: null, spp: 1 };
+    const key = JSON.stringify({ ...look, camera: null, also: null });
+    if (!this.#connection.ready || !this.#own.table?.complete || this.#own.why || key === this.#asked) return;
+    this.#asked = key;
+    this.#connection.send({ type: "show", number: ++this.#number, moving: false, own: true, state: toMessage(look, [16, 16]) });
+  }
+}
