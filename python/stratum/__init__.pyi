@@ -265,6 +265,7 @@ def render(
     zoom: float | None = ..., integrator: str | None = ..., bounces: int | None = ...,
     phong: Sequence[float] | None = ..., ao_distance: float | None = ...,
     brdf: str | PathLike[str] | None = ..., color: str | Sequence[str] | None = ..., color_by: str | None = ...,
+    color_range: tuple[float, float] | None = ...,
     normals: Literal["geometric", "smooth"] | None = ..., env: str | PathLike[str] | None = ...,
     env_rotation: float | None = ..., env_exposure: float | None = ..., lights: str | Sequence[str] | None = ...,
     bed: bool | None = ..., bed_surface: Literal["paper", "pei", "grid"] | None = ...,

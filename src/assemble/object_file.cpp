@@ -67,6 +67,16 @@ std::string readUp(JsonSection& section) {
     return up;
 }
 
+std::optional<std::array<double, 2>> readColorRange(JsonSection& section, const std::string& color_by) {
+    const std::vector<double> ends = section.numbers("color_range", 2);
+    if (ends.empty()) return std::nullopt;
+    constexpr double kMost = 1e9;  // of any attribute
+    if (!(-kMost <= ends[0] && ends[0] < ends[1] && ends[1] <= kMost))
+        section.fail("color_range", "two numbers, the lower one first");
+    if (color_by.empty()) section.fail("color_range", "an attribute in color_by beside it");
+    return std::array{ends[0], ends[1]};
+}
+
 ObjectOptions readObject(JsonSection section, const std::filesystem::path& folder) {
     ObjectOptions object;
     section.read("vdb", object.vdb);
@@ -83,6 +93,7 @@ ObjectOptions readObject(JsonSection section, const std::filesystem::path& folde
         if (!object.material.by.empty()) section.fail("color_by", "no material with \"by\" beside it");
         object.material.by = color_by;
     }
+    object.material.range = readColorRange(section, color_by);
     if (sdf) {
         object.sdf = readSdf(*sdf, section.place("sdf"), section.file());
         section.read("voxel_size", object.voxel_size);

@@ -6,7 +6,9 @@
 #include "trace/scene_intersector.h"
 #include "trace/sdf.h"
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace stratum::assemble {
@@ -28,6 +30,10 @@ ObjectOptions readObject(JsonSection section, const std::filesystem::path& folde
 
 /// The key "file_up": y, z or nothing. Throws InputError.
 std::string readUp(JsonSection& section);
+
+/// The key "color_range": values at the ends of the ramp of `color_by`, ascending; nothing if it is not there. Throws
+/// InputError.
+std::optional<std::array<double, 2>> readColorRange(JsonSection& section, const std::string& color_by);
 
 /// A file beside the scene, if there is one of that name; else the text as it is: a preset.
 std::string beside(const std::filesystem::path& folder, const std::string& text);

@@ -178,6 +178,7 @@ SceneFile readSceneFile(const std::filesystem::path& path) {
     JsonSection top(json, "", name);
     readShapes(top, folder, name, file);
     top.read("color_by", file.scene.color_by);
+    file.scene.color_range = readColorRange(top, file.scene.color_by);
     std::string normals = "geometric";
     top.read("normals", normals);
     if (normals != "geometric" && normals != "smooth") top.fail("normals", "geometric or smooth");

@@ -4,13 +4,14 @@
 #include "base/error.h"
 #include "gcode/summary.h"
 #include "shade/brdf/preset_names.h"
+#include "voxelize/grid/attributes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 namespace stratum::view {
@@ -18,9 +19,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Attributes that colour a print. Overfill takes seconds of a large print, and is none of a page's.
-constexpr std::array<const char*, 10> kAttributes = {"color", "feature", "layer", "tool", "object",
-                                                     "width", "speed",   "flow",  "time", "layer_time"};
+// By which a page may colour. Overfill takes seconds of a large print, and is none of a page's.
+std::vector<std::string_view> attributesOf(const gcode::Toolpath* print) {
+    std::vector<std::string_view> names = voxelize::attributeNames();
+    std::erase_if(names, [print](std::string_view name) {
+        return name == "overfill" || (print != nullptr && ((name == "temperature" && print->temperatures.empty()) ||
+                                                           (name == "fan" && print->fans.empty())));
+    });
+    return names;
+}
 
 Json factsOf(const gcode::Toolpath& toolpath) {
     Json features = Json::array();
@@ -44,10 +51,7 @@ Json factsOf(const gcode::Toolpath& toolpath) {
     Json facts{{"layers", toolpath.layer_count}, {"features", std::move(features)},
                {"objects", std::move(objects)},  {"tools", tools},
                {"slicer", toolpath.slicer},      {"beads", toolpath.beads.size()},
-               {"height_mm", highest},           {"filament_mm", toolpath.filament_mm},
-               {"attributes", kAttributes}};
-    if (!toolpath.temperatures.empty()) facts["attributes"].push_back("temperature");
-    if (!toolpath.fans.empty()) facts["attributes"].push_back("fan");
+               {"height_mm", highest},           {"filament_mm", toolpath.filament_mm}};
     // As the file states them.
     if (!toolpath.stated.bed.empty()) facts["bed"] = toolpath.stated.bed;
     if (!toolpath.stated.excluded.empty()) facts["excluded"] = toolpath.stated.excluded;
@@ -160,11 +164,10 @@ Json Document::facts() const {
                {"path", given_.path},
                {"materials", shade::brdfNames()},
                {"generation", generation_}};
-    for (std::size_t n = 0; n < given_.objects.size(); ++n)
-        if (const auto print = toolpath(n)) {
-            facts["print"] = factsOf(*print);
-            break;
-        }
+    std::shared_ptr<const gcode::Toolpath> print;
+    for (std::size_t n = 0; n < given_.objects.size() && !print; ++n) print = toolpath(n);
+    if (print) facts["print"] = factsOf(*print);
+    facts["attributes"] = attributesOf(print.get());
     return facts;
 }
 

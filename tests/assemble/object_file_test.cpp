@@ -25,7 +25,7 @@ TEST(ObjectFile, ReadsEveryKey) {
     const test::ScratchFolder scratch;
     test::writeText(scratch / "red.bsdf", "x");
     const auto file = scene(scratch, R"(
-      {"vdb": "a.vdb", "grid": "surface", "color_by": "layer",
+      {"vdb": "a.vdb", "grid": "surface", "color_by": "layer", "color_range": [2, 9],
        "transform": {"scale": 2, "rotate": [90, 0, 0], "translate": [1, 2, 3]}},
       {"vdb": "b.vdb", "material": {"by": "tool", "0": "red.bsdf", "1": "pla-blue", "other": "lambert:1,1,1"}},
       {"sdf": {"sphere": {"radius": 2}}, "voxel_size": 0.1, "material": "pla-blue",
@@ -36,6 +36,7 @@ TEST(ObjectFile, ReadsEveryKey) {
     EXPECT_EQ(a.vdb, (scratch / "a.vdb").string());
     EXPECT_EQ(a.grid, "surface");
     EXPECT_EQ(a.material.by, "layer");
+    EXPECT_EQ(a.material.range, (std::array<double, 2>{2, 9}));
     EXPECT_EQ(a.placement.linear * glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 2));
     EXPECT_EQ(a.placement.offset, glm::dvec3(1, 2, 3));
     const auto& b = file.objects[1];
@@ -72,6 +73,8 @@ TEST(ObjectFile, SaysWhatIsWrong) {
     refused(R"({"vdb": "a.vdb", "transform": {"scale": "big"}})", "objects[0].transform.scale: expected 3 numbers");
     refused(R"({"vdb": "a.vdb", "material": {"0": "x"}})", "objects[0].material.by");
     refused(R"({"sdf": {"sphere": {"radius": 1}}, "color_by": "tool"})", "an sdf has no attributes");
+    refused(R"({"vdb": "a.vdb", "color_range": [1, 2]})", "an attribute in color_by");
+    refused(R"({"vdb": "a.vdb", "color_by": "speed", "color_range": [2, 2]})", "the lower one first");
     refused(R"({"sdf": {"spere": {"radius": 1}}})", "objects[0].sdf.spere: unknown key; did you mean 'sphere'");
     refused(R"({"sdf": {"sphere": {"radius": -1}}})", "a sphere's radius is -1");
     refused(R"({"sdf": {"sphere": {}}})", "objects[0].sdf.sphere.radius: expected a number");

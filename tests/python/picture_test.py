@@ -89,6 +89,7 @@ class Pictures(unittest.TestCase):
         vdb = path_of("tile.vdb")
         stratum.write_vdb(stratum.read(gcode("tile.gcode")), vdb, voxel_size=0.2, grids="layer")
         self.same(vdb, ["--spp", "2", "--color-by", "layer"], spp=2, color_by="layer")
+        self.same(vdb, ["--spp", "2", "--color-by", "layer", "--color-range", "2,9"], spp=2, color_by="layer", color_range=(2, 9))
 
     def test_colors_of_tools(self):
         path = gcode("two_tone.gcode")

@@ -108,6 +108,11 @@ void readScene(Keywords& options, RenderCall& call) {
         }
     }
     assign(scene.color_by, options.text("color_by"));
+    if (const std::vector<double> ends = options.numbers("color_range"); !ends.empty()) {
+        if (ends.size() != 2 || !(ends[0] < ends[1])) options.fail("color_range", "(min, max), the lower one first");
+        if (scene.color_by.empty()) throw UsageError("render(): color_range is of color_by; give both");
+        scene.color_range = {ends[0], ends[1]};
+    }
     assign(scene.smooth_normals, options.choice("normals", kNormals));
     const auto env = options.text("env");
     assign(scene.env, env);

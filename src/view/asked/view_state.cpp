@@ -1,5 +1,6 @@
 #include "view/asked/view_state.h"
 
+#include "assemble/object_file.h"
 #include "base/error.h"
 #include "base/json_section.h"
 #include "gcode/toolpath/toolpath.h"
@@ -23,7 +24,6 @@ using Json = nlohmann::json;
 constexpr int kLeastSide = 16, kMostSide = 8192;
 constexpr double kMostPixels = 40e6;
 constexpr double kMostLength = 1e7;  // world units
-constexpr double kMostValue = 1e9;   // of an attribute
 constexpr double kMostBeads = 4294967295.0;
 constexpr std::size_t kMostText = 200, kMostNumbers = 1000;
 
@@ -135,12 +135,7 @@ void readLook(JsonSection& section, ViewState& state) {
             section.fail("color_by", "an attribute");
         }
     }
-    if (const std::vector<double> range = section.numbers("color_range", 2); !range.empty()) {
-        if (!(range[0] < range[1] && std::abs(range[0]) < kMostValue && std::abs(range[1]) < kMostValue))
-            section.fail("color_range", "two numbers, the lower one first");
-        if (state.color_by.empty()) section.fail("color_range", "an attribute in color_by beside it");
-        state.color_range = {range[0], range[1]};
-    }
+    state.color_range = assemble::readColorRange(section, state.color_by);
     state.material = text(section, "material");
     if (!state.material.empty() && !namesMaterial(state.material))
         section.fail("material",

@@ -42,8 +42,7 @@ export class Controls {
       byId("objects-group").hidden = print.objects.length < 2;
       byId("tools-group").hidden = print.tools.length < 2;
     }
-    const attributes = print ? print.attributes : ["color", "feature", "layer", "tool", "object", "width", "speed", "flow", "time", "layer_time", "temperature", "fan"];
-    byId("color-by").replaceChildren(new Option("the material", ""), ...attributes.map((name) => new Option(name === "color" ? "the file's colours" : name.replace("_", " "), name)));
+    byId("color-by").replaceChildren(new Option("the material", ""), ...facts.attributes.map((name) => new Option(name === "color" ? "the file's colours" : name.replace("_", " "), name)));
     this.show();
   }
 
