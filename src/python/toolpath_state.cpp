@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 3;  // changes with every field
+constexpr std::uint32_t kVersion = 4;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -138,7 +138,7 @@ private:
 template <typename Archive, typename Facts>
 void visitStated(Archive& archive, Facts& facts) {
     auto& [seconds, model_seconds, grams, materials, profiles, nozzles, densities, prices, printer, layer, first_layer,
-           bed, programs_left_out] = facts;
+           bed, excluded, programs_left_out] = facts;
     archive.value(seconds);
     archive.value(model_seconds);
     archive.value(grams);
@@ -151,6 +151,7 @@ void visitStated(Archive& archive, Facts& facts) {
     archive.value(layer);
     archive.value(first_layer);
     archive.value(bed);
+    archive.value(excluded);
     archive.value(programs_left_out);
 }
 
