@@ -3,11 +3,10 @@
 import json
 import os
 import shutil
-import struct
 import subprocess
 import tempfile
-import zlib
 
+from png_file import png_pixels
 from run_tools import BIN, check, gcode, run
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_background_")
@@ -29,26 +28,10 @@ def trace(name, *options):
     return content(name)
 
 
-def png_pixels(data):
-    """Rows of (R, G, B, A); vdbtrace filters rows by Sub or not at all, and so need no others."""
-    at, packed = 8, b""
-    while at < len(data):
-        length, = struct.unpack_from(">I", data, at)
-        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", body[:10])
-        packed += body if kind == b"IDAT" else b""
-        at += 12 + length
-    assert (depth, color) == (8, 6), "RGBA"
-    raw, rows = zlib.decompress(packed), []
-    for y in range(height):
-        row = bytearray(raw[y * (4 * width + 1) + 1:(y + 1) * (4 * width + 1)])
-        method = raw[y * (4 * width + 1)]
-        assert method in (0, 1)
-        for x in range(4, 4 * width if method else 0):
-            row[x] = (row[x] + row[x - 4]) & 255
-        rows.append([tuple(row[4 * x:4 * x + 4]) for x in range(width)])
-    return rows
+def rgba_rows(data):
+    """Rows of (R, G, B, A)."""
+    _, _, rows = png_pixels(data)
+    return [[tuple(row[4 * x:4 * x + 4]) for x in range(len(row) // 4)] for row in rows]
 
 
 def kinds(rows):
@@ -58,15 +41,15 @@ def kinds(rows):
             sum(p[3] == 255 and max(p[:3]) > 60 for p in pixels))
 
 
-nothing, shadow, part = kinds(png_pixels(trace("a.png")))
+nothing, shadow, part = kinds(rgba_rows(trace("a.png")))
 check(nothing > 500 and shadow > 200 and part > 500, f"PNG: {nothing} pixels of nothing, {shadow} of shadow, {part} of the print")
-nothing, shadow, part = kinds(png_pixels(trace("bare.png", "--no-bed")))
+nothing, shadow, part = kinds(rgba_rows(trace("bare.png", "--no-bed")))
 check(nothing > 2000 and shadow < 20 and part > 500, f"  without a bed no shadow: {nothing}, {shadow}, {part}")
 for integrator in ("ao", "normal", "phong"):
-    rows = png_pixels(trace("other.png", "--integrator", integrator))
+    rows = rgba_rows(trace("other.png", "--integrator", integrator))
     check(rows[0][0] == (0, 0, 0, 0) and rows[30][40][3] == 255, f"  {integrator}: nothing behind the print")
 check(trace("one.png", "--threads", "1") == content("a.png"), "  the same bytes on one thread")
-rows = png_pixels(trace("sky.png", "--env", "sky"))
+rows = rgba_rows(trace("sky.png", "--env", "sky"))
 check(rows[0][0][3] == 0, "  a sky isn't seen either")
 
 webp = trace("a.webp")
@@ -77,13 +60,13 @@ check(exr[:4] == b"\x76\x2f\x31\x01" and b"A\0" in exr[:400], "EXR has a channel
 for n in range(3):
     run(VDBTRACE, *PICTURE, "-o", path("shard.png"), "--shard", f"{n}/3")
 run(os.path.join(BIN, "vdbmerge"), path("merged.png"), *[path(f"shard.{n}of3.exr") for n in range(3)], "--quiet")
-check(png_pixels(content("merged.png")) == png_pixels(content("a.png")), "--shard: the same pixels")
+check(rgba_rows(content("merged.png")) == rgba_rows(content("a.png")), "--shard: the same pixels")
 
 with open(path("scene.json"), "w", encoding="utf-8") as file:
     json.dump({"print": gcode("tile.gcode"), "size": [80, 60], "background": "none"}, file)
 done = subprocess.run([VDBTRACE, path("scene.json"), "-o", path("scene.png"), "--voxel-size", "0.1", "--quiet"],
                       capture_output=True, text=True)
-check(done.returncode == 0 and kinds(png_pixels(content("scene.png")))[1] > 200, f"a scene: {done.stderr.strip()}")
+check(done.returncode == 0 and kinds(rgba_rows(content("scene.png")))[1] > 200, f"a scene: {done.stderr.strip()}")
 
 
 def refused(status, *arguments, fragments):

@@ -3,11 +3,10 @@ filaments of the bed's colour. Each is a picture that shows the part, or a messa
 
 import os
 import shutil
-import struct
 import subprocess
 import tempfile
-import zlib
 
+from png_file import png_pixels
 from run_tools import BIN, check, gcode
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_odd_")
@@ -30,26 +29,7 @@ def picture(*command):
     done = call(*command, "-o", "p.png", "--force", "--quiet")
     check(done.returncode == 0, f"{' '.join(map(os.path.basename, command))}: exit {done.returncode}: {done.stderr.strip()[-300:]}")
     with open(path("p.png"), "rb") as file:
-        data = file.read()
-    at, packed = 8, b""
-    while at < len(data):
-        length, = struct.unpack_from(">I", data, at)
-        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", body[:10])
-        packed += body if kind == b"IDAT" else b""
-        at += 12 + length
-    assert (depth, color) in ((8, 2), (8, 0)), "8 bits, RGB or grey"
-    each = 3 if color == 2 else 1
-    raw, rows = zlib.decompress(packed), []
-    for y in range(height):
-        method, row = raw[y * (each * width + 1)], bytearray(raw[y * (each * width + 1) + 1:(y + 1) * (each * width + 1)])
-        assert method in (0, 1)  # vdbtrace filters rows by Sub or not at all
-        for x in range(each, each * width if method else 0):
-            row[x] = (row[x] + row[x - each]) & 255
-        rows.append(row)
-    check((len(rows[0]) // each, len(rows)) == (width, height), f"  {width} x {height}")
-    return rows
+        return png_pixels(file.read())[2]
 
 
 def program(name, *lines):

@@ -18,6 +18,7 @@ import time
 import zipfile
 import zlib
 
+from png_file import png_pixels
 from run_tools import BIN, check, corpus, gcode
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_thumbnails_")
@@ -50,34 +51,6 @@ def pictured(source, sizes, output, *options):
 
 
 # --- pictures ---------------------------------------------------------------------------------------------------------
-
-def png_pixels(data):
-    """Width, height and rows of RGBA of an 8-bit PNG; PNG Specification, every CRC checked."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, packed = 8, b""
-    while at < len(data):
-        length, = struct.unpack_from(">I", data, at)
-        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
-        assert struct.unpack_from(">I", data, at + 8 + length)[0] == zlib.crc32(kind + body)
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", body[:10])
-            assert depth == 8 and color == 6, "8 bits, RGBA"
-        packed += body if kind == b"IDAT" else b""
-        at += 12 + length
-    assert kind == b"IEND"
-    raw, stride = zlib.decompress(packed), 4 * width
-    before, rows = bytearray(stride), []
-    for y in range(height):
-        method, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for x in range(stride):
-            left, up, corner = row[x - 4] if x > 3 else 0, before[x], before[x - 4] if x > 3 else 0
-            guess = left + up - corner
-            paeth = min((left, up, corner), key=lambda v: abs(guess - v))
-            row[x] = (row[x] + (0, left, up, (left + up) // 2, paeth)[method]) & 255
-        rows.append(row)
-        before = row
-    return width, height, rows
-
 
 def qoi_pixels(data):
     """The same of a QOI; qoiformat.org's specification."""

@@ -6,6 +6,7 @@ import sys
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BIN = os.environ["STRATUM_BIN"]
+sys.path.append(os.path.join(SOURCE, "tests", "clients"))  # png_file
 CORPUS = os.environ.get("STRATUM_CORPUS", os.path.join(os.path.dirname(SOURCE), "shared", "corpus"))
 
 

@@ -1,15 +1,14 @@
 """Pictures: the pixels and files of vdbtrace."""
 
 import os
-import struct
 import tempfile
 import unittest
-import zlib
 
 import numpy as np
 
 import stratum
 from common import gcode, read_bytes, tool
+from png_file import png_pixels
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_python_")
 
@@ -20,28 +19,8 @@ def path_of(name):
 
 def pixels_of(path):
     """The 8-bit RGB or RGBA pixels of a PNG."""
-    data = read_bytes(path)
-    width, height = struct.unpack(">II", data[16:24])
-    n = 4 if data[25] == 6 else 3
-    packed, at = b"", 8
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IDAT":
-            packed += data[at + 8:at + 8 + size]
-        at += 12 + size
-    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + n * width)
-    image = np.zeros((height, n * width), np.uint8)
-    for y, row in enumerate(rows):
-        kind, line = row[0], row[1:].astype(int)
-        above = image[y - 1].astype(int) if y else np.zeros(n * width, int)
-        out = np.zeros(n * width, int)
-        for x in range(n * width):
-            left, upper, corner = (out[x - n] if x >= n else 0), above[x], (above[x - n] if x >= n else 0)
-            guess = left + upper - corner
-            paeth = min((left, upper, corner), key=lambda v: abs(guess - v))
-            out[x] = (line[x] + (0, left, upper, (left + upper) // 2, paeth)[kind]) & 255
-        image[y] = out
-    return image.reshape(height, width, n)
+    width, height, rows = png_pixels(read_bytes(path))
+    return np.frombuffer(b"".join(rows), np.uint8).reshape(height, width, -1)
 
 
 class Pictures(unittest.TestCase):
