@@ -21,7 +21,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "states are little endian");
 
 constexpr std::string_view kMagic = "stratum.Toolpath";
-constexpr std::uint32_t kVersion = 3;  // changes with every field
+constexpr std::uint32_t kVersion = 4;  // changes with every field
 constexpr const char* kRemedy = "; read the G-code again";
 
 /// Values one after the other, as the machine holds them. Reader has the same functions.
@@ -156,7 +156,7 @@ void visitStated(Archive& archive, Facts& facts) {
 
 template <typename Archive, typename Model>
 void visitDeposit(Archive& archive, Model& model) {
-    auto& [beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown] = model;
+    auto& [beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown, strings] = model;
     archive.value(beads);
     archive.value(corner_fraction);
     archive.value(corner_mm);
@@ -165,6 +165,7 @@ void visitDeposit(Archive& archive, Model& model) {
     archive.value(nozzle_diameter);
     archive.value(sag);
     archive.value(crown);
+    archive.value(strings);
 }
 
 template <typename Archive, typename Limits>
