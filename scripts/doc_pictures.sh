@@ -46,6 +46,12 @@ tiles() {
     montage "$work"/*.png -tile "${columns}x" -geometry +0+0 "$out/$name.png"
 }
 
+if asked strings; then
+    python3 scripts/two_towers.py > "$work/towers.gcode"
+    seen="--size 450x300 --spp 64 --printer typical --flow-lag 0.1 --sag 0.03 --voxel-size 0.03 --brdf pla-blue --eye 115,54,15"
+    seen+=" --look-at 115,100,7 --fov 50"
+    tiles strings 2 "$work/towers.gcode" "$seen" "$seen --strings"
+fi
 boat=$corpus/gcode/gcode-preview-benchy_slic3r.gcode
 picture hull data/gcode/hull.gcode --size 900x675
 picture two_color data/gcode/two_tone.gcode --color 'Prusament Galaxy Purple,3DJAKE Silk Gold' --size 900x600 --spp 64

@@ -132,6 +132,9 @@ void addPlasticOptions(CLI::App& app, voxelize::PrintOptions& options) {
         ->check(CLI::Range(0.0, gcode::kLongestAdvance))
         ->type_name("SECONDS")
         ->group(plastic);
+    app.add_flag("--strings", options.read.deposit.strings,
+                 "For --flow-lag: what oozes on travels through air becomes strings; they hang by --sag")
+        ->group(plastic);
     app.add_option("--crown", options.read.deposit.crown,
                    "With settled beads: how far the edges of a line on a top surface lie below its middle, as a "
                    "fraction of the layer's height (default 0)")

@@ -205,7 +205,7 @@ def read(
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,
-    pressure_advance: float | None = ..., sag: float | None = ..., crown: float | None = ...,
+    pressure_advance: float | None = ..., sag: float | None = ..., crown: float | None = ..., strings: bool | None = ...,
 ) -> Toolpath: ...
 def make_toolpath(
     beads: NDArray[np.void], runs: NDArray[np.void], arcs: NDArray[np.void] | None = ...,
@@ -283,7 +283,7 @@ def render(
     ] | None = ...,
     printer: str | PathLike[str] | None = ..., beads: Literal["capsule", "grooves", "settled"] | None = ...,
     section: str | None = ..., flow: float | None = ..., flow_lag: float | None = ...,
-    pressure_advance: float | None = ..., sag: float | None = ..., crown: float | None = ..., voxel_size: float | Literal["auto"] | None = ..., voxels_per_layer: int | None = ...,
+    pressure_advance: float | None = ..., sag: float | None = ..., crown: float | None = ..., strings: bool | None = ..., voxel_size: float | Literal["auto"] | None = ..., voxels_per_layer: int | None = ...,
     tolerance: float | None = ..., memory_budget: str | None = ..., half_width: float | None = ...,
     layers: str | None = ..., features: str | Sequence[str] | None = ..., objects: str | Sequence[str] | None = ...,
     tools: int | Sequence[int] | None = ...,

@@ -22,6 +22,11 @@ gcode::PlanPoint onPath(const gcode::Toolpath& toolpath, const gcode::Bead& bead
             std::lerp(double{bead.y0}, double{bead.y1}, fraction)};
 }
 
+// Bead::arc of a straight bead of this line.
+std::int32_t straightArc(std::uint32_t line) {
+    return -static_cast<std::int32_t>(std::min(line, std::uint32_t{0x7fffffff}));
+}
+
 double heightAt(const gcode::Bead& bead, double fraction, double drop) {
     const double z = fraction <= 0   ? double{bead.z0}
                      : fraction >= 1 ? double{bead.z1}
@@ -52,6 +57,16 @@ void BeadCutter::add(const BeadPiece& piece) {
     const gcode::Bead& source = toolpath_.beads[piece.bead];
     gcode::Bead bead = source;
     bead.width = piece.width;
+    if (piece.apart) {
+        bead.x0 = piece.apart->x0;
+        bead.y0 = piece.apart->y0;
+        bead.z0 = piece.apart->z0 - piece.drop0;
+        bead.x1 = piece.apart->x1;
+        bead.y1 = piece.apart->y1;
+        bead.z1 = piece.apart->z1 - piece.drop1;
+        bead.arc = straightArc(toolpath_.lineOf(source));
+        return keep(bead, piece);
+    }
     const gcode::PlanPoint start = onPath(toolpath_, source, piece.from);
     const gcode::PlanPoint end = onPath(toolpath_, source, piece.to);
     bead.x0 = start.x;
@@ -67,9 +82,13 @@ void BeadCutter::add(const BeadPiece& piece) {
             bead.arc = static_cast<std::int32_t>(arcs_.size());
             arcs_.push_back(arc);
         } else {
-            bead.arc = -static_cast<std::int32_t>(std::min(arc.line, std::uint32_t{0x7fffffff}));
+            bead.arc = straightArc(arc.line);
         }
     }
+    keep(bead, piece);
+}
+
+void BeadCutter::keep(const gcode::Bead& bead, const BeadPiece& piece) {
     beads_.push_back(bead);
     if (with_flow_) flow_.push_back(piece.flow);
     if (!toolpath_.timing.empty()) timing_.push_back(piece.timing);

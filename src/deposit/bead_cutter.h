@@ -5,9 +5,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace stratum::deposit {
+
+/// Both ends of a piece, mm, as Bead has them.
+struct PiecePlace {
+    double x0, y0, z0, x1, y1, z1;
+};
 
 /// A part of a bead's path. A piece of no length is a disc at that place.
 struct BeadPiece {
@@ -18,6 +24,8 @@ struct BeadPiece {
     gcode::BeadTiming timing{};  ///< kept if Toolpath::timing is not empty
     double drop0 = 0;            ///< mm, how far the start lies below the path
     double drop1 = 0;            ///< mm, of the end
+    /// Not on the bead's path but here, straight: a string, which has the bead's height, tool and line.
+    std::optional<PiecePlace> apart{};
 };
 
 /// All of a bead, as it is.
@@ -38,6 +46,8 @@ public:
     void finish();
 
 private:
+    void keep(const gcode::Bead& bead, const BeadPiece& piece);
+
     gcode::Toolpath& toolpath_;
     bool with_flow_;
     std::vector<gcode::Bead> beads_;

@@ -11,7 +11,8 @@ constexpr double kSteady = 1e-3;
 constexpr int kRestSteps = 4;    // samples of a phase that lays nothing
 constexpr double kClosed = 0.4;  // mm between the ends of a loop
 constexpr int kHalvings = 40;
-constexpr int kMostChanges = 8;  // between flowing and not, in one step
+constexpr double kMostOozes = 16384;  // pieces of a phase of a travel
+constexpr int kMostChanges = 8;       // between flowing and not, in one step
 
 // Seconds after which constant acceleration from v0 to v1 in `seconds` has covered s mm.
 double timeAt(double s, double v0, double v1, double seconds) {
@@ -92,7 +93,14 @@ void FlowRecorder::rest(double volume, bool in_plane, double time) {
     if (travelled_ && !in_plane) {
         if (arrival_.volume == 0) arrival_.time = time;
         arrival_.volume += volume;
-    } else if (path_.empty()) {
+    } else {
+        layAtEnd(volume, time);
+    }
+}
+
+// At the end of the path up to now.
+void FlowRecorder::layAtEnd(double volume, double time) {
+    if (path_.empty()) {
         record_.purged += volume;
     } else if (!spots_.empty() && spots_.back().before == path_.size()) {
         spots_.back().volume += volume;
@@ -127,15 +135,52 @@ void FlowRecorder::layPhase(const Phase& phase, const motion::Segment& segment) 
     along_ += length;
 }
 
+// What flows out on a travel, in short pieces of it.
+void FlowRecorder::ooze(const Phase& phase, const motion::Segment& segment) {
+    rest(0, true, phase.start);
+    const double length = 0.5 * (phase.v0 + phase.v1) * phase.seconds;
+    const double step = length / std::clamp(std::ceil(length / kOozeStep), 1.0, kMostOozes);
+    const auto at = [&](int axis, double s) {
+        const auto n = static_cast<std::size_t>(axis);
+        return segment.start[n] + segment.direction[n] * (phase.along + s);
+    };
+    double s_before = 0;
+    double t_before = 0;
+    while (t_before < phase.seconds) {
+        double s = s_before + step;
+        const bool last = strings_->broken() || s >= length - 0.5 * step;
+        if (last) s = length;
+        const double t = last ? phase.seconds : timeAt(s, phase.v0, phase.v1, phase.seconds);
+        const double volume = flowOut(phase, t_before, t);
+        strings_->ooze({at(0, s_before), at(1, s_before), at(0, s), at(1, s), volume, phase.start + t_before,
+                        t - t_before, moves_},
+                       path_.back().bead);
+        s_before = s;
+        t_before = t;
+    }
+}
+
+void FlowRecorder::endTravel(double time) {
+    if (!strings_) return;
+    const StringRecorder::Rest left = strings_->finish(record_);
+    if (left.before > 0) layAtEnd(left.before, path_.back().t1);
+    if (arrival_.volume == 0) arrival_.time = time;
+    arrival_.volume += left.after;
+}
+
 void FlowRecorder::runPhase(const Phase& phase, const motion::Segment& segment) {
     if (!(phase.seconds > 0)) return;
     if (phase.prints) {
         layPhase(phase, segment);
     } else {
         const bool in_plane = segment.travels && (segment.direction[0] != 0 || segment.direction[1] != 0);
-        for (int n = 0; n < kRestSteps; ++n) {
-            const double t = phase.seconds * (n + 1) / kRestSteps;
-            rest(flowOut(phase, phase.seconds * n / kRestSteps, t), in_plane, phase.start + t);
+        if (strings_ && in_plane && !path_.empty()) {
+            ooze(phase, segment);
+        } else {
+            for (int n = 0; n < kRestSteps; ++n) {
+                const double t = phase.seconds * (n + 1) / kRestSteps;
+                rest(flowOut(phase, phase.seconds * n / kRestSteps, t), in_plane, phase.start + t);
+            }
         }
     }
     fed_ += (phase.a + 0.5 * phase.b * phase.seconds) * phase.seconds;
@@ -150,6 +195,7 @@ void FlowRecorder::piece(const motion::PlannedPiece& piece) {
     const double share = segment.direction[3] * segment.filament_area;  // mm^3 per mm of path
     if (prints) {
         if (travelled_) {
+            endTravel(piece.start);
             endPath();
             if (arrival_.volume > 0) spots_.push_back({0, arrival_.volume, arrival_.time});
             arrival_.volume = 0;
@@ -160,12 +206,21 @@ void FlowRecorder::piece(const motion::PlannedPiece& piece) {
         record_.fed_to_beads += share * segment.length;
         path_x_ += segment.direction[0] * segment.length;
         path_y_ += segment.direction[1] * segment.length;
+        if (strings_) {
+            const auto end = [&](std::size_t axis) {
+                return segment.start[axis] + segment.direction[axis] * segment.length;
+            };
+            strings_->print(segment.start[0], segment.start[1], end(0), end(1), end(2), least_);
+        }
     }
+    ++moves_;
     double start = piece.start;
+    double along = 0;
     const auto run = [&](double seconds, double v0, double v1) {
         if (!(seconds > 0)) return;
-        runPhase({start, seconds, share * v0, share * (v1 - v0) / seconds, v0, v1, prints}, segment);
+        runPhase({start, seconds, share * v0, share * (v1 - v0) / seconds, v0, v1, prints, along}, segment);
         start += seconds;
+        along += 0.5 * (v0 + v1) * seconds;
     };
     run(speed.rising, speed.entry, speed.peak);
     run(speed.cruising, speed.peak, speed.peak);
@@ -188,6 +243,7 @@ void FlowRecorder::endPath() {
 }
 
 FlowRecord FlowRecorder::finish() {
+    endTravel(0);
     endPath();
     record_.purged += arrival_.volume;
     return std::move(record_);

@@ -15,21 +15,25 @@
 
 #include "deposit/flow_path.h"
 #include "deposit/flow_record.h"
+#include "deposit/string_recorder.h"
 #include "motion/planner.h"
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 namespace stratum::deposit {
 
 /// Beads that follow each other without a travel are one path. What flows out on a travel is laid where the travel
-/// begins: strings are not modelled. What flows out after it, before the nozzle prints, is laid where the next path
-/// begins; what flows out before another travel is purged.
+/// begins, or becomes strings (string_recorder.h) if asked for. What flows out after it, before the nozzle prints, is
+/// laid where the next path begins; what flows out before another travel is purged.
 class FlowRecorder : public motion::PlanSink {
 public:
     /// Seconds, >= 0. `advance` overrides that of the file. `nozzle`: mm, > 0.
-    FlowRecorder(double lag, std::optional<double> advance, double nozzle)
-        : lag_(lag), advance_(advance), least_(0.5 * nozzle) {}
+    FlowRecorder(double lag, std::optional<double> advance, double nozzle, bool strings = false)
+        : lag_(lag), advance_(advance), least_(0.5 * nozzle) {
+        if (strings) strings_.emplace();
+    }
 
     void piece(const motion::PlannedPiece& piece) override;
     void wait(double start, double seconds) override;
@@ -42,6 +46,7 @@ private:
         double start, seconds, a, b;
         double v0, v1;  // mm/s along the path
         bool prints;
+        double along = 0;  // mm of the segment at its start
     };
     void runPhase(const Phase& phase, const motion::Segment& segment);
     void layPhase(const Phase& phase, const motion::Segment& segment);
@@ -51,6 +56,9 @@ private:
     double flowAt(const Phase& phase, double from, double pressure, double to) const;
     /// Goes on from one time of a phase to another; returns what flows out.
     double flowOut(const Phase& phase, double from, double to);
+    void ooze(const Phase& phase, const motion::Segment& segment);
+    void layAtEnd(double volume, double time);
+    void endTravel(double time);
     void rest(double volume, bool in_plane, double time);
     void endPath();
 
@@ -65,6 +73,8 @@ private:
     std::vector<PathSpot> spots_;
     bool travelled_ = true;  // since the end of path_
     PathSpot arrival_;       // before the next path
+    std::optional<StringRecorder> strings_;
+    std::size_t moves_ = 0;  // segments up to now
     FlowRecord record_;
 };
 

@@ -1,5 +1,7 @@
 #include "deposit/lay_flow.h"
 
+#include "deposit/sag.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,10 +9,10 @@
 namespace stratum::deposit {
 namespace {
 
-constexpr double kThinnest = 0.05;  // mm, diameter of a thread
 // The width may grow by this share of the length: beyond 45 degrees to each side one end would hide the other.
 constexpr double kSteepest = 1.0;
 constexpr double kMostHeights = 100;    // a wider part is a mistake, as a wider bead is; the rest is purged
+constexpr double kStringSteps = 16;     // of a string that hangs
 constexpr double kMostShortened = 0.9;  // of a part's length
 
 // Half the width of a rectangle of the same area and height as a stadium, less half the stadium's width, mm.
@@ -42,9 +44,11 @@ public:
     void run() {
         for (const FlowPart& part : record_.parts) {
             addSpots(part.bead, false);
+            addStrings(part.bead);
             addPart(part);
         }
         addSpots(0xffffffff, true);
+        addStrings(0xffffffff);
         report_.purged += record_.purged * scale_ + carried_;
         report_.laid = record_.laid * scale_;
         report_.fed = record_.fed * scale_;
@@ -65,8 +69,50 @@ private:
         for (; next_spot_ < record_.spots.size(); ++next_spot_) {
             const FlowSpot& spot = record_.spots[next_spot_];
             if (spot.bead > bead || (spot.bead == bead && spot.at_end && !at_end)) return;
+            addStrings(spot.bead);
             addDisc(spot);
         }
+    }
+
+    // All strings after earlier beads than this one.
+    void addStrings(std::uint32_t bead) {
+        for (; next_string_ < record_.strings.size() && record_.strings[next_string_].bead < bead; ++next_string_)
+            addString(record_.strings[next_string_]);
+    }
+
+    // It hangs as a span does, in steps of an even part of its length.
+    void addString(const FlowString& string) {
+        const double sag = std::min(toolpath_.deposit.sag, kMostSag);
+        const double length = string.to - string.from;
+        const bool hangs = sag > 0 && string.span > 0;
+        const double height = heightOf(string.bead);
+        const int pieces = hangs ? static_cast<int>(std::ceil(kStringSteps * length / string.span)) : 1;
+        const double seconds = string.seconds / pieces;
+        for (int n = 0; n < pieces; ++n) {
+            const double begin = static_cast<double>(n) / pieces;
+            const double end = static_cast<double>(n + 1) / pieces;
+            BeadPiece piece;
+            piece.bead = string.bead;
+            piece.apart = {std::lerp(string.x0, string.x1, begin), std::lerp(string.y0, string.y1, begin), string.z,
+                           std::lerp(string.x0, string.x1, end),   std::lerp(string.y0, string.y1, end),   string.z};
+            if (hangs) {
+                piece.drop0 = sagDrop(string.span, string.from + begin * length, sag);
+                piece.drop1 = sagDrop(string.span, string.from + end * length, sag);
+            }
+            const double path = std::hypot(length / pieces, piece.drop1 - piece.drop0);
+            const double flow = string.volume * scale_ / pieces;
+            const double volume = std::min(flow, gcode::sectionArea(kMostHeights * height, height) * path);
+            piece.width = static_cast<float>(gcode::sectionWidth(volume / path, height));
+            piece.flow.volume = static_cast<float>(volume);
+            piece.flow.rate = seconds > 0 ? static_cast<float>(volume / seconds) : 0;
+            const float speed = seconds > 0 ? static_cast<float>(path / seconds) : 0;
+            piece.timing = {string.start + begin * string.seconds, static_cast<float>(seconds), speed, speed, speed};
+            lay_(piece);
+            report_.in_strings += volume;
+            report_.purged += flow - volume;
+        }
+        if (string.from == 0) ++report_.strings;
+        report_.strings_mm += length;
     }
 
     void addPart(const FlowPart& part) {
@@ -76,7 +122,7 @@ private:
         const double flow = part.volume * scale_ + carried_;
         const double volume = std::min(flow, gcode::sectionArea(kMostHeights * height, height) * length);
         const double width = length > 0 ? gcode::sectionWidth(volume / length, height) : 0;
-        if (!(width >= kThinnest)) {
+        if (!(width >= kThinnestThread)) {
             carried_ = flow;
             return;
         }
@@ -157,6 +203,7 @@ private:
     const double scale_;
     FlowReport report_;
     std::size_t next_spot_ = 0;
+    std::size_t next_string_ = 0;
     double carried_ = 0;     // mm^3, of threads too thin
     double start_spot_ = 0;  // mm^3, at the begin of the next part
 };

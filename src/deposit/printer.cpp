@@ -95,6 +95,7 @@ void readJson(const std::string& path, const std::string& text, gcode::ReadOptio
     if (readNumber(section, "pressure_advance_s", 0, gcode::kLongestAdvance, advance))
         deposit.pressure_advance = advance;
     readNumber(section, "nozzle_diameter_mm", 0.05, 10, deposit.nozzle_diameter);
+    section.read("strings", deposit.strings);
     readNumber(section, "sag", 0, kMostSag, deposit.sag);
     readNumber(section, "crown", 0, gcode::kMostCrown, deposit.crown);
     if (const Json* limits = section.find("limits"); limits != nullptr && limits->is_string()) {

@@ -25,6 +25,17 @@ void warnOfUnused(const gcode::DepositModel& deposit, std::vector<gcode::Warning
                             1, 1});
 }
 
+// Strings of what cannot ooze, or of which the places are not known.
+void refuseStrings(std::string_view name, const gcode::ReadOptions& options) {
+    if (!(options.deposit.flow_lag.value_or(0) > 0))
+        throw UsageError(
+            fmt::format("{}: strings are of what oozes, and without a lag of the flow nothing does; give "
+                        "a lag above 0 s (--flow-lag 0.05), too",
+                        name));
+    if (options.belt_angle)
+        throw UsageError(fmt::format("{}: strings are not told of printers with a belt: leave out either", name));
+}
+
 }  // namespace
 
 PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::ReadOptions& options, bool timed,
@@ -37,7 +48,9 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
             fmt::format("{}: travels are not told of printers with a belt, and not beside beads that lag "
                         "or sag: leave out either",
                         name));
-    if (deposit.flow_lag) flow.emplace(*deposit.flow_lag, deposit.pressure_advance, deposit.nozzle_diameter);
+    if (deposit.strings) refuseStrings(name, options);
+    if (deposit.flow_lag)
+        flow.emplace(*deposit.flow_lag, deposit.pressure_advance, deposit.nozzle_diameter, deposit.strings);
     if (timed) {
         print.toolpath =
             motion::readTimedToolpath(bytes, name, options, print.times.emplace(), flow ? &*flow : nullptr, travels);
@@ -68,7 +81,7 @@ PrintRead readPrint(std::string_view bytes, std::string_view name, const gcode::
         sag.emplace(print.toolpath, deposit.sag);
         print.sag = sag->report();
     }
-    BeadCutter cutter(print.toolpath, true, record.parts.size() + record.spots.size());
+    BeadCutter cutter(print.toolpath, true, record.parts.size() + record.spots.size() + record.strings.size());
     print.flow = layFlow(record, print.toolpath, [&](const BeadPiece& piece) {
         if (sag)
             sag->lay(piece, cutter);

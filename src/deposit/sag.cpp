@@ -11,14 +11,13 @@ namespace {
 constexpr double kSteepest = 0.99;  // mm per mm
 constexpr double kRounding = 1e-9;  // mm
 
-// mm below the path at s mm of a span.
-double dropAt(const HangingSpan& span, double s, double fraction) {
-    const double left = std::min(s, span.length - s);
-    if (!(left > kRounding)) return 0;  // an end is where the bead is, to the bit
-    return std::min(4 * fraction * s * (span.length - s) / span.length, kSteepest * left);
-}
-
 }  // namespace
+
+double sagDrop(double length, double s, double fraction) {
+    const double left = std::min(s, length - s);
+    if (!(left > kRounding)) return 0;  // an end is where the bead is, to the bit
+    return std::min(4 * fraction * s * (length - s) / length, kSteepest * left);
+}
 
 Sag::Sag(const gcode::Toolpath& toolpath, double fraction)
     : toolpath_(toolpath), fraction_(std::min(fraction, kMostSag)), hanging_(findHangingSpans(toolpath, fraction_)) {}
@@ -28,12 +27,13 @@ SagReport Sag::report() const {
     for (const HangingSpan& span : hanging_.spans) {
         ++report.spans;
         report.length_mm += span.length;
-        report.deepest_mm = std::max(report.deepest_mm, dropAt(span, 0.5 * span.length, fraction_));
+        report.deepest_mm = std::max(report.deepest_mm, sagDrop(span.length, 0.5 * span.length, fraction_));
     }
     return report;
 }
 
 void Sag::lay(const BeadPiece& piece, BeadCutter& cutter) {
+    if (piece.apart) return cutter.add(piece);  // a string hangs already
     const std::vector<HangingPart>& parts = hanging_.parts;
     while (next_ < parts.size() && parts[next_].bead < piece.bead) ++next_;
     if (next_ == parts.size() || parts[next_].bead != piece.bead) {
@@ -74,7 +74,7 @@ void Sag::addHanging(const HangingPart& part, double from, double to) {
     const double before = part.before + (from - part.from);
     const double after = part.before + (to - part.from);
     if (from == to) {  // a disc, or a bead of no length, only moves down
-        const double drop = dropAt(span, before, fraction_);
+        const double drop = sagDrop(span.length, before, fraction_);
         add(source_.from, source_.to, drop, drop);
         return;
     }
@@ -85,7 +85,8 @@ void Sag::addHanging(const HangingPart& part, double from, double to) {
         if (next >= after - kLeastPiece) next = after;
         const double piece_from = from + (s - before);
         const double piece_to = next == after ? to : from + (next - before);
-        add(piece_from / length_, piece_to / length_, dropAt(span, s, fraction_), dropAt(span, next, fraction_));
+        add(piece_from / length_, piece_to / length_, sagDrop(span.length, s, fraction_),
+            sagDrop(span.length, next, fraction_));
         s = next;
     }
 }

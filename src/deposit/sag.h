@@ -20,6 +20,9 @@ struct SagReport {
 /// Largest `fraction`; larger ones count as this.
 constexpr double kMostSag = 0.5;
 
+/// How far (mm) a span of this length (mm) hangs at s (mm of it); see Sag. The fraction is at most kMostSag.
+double sagDrop(double length, double s, double fraction);
+
 /// Lets a print sag while its beads are cut. Over a span of length L in the plan, the place at s (mm) drops by
 ///     4 fraction s (L - s) / L        (mm; fraction L in the middle)
 /// but no steeper than 0.99 from the two ends, so that a piece stays below 45 degrees; that matters for fractions above

@@ -129,6 +129,7 @@ std::string beadModel(const gcode::DepositModel& deposit) {
     else if (!deposit.stadium())
         text += fmt::format("; r = {:g} h/2", deposit.corner_fraction);
     if (deposit.flow_lag) text += fmt::format("; widths by flow, lag {:g} s", *deposit.flow_lag);
+    if (deposit.strings) text += "; strings on travels through air";
     if (deposit.sag > 0) text += fmt::format("; beads over nothing hang by {:g} of their span", deposit.sag);
     if (deposit.settles()) text += "; settled: overlaps fill grooves";
     if (deposit.swells()) text += ", the rest moves outlines out and tops up";

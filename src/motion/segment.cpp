@@ -76,6 +76,7 @@ void cutArc(const gcode::Move& move, const gcode::MachineLimits& limits, Segment
         const double next_x = last ? d[0] : move.center.x * (1 - cosine) + move.center.y * sine;
         const double next_y = last ? d[1] : move.center.y * (1 - cosine) - move.center.x * sine;
         const std::array<double, gcode::kMotionAxes> step{next_x - x, next_y - y, d[2] / chords, d[3] / chords};
+        segment.start = {move.start[0] + x, move.start[1] + y, move.start[2] + d[2] * (i - 1) / chords};
         x = next_x;
         y = next_y;
         const double path = std::sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
@@ -101,6 +102,7 @@ void cutMove(const gcode::Move& move, const gcode::MachineLimits& limits,
     segment.filament_area = move.filament_area;
     segment.pressure_advance = limits.pressure_advance;
     segment.speed = segment.asked = move.speed;
+    segment.start = move.start;
     if (move.sweep != 0) return cutArc(move, limits, segment, take);
     const double path = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     segment.travels = path > kNoMotion;

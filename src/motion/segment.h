@@ -14,6 +14,7 @@ struct Segment {
     double speed = 0;                                    ///< mm/s, within the machine's limits; > 0
     double asked = 0;                                    ///< mm/s, programmed
     double acceleration = 0;                             ///< mm/s^2, within the machine's limits; > 0
+    std::array<double, 3> start{};                       ///< mm, as Move::start
     std::array<double, gcode::kMotionAxes> direction{};  ///< mm of each axis per mm of length
     double filament_area = 0;                            ///< mm^2, section of the filament
     double pressure_advance = 0;                         ///< s, in force

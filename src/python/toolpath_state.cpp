@@ -157,7 +157,7 @@ void visitStated(Archive& archive, Facts& facts) {
 
 template <typename Archive, typename Model>
 void visitDeposit(Archive& archive, Model& model) {
-    auto& [beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown] = model;
+    auto& [beads, corner_fraction, corner_mm, flow_lag, pressure_advance, nozzle_diameter, sag, crown, strings] = model;
     archive.value(beads);
     archive.value(corner_fraction);
     archive.value(corner_mm);
@@ -166,6 +166,7 @@ void visitDeposit(Archive& archive, Model& model) {
     archive.value(nozzle_diameter);
     archive.value(sag);
     archive.value(crown);
+    archive.value(strings);
 }
 
 template <typename Archive, typename Limits>

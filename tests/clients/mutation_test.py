@@ -154,7 +154,7 @@ def prepare():
              ("G-code, settled", "t.gcode", lambda name: convert(name, "--beads", "settled"), True),
              ("G-code, report", "t.gcode", lambda name: convert(name, "--report", "out.json"), True),
              ("G-code, elements", "t.gcode", lambda name: [TOOL["gcode2vdb"], name, "-o", "out.inp", *COARSE], True),
-             ("G-code, flow", "t.gcode", lambda name: convert(name, "--flow-lag", "0.05", "--sag", "0.1"), True)]
+             ("G-code, flow", "t.gcode", lambda name: convert(name, "--flow-lag", "0.05", "--sag", "0.1", "--strings"), True)]
     kinds += [(name, name, convert, False) for name in ("t.gcode.gz", "t.gcode.3mf", "t.ufp", "t.gx", "plain.bgcode", "deflate.bgcode",
                                                         "heatshrink.bgcode", "meatpack.bgcode")]
     kinds += [(f"{name}, thumbnail", name, lambda given, ending=name.split(".", 1)[1]: [

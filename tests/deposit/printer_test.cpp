@@ -83,7 +83,7 @@ TEST(Printer, ReadsAFile) {
     gcode::ReadOptions options;
     usePrinter(write(folder.path(), R"({"beads": "settled", "section": "60%", "flow_lag_s": 0.03,
         "pressure_advance_s": 0.02, "nozzle_diameter_mm": 0.6, "sag": 0.05,
-        "limits": {"jerk_mm_s": [5, 6, 0.3, 2], "printing_mm_s2": 800}})"),
+        "strings": true, "limits": {"jerk_mm_s": [5, 6, 0.3, 2], "printing_mm_s2": 800}})"),
                options);
     EXPECT_TRUE(options.deposit.settles());
     EXPECT_EQ(options.deposit.corner_fraction, 0.6);
@@ -91,6 +91,7 @@ TEST(Printer, ReadsAFile) {
     EXPECT_EQ(options.deposit.pressure_advance, 0.02);
     EXPECT_EQ(options.deposit.nozzle_diameter, 0.6);
     EXPECT_EQ(options.deposit.sag, 0.05);
+    EXPECT_TRUE(options.deposit.strings);
     ASSERT_TRUE(options.printer);
     EXPECT_EQ(options.printer->limits.jerk[1], 6);
     EXPECT_EQ(options.printer->limits.printing, 800);

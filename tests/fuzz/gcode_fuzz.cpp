@@ -57,6 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         check(stratum::gcode::readToolpath(text, "fuzz", options));
         options.deposit.flow_lag = (data[0] & 16U) != 0 ? 1.0 : 0.02;
         options.deposit.sag = 0.1;
+        options.deposit.strings = (data[0] & 32U) != 0;
         check(stratum::deposit::readPrint(text, "fuzz", options, true).toolpath);
     } catch (const stratum::InputError&) {
     } catch (const stratum::UsageError&) {

@@ -292,7 +292,7 @@ class Pickles(unittest.TestCase):
         self.assertEqual(toolpath.__getstate__(), again.__getstate__())  # what has no name, too
 
     def test_every_field(self):
-        everything = {"timed": True, "flow_lag": 0.02, "sag": 0.1, "beads": "settled", "section": "50%",
+        everything = {"timed": True, "flow_lag": 0.02, "sag": 0.1, "strings": True, "beads": "settled", "section": "50%",
                       "filament_colors": "#ff8000"}
         for name, options in (("tile.gcode", {}), ("tile_arcs.gcode", everything), ("two_tone.gcode", {"timed": True, "travels": True}),
                               ("hull.gcode", {"planner": "jerk", "timed": True})):

@@ -104,23 +104,29 @@ Json describeToolpath(const gcode::Toolpath& toolpath) {
 }
 
 nlohmann::ordered_json describeFlow(const deposit::FlowReport& flow) {
-    return {{"lag_s", flow.lag},
-            {"longest_advance_s", flow.longest_advance},
-            {"fed_mm3", flow.fed},
-            {"laid_mm3", flow.laid},
-            {"in_discs_mm3", flow.in_discs},
-            {"purged_mm3", flow.purged},
-            {"in_nozzle_mm3", flow.in_nozzle},
-            {"beads_of_file", flow.beads},
-            {"parts", flow.parts},
-            {"discs", flow.discs}};
+    nlohmann::ordered_json told = {{"lag_s", flow.lag},
+                                   {"longest_advance_s", flow.longest_advance},
+                                   {"fed_mm3", flow.fed},
+                                   {"laid_mm3", flow.laid},
+                                   {"in_discs_mm3", flow.in_discs},
+                                   {"purged_mm3", flow.purged},
+                                   {"in_nozzle_mm3", flow.in_nozzle},
+                                   {"beads_of_file", flow.beads},
+                                   {"parts", flow.parts},
+                                   {"discs", flow.discs}};
+    if (flow.strings > 0)
+        told["strings"] = {{"count", flow.strings}, {"length_mm", flow.strings_mm}, {"volume_mm3", flow.in_strings}};
+    return told;
 }
 
 std::string flowLine(const deposit::FlowReport& flow) {
-    return fmt::format(
+    std::string line = fmt::format(
         "flow with a lag of {:g} s: {:.2f} mm^3 fed, {:.2f} laid ({:.2f} at {} rests, {:.2f} purged elsewhere), {:.2f} "
         "left in the nozzle; {} beads became {} parts",
         flow.lag, flow.fed, flow.laid, flow.in_discs, flow.discs, flow.purged, flow.in_nozzle, flow.beads, flow.parts);
+    if (flow.strings > 0)
+        line += fmt::format("; {:.2f} in {} strings of {:.0f} mm", flow.in_strings, flow.strings, flow.strings_mm);
+    return line;
 }
 
 nlohmann::ordered_json describeSag(const deposit::SagReport& sag) {

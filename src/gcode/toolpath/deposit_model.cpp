@@ -18,6 +18,7 @@ std::string describe(const DepositModel& deposit) {
     if (deposit.flow_lag) text += fmt::format(", flow lag {:g} s", *deposit.flow_lag);
     if (deposit.flow_lag && deposit.pressure_advance)
         text += fmt::format(", pressure advance {:g} s", *deposit.pressure_advance);
+    if (deposit.strings) text += ", strings";
     if (deposit.sag > 0) text += fmt::format(", sag {:g} % of the span", 100 * deposit.sag);
     if (deposit.swells() && deposit.crown > 0)
         text += fmt::format(", crowns of {:g} % of the height", 100 * deposit.crown);

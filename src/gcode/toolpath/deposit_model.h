@@ -33,6 +33,8 @@ struct DepositModel {
     /// How far the edges of a line on a top surface lie below its middle, as a fraction of the layer's height, 0 ..
     /// kMostCrown. Only with settled beads.
     double crown = 0;
+    /// What oozes on travels through air becomes strings. Only with a flow_lag above 0.
+    bool strings = false;
 
     /// Corner radius (mm) of a section of this height (mm).
     double cornerRadius(double height) const {

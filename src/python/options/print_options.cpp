@@ -45,6 +45,7 @@ gcode::ReadOptions readOptionsOf(Keywords& options) {
         read.deposit.pressure_advance = *advance;
     assign(read.deposit.crown, options.number("crown", 0, gcode::kMostCrown));
     assign(read.deposit.sag, options.number("sag", 0, deposit::kMostSag));
+    assign(read.deposit.strings, options.flag("strings"));
     return read;
 }
 

@@ -12,7 +12,7 @@ namespace stratum::python {
 inline constexpr std::string_view kReadParameters =
     "plate=None, filament_diameter=None, filament_colors=None, layer_height=None, belt=None, planar=None, "
     "e_mode=None, firmware=None, planner=None, printer=None, beads=None, section=None, flow=None, "
-    "flow_lag=None, pressure_advance=None, sag=None, crown=None";
+    "flow_lag=None, pressure_advance=None, sag=None, crown=None, strings=None";
 /// Those of printOptionsOf().
 inline constexpr std::string_view kPrintParameters =
     "voxel_size=None, voxels_per_layer=None, tolerance=None, memory_budget=None, half_width=None, "
