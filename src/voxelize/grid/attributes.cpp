@@ -247,10 +247,10 @@ std::vector<Attribute> parseGrids(std::string_view text) {
 BeadAttributes::BeadAttributes(const gcode::Toolpath& toolpath, std::span<const Attribute> attributes,
                                std::vector<float> overfill)
     : toolpath_(toolpath) {
+    numbers_[static_cast<std::size_t>(Attribute::overfill)] = std::move(overfill);
     for (const Attribute attribute : attributes) {
-        auto& numbers = numbers_[static_cast<std::size_t>(attribute)];
-        if (attribute == Attribute::overfill) numbers = std::move(overfill);
-        if (const Facts& facts = factsOf(attribute); facts.numbers != nullptr) numbers = facts.numbers(toolpath);
+        if (const Facts& facts = factsOf(attribute); facts.numbers != nullptr)
+            numbers_[static_cast<std::size_t>(attribute)] = facts.numbers(toolpath);
         if (attribute == Attribute::color && !toolpath.color_changes.empty()) color_ = colorsOfBeads(toolpath);
     }
 }
