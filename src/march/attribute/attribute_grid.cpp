@@ -87,6 +87,10 @@ std::vector<std::string> labelsOf(const openvdb::GridBase& grid) {
 
 bool isBefore(const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
+std::string notAnAttribute(const std::string& where, const std::string& name, const std::string& holds) {
+    return fmt::format("{}: the grid {} holds {}; attributes are Int32, float or Vec3f", where, name, holds);
+}
+
 }  // namespace
 
 openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path, const std::string& name,
@@ -102,7 +106,8 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
             seen += (seen.empty() ? "" : ", ") + nameOf(in_file);
             if (nameOf(in_file) != name) continue;
             grid = headOf(heads, in_file);
-            if (grid && visit(*grid, [](const auto&) {})) grid = readWholeGrid(heads, in_file, input, where);
+            if (!grid) throw InputError(notAnAttribute(where, name, in_file.type));
+            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(heads, in_file, input, where);
         }
     } catch (const InputError&) {
         throw;
@@ -113,9 +118,7 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
     if (!grid)
         throw InputError(fmt::format("{}: has no grid named {}; make one with gcode2vdb --grids {}. It has: {}",
                                      path.string(), name, name, seen));
-    if (!visit(*grid, [](const auto&) {}))
-        throw InputError(fmt::format("{}: the grid {} holds {}; attributes are Int32, float or Vec3f", path.string(),
-                                     name, grid->valueType()));
+    if (!visit(*grid, [](const auto&) {})) throw InputError(notAnAttribute(where, name, grid->valueType()));
     if (grid->transform() != surface.transform())
         throw InputError(
             fmt::format("{}: the grid {} lies on another lattice than the surface {}; write both in one run",

@@ -8,7 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace stratum::march {
 namespace {
@@ -112,6 +115,13 @@ TEST_F(AttributeGrid, RefusesWhatDoesNotFit) {
     const auto flags = openvdb::GridBase::createGrid("Tree_bool_5_4_3");
     flags->setName("flags");
     EXPECT_NE(refusal(write({surface, flags}), "flags").find("holds bool"), std::string::npos);
+    // A type that this OpenVDB does not know stands beside the others.
+    const auto other = write({surface, flags});
+    std::ifstream in(other, std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    bytes.replace(bytes.find("Tree_bool"), 9, "Tree_wild");
+    std::ofstream(other, std::ios::binary) << bytes;
+    EXPECT_NE(refusal(other, "flags").find("holds Tree_wild_5_4_3"), std::string::npos) << refusal(other, "flags");
     EXPECT_NE(refusal("/nonexistent.vdb", "tool").find("can't be opened"), std::string::npos);
 }
 
