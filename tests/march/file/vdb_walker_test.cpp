@@ -61,7 +61,7 @@ TEST_F(VdbWalker, SeesWhatOpenVdbWrites) {
         const std::string bytes = bytesOf({grid, half}, compression);
         VdbCursor cursor(std::string_view(bytes), where_);
         const VdbHeads heads = walkVdbHeads(cursor);
-        EXPECT_EQ(heads.format, 224U);
+        EXPECT_EQ(heads.format, openvdb::OPENVDB_FILE_VERSION);
         ASSERT_EQ(heads.grids.size(), 2U);
         EXPECT_EQ(heads.grids[0].name, "surface");
         EXPECT_EQ(heads.grids[1].name, "half");
