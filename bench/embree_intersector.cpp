@@ -70,7 +70,7 @@ public:
             Part parts[kPacket];
             fill(rays.subspan(first, std::min(kPacket, rays.size() - first)), packet.ray, valid, parts);
             std::fill_n(packet.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-            intersectPacket(scene_, Rays::coherent, valid, packet);
+            intersectPacket(scene_, valid, packet);
             for (std::size_t k = 0; k < kPacket && first + k < rays.size(); ++k) {
                 Hit& hit = hits[first + k];
                 if (valid[k] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID)

@@ -7,71 +7,53 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include <cstdint>
-
 namespace stratum::bench {
 
-/// What is expected of the rays of a packet. Single rays are always incoherent.
-enum class Rays : std::uint8_t { incoherent, coherent };
+// Single rays and shadow rays are incoherent, which is Embree's default; packets of nearest hits are coherent.
 
 #if RTC_VERSION_MAJOR >= 4
 
-inline RTCIntersectArguments intersectArguments(Rays rays) {
+inline void intersectOne(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
+
+inline void intersectPacket(RTCScene scene, const int* valid, RTCRayHit16& packet) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
-    arguments.flags = rays == Rays::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    return arguments;
-}
-
-inline void intersectOne(RTCScene scene, RTCRayHit& ray) {
-    RTCIntersectArguments arguments = intersectArguments(Rays::incoherent);
-    rtcIntersect1(scene, &ray, &arguments);
-}
-
-inline void intersectPacket(RTCScene scene, Rays rays, const int* valid, RTCRayHit16& packet) {
-    RTCIntersectArguments arguments = intersectArguments(rays);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
     rtcIntersect16(valid, scene, &packet, &arguments);
 }
 
-inline void occludedOne(RTCScene scene, RTCRay& ray) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    rtcOccluded1(scene, &ray, &arguments);
-}
+inline void occludedOne(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, nullptr); }
 
 inline void occludedPacket(RTCScene scene, const int* valid, RTCRay16& packet) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    rtcOccluded16(valid, scene, &packet, &arguments);
+    rtcOccluded16(valid, scene, &packet, nullptr);
 }
 
 #else
 
-inline RTCIntersectContext contextOf(Rays rays) {
+inline RTCIntersectContext contextOf(RTCIntersectContextFlags flags) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags =
-        rays == Rays::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = flags;
     return context;
 }
 
 inline void intersectOne(RTCScene scene, RTCRayHit& ray) {
-    RTCIntersectContext context = contextOf(Rays::incoherent);
+    RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     rtcIntersect1(scene, &context, &ray);
 }
 
-inline void intersectPacket(RTCScene scene, Rays rays, const int* valid, RTCRayHit16& packet) {
-    RTCIntersectContext context = contextOf(rays);
+inline void intersectPacket(RTCScene scene, const int* valid, RTCRayHit16& packet) {
+    RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
     rtcIntersect16(valid, scene, &context, &packet);
 }
 
 inline void occludedOne(RTCScene scene, RTCRay& ray) {
-    RTCIntersectContext context = contextOf(Rays::incoherent);
+    RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     rtcOccluded1(scene, &context, &ray);
 }
 
 inline void occludedPacket(RTCScene scene, const int* valid, RTCRay16& packet) {
-    RTCIntersectContext context = contextOf(Rays::incoherent);
+    RTCIntersectContext context = contextOf(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
     rtcOccluded16(valid, scene, &context, &packet);
 }
 

@@ -40,7 +40,6 @@ std::vector<Part> makeParts() {
             {trace::makeConeSolid(17, 5, 27, 5), kAluminium}};
 }
 
-constexpr double kHeight = 27.0;      // mm
 constexpr double kPartOfThat = 40.0;  // mm: the larger side of the smallest part under a hot end of full size
 constexpr double kSmallest = 0.25;
 

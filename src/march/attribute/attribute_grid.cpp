@@ -107,7 +107,7 @@ openvdb::GridBase::ConstPtr readAttributeGrid(const std::filesystem::path& path,
             if (nameOf(in_file) != name) continue;
             grid = headOf(heads, in_file);
             if (!grid) throw InputError(notAnAttribute(where, name, in_file.type));
-            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(heads, in_file, input, where);
+            if (visit(*grid, [](const auto&) {})) grid = readWholeGrid(heads, in_file, *grid, input, where);
         }
     } catch (const InputError&) {
         throw;

@@ -95,7 +95,8 @@ auto withGrid(const std::filesystem::path& path, const std::string& name, const 
 
 openvdb::FloatGrid::Ptr readLevelSet(const std::filesystem::path& path, const std::string& name) {
     auto grid = withGrid(path, name, [&path](const VdbHeads& heads, const Choice& choice, const InputFile& input) {
-        return openvdb::gridPtrCast<openvdb::FloatGrid>(readWholeGrid(heads, *choice.grid, input, path.string()));
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(
+            readWholeGrid(heads, *choice.grid, *choice.head, input, path.string()));
     });
     requireTraceable(*grid, path.string());
     return grid;

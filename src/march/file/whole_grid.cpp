@@ -226,17 +226,16 @@ openvdb::GridBase::Ptr readAs(const openvdb::GridBase& head, const VdbGrid& in_f
 
 }  // namespace
 
-openvdb::GridBase::Ptr readWholeGrid(const VdbHeads& heads, const VdbGrid& grid, const VdbBytes& bytes,
-                                     const std::string& where) {
+openvdb::GridBase::Ptr readWholeGrid(const VdbHeads& heads, const VdbGrid& grid, const openvdb::GridBase& head,
+                                     const VdbBytes& bytes, const std::string& where) {
     const std::string name = openvdb::io::GridDescriptor::stripSuffix(grid.name);
     const auto of_the_name = std::count_if(heads.grids.begin(), heads.grids.end(), [&name](const VdbGrid& other) {
         return openvdb::io::GridDescriptor::stripSuffix(other.name) == name;
     });
     if (of_the_name == 1 && grid.parent.empty()) {
-        const openvdb::GridBase::Ptr head = headOf(heads, grid);
-        openvdb::GridBase::Ptr read = readAs<openvdb::FloatGrid>(*head, grid, bytes, where);
-        if (!read) read = readAs<openvdb::Int32Grid>(*head, grid, bytes, where);
-        if (!read) read = readAs<openvdb::Vec3SGrid>(*head, grid, bytes, where);
+        openvdb::GridBase::Ptr read = readAs<openvdb::FloatGrid>(head, grid, bytes, where);
+        if (!read) read = readAs<openvdb::Int32Grid>(head, grid, bytes, where);
+        if (!read) read = readAs<openvdb::Vec3SGrid>(head, grid, bytes, where);
         if (read) {
             // Not the head's: a copy of a transform differs in its last bits.
             read->setTransform(transformOf(heads, grid));

@@ -17,9 +17,10 @@ namespace stratum::march {
 /// Throws InputError, beginning with the file's name, for a damaged file: of several damages the first in the file,
 /// whatever thread meets which first.
 /// @param grid  one of `heads`; holds float, int32 or Vec3f
+/// @param head  headOf() it, which unpacks the list of its leaves' sizes
 /// @param bytes  of the file
 /// @param where  the file's path
-openvdb::GridBase::Ptr readWholeGrid(const VdbHeads& heads, const VdbGrid& grid, const VdbBytes& bytes,
-                                     const std::string& where);
+openvdb::GridBase::Ptr readWholeGrid(const VdbHeads& heads, const VdbGrid& grid, const openvdb::GridBase& head,
+                                     const VdbBytes& bytes, const std::string& where);
 
 }  // namespace stratum::march

@@ -69,8 +69,7 @@ std::vector<std::string> translucentNames() {
 }
 
 bool isTranslucent(std::string_view text) {
-    return text.substr(0, text.find(':')) == "translucent" ||
-           std::any_of(kNamed.begin(), kNamed.end(), [text](const NamedMedium& named) { return named.name == text; });
+    return std::any_of(kNamed.begin(), kNamed.end(), [text](const NamedMedium& named) { return named.name == text; });
 }
 
 std::shared_ptr<const Translucent> makeTranslucent(const Preset& preset, std::string_view option) {

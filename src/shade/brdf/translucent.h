@@ -82,7 +82,7 @@ private:
 /// The names of presets.
 std::vector<std::string> translucentNames();
 
-/// Whether the text of --brdf begins like one: `translucent:` or the name of a preset.
+/// Whether the text of --brdf is the name of a preset.
 bool isTranslucent(std::string_view text);
 
 /// Of R, G, B, MEAN_FREE_PATH_MM and, if there are five numbers, G; or a preset by its name: natural-pla, clear-petg,

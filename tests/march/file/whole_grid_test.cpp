@@ -112,7 +112,8 @@ protected:
         VdbCursor cursor(std::string_view(all), where);
         const VdbHeads heads = walkVdbHeads(cursor);
         for (const VdbGrid& grid : heads.grids)
-            if (nameOf(grid) == name) return readWholeGrid(heads, grid, std::string_view(all), where);
+            if (nameOf(grid) == name)
+                return readWholeGrid(heads, grid, *headOf(heads, grid), std::string_view(all), where);
         throw InputError("no grid " + name);
     }
     openvdb::GridBase::Ptr readByOpenVdb(const std::string& name) const {
@@ -329,9 +330,11 @@ TEST_F(WholeGrid, RefusesEveryCut) {
     VdbCursor cursor(std::string_view(good), where);
     const VdbHeads heads = walkVdbHeads(cursor);
     const auto tree = static_cast<std::size_t>(heads.grids.at(0).tree);
+    const auto head = headOf(heads, heads.grids[0]);
     for (int n = 0; n < 40; ++n) {
         const std::size_t cut = tree + (good.size() - tree) * static_cast<std::size_t>(n) / 40;
-        EXPECT_THROW(readWholeGrid(heads, heads.grids[0], std::string_view(good).substr(0, cut), where), InputError)
+        EXPECT_THROW(readWholeGrid(heads, heads.grids[0], *head, std::string_view(good).substr(0, cut), where),
+                     InputError)
             << n;
     }
 }
