@@ -7,7 +7,7 @@ FROM debian:13 AS build
 RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates dpkg-dev file
 COPY . /stratum
 WORKDIR /stratum
-RUN bash scripts/demo.sh && cd build/release && cpack -B /packages
+RUN bash scripts/demo.sh && cmake --build build/release --target package && mkdir /packages && mv build/release/*.deb /packages/
 
 FROM debian:13-slim
 COPY --from=build /packages/stratum_*.deb /packages/stratum-viewer_*.deb /packages/

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Tries what README.md says in a bare Debian of another release, with either compiler. What is tried is the last commit.
-#   scripts/matrix.sh 12|13|14 [clang|gcc] [demo|rooms|tests|pip|tarball|arm64]
+#   scripts/matrix.sh 12|13|14 [clang|gcc] [demo|rooms|tests|pip|tarball|container|arm64]
 # demo (the default): README's first command: installs, builds, renders data/gcode/hull.gcode; tests: that, and README's second
 # command, without the tests of programs that the release lacks; rooms: the tests of the libraries alone; pip: `pip install .`
 # in a virtual environment; tarball: what scripts/tarball.sh has made here renders hull.gcode where nothing is installed;
+# container: the image of Dockerfile, by buildah on that release, makes a level set on a read-only root without being root;
 # arm64: rooms, cross-compiled by this machine's clang with that release's libraries, and run under qemu-user.
 # The release is unpacked once, into build/matrix, with a build folder for each compiler. Needs root and mmdebstrap.
 set -euo pipefail
@@ -14,8 +15,8 @@ declare -A names=([12]=bookworm [13]=trixie [14]=forky)
 release=${1:-}
 compiler=${2:-clang}
 what=${3:-demo}
-if [[ -z "${names[$release]:-}" || ! $compiler =~ ^(clang|gcc)$ || ! $what =~ ^(demo|rooms|tests|pip|tarball|arm64)$ ]]; then
-    sed -n '2,8s/^# \{0,1\}//p' "$0" >&2
+if [[ -z "${names[$release]:-}" || ! $compiler =~ ^(clang|gcc)$ || ! $what =~ ^(demo|rooms|tests|pip|tarball|container|arm64)$ ]]; then
+    sed -n '2,9s/^# \{0,1\}//p' "$0" >&2
     exit 2
 fi
 [[ $(id -u) -eq 0 ]] || { echo "matrix.sh: run this as root: a release is unpacked and entered with chroot" >&2; exit 2; }
@@ -54,6 +55,45 @@ if [[ $what == arm64 ]]; then
     cmake --build build/arm64
     ctest --test-dir build/arm64 -LE 'client|slow|study|python' -j "$(nproc)" --output-on-failure
     echo "Debian $release, arm64: rooms passed at $tried"
+    exit
+fi
+if [[ $what == container ]]; then
+    [[ $release == 13 ]] || { echo "matrix.sh: the Dockerfile is of Debian 13" >&2; exit 2; }
+    install_packages buildah
+    export STORAGE_DRIVER=vfs BUILDAH_ISOLATION=chroot prints
+    empty=$PWD/build/matrix/debian-$release-empty
+    bare "$empty" ca-certificates
+    sources=$(mktemp -d)
+    prints=$(mktemp -d)
+    git archive HEAD | tar -x -C "$sources"
+    cp data/gcode/hull.gcode "$prints"
+    chown -R 1000:1000 "$prints"
+    base=$(buildah from scratch)
+    tar -C "$empty" --one-file-system --exclude=./stratum --exclude=./corpus -cf "$sources/base.tar" .
+    buildah add -q "$base" "$sources/base.tar" / >/dev/null
+    rm "$sources/base.tar"
+    for tag in 13 13-slim; do buildah commit -q "$base" "docker.io/library/debian:$tag" >/dev/null; done
+    buildah bud --pull-never -t stratum "$sources"
+    tool=$(buildah from --pull-never stratum)
+    inside=$(buildah mount "$tool")
+    export inside
+    # As `docker run --read-only --user 1000` has it: nothing but /prints can be written.
+    unshare --mount --propagation private bash -euc '
+        mount --bind "$inside" "$inside"
+        mount --rbind /dev "$inside/dev"
+        mkdir -p "$inside/prints"
+        mount --bind "$prints" "$inside/prints"
+        mount -o remount,bind,ro "$inside"
+        chroot --userspec=1000:1000 "$inside" sh -euc "
+            cd /prints
+            ! touch /tmp/x 2>/dev/null
+            gcode2vdb hull.gcode -o hull.vdb
+            vdbtrace hull.vdb -o hull.png --size 320x240
+            vdbview --version
+            ls -l"'
+    buildah rm "$base" "$tool" >/dev/null
+    rm -rf "$sources" "$prints"
+    echo "Debian $release: container passed at $tried"
     exit
 fi
 export root=$PWD/build/matrix/debian-$release builds="" cxx=clang++ corpus=$PWD/${STRATUM_CORPUS:-../shared/corpus}
