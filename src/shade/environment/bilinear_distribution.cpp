@@ -12,36 +12,6 @@ namespace {
 
 constexpr int kBlocksAcross = 32;
 
-/// The interval of a running sum that contains u times its last value, never an empty one, and the offset in it.
-struct Place {
-    std::size_t index;
-    double offset;  // [0, 1)
-};
-
-/// @param sums  without the leading 0; the last is above 0
-template <typename T>
-Place find(const T* sums, std::size_t count, double u) {
-    const double target = u * static_cast<double>(sums[count - 1]);
-    // The first sum above the target: a branchless search, because branches would be mispredicted half of the time.
-    const T* first = sums;
-    for (std::size_t left = count; left > 1;) {
-        const std::size_t half = left / 2;
-        first += static_cast<double>(first[half - 1]) <= target ? half : 0;
-        left -= half;
-    }
-    const double below = first == sums ? 0.0 : static_cast<double>(first[-1]);
-    const double width = static_cast<double>(*first) - below;
-    return {static_cast<std::size_t>(first - sums), std::clamp((target - below) / width, 0.0, kBelowOne)};
-}
-
-/// The quantile u of a density that is linear from a to b over [0, 1).
-double drawLinear(double a, double b, double u) {
-    if (!(a + b > 0.0)) return u;
-    // The root without cancellation, for falling and rising densities alike.
-    const double x = u * (a + b) / (a + std::sqrt((1.0 - u) * a * a + u * b * b));
-    return std::clamp(x, 0.0, kBelowOne);
-}
-
 /// Scales running sums so that they end at 1, unless all are 0.
 void normalize(const double* sums, std::size_t count, float* result) {
     const double total = sums[count - 1];
@@ -84,7 +54,7 @@ void BilinearDistribution::sumCells() {
             double sum = 0.0;
             for (std::size_t i = 0; i < side(); ++i) {
                 const int column = column0 + static_cast<int>(i);
-                if (row <= rows_ && column < columns_) sum += corners(column, row).at(0.5, 0.5);
+                if (row <= rows_ && column < columns_) sum += middleOf(column, row);
                 cells[i] = sum;
             }
             normalize(cells.data(), side(), &cells_in_block_[(block * side() + r) * side()]);
@@ -149,63 +119,16 @@ void BilinearDistribution::weighBlocks(const Direction& direction) {
     }
 }
 
-BilinearDistribution::Corners BilinearDistribution::corners(int column, int row) const {
-    const int right = column + 1 == columns_ ? 0 : column + 1;
-    const auto above = static_cast<std::size_t>(std::max(row - 1, 0)) * static_cast<std::size_t>(columns_);
-    const auto below = static_cast<std::size_t>(std::min(row, rows_ - 1)) * static_cast<std::size_t>(columns_);
-    const auto left_column = static_cast<std::size_t>(column);
-    const auto right_column = static_cast<std::size_t>(right);
-    return {static_cast<double>(weights_[above + left_column]), static_cast<double>(weights_[above + right_column]),
-            static_cast<double>(weights_[below + left_column]), static_cast<double>(weights_[below + right_column])};
-}
-
-int BilinearDistribution::bin(const glm::vec3& normal) const { return bins_ == 1 ? 0 : NormalBins::of(normal); }
-
-double BilinearDistribution::scale(int bin, int column, int row) const {
-    const std::size_t block = blockOf(column, row);
-    const std::size_t block_row = static_cast<std::size_t>(bin) * block_rows_ + static_cast<std::size_t>(row >> shift_);
-    const float row_scale = row_scales_[block_row];
-    if (!(row_scale > 0.0f)) return 0.0;
-    const std::size_t c = static_cast<std::size_t>(column >> shift_);
-    const float* sums = &block_sums_[block_row * block_columns_];
-    const float share = c > 0 ? sums[c] - sums[c - 1] : sums[0];
-    if (!(share > 0.0f)) return 0.0;
-    return static_cast<double>(row_scale) * static_cast<double>(share) / block_weights_[block] *
-           sines_[static_cast<std::size_t>(row)] * columns_ * rows_;
-}
-
-glm::dvec2 BilinearDistribution::sample(int bin, const glm::dvec2& u, double& pdf) const {
-    pdf = 0.0;
-    const std::size_t first_row = static_cast<std::size_t>(bin) * block_rows_;
-    if (!(row_sums_[first_row + block_rows_ - 1] > 0.0)) return {0.0, 0.0};
-    const Place block_row = find(&row_sums_[first_row], block_rows_, u.y);
-    const Place block_column = find(&block_sums_[(first_row + block_row.index) * block_columns_], block_columns_, u.x);
-    const std::size_t block = block_row.index * block_columns_ + block_column.index;
-    const Place row_inside = find(&rows_in_block_[block * side()], side(), block_row.offset);
-    const Place inside =
-        find(&cells_in_block_[(block * side() + row_inside.index) * side()], side(), block_column.offset);
-    const int row = static_cast<int>((block_row.index << shift_) + row_inside.index);
-    const int column = static_cast<int>((block_column.index << shift_) + inside.index);
-    const Corners c = corners(column, row);
-    const double y = drawLinear(c.w00 + c.w10, c.w01 + c.w11, row_inside.offset);
-    const double x = drawLinear((1.0 - y) * c.w00 + y * c.w01, (1.0 - y) * c.w10 + y * c.w11, inside.offset);
-    const glm::dvec2 point((column + x + 0.5) / columns_, (row + y - 0.5) / rows_);
-    if (!(point.y > 0.0 && point.y < 1.0)) return point;  // half of the outermost rows lies beyond the poles
-    pdf = c.at(x, y) * scale(bin, column, row);
-    return {point.x < 1.0 ? point.x : point.x - 1.0, point.y};
-}
-
-double BilinearDistribution::pdf(int bin, const glm::dvec2& point) const {
-    double sx = point.x * columns_ - 0.5;
-    if (sx < 0.0) sx += columns_;
-    const double sy = point.y * rows_ + 0.5;
-    const int column = std::clamp(static_cast<int>(sx), 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(sy), 0, rows_);
-    const double density = scale(bin, column, row);
-    if (!(density > 0.0)) return 0.0;
-    const double x = std::clamp(sx - column, 0.0, 1.0);
-    const double y = std::clamp(sy - row, 0.0, 1.0);
-    return corners(column, row).at(x, y) * density;
+double BilinearDistribution::middleOf(int column, int row) const {
+    const auto left = static_cast<std::size_t>(column);
+    const std::size_t right = column + 1 == columns_ ? 0 : left + 1;
+    const auto at = [&](int texel_row, std::size_t texel_column) {
+        return static_cast<double>(
+            weights_[static_cast<std::size_t>(texel_row) * static_cast<std::size_t>(columns_) + texel_column]);
+    };
+    const int above = std::max(row - 1, 0);
+    const int below = std::min(row, rows_ - 1);
+    return 0.25 * ((at(above, left) + at(above, right)) + (at(below, left) + at(below, right)));
 }
 
 }  // namespace stratum::shade

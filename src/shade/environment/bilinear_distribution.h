@@ -1,4 +1,4 @@
-// Samples directions exactly proportional to a bilinearly interpolated map of light.
+// Tables to draw directions exactly in proportion to a bilinearly interpolated map of light.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -30,15 +30,7 @@ public:
     /// @param direction  none: one bin, without cosines
     BilinearDistribution(std::vector<float> weights, int columns, int rows, const Direction& direction = {});
 
-    /// The bin of a surface.
-    /// @param normal  finite, not 0
-    int bin(const glm::vec3& normal) const;
-    /// @param u    uniform in [0, 1)^2
-    /// @param pdf  density there per unit of area; 0 means "no sample"
-    glm::dvec2 sample(int bin, const glm::dvec2& u, double& pdf) const;
-    double pdf(int bin, const glm::dvec2& point) const;
-
-    /// The tables themselves, for vector code; described at the private members.
+    /// The tables themselves, which sampleMap() draws from; described at the private members.
     struct View {
         /// Numbers that may be read, and mean nothing, behind the last of running sums: vectors need no shorter end.
         static constexpr std::size_t kPadding = 16;
@@ -70,21 +62,11 @@ public:
     }
 
 private:
-    /// Weights at the corners of a cell between texel centers. Row 0 lies above the first row of centers.
-    struct Corners {
-        double w00, w10, w01, w11;
-        double at(double x, double y) const {
-            return (1.0 - y) * ((1.0 - x) * w00 + x * w10) + y * ((1.0 - x) * w01 + x * w11);
-        }
-    };
-    Corners corners(int column, int row) const;
+    /// The interpolated weight in the middle of a cell between texel centers. Row 0 lies above the first row of
+    /// centers.
+    double middleOf(int column, int row) const;
     void sumCells();
     void weighBlocks(const Direction& direction);
-    /// Density over interpolated weight, in a cell.
-    double scale(int bin, int column, int row) const;
-    std::size_t blockOf(int column, int row) const {
-        return static_cast<std::size_t>(row >> shift_) * block_columns_ + static_cast<std::size_t>(column >> shift_);
-    }
     std::size_t side() const { return std::size_t{1} << shift_; }
 
     int columns_, rows_;

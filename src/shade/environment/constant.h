@@ -9,9 +9,11 @@ class ConstantEnvironment final : public Environment {
 public:
     /// @param radiance  >= 0
     explicit ConstantEnvironment(const Color& radiance) : radiance_(radiance) {}
-    Color radiance(const glm::vec3&) const override { return radiance_; }
-    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const override;
-    float pdf(const glm::vec3& direction, const glm::vec3& normal) const override;
+    void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const override;
+    void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override;
+    void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
+                    std::span<EnvironmentSample> samples) const override;
 
 private:
     Color radiance_;

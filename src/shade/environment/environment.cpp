@@ -6,7 +6,6 @@
 #include "shade/brdf/preset.h"
 #include "shade/brdf/preset_names.h"
 #include "shade/camera/sampling.h"
-#include "shade/environment/bed_light.h"
 #include "shade/environment/constant.h"
 #include "shade/environment/map_environment.h"
 #include "shade/environment/sky.h"
@@ -17,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <vector>
 
 namespace stratum::shade {
 
@@ -45,22 +45,50 @@ std::shared_ptr<const Environment> skyOf(Preset preset, const EnvironmentPlaceme
     return makeSky(sky);
 }
 
+/// By the cosine to +z.
+class CosineSampler final : public EnvironmentSampler {
+public:
+    explicit CosineSampler(const Environment& environment) : environment_(environment) {}
+    void sampleStream(int, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
+                      std::span<EnvironmentSample> samples) const override {
+        std::vector<glm::vec3> directions(u.size());
+        std::transform(u.begin(), u.end(), directions.begin(), toCosineHemisphere);
+        evalStream(directions, normals, samples);
+    }
+    void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3>,
+                    std::span<EnvironmentSample> samples) const override {
+        std::vector<Color> radiances(directions.size());
+        environment_.radianceStream(directions, radiances);
+        for (std::size_t n = 0; n < directions.size(); ++n)
+            samples[n] = {directions[n], radiances[n], std::max(directions[n].z, 0.0f) * kInvPi};
+    }
+
+private:
+    const Environment& environment_;
+};
+
 }  // namespace
 
-std::unique_ptr<const BedLight> Environment::makeBedLight() const { return std::make_unique<CosineBedLight>(*this); }
-
-void Environment::radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const {
-    for (std::size_t n = 0; n < directions.size(); ++n) radiances[n] = radiance(directions[n]);
+std::unique_ptr<const EnvironmentSampler> Environment::makeBedSampler() const {
+    return std::make_unique<CosineSampler>(*this);
 }
 
-void Environment::sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
-                               std::span<EnvironmentSample> samples) const {
-    for (std::size_t n = 0; n < u.size(); ++n) samples[n] = sample(strategy, u[n], normals[n]);
+EnvironmentSample EnvironmentSampler::sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const {
+    EnvironmentSample sample;
+    sampleStream(strategy, {&u, 1}, {&normal, 1}, {&sample, 1});
+    return sample;
 }
 
-void Environment::evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                             std::span<EnvironmentSample> samples) const {
-    for (std::size_t n = 0; n < directions.size(); ++n) samples[n] = eval(directions[n], normals[n]);
+EnvironmentSample EnvironmentSampler::eval(const glm::vec3& direction, const glm::vec3& normal) const {
+    EnvironmentSample sample;
+    evalStream({&direction, 1}, {&normal, 1}, {&sample, 1});
+    return sample;
+}
+
+Color Environment::radiance(const glm::vec3& direction) const {
+    Color radiance(0.0f);
+    radianceStream({&direction, 1}, {&radiance, 1});
+    return radiance;
 }
 
 bool isEnvironmentPreset(std::string_view text) {
@@ -99,14 +127,18 @@ Color irradianceFromAbove(const Environment& environment) {
     constexpr int kRings = 256;
     constexpr int kAngles = 512;
     glm::dvec3 sum(0.0);
+    std::vector<glm::vec3> ring(kAngles);
+    std::vector<Color> radiances(kAngles);
     for (int i = 0; i < kRings; ++i) {
         const double sine2 = (i + 0.5) / kRings;
         const double r = std::sqrt(sine2);
         const double z = std::sqrt(1.0 - sine2);
         for (int j = 0; j < kAngles; ++j) {
             const double phi = 2.0 * std::numbers::pi * (j + 0.5) / kAngles;
-            sum += glm::dvec3(environment.radiance(glm::vec3(r * std::cos(phi), r * std::sin(phi), z)));
+            ring[static_cast<std::size_t>(j)] = glm::vec3(r * std::cos(phi), r * std::sin(phi), z);
         }
+        environment.radianceStream(ring, radiances);
+        for (const Color& radiance : radiances) sum += glm::dvec3(radiance);
     }
     return Color(sum * (std::numbers::pi / (kRings * kAngles)));
 }

@@ -12,49 +12,54 @@
 
 namespace stratum::shade {
 
-class BedLight;
 class Light;
 
-/// A direction drawn by Environment::sample.
+/// A direction drawn by an EnvironmentSampler.
 struct EnvironmentSample {
     glm::vec3 direction{0.0f, 0.0f, 1.0f};  ///< towards the light, unit, world space
-    Color radiance{0.0f};                   ///< radiance(direction)
-    float pdf = 0.0f;                       ///< pdf(direction, normal), the sum of all strategies; 0 means "no sample"
+    Color radiance{0.0f};                   ///< from there
+    float pdf = 0.0f;                       ///< per steradian, the sum of all strategies; 0 means "no sample"
 };
 
-/// Radiance by direction (see color.h for the unit). World space, z up.
-///
-/// sample() is to be combined with samples of a BRDF by multiple importance sampling: its pdf may be 0 where radiance
-/// is small, so alone it is biased. There may be several strategies, e.g. one for the sun and one for the rest of the
-/// sky: each is sampled once at every point, and they are combined by the balance heuristic, so that the contribution
-/// of a sample is radiance / pdf. Immutable; shared by all threads.
-class Environment {
+/// Draws directions that light comes from. There may be several strategies, e.g. one for the sun and one for the rest
+/// of the sky: each is sampled once at every point, and they are combined by the balance heuristic, so that the
+/// contribution of a sample is radiance / pdf. Immutable; shared by all threads.
+class EnvironmentSampler {
 public:
-    virtual ~Environment() = default;
-    /// @param direction  away from the scene, unit
-    virtual Color radiance(const glm::vec3& direction) const = 0;
+    virtual ~EnvironmentSampler() = default;
     virtual int strategies() const { return 1; }
+    /// Draws a direction for each surface. All spans are of one length.
     /// @param strategy  in [0, strategies())
     /// @param u         uniform in [0, 1)^2
-    /// @param normal    of the surface, world space, unit: directions below its horizon may be left out
-    virtual EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const = 0;
-    /// Sum of the strategies' densities per steradian, for a surface of that normal.
-    virtual float pdf(const glm::vec3& direction, const glm::vec3& normal) const = 0;
-    /// radiance and pdf of a direction at once.
-    virtual EnvironmentSample eval(const glm::vec3& direction, const glm::vec3& normal) const {
-        return {direction, radiance(direction), pdf(direction, normal)};
-    }
-    /// radiance() of many directions, sample() for many surfaces, and eval(); faster. All spans are of one length.
-    virtual void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const;
+    /// @param normals   of the surfaces, world space, unit: directions below a horizon may be left out
     virtual void sampleStream(int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
-                              std::span<EnvironmentSample> samples) const;
+                              std::span<EnvironmentSample> samples) const = 0;
+    /// Radiance and density of given directions.
+    /// @param directions  away from the scene, unit
     virtual void evalStream(std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
-                            std::span<EnvironmentSample> samples) const;
+                            std::span<EnvironmentSample> samples) const = 0;
+    /// Streams of one.
+    EnvironmentSample sample(int strategy, const glm::vec2& u, const glm::vec3& normal) const;
+    EnvironmentSample eval(const glm::vec3& direction, const glm::vec3& normal) const;
+};
+
+/// Radiance by direction (see color.h for the unit). World space, z up. Its samples are to be combined with those of a
+/// BRDF by multiple importance sampling: a pdf may be 0 where radiance is small, so alone they are biased.
+class Environment : public EnvironmentSampler {
+public:
+    /// @param directions  away from the scene, unit
+    /// @param radiances   as many
+    virtual void radianceStream(std::span<const glm::vec3> directions, std::span<Color> radiances) const = 0;
+    /// A stream of one.
+    Color radiance(const glm::vec3& direction) const;
     /// Whether a camera may see it: true for landscapes, false for softboxes.
     virtual bool visible() const { return true; }
-    /// The sampling of this environment on the bed. The environment must outlive it.
-    virtual std::unique_ptr<const BedLight> makeBedLight() const;
-    /// A light of this environment that is not in radiance(), because it is too small for a table. Null if there is
+    /// For the bed, a horizontal matt surface, whatever the normals: by radiance times the cosine to +z. Without
+    /// occlusion all samples have nearly the same value, so the open bed, most of a picture, is nearly free of noise.
+    /// Unbiased alone: pdf > 0 wherever light comes from above. The environment must outlive it. By the cosine alone,
+    /// which suits an environment that is nearly constant.
+    virtual std::unique_ptr<const EnvironmentSampler> makeBedSampler() const;
+    /// A light of this environment that is not in its radiance, because it is too small for a table. Null if there is
     /// none.
     virtual std::shared_ptr<const Light> sun() const { return nullptr; }
 };

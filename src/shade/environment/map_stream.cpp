@@ -23,6 +23,8 @@ namespace {
 // Surfaces at a time: whole vectors on every target, enough cache misses to be served together, and small enough for
 // the first-level cache.
 constexpr std::size_t kBatch = 64;
+constexpr std::size_t kLanes = 8;  // doubles in the widest vector
+constexpr std::size_t wholeVectors(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
 constexpr double kTurn = 2.0 * std::numbers::pi;  // radians
 template <typename T>
 using Batch = std::array<T, kBatch>;
@@ -35,6 +37,7 @@ struct alignas(64) MapBatch {
     Batch<double> dx, dy, dz;
     Batch<double> sine;  // of the polar angle
     Batch<Color> radiance;
+    std::size_t count = 0;  // of surfaces, in whole vectors: the last ones may mean nothing
 };
 
 }  // namespace
@@ -47,9 +50,9 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-// Doubles, as in the scalar functions: the position in a cell of a large map is in the digits of a draw below those
+// Doubles: the position in a cell of a large map is in the digits of a draw below those
 // that select the cell. Whole numbers in them are indices.
-using D = hn::CappedTag<double, 8>;
+using D = hn::CappedTag<double, kLanes>;
 using F = hn::Rebind<float, D>;
 using I = hn::Rebind<std::int32_t, D>;
 using VD = hn::Vec<D>;
@@ -77,9 +80,8 @@ HWY_INLINE float limitOf(double target, const float*) {
 }
 HWY_INLINE double limitOf(double target, const double*) { return target; }
 
-// The interval of a running sum in which u times its end falls, and the offset in it: find() of
-// bilinear_distribution.cpp, to the bit. Neighbours are compared all at once: steps of a binary search would wait for
-// each other.
+// The interval of a running sum in which u times its end falls, never an empty one, and the offset in it. Neighbours
+// are compared all at once: steps of a binary search would wait for each other.
 template <typename T>
 HWY_INLINE double find(const T* HWY_RESTRICT sums, std::size_t count, double u, std::int32_t& interval) {
     constexpr std::size_t kAtOnce = 32;
@@ -108,7 +110,8 @@ HWY_INLINE double find(const T* HWY_RESTRICT sums, std::size_t count, double u, 
 
 HWY_INLINE VD mix(VD w, VD a, VD b) { return hn::Add(hn::Mul(hn::Sub(set(1.0), w), a), hn::Mul(w, b)); }
 
-// drawLinear of one draw.
+// The quantile u of a density that is linear from a to b over [0, 1): the root without cancellation, for falling and
+// rising densities alike.
 HWY_INLINE VD drawLinear(VD a, VD b, VD u) {
     const VD sum = hn::Add(a, b);
     const VD below = hn::Mul(hn::Mul(hn::Sub(set(1.0), u), a), a);
@@ -131,7 +134,7 @@ HWY_INLINE Corners corners(const BilinearDistribution::View& t, VD column, VD ro
             gather(t.weights, hn::Add(below, column)), gather(t.weights, hn::Add(below, right))};
 }
 
-// BilinearDistribution::scale of one cell.
+// Density over interpolated weight, in a cell.
 HWY_INLINE VD scale(const BilinearDistribution::View& t, VD bin, VD block_row, VD block_column, VD row) {
     const VD zero = set(0.0);
     const VD scales = hn::Add(hn::Mul(bin, whole(t.block_rows)), block_row);
@@ -155,8 +158,8 @@ HWY_INLINE VD binOf(const BilinearDistribution::View& t, const MapBatch& b, std:
     return t.bins == 1 ? set(0.0) : hn::Load(D(), &b.bin[n]);
 }
 
-// BilinearDistribution::sample. Each search is done for the whole batch before the next one, so that the loads of many
-// draws are served together.
+// Draws positions on the map, and their density. Each search is done for the whole batch before the next one, so that
+// the loads of many draws are served together.
 void Draw(const BilinearDistribution::View& t, MapBatch& b) {
     const D d;
     const I i;
@@ -169,21 +172,22 @@ void Draw(const BilinearDistribution::View& t, MapBatch& b) {
     const auto cellsAt = [&](std::size_t n) {
         return t.cells_in_block + (blockAt(n) * side + static_cast<std::size_t>(inner_row[n])) * side;
     };
-    for (std::size_t n = 0; n < kBatch; ++n) {
+    for (std::size_t n = 0; n < b.count; ++n) {
         const double* sums = t.row_sums + (t.bins == 1 ? 0 : static_cast<std::size_t>(b.bin[n])) * t.block_rows;
         v[n] = find(sums, t.block_rows, b.v[n], block_row[n]);
         b.density[n] = sums[t.block_rows - 1];
     }
-    for (std::size_t n = 0; n < kBatch; ++n) {
+    for (std::size_t n = 0; n < b.count; ++n) {
         const std::size_t first_row = (t.bins == 1 ? 0 : static_cast<std::size_t>(b.bin[n])) * t.block_rows;
         const std::size_t row = first_row + static_cast<std::size_t>(block_row[n]);
         u[n] = find(t.block_sums + row * t.block_columns, t.block_columns, b.u[n], block_column[n]);
     }
-    for (std::size_t n = 0; n < kBatch; ++n) v[n] = find(t.rows_in_block + blockAt(n) * side, side, v[n], inner_row[n]);
-    for (std::size_t n = 0; n < kBatch; ++n) u[n] = find(cellsAt(n), side, u[n], inner_column[n]);
+    for (std::size_t n = 0; n < b.count; ++n)
+        v[n] = find(t.rows_in_block + blockAt(n) * side, side, v[n], inner_row[n]);
+    for (std::size_t n = 0; n < b.count; ++n) u[n] = find(cellsAt(n), side, u[n], inner_column[n]);
     const auto load = [&](const Batch<std::int32_t>& from, std::size_t n)
                           HWY_ATTR { return hn::PromoteTo(d, hn::Load(i, &from[n])); };
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
+    for (std::size_t n = 0; n < b.count; n += hn::Lanes(d)) {
         const VD row0 = load(block_row, n);
         const VD column0 = load(block_column, n);
         // No draw falls on the cells that fill the outermost blocks up, unless there is nothing to draw at all.
@@ -203,12 +207,12 @@ void Draw(const BilinearDistribution::View& t, MapBatch& b) {
     }
 }
 
-// Adds BilinearDistribution::pdf.
+// Adds the density at the positions.
 void AddDensity(const BilinearDistribution::View& t, MapBatch& b) {
     const D d;
     const VD zero = set(0.0);
     const VD per_side = set(1.0 / static_cast<double>(std::size_t{1} << t.shift));
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
+    for (std::size_t n = 0; n < b.count; n += hn::Lanes(d)) {
         VD sx = hn::Sub(hn::Mul(hn::Load(d, &b.x[n]), set(t.columns)), set(0.5));
         sx = hn::IfThenElse(hn::Lt(sx, zero), hn::Add(sx, set(t.columns)), sx);
         const VD sy = hn::Add(hn::Mul(hn::Load(d, &b.y[n]), set(t.rows)), set(0.5));
@@ -224,12 +228,12 @@ void AddDensity(const BilinearDistribution::View& t, MapBatch& b) {
     }
 }
 
-// MapEnvironment's directionOf of the places, in single precision.
+// The directions of the positions, in single precision.
 void Directions(double rotation, MapBatch& b) {
     const D d;
     const F f;
     const VD turned = set(0.5 + rotation / kTurn);
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
+    for (std::size_t n = 0; n < b.count; n += hn::Lanes(d)) {
         VD sine;
         VD cosine;
         sineAndCosine(d, hn::Mul(hn::Load(d, &b.y[n]), set(0.5)), sine, cosine);
@@ -243,11 +247,11 @@ void Directions(double rotation, MapBatch& b) {
     }
 }
 
-// MapEnvironment::place of the directions.
+// The positions of the directions.
 void Positions(double rotation, MapBatch& b) {
     const D d;
     const VD turned = set(0.5 + rotation / kTurn);
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
+    for (std::size_t n = 0; n < b.count; n += hn::Lanes(d)) {
         const VD dx = hn::Load(d, &b.dx[n]);
         const VD dy = hn::Load(d, &b.dy[n]);
         const VD sine = hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
@@ -260,8 +264,8 @@ void Positions(double rotation, MapBatch& b) {
     }
 }
 
-// MapEnvironment::lookUp of the places. Texels are read one by one: three floats side by side are one load, where
-// gathers would be three.
+// The radiance at the positions, interpolated bilinearly. Texels are read one by one: three floats side by side are one
+// load, where gathers would be three.
 void LookUp(const LightMap& map, MapBatch& b) {
     const D d;
     const F f;
@@ -269,7 +273,7 @@ void LookUp(const LightMap& map, MapBatch& b) {
     const VD zero = set(0.0);
     alignas(64) Batch<std::int32_t> left, right, above, below;  // columns, and the first texels of rows
     alignas(64) Batch<float> wx, wy;
-    for (std::size_t n = 0; n < kBatch; n += hn::Lanes(d)) {
+    for (std::size_t n = 0; n < b.count; n += hn::Lanes(d)) {
         VD sx = hn::Sub(hn::Mul(hn::Load(d, &b.x[n]), set(map.width)), set(0.5));
         sx = hn::IfThenElse(hn::Lt(sx, zero), hn::Add(sx, set(map.width)), sx);
         const VD sy = hn::Min(hn::Max(hn::Sub(hn::Mul(hn::Load(d, &b.y[n]), set(map.height)), set(0.5)), zero),
@@ -286,7 +290,7 @@ void LookUp(const LightMap& map, MapBatch& b) {
         hn::Store(hn::DemoteTo(f, hn::Sub(sy, y0)), f, &wy[n]);
     }
     const Color* const texels = map.texels.data();
-    for (std::size_t n = 0; n < kBatch; ++n) {
+    for (std::size_t n = 0; n < b.count; ++n) {
         const auto row = [&](const Color* texel) { return (1.0f - wx[n]) * texel[left[n]] + wx[n] * texel[right[n]]; };
         b.radiance[n] = (1.0f - wy[n]) * row(texels + above[n]) + wy[n] * row(texels + below[n]);
     }
@@ -336,6 +340,7 @@ void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2>
     const auto chosen = static_cast<std::size_t>(strategy);
     for (std::size_t first = 0; first < u.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, u.size() - first);
+        batch.count = wholeVectors(count);
         setBins(normals, first, count, batch);
         for (std::size_t n = 0; n < count; ++n) {
             batch.u[n] = static_cast<double>(u[first + n].x);
@@ -362,6 +367,7 @@ void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std
     MapBatch batch{};
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);
+        batch.count = wholeVectors(count);
         setBins(normals, first, count, batch);
         setDirections(directions, first, count, batch);
         batch.density.fill(0.0);
@@ -377,6 +383,7 @@ void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions,
     MapBatch batch{};
     for (std::size_t first = 0; first < directions.size(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.size() - first);
+        batch.count = wholeVectors(count);
         setDirections(directions, first, count, batch);
         HWY_DYNAMIC_DISPATCH(Positions)(placed.rotation, batch);
         HWY_DYNAMIC_DISPATCH(LookUp)(placed.map, batch);

@@ -1,4 +1,4 @@
-// MapEnvironment's functions for many surfaces at once, in vectors.
+// Directions of a latitude-longitude map for many surfaces at once, in vectors.
 #pragma once
 
 #include "shade/environment/bilinear_distribution.h"
@@ -21,9 +21,9 @@ struct PlacedMap {
 };
 
 /// In a large map nearly every sample is a cache miss; in vectors many misses are served together. Angles are computed
-/// by polynomials, exact to 3e-8 radians; everything else has the bits of the scalar functions on every processor.
+/// by polynomials, exact to 3e-8 radians. The same bits on every processor.
 ///
-/// MapEnvironment::sample for each draw.
+/// Draws a direction from a table, by the density of all of them together.
 /// @param strategy  of the tables
 /// @param u         uniform in [0, 1)^2
 /// @param normals   of the surfaces, finite, not 0; none if all tables were made without directions
@@ -31,14 +31,14 @@ struct PlacedMap {
 void sampleMap(const PlacedMap& placed, int strategy, std::span<const glm::vec2> u, std::span<const glm::vec3> normals,
                std::span<EnvironmentSample> samples);
 
-/// MapEnvironment::eval for each direction.
+/// Radiance and density of directions.
 /// @param directions  unit
 /// @param normals     as above
 /// @param samples     as many as directions
 void evalMap(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<const glm::vec3> normals,
              std::span<EnvironmentSample> samples);
 
-/// MapEnvironment::radiance for each direction.
+/// Radiance of directions.
 /// @param directions  unit
 /// @param radiances   as many as directions
 void mapRadiance(const PlacedMap& placed, std::span<const glm::vec3> directions, std::span<Color> radiances);

@@ -12,9 +12,9 @@
 namespace stratum::shade {
 namespace {
 
-/// Factor of the BRDF's pdf in the balance heuristic on the bed, where BedLight is the other strategy. With 1 the
-/// unoccluded bed would be as noisy as with cosine sampling; with 0 the shadow of a sun would be lit only by the few
-/// samples of BedLight that miss the sun.
+/// Factor of the BRDF's pdf in the balance heuristic on the bed, where its own sampler is the other strategy. With 1
+/// the unoccluded bed would be as noisy as with cosine sampling; with 0 the shadow of a sun would be lit only by the
+/// few samples of that sampler that miss the sun.
 constexpr float kBedShare = 0.25f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 /// Surfaces that a path through translucent solids may meet: far more than roulette lets it.
@@ -31,7 +31,7 @@ void gatherGroups(Groups& groups, const Things& things, const IsBed& isBed) {
 
 PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces)
     : Integrator(scene, print), scene_(scene), bounces_(bounces) {
-    if (scene.bed) bed_light_ = scene.environment->makeBedLight();
+    if (scene.bed) bed_sampler_ = scene.environment->makeBedSampler();
     for (const auto& light : scene.lights)
         if (light->hasExtent()) extended_lights_.push_back(light.get());
     if (scene.anyTranslucent()) walk_.emplace(surfaces_, print.bounds(), scene.mm_per_unit);
@@ -127,7 +127,7 @@ void PathIntegrator::sampleLights(const PathVertex& vertex, Sampler& sampler, Sh
 
 std::size_t PathIntegrator::raysAVertex() const {
     const int strategies = scene_.environment->strategies();
-    return static_cast<std::size_t>(bed_light_ ? std::max(strategies, bed_light_->strategies()) : strategies) +
+    return static_cast<std::size_t>(bed_sampler_ ? std::max(strategies, bed_sampler_->strategies()) : strategies) +
            scene_.lights.size();
 }
 
@@ -144,8 +144,7 @@ Color PathIntegrator::hitLights(const trace::Ray& ray, double t, float pdf) cons
 void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathVertex> vertices,
                                        std::span<Sampler> samplers, ShadowRays& shadow_rays, LightBatch& batch) const {
     const std::size_t count = group.members.size();
-    if (count == 0) return;  // without a bed, bed_light_ is null
-    const int strategies = group.bed ? bed_light_->strategies() : scene_.environment->strategies();
+    if (count == 0) return;
     batch.resize(count);
     batch.u.resize(count);
     batch.pixels.resize(count);
@@ -154,12 +153,9 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
         batch.pixels[k] = vertex.path->pixel;
         batch.normals[k] = vertex.frame.z;
     }
-    for (int strategy = 0; strategy < strategies; ++strategy) {
+    for (int strategy = 0; strategy < group.light->strategies(); ++strategy) {
         next2DStream(samplers, batch.pixels, batch.u);
-        if (group.bed)
-            bed_light_->sampleStream(strategy, batch.u, batch.samples);
-        else
-            scene_.environment->sampleStream(strategy, batch.u, batch.normals, batch.samples);
+        group.light->sampleStream(strategy, batch.u, batch.normals, batch.samples);
         BrdfBatch& reflections = batch.reflections;
         std::vector<std::size_t>& lit = batch.lit;
         reflections.clear();
@@ -178,7 +174,7 @@ void PathIntegrator::sampleEnvironment(const Group& group, std::span<const PathV
             const PathVertex& vertex = vertices[group.members[k]];
             const EnvironmentSample& light = batch.samples[k];
             const float density = vertex.bent ? vertex.bentPdf(light.direction) : reflections.densities[m];
-            const float weight = balanceHeuristic(light.pdf, (group.bed ? kBedShare : 1.0f) * density);
+            const float weight = balanceHeuristic(light.pdf, group.share * density);
             const Color reflected = vertex.bent ? Color(1.0f) : reflections.values[m];
             const float cosine = vertex.bent ? density : reflections.wi(m).z;
             const Color value = vertex.path->throughput * reflected * (cosine * weight / light.pdf) * light.radiance;
@@ -234,13 +230,10 @@ void PathIntegrator::evalEscaped(const Group& group, std::span<Bounce> bounces, 
         batch.directions[k] = bounce.direction;
         batch.normals[k] = bounce.from->frame.z;
     }
-    if (group.bed)
-        bed_light_->evalStream(batch.directions, batch.samples);
-    else
-        scene_.environment->evalStream(batch.directions, batch.normals, batch.samples);
+    group.light->evalStream(batch.directions, batch.normals, batch.samples);
     for (std::size_t k = 0; k < count; ++k) {
         Bounce& bounce = bounces[group.members[k]];
-        const float own = (group.bed ? kBedShare : 1.0f) * bounce.pdf;
+        const float own = group.share * bounce.pdf;
         bounce.escaped += batch.samples[k].radiance * balanceHeuristic(own, batch.samples[k].pdf);
     }
 }
@@ -297,7 +290,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
     ShadowRays escaped_rays;
     LightBatch batch;
-    std::array<Group, 2> groups{Group{false, {}}, Group{true, {}}};
+    std::array<Group, 2> groups{Group{scene_.environment.get(), 1.0f, {}}, Group{bed_sampler_.get(), kBedShare, {}}};
     std::vector<PathVertex> vertices;
     std::vector<glm::vec2> lobe_draws;
     std::vector<glm::vec2> brdf_draws;

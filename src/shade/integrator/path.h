@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/brdf/brdf_batch.h"
-#include "shade/environment/bed_light.h"
+#include "shade/environment/environment.h"
 #include "shade/frame.h"
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/random_walk.h"
@@ -16,9 +16,9 @@
 namespace stratum::shade {
 
 /// Path tracing with `bounces` scattering events. At each of them the environment is sampled by its own density and by
-/// the BRDF's, combined by multiple importance sampling; on the bed BedLight takes the place of the environment's
-/// density. Every light is sampled at every vertex; lights with extent also by the BRDF. Unbiased for paths of that
-/// length; nothing is clamped.
+/// the BRDF's, combined by multiple importance sampling; on the bed its makeBedSampler() takes the place of
+/// that density. Every light is sampled at every vertex; lights with extent also by the BRDF. Unbiased for paths of
+/// that length; nothing is clamped.
 ///
 /// Translucent solids let a path in at their rough surface; it walks inside (RandomWalk) until it meets the surface
 /// from there, is reflected inwards, or leaves. Such events do not count as bounces: the path ends by Russian roulette,
@@ -81,11 +81,11 @@ private:
         Color escaped{0.0f};                  // radiance along it if it hits nothing, weighted by MIS
         const Translucent* inside = nullptr;  // it goes through; null for air
     };
-    /// Indices of vertices or bounces whose light comes from one density: on the bed BedLight's, else the
-    /// environment's.
+    /// Vertices or bounces whose light is drawn by one sampler: on the bed the bed's, else the environment.
     struct Group {
-        bool bed;
-        std::vector<std::size_t> members;
+        const EnvironmentSampler* light;   // null without a bed, where it has no members
+        float share;                       // factor of the BRDF's pdf in the balance heuristic
+        std::vector<std::size_t> members;  // indices
     };
     /// Samples of light for a group: the input and output of one call of sampleStream or evalStream.
     struct LightBatch {
@@ -142,7 +142,7 @@ private:
                        std::span<const Color> sums, std::span<Pixel> pixels) const;
 
     const SceneDescription& scene_;
-    std::unique_ptr<const BedLight> bed_light_;
+    std::unique_ptr<const EnvironmentSampler> bed_sampler_;
     int bounces_;
     std::optional<RandomWalk> walk_;             // only where something is translucent
     std::vector<const Light*> extended_lights_;  // of the scene, see Light::hasExtent

@@ -78,9 +78,12 @@ private:
         shade::primaryRays(scene_.camera, filter_, pixels, samplers, rays);
         shade::RayCounts ignored;
         occlusion_.radianceStream(rays, samplers, tracer, ignored, points, open);
-        if (!surfaces_.backdrop(rays, behind) && scene_.environment->visible())
-            for (std::size_t n = 0; n < rays.size(); ++n)
-                behind[n] = scene_.environment->radiance(glm::vec3(rays[n].direction));
+        if (!surfaces_.backdrop(rays, behind) && scene_.environment->visible()) {
+            std::vector<glm::vec3> directions;
+            directions.reserve(rays.size());
+            for (const trace::Ray& ray : rays) directions.emplace_back(ray.direction);
+            scene_.environment->radianceStream(directions, behind);
+        }
         for (std::size_t n = 0; n < pixels.size(); ++n) {
             Seen& seen = seen_[index(pixels[n].x, pixels[n].y)];
             seen.behind = behind[n];

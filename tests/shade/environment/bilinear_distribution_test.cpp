@@ -1,5 +1,7 @@
 #include "shade/environment/bilinear_distribution.h"
 
+#include "shade/environment/scalar_map.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +31,7 @@ TEST(BilinearDistribution, DensityIsOneInAll) {
         const int ny = rows * 64;
         double sum = 0.0;
         for (int i = 0; i < nx; ++i)
-            for (int j = 0; j < ny; ++j) sum += table.pdf(0, {(i + 0.5) / nx, (j + 0.5) / ny});
+            for (int j = 0; j < ny; ++j) sum += test::densityOf(table, 0, {(i + 0.5) / nx, (j + 0.5) / ny});
         // Half of the first and last row of cells lies beyond the poles.
         EXPECT_LE(sum / nx / ny, 1.0 + 1e-9);
         EXPECT_GT(sum / nx / ny, rows > 4 ? 0.99 : 0.49);
@@ -49,13 +51,13 @@ TEST(BilinearDistribution, SampleAndDensityAgree) {
     for (int n = 0; n < kDraws; ++n) {
         double pdf = 0.0;
         const double ux = uniform(random);
-        const glm::dvec2 p = table.sample(0, {ux, uniform(random)}, pdf);
+        const glm::dvec2 p = test::drawFrom(table, 0, {ux, uniform(random)}, pdf);
         if (!(pdf > 0.0)) {
             ++lost;
             continue;
         }
         ASSERT_TRUE(p.x >= 0.0 && p.x < 1.0 && p.y > 0.0 && p.y < 1.0);
-        ASSERT_NEAR(table.pdf(0, p), pdf, 1e-6 * pdf + 1e-9);
+        ASSERT_NEAR(test::densityOf(table, 0, p), pdf, 1e-6 * pdf + 1e-9);
         seen[static_cast<std::size_t>(int(p.y * kCells) * kCells + int(p.x * kCells))] += 1.0;
     }
     double chi2 = 0.0;
@@ -67,7 +69,8 @@ TEST(BilinearDistribution, SampleAndDensityAgree) {
             double p = 0.0;
             for (int a = 0; a < kCuts; ++a)
                 for (int b = 0; b < kCuts; ++b)
-                    p += table.pdf(0, {(c + (a + 0.5) / kCuts) / kCells, (r + (b + 0.5) / kCuts) / kCells});
+                    p +=
+                        test::densityOf(table, 0, {(c + (a + 0.5) / kCuts) / kCells, (r + (b + 0.5) / kCuts) / kCells});
             const double expected = p / (kCuts * kCuts * kCells * kCells) * kDraws;
             inside += expected;
             if (expected < 20.0) continue;
@@ -83,7 +86,7 @@ TEST(BilinearDistribution, SampleAndDensityAgree) {
 TEST(BilinearDistribution, NothingBrightMeansEverywhere) {
     const BilinearDistribution table(std::vector<float>(32, 0.0f), 8, 4);
     // The sphere's density: pi / 2 sin(pi v), by rows.
-    EXPECT_NEAR(table.pdf(0, {0.3, 0.5}), std::numbers::pi / 2.0, 0.15);
+    EXPECT_NEAR(test::densityOf(table, 0, {0.3, 0.5}), std::numbers::pi / 2.0, 0.15);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include "scratch_folder.h"
 #include "shade/camera/sampler.h"
 #include "shade/camera/sampling.h"
-#include "shade/environment/bed_light.h"
 #include "shade/environment/studio.h"
 #include "shade/frame.h"
 
@@ -45,7 +44,7 @@ class Environments : public testing::TestWithParam<Case> {};
 
 TEST(ConstantEnvironment, SampleAgreesWithRadianceAndDensity) {
     const auto env = makeEnvironment("constant:1,0.5,0.25", {});
-    EXPECT_NEAR(overSphere([&](const glm::vec3& d) { return double(env->pdf(d, {0, 0, 1})); }), 1.0, 2e-3);
+    EXPECT_NEAR(overSphere([&](const glm::vec3& d) { return double(env->eval(d, {0, 0, 1}).pdf); }), 1.0, 2e-3);
     const double power = overSphere([&](const glm::vec3& d) { return double(shade::luminance(env->radiance(d))); });
     double estimate = 0.0;
     double squares = 0.0;
@@ -56,7 +55,7 @@ TEST(ConstantEnvironment, SampleAgreesWithRadianceAndDensity) {
             const auto s = env->sample(0, {(i + 0.5f) / kSide, (j + 0.5f) / kSide}, {0, 0, 1});
             ASSERT_GT(s.pdf, 0.0f);
             ASSERT_NEAR(glm::length(s.direction), 1.0f, 1e-5f);
-            differ += std::abs(s.pdf - env->pdf(s.direction, {0, 0, 1})) > 1e-3f * s.pdf;
+            differ += std::abs(s.pdf - env->eval(s.direction, {0, 0, 1}).pdf) > 1e-3f * s.pdf;
             ASSERT_NEAR(shade::luminance(s.radiance), shade::luminance(env->radiance(s.direction)), 2e-3f);
             const double v = double(shade::luminance(s.radiance)) / double(s.pdf);
             estimate += v;
@@ -79,33 +78,37 @@ TEST_P(Environments, SamplesItsDensity) {
         if (!(s.pdf > 0.0f)) return std::nullopt;
         return s.direction;
     };
-    EXPECT_LT(test::chiSquaredZ(
-                  up, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(env->pdf(d, up)); }, 300000, 2),
-              4.0);
+    EXPECT_LT(
+        test::chiSquaredZ(
+            up, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(env->eval(d, up).pdf); }, 300000, 2),
+        4.0);
 }
 
-TEST_P(Environments, BedLightSamplesItsDensity) {
+TEST_P(Environments, TheBedSamplesItsDensity) {
     const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
-    const auto light = env->makeBedLight();
+    const auto light = env->makeBedSampler();
     ASSERT_EQ(light->strategies(), 1);
     const auto draw = [&](const glm::vec2& u) -> std::optional<glm::vec3> {
-        const auto s = light->sample(0, u);
+        const auto s = light->sample(0, u, {0, 0, 1});
         if (!(s.pdf > 0.0f)) return std::nullopt;
         return s.direction;
     };
     EXPECT_LT(test::chiSquaredZ(
-                  {0, 0, 1}, std::numbers::pi, draw, [&](const glm::vec3& d) { return double(light->eval(d).pdf); },
+                  {0, 0, 1}, std::numbers::pi, draw,
+                  [&](const glm::vec3& d) {
+                      return double(light->eval(d, {0, 0, 1}).pdf);
+                  },
                   300000, 2),
               4.0);
 }
 
-TEST_P(Environments, BedLightIsPositiveWhereLightIs) {
+TEST_P(Environments, TheBedsDensityIsPositiveWhereLightIs) {
     const auto env = makeEnvironment(GetParam().text, {GetParam().azimuth, GetParam().bed});
-    const auto light = env->makeBedLight();
+    const auto light = env->makeBedSampler();
     overSphere(
         [&](const glm::vec3& d) {
             if (d.z > 0.0f && shade::maxComponent(env->radiance(d)) > 0.0f) {
-                EXPECT_GT(light->eval(d).pdf, 0.0f);
+                EXPECT_GT(light->eval(d, {0, 0, 1}).pdf, 0.0f);
             }
             return 0.0;
         },
@@ -171,10 +174,10 @@ TEST(Studio, HasNoLightBelowABed) {
     EXPECT_GT(makeEnvironment("studio", {0.0, false})->radiance({0.0f, 0.6f, -0.8f}).r, 0.0f);
 }
 
-TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
+TEST(BedSampler, OpenBedIsNearlyFreeOfNoise) {
     for (const char* text : {"constant:1,1,1", "studio"}) {
         const auto env = makeEnvironment(text, {0.3, true});
-        const auto light = env->makeBedLight();
+        const auto light = env->makeBedSampler();
         const double expected = double(shade::luminance(shade::irradianceFromAbove(*env)));
         double sum = 0.0;
         double squares = 0.0;
@@ -182,7 +185,7 @@ TEST(BedLight, OpenBedIsNearlyFreeOfNoise) {
         shade::Sampler sampler(1, kSamples);
         for (std::uint32_t i = 0; i < kSamples; ++i) {
             sampler.start(0, 0, i);
-            const auto s = light->sample(0, sampler.next2D());
+            const auto s = light->sample(0, sampler.next2D(), {0, 0, 1});
             if (!(s.pdf > 0.0f)) continue;  // beyond a pole, rarely
             const double v =
                 double(shade::luminance(s.radiance)) * double(std::max(s.direction.z, 0.0f)) / double(s.pdf);

@@ -3,7 +3,6 @@
 #include "corpus.h"
 #include "shade/analytic_prints.h"
 #include "shade/camera/sampling.h"
-#include "shade/environment/bed_light.h"
 #include "shade/frame.h"
 #include "shade/integrator/path.h"
 #include "shade/mean_radiance.h"
@@ -68,7 +67,7 @@ TEST(MapEnvironment, DensityIsThatOfTheSamples) {
     for (const glm::vec3 up : {glm::vec3(0, 0, 1), glm::vec3(0.6f, -0.64f, 0.48f), glm::vec3(-0.8f, 0, -0.6f)}) {
         const double rotation = up.x < 0.0f ? 2.0 : 0.0;
         const MapEnvironment env(sunny(), rotation, 1.0f);
-        EXPECT_NEAR(overMap(2048, [&](const glm::vec3& d) { return double(env.pdf(d, up)); }), 2.0, 4e-3);
+        EXPECT_NEAR(overMap(2048, [&](const glm::vec3& d) { return double(env.eval(d, up).pdf); }), 2.0, 4e-3);
         ASSERT_EQ(env.strategies(), 2);  // the sun has its own
         constexpr int kZ = 16;
         constexpr int kPhi = 32;
@@ -81,7 +80,7 @@ TEST(MapEnvironment, DensityIsThatOfTheSamples) {
         constexpr int kHeight = 2048;
         overMap(kHeight, [&](const glm::vec3& d) {
             const double s = std::hypot(double(d.x), double(d.y));
-            expected[cell(d)] += double(env.pdf(d, up)) * s * kPi / kHeight * kPi / kHeight;
+            expected[cell(d)] += double(env.eval(d, up).pdf) * s * kPi / kHeight * kPi / kHeight;
             return 0.0;
         });
         constexpr int kDraws = 300000;
@@ -94,7 +93,7 @@ TEST(MapEnvironment, DensityIsThatOfTheSamples) {
             const auto s = env.sample(n % 2, {x, uniform(random)}, up);
             if (!(s.pdf > 0.0f)) continue;
             // A direction in floats may fall into the next row, whose mean sine is another.
-            differ += std::abs(env.pdf(s.direction, up) - s.pdf) > 0.01f * s.pdf;
+            differ += std::abs(env.eval(s.direction, up).pdf - s.pdf) > 0.01f * s.pdf;
             seen[cell(s.direction)] += 1.0;
         }
         EXPECT_LT(differ, 30);
@@ -134,7 +133,7 @@ TEST(MapEnvironment, DrawsAboveTheHorizonOfEverySurface) {
         const float y = uniform(random);
         const auto s = env.sample(trial % 2, {y, uniform(random)}, shade::toSphere({y, x}));
         if (s.pdf > 0.0f && glm::dot(s.direction, normal) > 0.0f) {
-            EXPECT_GT(env.pdf(s.direction, normal), 0.0f);
+            EXPECT_GT(env.eval(s.direction, normal).pdf, 0.0f);
         }
     }
 }
@@ -146,7 +145,6 @@ TEST(MapEnvironment, OneLookGivesRadianceAndDensity) {
         const glm::vec3 normal = shade::toSphere({std::fmod(0.755f * n, 1.0f), std::fmod(0.57f * n, 1.0f)});
         const auto there = env.eval(d, normal);
         EXPECT_EQ(there.radiance, env.radiance(d));
-        EXPECT_EQ(there.pdf, env.pdf(d, normal));
         EXPECT_EQ(there.direction, d);
     }
 }
@@ -167,9 +165,9 @@ TEST(MapEnvironment, SamplesOfTheSunHaveOneValue) {
     EXPECT_LT(most / least, 1.15);
 }
 
-TEST(MapEnvironment, BedLightAloneIsComplete) {
+TEST(MapEnvironment, TheBedsSamplesAloneAreComplete) {
     const MapEnvironment env(sunny(), 1.0, 1.0f);
-    const auto light = env.makeBedLight();
+    const auto light = env.makeBedSampler();
     const double expected = overMap(2048, [&](const glm::vec3& d) {
         return double(std::max(d.z, 0.0f)) * double(shade::luminance(env.radiance(d)));
     });
@@ -181,7 +179,7 @@ TEST(MapEnvironment, BedLightAloneIsComplete) {
         for (int j = 0; j < kSide; ++j) {
             double v = 0.0;
             for (int strategy = 0; strategy < 2; ++strategy) {
-                const auto s = light->sample(strategy, {(i + 0.5f) / kSide, (j + 0.5f) / kSide});
+                const auto s = light->sample(strategy, {(i + 0.5f) / kSide, (j + 0.5f) / kSide}, {0, 0, 1});
                 if (s.pdf > 0.0f)
                     v += double(shade::luminance(s.radiance)) * double(std::max(s.direction.z, 0.0f)) / double(s.pdf);
             }
