@@ -25,7 +25,14 @@ inline auto allTargets() {
 #if HWY_ARCH_ARM_A64
     return testing::Values(HWY_NEON, HWY_EMU128);
 #else
-    return testing::Values(HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128);
+    return testing::Values(
+#ifdef HWY_AVX10_2  // since Highway 1.2
+        HWY_AVX10_2,
+#endif
+#ifdef HWY_AVX3_SPR  // since Highway 1.1
+        HWY_AVX3_SPR, HWY_AVX3_ZEN4,
+#endif
+        HWY_AVX3_DL, HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_EMU128);
 #endif
 }
 

@@ -15,7 +15,7 @@
 #include <cstdint>
 
 #undef STRATUM_WIDE_LANES
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2  // Highway numbers the better ones lower, those of later releases, too
 #define STRATUM_WIDE_LANES 1
 #else
 #define STRATUM_WIDE_LANES 0  // with two lanes gathers cost more than they save

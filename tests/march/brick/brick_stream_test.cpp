@@ -1,9 +1,12 @@
 #include "march/brick/brick_stream.h"
 
+#include "march/brick/brick_grid.h"
 #include "march/brick/brick_intersector.h"
+#include "march/brick/brick_walk.h"
 #include "on_each_target.h"
 #include "random_rays.h"
 #include "rubble.h"
+#include "spheres.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -54,6 +57,16 @@ StreamTally compare(trace::Tracer& tracer, const std::vector<trace::Ray>& rays) 
             ++tally.moved;
     }
     return tally;
+}
+
+// Newer releases of Highway know newer instruction sets: none of them may fall to the scalar walk.
+TEST_P(BrickStream, RunsInVectorsFromAvx2On) {
+    const auto sphere = test::sphereGrid(3, openvdb::Vec3f(0), 0.1F);
+    const BrickGrid grid(*sphere, BrickValues::Int16);
+    const CellMap map(*sphere->transform().baseMap(), grid.origin());
+    const bool wide = HWY_ARCH_X86 && GetParam() <= HWY_AVX2;
+    EXPECT_EQ(streamIntersect(grid, map, {}, {}), wide) << name();
+    EXPECT_EQ(streamOccluded(grid, map, {}, {}), wide) << name();
 }
 
 TEST_P(BrickStream, HasTheBitsOfTheScalarWalk) {
