@@ -34,7 +34,7 @@ def main():
             name = os.path.basename(file)
             if share is not None:
                 shares.append(abs(share))
-            print(f"| {name} | {time['rule']} | {clock(stated) if stated else '–'} | {clock(planned)} | "
+            print(f"| {name} | {time['rule_of_stated'] or time['rule']} | {clock(stated) if stated else '–'} | {clock(planned)} | "
                   f"{f'{100 * share:+.2f} %' if share is not None else '–'} |")
     if shares:
         print(f"\nMedian of the sizes {100 * statistics.median(shares):.2f} %, largest {100 * max(shares):.2f} %.")

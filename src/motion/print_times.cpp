@@ -85,6 +85,22 @@ void addUp(const gcode::Toolpath& toolpath, PrintTimes& times) {
 
 std::string_view ruleName(CornerRule rule) { return gcode::kCornerRules[static_cast<std::size_t>(rule)].first; }
 
+std::optional<PrintTimes> estimatedTimes(std::string_view bytes, std::string_view name,
+                                         const gcode::ReadOptions& options, const PrintTimes& times,
+                                         const gcode::StatedFacts& facts) {
+    using gcode::Limit;
+    const bool chosen = options.corner_rule != CornerRule::automatic || options.printer;
+    const bool states_jerk = times.limits[ofAxis(Limit::jerk, 0)].kind == gcode::LimitOrigin::Kind::setting;
+    if (chosen || times.limits.rule != CornerRule::corner_velocity || !states_jerk || !facts.seconds)
+        return std::nullopt;
+    gcode::ReadOptions read = options;
+    read.corner_rule = facts.programs_left_out ? CornerRule::plan_jerk : CornerRule::slicer_jerk;
+    read.progress = {};
+    PrintTimes estimate;
+    readTimedToolpath(bytes, name, read, estimate);
+    return estimate;
+}
+
 StatedTime statedTime(const PrintTimes& times, const gcode::StatedFacts& facts) {
     if (facts.model_seconds) return {*facts.model_seconds, times.total - times.before_model};
     const double programs = facts.programs_left_out ? times.before_model + times.after_model : 0;

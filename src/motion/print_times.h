@@ -7,6 +7,7 @@
 #include "motion/travels.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,14 @@ struct PrintTimes {
     std::string rule;            ///< a ruleName()
     gcode::LimitOrigins limits;  ///< those that were planned with, before the program's first command
 };
+
+/// The times by the rule that the slicer estimated by, where the firmware plans by another one: PrusaSlicer and its
+/// kin, and Cura, estimate for Klipper as for any printer. `times` and `facts` are what readTimedToolpath() found with
+/// these options. nullopt: no other rule, one that was asked for, a printer that was given, or no stated time to
+/// compare with. Reads the program again.
+std::optional<PrintTimes> estimatedTimes(std::string_view bytes, std::string_view name,
+                                         const gcode::ReadOptions& options, const PrintTimes& times,
+                                         const gcode::StatedFacts& facts);
 
 /// What a file states of its time, and what is planned of the same part of the program.
 struct StatedTime {

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 
 namespace stratum::motion {
@@ -226,6 +227,62 @@ TEST(PrintTimes, ACornerVelocityBesideStatedJerk) {
     const std::string jerk = "; machine_max_jerk_x = 500\n; machine_max_jerk_y = 500\n";
     EXPECT_GT(timed(moves + jerk).times.total,
               1.1 * timed("G4 P1\n" + moves.substr(moves.find("M83")) + jerk).times.total);
+}
+
+// A program of PrusaSlicer's kind, with an estimate of the time and a flavour.
+std::string programFor(const std::string& flavor) {
+    std::string moves = "; estimated printing time (normal mode) = 15s\nM83\nG1 Z.2 F6000\n";
+    for (int i = 0; i < 100; ++i) moves += "G1 X10 E.2\nG1 X0 E.2\n";
+    return moves + "; machine_max_jerk_x = 10\n; machine_max_jerk_y = 10\n; gcode_flavor = " + flavor + "\n";
+}
+
+std::optional<PrintTimes> estimateOf(const std::string& program, const gcode::ReadOptions& options = {}) {
+    PrintTimes times;
+    const gcode::Toolpath toolpath = readTimedToolpath(program, "test.gcode", options, times);
+    return estimatedTimes(program, "test.gcode", options, times, toolpath.stated);
+}
+
+// Klipper plans by its own rule, but slicers estimate the time as for any printer.
+TEST(PrintTimes, TheEstimateForKlipperIsByTheSlicersRule) {
+    const std::optional<PrintTimes> estimate = estimateOf(programFor("klipper"));
+    ASSERT_TRUE(estimate);
+    EXPECT_EQ(estimate->rule, "slicer-jerk");
+    EXPECT_NEAR(estimate->total, timed(programFor("marlin")).times.total, 1e-9);
+    EXPECT_FALSE(estimateOf(programFor("marlin")));
+    gcode::ReadOptions options;
+    options.corner_rule = gcode::CornerRule::corner_velocity;
+    EXPECT_FALSE(estimateOf(programFor("klipper"), options));
+}
+
+class Estimate : public testing::TestWithParam<Stated> {};
+INSTANTIATE_TEST_SUITE_P(Corpus, Estimate,
+                         testing::Values(Stated{"gcode/preprocess_cancellation-superslicer.gcode", 439, 0.006},
+                                         Stated{"gcode/slicer-meta-orca_flashforge.gcode.3mf", 433, 0.02},
+                                         Stated{"gcode/slicer-meta-orca_twocolors.gcode.3mf", 2803, 0.02},
+                                         Stated{"gcode/slicer-meta-flashstudio_2color.gcode.3mf", 1698, 0.03},
+                                         Stated{"gcode/orca2flashforge-test.gcode.gz", 2228, 0.02}));
+
+TEST_P(Estimate, IsWhatTheFileStates) {
+    STRATUM_NEEDS_CORPUS(path, GetParam().file);
+    const gcode::InputBytes file(path.string());
+    PrintTimes times;
+    const gcode::Toolpath toolpath = readTimedToolpath(file.bytes(), file.name(), {}, times);
+    EXPECT_EQ(times.rule, "corner-velocity");
+    const auto estimate = estimatedTimes(file.bytes(), file.name(), {}, times, toolpath.stated);
+    ASSERT_TRUE(estimate);
+    const double planned = statedTime(*estimate, toolpath.stated).planned;
+    EXPECT_NEAR(planned, GetParam().seconds, GetParam().within * GetParam().seconds);
+}
+
+// PrusaSlicer and its kin estimate homing as a move to 0 at the speed of the move before.
+TEST(PrintTimes, HomingIsAMoveInTheSlicersEstimate) {
+    const std::string moves = "M83\nG1 Z.2 F600\nG1 X100 E9\n";
+    const std::string jerk = "; machine_max_jerk_x = 10\n; machine_max_jerk_y = 10\n";
+    const double without = timed(moves + jerk).times.total;
+    EXPECT_NEAR(timed(moves + "G28 X\n" + jerk).times.total, without + 10, 0.1);
+    EXPECT_NEAR(timed(moves + "G28 Y\n" + jerk).times.total, without, 1e-6);
+    EXPECT_NEAR(timed(moves + "G1 Y100\nG28\n" + jerk).times.total, without + 10 + 10 * std::sqrt(2), 0.2);
+    EXPECT_NEAR(timed(moves + "G28 X\n").times.total, timed(moves).times.total, 1e-6);
 }
 
 }  // namespace

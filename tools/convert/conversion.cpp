@@ -118,6 +118,8 @@ void Conversion::read() {
     deposit::PrintRead print = deposit::readPrint(file_.bytes(), file_.name(), read, needsTimes(o_));
     toolpath_ = std::move(print.toolpath);
     times_ = std::move(print.times);
+    if (times_ && (o_.summary || stats()))
+        estimate_ = motion::estimatedTimes(file_.bytes(), file_.name(), read, *times_, toolpath_.stated);
     flow_ = print.flow;
     sag_ = print.sag;
     seconds_.parse = watch_.lap();
@@ -133,7 +135,7 @@ void Conversion::tell() const {
                                toolpath_.slicer.empty() ? "unknown slicer" : toolpath_.slicer, toolpath_.layer_count,
                                toolpath_.beads.size(), toolpath_.arcs.size(), toolpath_.filament_mm * 1e-3,
                                gcode::beadVolume(toolpath_) * 1e-3));
-    if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, toolpath_.stated));
+    if (o_.summary) say(o_.common, gcode::summarize(toolpath_) + timeLines(*times_, estimate_, toolpath_.stated));
     if (o_.summary && flow_) say(o_.common, flowLine(*flow_));
     if (o_.summary && sag_) say(o_.common, sagLine(*sag_));
 }

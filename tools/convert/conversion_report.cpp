@@ -108,7 +108,7 @@ Json Conversion::report(const Json& left_out, int threads, double total) const {
               {"slicer", toolpath_.slicer},
               {"format", toolpath_.format}}},
             {"toolpath", toolpath_report},
-            {"time", times_ ? describeTimes(*times_, toolpath_.stated) : Json(nullptr)},
+            {"time", times_ ? describeTimes(*times_, estimate_, toolpath_.stated) : Json(nullptr)},
             {"grid", grid_},
             {"deposit", deposit_},
             {"flow", flow_ ? describeFlow(*flow_) : Json(nullptr)},

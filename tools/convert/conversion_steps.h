@@ -93,6 +93,7 @@ private:
     const gcode::InputBytes file_;
     std::string sha256_;  // of the file; empty if nobody asks
     std::optional<motion::PrintTimes> times_;
+    std::optional<motion::PrintTimes> estimate_;  // by the slicer's own rule, where the firmware has another
     std::optional<deposit::FlowReport> flow_;
     std::optional<deposit::SagReport> sag_;
     gcode::Toolpath toolpath_;

@@ -13,8 +13,10 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
-    const motion::StatedTime time = motion::statedTime(times, facts);
+Json describeTimes(const motion::PrintTimes& times, const std::optional<motion::PrintTimes>& estimate,
+                   const gcode::StatedFacts& facts) {
+    const motion::PrintTimes& compared = estimate ? *estimate : times;
+    const motion::StatedTime time = motion::statedTime(compared, facts);
     Json features = Json::object();
     for (std::size_t i = 0; i < times.features.size(); ++i)
         if (times.features[i] > 0)
@@ -22,6 +24,7 @@ Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& fa
     return {{"planned_s", times.total},
             {"stated_s", time.stated > 0 ? Json(time.stated) : Json(nullptr)},
             {"planned_of_stated_s", time.stated > 0 ? Json(time.planned) : Json(nullptr)},
+            {"rule_of_stated", time.stated > 0 ? Json(compared.rule) : Json(nullptr)},
             {"rule", times.rule},
             {"limits", describeLimits(times.limits)},
             {"travel_s", times.travel},
@@ -31,10 +34,14 @@ Json describeTimes(const motion::PrintTimes& times, const gcode::StatedFacts& fa
             {"layers_s", times.layers}};
 }
 
-std::string timeLines(const motion::PrintTimes& times, const gcode::StatedFacts& facts) {
-    const auto [stated, planned] = motion::statedTime(times, facts);
+std::string timeLines(const motion::PrintTimes& times, const std::optional<motion::PrintTimes>& estimate,
+                      const gcode::StatedFacts& facts) {
+    const auto [stated, planned] = motion::statedTime(estimate ? *estimate : times, facts);
     std::string out = fmt::format("time: {} by the rule {}", gcode::describeDuration(times.total), times.rule);
-    if (stated > 0 && planned < times.total)
+    if (estimate)
+        out += fmt::format("; {} as slicers estimate it, by the rule {}", gcode::describeDuration(estimate->total),
+                           estimate->rule);
+    if (stated > 0 && planned < (estimate ? *estimate : times).total)
         out += fmt::format(", {} of it {}", gcode::describeDuration(planned),
                            facts.model_seconds ? "for the model" : "without the start and the end program");
     if (stated > 0)

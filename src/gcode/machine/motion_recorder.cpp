@@ -166,6 +166,16 @@ void MotionRecorder::dwell(const Command& command, std::uint32_t line) {
     sink_.wait(seconds);
 }
 
+void MotionRecorder::home(const Command& command, std::uint32_t line) {
+    const bool all = !command.has('X') && !command.has('Y') && !command.has('Z');
+    const Point from = place_;
+    Point to = from;
+    if (all || command.has('X')) to.x = 0;
+    if (all || command.has('Y')) to.y = 0;
+    if (all || command.has('Z')) to.z = 0;
+    move(from, to, std::nullopt, 0, filament_area_, speed_, Move::kNoBead, line);
+}
+
 void MotionRecorder::command(const Command& command, double unit, std::uint32_t line) {
     if (command.letter == 'G') {
         if (command.code == 4) return dwell(command, line);
@@ -180,6 +190,7 @@ void MotionRecorder::command(const Command& command, double unit, std::uint32_t 
             return runRetraction(
                 {retract_.length + recover_.length, recover_.speed > 0 ? recover_.speed : retract_.speed}, 1, line);
         }
+        if (command.code == 28 && limits_.rule == CornerRule::slicer_jerk) return home(command, line);
         if (rests(command)) sink_.wait(0);
         return;
     }
@@ -273,6 +284,7 @@ void MotionRecorder::move(const Point& from, const Point& to, const std::optiona
     Move move;
     move.start = {from.x, from.y, from.z};
     place_ = to;
+    speed_ = speed;
     move.filament_area = filament_area_ = filament_area;
     move.delta = {to.x - from.x, to.y - from.y, to.z - from.z, filament};
     if (arc) {

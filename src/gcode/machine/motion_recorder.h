@@ -1,7 +1,8 @@
 // Converts the commands and moves of the machine simulator into limits, moves and waits for a MotionSink.
 // Sources: marlinfw.org/docs/gcode G004, M201, M203-M205, M207, M208; docs.duet3d.com M566; klipper3d.org/G-Codes.html
 // SET_VELOCITY_LIMIT; Klipper's klippy/toolhead.py (of August 2026) for what it reads of M204, and that it has no M201,
-// M203, M205 and M566; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)".
+// M203, M205 and M566; PrusaSlicer's GCodeProcessor for what M204 S and T mean in files of "Marlin (legacy)", and for
+// G28 in its estimate.
 #pragma once
 
 #include "gcode/machine/machine_limits.h"
@@ -68,6 +69,8 @@ private:
     void setCorners(const Command& command, std::uint32_t line);
     void setRetraction(const Command& command, Retraction& retraction, double unit);
     void runRetraction(const Retraction& retraction, double sign, std::uint32_t line);
+    /// As PrusaSlicer and its kin estimate it: a move to 0 at the speed of the last move.
+    void home(const Command& command, std::uint32_t line);
     void dwell(const Command& command, std::uint32_t line);
     /// False if the value is impossible.
     bool take(Limit limit, std::string_view what, double value, std::uint32_t line);
@@ -82,6 +85,7 @@ private:
     bool for_flow_;
     double filament_area_ = 0;  // mm^2, of the last move
     Point place_;               // where it ended
+    double speed_ = 0;          // mm/s, programmed of it
     Retraction retract_;
     Retraction recover_;
     bool retracted_ = false;
