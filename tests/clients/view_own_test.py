@@ -110,7 +110,8 @@ def carries_nothing():
         carried, log, ratio = js("return [window.carried, window.vdbviewLog, devicePixelRatio]")
         check(len(log) >= 2 and all(e["kind"] == "own" for e in log), f"own pictures: {[e['kind'] for e in log]}")
         width, height = js("const c = document.getElementById('picture'); return [c.clientWidth, c.clientHeight]")
-        check(all((e["width"], e["height"]) == (round(ratio * width), round(ratio * height)) for e in log), "in device pixels")
+        whole = [round(ratio * width), round(ratio * height)]
+        check(all(0.24 * w <= e[key] <= w for e in log for w, key in zip(whole, ("width", "height"))), "in device pixels, or fewer")
         check(carried == 0, f"{carried} bytes on the wire while turning")
         js("const s = document.getElementById('layer-high'); s.value = 3; s.dispatchEvent(new Event('input'));")
         time.sleep(0.5)
@@ -118,8 +119,62 @@ def carries_nothing():
         drag(True)
         until("window.vdbviewLog.some((e) => e.kind === 'final' && e.number === window.vdbviewAsked())", "then the finished picture")
         until("!document.getElementById('picture').classList.contains('behind')", "over the own one")
+        check(js("const e = window.vdbviewLog.findLast((e) => e.kind === 'own'); return [e.width, e.height]") == whole,
+              "at rest, in all device pixels")
+        paces()
         picks()
         loses()
+
+
+def paces():
+    """Pictures that take long become smaller, to a quarter of each side, and large again; one that takes long does not."""
+    found = page.execute_async_script("""
+        const done = arguments[0];
+        import(location.pathname + "pace.js").then(({ Pace }) => {
+          const after = (pace, frames, time) => { for (let n = 0; n < frames; ++n) pace.took(time(pace.scale)); return pace.scale; };
+          const pace = new Pace();
+          done([after(pace, 100, () => 60), after(pace, 1, () => 3000), after(pace, 9, () => 20), after(pace, 30, (s) => 10 + 300 * s * s),
+                after(pace, 9, () => 900), after(pace, 30, (s) => 5 * s * s)]);
+        });""")
+    once, hiccup, on, slow, least, fast = found
+    check((once, hiccup, on, least, fast) == (1, 1, 1, 0.25, 1), f"sizes of pictures: {found}")
+    check(0.18 < slow <= 0.26, f"{slow} of each side takes the time of a frame")
+
+
+def comes_into_sight():
+    """While a view turns to its other side, the beads that come into sight are drawn."""
+    with viewer.of(gcode("hull.gcode"), "--voxel-size", "0.2"):
+        drawn_here()
+        until("window.vdbviewLog.some((e) => e.kind === 'final')", "the first finished picture")
+        found = page.execute_async_script("""
+            const done = arguments[0], c = document.getElementById("picture"), b = c.getBoundingClientRect();
+            Promise.all(["bead_renderer.js", "pace.js"].map((name) => import(location.pathname + name))).then(([{ BeadRenderer }, { Pace }]) => {
+              Pace.prototype.took = () => {}; // of full size also on a busy machine
+              const draw = BeadRenderer.prototype.draw;
+              let last;
+              BeadRenderer.prototype.draw = function (...all) { last = [this, all]; return draw.apply(this, all); };
+              c.setPointerCapture = () => {};
+              const at = (type, x) => c.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: b.left + x, clientY: b.top + 50, buttons: 1, bubbles: true }));
+              at("pointerdown", 100);
+              let n = 0;
+              const step = () => {
+                at("pointermove", 100 + Math.min(++n, 60) * b.height / 60 + n % 2);
+                if (n < 80) return requestAnimationFrame(step);
+                const [renderer, [camera, state]] = last;
+                const size = [0, 0, ...renderer.size];
+                const moving = renderer.ids(...size), drawn = renderer.visible.count;
+                draw.call(renderer, camera, state, 1e6, true);
+                const all = renderer.ids(...size);
+                let hits = 0, same = 0;
+                for (let k = 0; k < all.length; ++k) if (all[k]) { ++hits; same += all[k] === moving[k]; }
+                at("pointerup", 100);
+                done({ hits, share: same / hits, drawn, texels: renderer.table.texels });
+              };
+              requestAnimationFrame(step);
+            });""")
+        print(f"in sight: {found}")
+        check(found["hits"] > 1000 and found["share"] >= 0.99, f"beads of a moving picture: {found}")
+        check(found["drawn"] < 0.6 * found["texels"], f"and not all of them: {found}")
 
 
 def picks():
@@ -169,6 +224,7 @@ def streams():
 
 try:
     carries_nothing()
+    comes_into_sight()
     agrees("tile.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("tile_arcs.gcode", {"eye": [110, 60, 40], "look_at": [100, 98, 1], "fov": 2.5})
     agrees("vase.gcode", {"eye": [150, 60, 40], "look_at": [100, 90, 10], "fov": 3})
