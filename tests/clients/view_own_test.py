@@ -44,7 +44,7 @@ const load = async (source) => {
   const normal = ({ data }, i) => [0, 1, 2].map((k) => data[4 * i + k] / 127.5 - 1);
   const hit = ({ data }, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2] > 0;
   const angle = (a, b) => Math.acos(Math.max(-1, Math.min(1, (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / (Math.hypot(...a) * Math.hypot(...b) || 1)))) * 57.2958;
-  let hits = 0, good = 0, exact = 0;
+  let hits = 0, good = 0, exact = 0, plain = 0, plain_good = 0;
   for (let y = 1; y < height - 1; ++y)
     for (let x = 1; x < width - 1; ++x) {
       const i = y * width + x, wanted = normal(reference, i);
@@ -60,8 +60,10 @@ const load = async (source) => {
       if (there && hit(own, i) && angle(wanted, normal(own, i)) <= 5) ++exact;
       const mixed = (a, b) => [0.15, 0.3, 0.45, 0.6, 0.75, 0.9].some((t) => angle(wanted, a.map((v, n) => v + t * (b[n] - v))) <= 5);
       if (edge || around.some((n) => angle(wanted, n) <= 5) || around.some((a, n) => around.some((b, m) => m !== n && mixed(a, b)))) ++good;
+      else if (Math.hypot(...wanted) > 0.9) --plain_good;
+      if (Math.hypot(...wanted) > 0.9) ++plain, ++plain_good;
     }
-  done({ hits, share: good / hits, exact: exact / hits });
+  done({ hits, share: good / hits, exact: exact / hits, plain: plain / hits, of_plain: plain_good / plain });
 })().catch((error) => done({ error: String(error) }));"""
 
 
@@ -90,14 +92,15 @@ def drag(lift):
         until("window.dragged === 10", "ten steps of turning")
 
 
-def agrees(name, view, *options, path=None):
+def agrees(name, view, *options, path=None, least=0.995):
     with viewer.of(path or gcode(name), "--voxel-size", "0.0125", *options):
         drawn_here()
         show(integrator="normal", bed=False, spp=256, camera=view)
         found = page.execute_async_script(COMPARE)
         check("error" not in found and found["hits"] > 20000, f"{name}: pictures of the print: {found}")
         print(f"{name} {' '.join(options)}: {found['share']:.4f} of {found['hits']} pixels agree, {found['exact']:.4f} exactly")
-        check(found["share"] >= 0.995, f"{name}: normals are those of vdbtrace: {found}")
+        check(found["share"] >= least, f"{name}: normals are those of vdbtrace: {found}")
+        check(found["of_plain"] >= 0.998, f"{name}: where the reference's pixel has one surface: {found}")
 
 
 def carries_nothing():
@@ -231,6 +234,9 @@ try:
     agrees("hull.gcode", {"eye": [150, 60, 40], "look_at": [110, 98, 12], "fov": 2.5})
     if huge := corpus("spot_1000cc_0.1mm_grid.gcode.gz"):
         agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge)
+    if thin := corpus("gcode-preview-ripple_vase.gcode"):
+        # Its grooves are narrower than a pixel: three surfaces are in one, of which the reference has the mean.
+        agrees("ripple vase", {"eye": [300, -200, 150], "look_at": [62, 24, 20], "fov": 1.5}, path=thin, least=0.99)
     streams()
 finally:
     page.quit()
