@@ -222,7 +222,19 @@ def two_prints():
         check(js("return document.getElementById('second-info').textContent") == "", "without numbers")
 
 
+def section():
+    """The controls show the section of a link."""
+    with viewer.drawn(gcode("tile.gcode"), {"clip": [0, -1, 0, -95]}):
+        until("document.getElementById('cut-axis').value === '1'", "it is across y")
+        found = js("return ['cut', 'cut-flip'].map((id) => document.getElementById(id).checked)")
+        check(found == [True, True], f"on, and the other half: {found}")
+        viewer.set_slider("cut-at", 500)
+        clip = js("return JSON.parse(decodeURIComponent(location.hash.slice(1))).clip") if until("!location.hash.includes('-95')", "it moves") else None
+        check(clip[:3] == [0, -1, 0] and clip[3] < 0, f"the slider moves this plane: {clip}")
+
+
 try:
+    section()
     search()
     head()
     scale()

@@ -1,9 +1,9 @@
 // Draws a table of beads with WebGL2, in two passes: which bead is nearest, then the light on it.
-import { beadFragments, beadVertices } from "./bead_shaders.js";
+import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from "./bead_shaders.js";
 import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
-import { ROW, fillTable, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
+import { ROW, fillTable, makeIndices, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
 import { dot, sub } from "./camera.js";
 
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
@@ -13,6 +13,7 @@ export class BeadRenderer {
   constructor(canvas, table) {
     const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("no WebGL2");
+    gl.getExtension("EXT_conservative_depth"); // beads behind others are left out before their ray is cast
     this.gl = gl;
     this.table = table;
     this.canvas = canvas;
@@ -22,8 +23,9 @@ export class BeadRenderer {
     const kinds = table.kinds;
     const defines = ["arcs", "tapers", "slopes", "corners", "extras"].filter((kind) => kinds[kind]).map((kind) => `#define ${kind.toUpperCase()}`).join("\n");
     this.beads = makeProgram(gl, beadVertices(defines), beadFragments(defines));
-    this.light = makeProgram(gl, screenVertices, lightFragments(`${defines}\n#define FINE`));
-    this.plain = makeProgram(gl, screenVertices, lightFragments(defines));
+    this.light = makeProgram(gl, screenVertices, lightFragments(true));
+    this.plain = makeProgram(gl, screenVertices, lightFragments(false));
+    this.seek = makeProgram(gl, seekVertices(defines), seekFragments);
     this.back = makeProgram(gl, backVertices, backFragments);
     this.textures = {
       beads: makeTable(gl, table.words, 4),
@@ -34,15 +36,24 @@ export class BeadRenderer {
       palette: makeTexture(gl),
       light: makeTexture(gl, gl.LINEAR),
       ids: makeTexture(gl),
+      normals: makeTexture(gl),
       depths: makeTexture(gl),
     };
     this.listRows = 1;
     this.units = Object.fromEntries(Object.keys(this.textures).map((name, n) => [name, n]));
     const corners = new Uint16Array(6 * DRAW);
     for (let n = 0; n < DRAW; ++n) corners.set([0, 1, 2, 2, 1, 3].map((k) => 4 * n + k), 6 * n);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+    this.corners = makeIndices(gl, corners);
+    const grid = [];
+    for (let y = 0; y < GRID[1]; ++y)
+      for (let x = 0; x < GRID[0]; ++x) grid.push(...[0, 1, GRID[0] + 1, GRID[0] + 1, 1, GRID[0] + 2].map((k) => y * (GRID[0] + 1) + x + k));
+    this.grid = makeIndices(gl, Uint16Array.from(grid));
     this.target = gl.createFramebuffer();
+    this.found = gl.createFramebuffer();
+    const found = makeTexture(gl);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, SOUGHT / ROW, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, found, 0);
     this.size = [0, 0];
     this.range = [0, table.texels];
     this.look = null;
@@ -83,12 +94,16 @@ export class BeadRenderer {
     this.size = [width, height];
     this.canvas.width = width;
     this.canvas.height = height;
-    gl.bindTexture(gl.TEXTURE_2D, this.textures.ids);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
+    for (const name of ["ids", "normals"]) {
+      gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32UI, width, height, 0, gl.RED_INTEGER, gl.UNSIGNED_INT, null);
+    }
     gl.bindTexture(gl.TEXTURE_2D, this.textures.depths);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT32F, width, height, 0, gl.DEPTH_COMPONENT, gl.FLOAT, null);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.textures.ids, 0);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, this.textures.normals, 0);
+    gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, this.textures.depths, 0);
   }
 
@@ -107,22 +122,28 @@ export class BeadRenderer {
     };
   }
 
-  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. */
-  draw(camera, state, parts, anew) {
+  #bind() {
     const gl = this.gl;
-    const { program } = this.beads;
-    const view = this.#view(camera, state);
     Object.values(this.textures).forEach((texture, n) => {
       gl.activeTexture(gl.TEXTURE0 + n);
       gl.bindTexture(gl.TEXTURE_2D, texture);
     });
     gl.activeTexture(gl.TEXTURE0 + 31);
+  }
+
+  /** Starts a picture, or goes on with it: `parts` more of all beads. Returns whether all of them are in it. */
+  draw(camera, state, parts, anew) {
+    const gl = this.gl;
+    const { program } = this.beads;
+    const view = this.#view(camera, state);
+    this.#bind();
     gl.useProgram(program);
     setUniforms(gl, this.beads, view);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.viewport(0, 0, ...this.size);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.GREATER);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
     if (anew) {
       this.visible.restart();
       gl.clearBufferuiv(gl.COLOR, 0, [0, 0, 0, 0]);
@@ -181,16 +202,17 @@ export class BeadRenderer {
     };
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
-    const normals = state.integrator === "normal";
-    if (normals) gl.clear(gl.COLOR_BUFFER_BIT);
+    const as_normals = state.integrator === "normal";
+    if (as_normals) gl.clear(gl.COLOR_BUFFER_BIT);
     else {
       gl.useProgram(this.back.program);
       setUniforms(gl, this.back, values);
-      gl.drawArrays(gl.TRIANGLES, 0, 6 * GRID[0] * GRID[1]);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.grid);
+      gl.drawElements(gl.TRIANGLES, 6 * GRID[0] * GRID[1], gl.UNSIGNED_SHORT, 0);
     }
     const light = this.fine ? this.light : this.plain;
     gl.useProgram(light.program);
-    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), normals: Number(normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
+    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), as_normals: Number(as_normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.SCISSOR_TEST);
@@ -219,6 +241,28 @@ export class BeadRenderer {
     }
     const [x, y] = least.map((v) => Math.max(0, Math.floor(v - 8)));
     return [x, y, Math.max(0, Math.min(width, Math.ceil(most[0] + 8)) - x), Math.max(0, Math.min(height, Math.ceil(most[1] + 8)) - y)];
+  }
+
+  /** Looks in the last picture for `rows` more of the beads that may have come into sight; the next one has them. */
+  lookFor(camera, state, rows) {
+    const gl = this.gl;
+    const [first, count] = this.visible.sought(rows * ROW);
+    this.shift = ((this.shift ?? 0) + 0.618) % 1;
+    this.#bind();
+    gl.useProgram(this.seek.program);
+    setUniforms(gl, this.seek, { ...this.#view(camera, state), first, shift: this.shift });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
+    gl.viewport(0, 0, ROW, SOUGHT / ROW);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    gl.drawArrays(gl.POINTS, 0, count);
+    const found = new Uint32Array(rows * ROW);
+    gl.readPixels(0, 0, ROW, rows, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(found.buffer));
+    for (let n = 0; n < count; ++n) if (found[n]) this.visible.expect(first + n, first + n + 1);
+  }
+
+  /** Waits until the picture is there. */
+  finish() {
+    this.ids(0, 0, 1, 1);
   }
 
   /** Remembers which beads the picture shows. */

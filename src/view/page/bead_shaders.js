@@ -2,15 +2,30 @@
 //
 // The shape of a bead is that of the level set (src/voxelize/beads/bead_field.h). Lengths are mm; points are relative
 // to the eye, so that floats are fine near the surface. Depth is along the viewing direction.
-import { ROW_BITS } from "./webgl.js";
+import { ROW, ROW_BITS } from "./webgl.js";
 
 export const NEAR = "0.05"; // mm, of depth 1
+/** Beads that are looked for at a time, at most. */
+export const SOUGHT = 32 * ROW;
 
 export const HEAD = `#version 300 es
+#extension GL_EXT_conservative_depth : enable
 precision highp float;
 precision highp int;
 precision highp usampler2D;
 precision highp sampler2D;
+// A unit vector in 32 bits, by an octahedron.
+uint packed(vec3 v) {
+  v /= abs(v.x) + abs(v.y) + abs(v.z);
+  vec2 p = v.z < 0.0 ? (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0) : v.xy;
+  return packUnorm2x16(0.5 * p + 0.5);
+}
+vec3 unpacked(uint word) {
+  vec2 p = 2.0 * unpackUnorm2x16(word) - 1.0;
+  vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0);
+  return normalize(v);
+}
 uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 << ROW_BITS) - 1}u, n >> ${ROW_BITS}u), 0); }`;
 
 // What the programs share: a bead of the table, and where a ray meets it.
@@ -276,75 +291,132 @@ bool meets(Bead b, vec3 ray, out float depth, out vec3 normal) {
   return true;
 }`;
 
-/** Beads of the table, or of a list: each a rectangle on the picture about its box. */
+/** Which of the beads are drawn: of a range, or of a list of them. */
+const CHOICE = `
+uniform usampler2D shown;   // by run
+uniform uint first;         // of the draw
+uniform uvec2 texels;       // that are printed: from, to
+bool isShown(uint n) {
+  if (n < texels.x || n >= texels.y) return false;
+#ifdef EXTRAS
+  if (n > 0u && (row(beads, n - 1u).w & 4096u) != 0u) return false;
+#endif
+  return row(shown, row(beads, n).w >> 13u).x != 0u;
+}`;
+
+/** Beads of the table, or of a list: each a rectangle on the picture about its box, as near as its nearest corner. */
 export const beadVertices = (defines) => `${HEAD}
 ${defines}
 ${BEAD}
-uniform usampler2D shown;   // by run
+${CHOICE}
 uniform usampler2D list;    // of texels; used if from_list
 uniform bool from_list;
-uniform uint first;         // of the draw
-uniform uvec2 texels;       // that are printed: from, to
 flat out uint id;
+flat out Bead body;
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   uint n = first + uint(gl_VertexID >> 2);
   if (from_list) n = row(list, n).x;
   id = n + 1u;
-  if (n < texels.x || n >= texels.y) return;
-  uvec4 w = row(beads, n);
-#ifdef EXTRAS
-  if (n > 0u && (row(beads, n - 1u).w & 4096u) != 0u) return;
-#endif
-  if (row(shown, w.w >> 13u).x == 0u) return;
-  Bead b = beadAt(n);
+  if (!isShown(n)) return;
+  body = beadAt(n);
   vec3 low, high;
-  boxOf(b, low, high);
-  vec3 u = vec3(b.along, 0.0), v = vec3(-b.along.y, b.along.x, 0.0);
-  vec3 corner = b.start + u * low.x + v * low.y + vec3(0.0, 0.0, low.z);
-  vec3 size = high - low;
-  mat3 eyes = mat3(right.x / slope.x, up.x / slope.y, forward.x, right.y / slope.x, up.y / slope.y, forward.y,
-                   right.z / slope.x, up.z / slope.y, forward.z);
-  vec3 c = eyes * corner, x = eyes * (u * size.x), y = eyes * (v * size.y), z = eyes * vec3(0.0, 0.0, size.z);
-  vec3 p[8];
-  p[0] = c; p[1] = c + x; p[2] = c + y; p[3] = p[1] + y;
-  for (int k = 0; k < 4; ++k) p[k + 4] = p[k] + z;
-  float nearest = 1e30, farthest = -1e30;
-  for (int k = 0; k < 8; ++k) { nearest = min(nearest, p[k].z); farthest = max(farthest, p[k].z); }
-  if (farthest <= 1e-3) return;
-  ivec2 at = ivec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1);
+  boxOf(body, low, high);
+  // The box as a line along the bead, and what it reaches to the sides of that.
+  vec3 u = vec3(body.along, 0.0), v = vec3(-body.along.y, body.along.x, 0.0);
+  vec3 middle = 0.5 * (low + high), half_size = 0.5 * (high - low);
+  mat3 eyes = mat3(right.x, up.x, forward.x, right.y, up.y, forward.y, right.z, up.z, forward.z);
+  vec3 center = eyes * (body.start + u * middle.x + v * middle.y + vec3(0.0, 0.0, middle.z));
+  vec3 x = eyes * (u * half_size.x), y = eyes * (v * half_size.y), z = eyes * vec3(0.0, 0.0, half_size.z);
+  float deep = abs(y.z) + abs(z.z);
+  float nearest = center.z - abs(x.z) - deep;
+  if (center.z + abs(x.z) + deep <= 1e-3) return;
+  vec2 at = vec2(gl_VertexID & 1, gl_VertexID >> 1 & 1) * 2.0 - 1.0;
   if (nearest <= 1e-3) {
-    gl_Position = vec4(vec2(at) * 2.0 - 1.0, 0.0, 1.0);
+    gl_Position = vec4(at, 1.0, 1.0);
     return;
   }
-  vec2 wide = vec2(slope.x / slope.y, 1.0);
-  for (int k = 0; k < 8; ++k) p[k].xy = p[k].xy / p[k].z * wide;
-  vec2 e = p[1].xy - p[0].xy + p[3].xy - p[2].xy;
+  vec3 from = center - x, to = center + x;
+  from.xy /= from.z;
+  to.xy /= to.z;
+  vec2 e = to.xy - from.xy;
   float l = length(e);
   e = l > 1e-12 ? e / l : vec2(1.0, 0.0);
   vec2 f = vec2(-e.y, e.x);
-  vec2 least = vec2(1e30), most = vec2(-1e30);
-  for (int k = 0; k < 8; ++k) {
-    vec2 s = vec2(dot(p[k].xy, e), dot(p[k].xy, f));
-    least = min(least, s);
-    most = max(most, s);
-  }
-  vec2 s = mix(least, most, vec2(at));
-  gl_Position = vec4((e * s.x + f * s.y) / wide, 0.0, 1.0);
+  vec2 reach = vec2(abs(dot(y.xy, e)) + abs(dot(z.xy, e)), abs(dot(y.xy, f)) + abs(dot(z.xy, f)));
+  vec2 p = at.x < 0.0 ? from.xy : to.xy;
+  float away = max(max(abs(dot(from.xy, e)), abs(dot(to.xy, e))), abs(dot(p, f)));
+  p += (e * at.x * (reach.x + away * deep) + f * at.y * (reach.y + away * deep)) / nearest;
+  gl_Position = vec4(p / slope, min(1.0, 2.0 * ${NEAR} / nearest * 1.001 - 1.0), 1.0);
 }`;
 
-/** Which bead is nearest, with its exact depth (1 near the eye, 0 far away). */
+/** Of each bead, a point of a table: whether a point of its upper (or lower) or of its near side is not behind what the
+ * picture shows there. */
+export const seekVertices = (defines) => `${HEAD}
+${defines}
+${BEAD}
+${CHOICE}
+uniform sampler2D depths;
+uniform vec2 size;          // pixels
+uniform float shift;        // 0 to 1, of the points along the bead
+bool isAhead(vec3 p, Bead b) {
+  float tolerance = 0.5 * b.radius;
+  if (cut.xyz != vec3(0.0) && dot(cut.xyz, p) > cut.w + tolerance) return false;
+  float depth = dot(p, forward);
+  if (depth <= 1e-3) return false;
+  vec2 at = (0.5 + 0.5 * vec2(dot(p, right), dot(p, up)) / (depth * slope)) * size;
+  if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) return false;
+  tolerance += min(2.0 * depth * slope.y / size.y, b.radius); // a pixel
+  return depth - tolerance < ${NEAR} / max(texelFetch(depths, ivec2(at), 0).x, 1e-9);
+}
+bool inSight(Bead b) {
+  float reach = max(b.flat0, b.flat1) + b.radius;
+  int points = clamp(int(b.len), 2, 16);
+  for (int n = 0; n < points; ++n) {
+    float share = (float(n) + shift) / float(points);
+    vec3 p = b.start + vec3(b.along * b.len, b.climb) * share;
+#ifdef ARCS
+    if (b.arc.z > 0.0) {
+      float c = cos(b.sweep * share), s = sin(b.sweep * share);
+      p.xy = b.start.xy + b.arc.xy + b.arc.z * vec2(c * b.from.x - s * b.from.y, s * b.from.x + c * b.from.y);
+    }
+#endif
+    vec3 level = vec3(0.0, 0.0, p.z < 0.0 ? b.radius + b.side : -b.radius - b.side);
+    vec3 beside = vec3(-reach * p.xy / max(length(p.xy), 1e-6), 0.0);
+    if (isAhead(p + level, b) || isAhead(p + beside, b)) return true;
+  }
+  return false;
+}
+void main() {
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  gl_PointSize = 1.0;
+  uint n = first + uint(gl_VertexID);
+  if (!isShown(n) || !inSight(beadAt(n))) return;
+  vec2 place = vec2(gl_VertexID & ${ROW - 1}, gl_VertexID >> ${ROW_BITS}) + 0.5;
+  gl_Position = vec4(2.0 * place / vec2(${ROW}, ${SOUGHT / ROW}) - 1.0, 0.0, 1.0);
+}`;
+export const seekFragments = `${HEAD}
+out vec4 found;
+void main() { found = vec4(1.0); }`;
+
+/** Which bead is nearest, with its normal (see packed()) and its exact depth (1 near the eye, 0 far away). */
 export const beadFragments = (defines) => `${HEAD}
 ${defines}
 ${BEAD}
 uniform vec2 size;          // pixels
 flat in uint id;
+flat in Bead body;
 layout(location = 0) out uint bead;
+layout(location = 1) out uint facing;
+#ifdef GL_EXT_conservative_depth
+layout(depth_less) out highp float gl_FragDepth;
+#endif
 void main() {
   vec2 at = (2.0 * gl_FragCoord.xy / size - 1.0) * slope;
   float depth;
   vec3 normal;
-  if (!meets(beadAt(id - 1u), forward + at.x * right + at.y * up, depth, normal)) discard;
+  if (!meets(body, forward + at.x * right + at.y * up, depth, normal)) discard;
   bead = id;
+  facing = packed(normal);
   gl_FragDepth = min(1.0, ${NEAR} / depth);
 }`;

@@ -48,6 +48,7 @@ export class Controls {
 
   setBox(box) {
     this.#box = box;
+    this.#showSection(this.state());
   }
 
   /** The state in the controls. */
@@ -75,7 +76,7 @@ export class Controls {
     byId("integrator").value = state.integrator;
     byId("smooth").checked = state.smooth;
     this.#showLight(state);
-    byId("cut").checked = state.clip !== null;
+    this.#showSection(state);
     byId("spp").value = String(state.spp);
   }
 
@@ -220,17 +221,30 @@ export class Controls {
     });
   }
 
+  /** The plane that the controls say, or null. */
+  #section() {
+    if (!byId("cut").checked || !this.#box) return null;
+    const axis = Number(byId("cut-axis").value);
+    const [low, high] = [this.#box[axis], this.#box[axis + 3]];
+    const at = Math.round((low + ((high - low) * Number(byId("cut-at").value)) / 1000) * 1000) / 1000;
+    const sign = byId("cut-flip").checked ? -1 : 1;
+    const clip = [0, 0, 0, sign * at];
+    clip[axis] = sign;
+    return clip;
+  }
+
+  #showSection({ clip }) {
+    byId("cut").checked = clip !== null;
+    if (!clip || !this.#box || String(clip) === String(this.#section())) return;
+    const axis = [0, 1, 2].reduce((a, b) => (Math.abs(clip[b]) > Math.abs(clip[a]) ? b : a));
+    const [low, high] = [this.#box[axis], this.#box[axis + 3]];
+    byId("cut-axis").value = String(axis);
+    byId("cut-flip").checked = clip[axis] < 0;
+    byId("cut-at").value = (1000 * (clip[3] / clip[axis] - low)) / (high - low);
+  }
+
   #bindSection() {
-    const take = (moving) => {
-      if (!byId("cut").checked || !this.#box) return this.#set("clip", null);
-      const axis = Number(byId("cut-axis").value);
-      const [low, high] = [this.#box[axis], this.#box[axis + 3]];
-      const at = Math.round((low + ((high - low) * Number(byId("cut-at").value)) / 1000) * 1000) / 1000;
-      const sign = byId("cut-flip").checked ? -1 : 1;
-      const clip = [0, 0, 0, sign * at];
-      clip[axis] = sign;
-      this.#set("clip", clip, moving);
-    };
+    const take = (moving) => this.#set("clip", this.#section(), moving);
     // A new cut faces the camera.
     const face = () => {
       const eye = this.eye();

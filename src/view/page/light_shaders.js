@@ -1,5 +1,5 @@
 // The shaders of light: on the beads that the first pass has found, on the bed, and behind.
-import { BEAD, HEAD, NEAR } from "./bead_shaders.js";
+import { HEAD, NEAR } from "./bead_shaders.js";
 
 export const screenVertices = `${HEAD}
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
@@ -40,7 +40,7 @@ float bedFade(vec2 place) {
 }`;
 
 /** What is behind the print: it changes slowly, so its light is found at the corners of a grid. */
-export const GRID = [64, 48];
+export const GRID = [24, 18];
 export const backVertices = `${HEAD}
 uniform vec3 right, up, forward;
 uniform vec2 slope;
@@ -48,8 +48,7 @@ ${STAGE}
 out vec3 shade;
 out vec3 ray;
 void main() {
-  int cell = gl_VertexID / 6, corner = gl_VertexID % 6;
-  ivec2 at = ivec2(cell % ${GRID[0]}, cell / ${GRID[0]}) + ivec2(corner == 1 || corner == 4 || corner == 3 ? 1 : 0, corner == 2 || corner == 5 || corner == 4 ? 1 : 0);
+  ivec2 at = ivec2(gl_VertexID % ${GRID[0] + 1}, gl_VertexID / ${GRID[0] + 1});
   vec2 place = 2.0 * vec2(at) / vec2(${GRID[0]}, ${GRID[1]}) - 1.0;
   gl_Position = vec4(place, 0.0, 1.0);
   ray = forward + place.x * slope.x * right + place.y * slope.y * up;
@@ -80,16 +79,19 @@ void main() {
   }
 }`;
 
-/** The light on the beads that the first pass has found; with FINE, also their shadow on the bed about them. */
-export const lightFragments = (defines) => `${HEAD}
-${defines}
-${BEAD}
+/** The light on the beads that the first pass has found; `fine`: also their shadow on the bed about them. */
+export const lightFragments = (fine) => `${HEAD}
+${fine ? "#define FINE" : ""}
 ${STAGE}
+uniform vec3 right, up, forward;
+uniform vec2 slope;         // tangents of half the angles of the picture
+uniform usampler2D beads, runs;
+uniform usampler2D normals;
 uniform usampler2D ids;
 uniform sampler2D depths;
 uniform usampler2D colors;  // by texel, places of the palette
 uniform sampler2D palette;
-uniform bool colored, normals;
+uniform bool colored, as_normals;
 uniform vec2 size;
 uniform vec3 albedo;
 uniform float reach;        // mm: what is farther away keeps no light off
@@ -137,12 +139,9 @@ void main() {
   uint id = texelFetch(ids, pixel, 0).x;
   color = vec4(0.0);
   for (bool bead = id != 0u; bead; bead = false) {
-    float depth;
-    vec3 normal;
-    Bead b = beadAt(id - 1u);
-    meets(b, ray, depth, normal);
+    vec3 normal = unpacked(texelFetch(normals, pixel, 0).x);
     color = vec4(0.5 * normal + 0.5, 1.0);
-    if (normals) break;
+    if (as_normals) break;
     vec3 body = albedo;
     if (colored) {
       uint place = row(colors, id - 1u).x;
@@ -151,9 +150,12 @@ void main() {
     vec3 shading = normal;
     float open = 0.7 + 0.2 * abs(normal.z);  // grooves between layers, and what is far off
 #ifdef FINE
+    float depth = depthAt(pixel);
+    uint word = row(beads, id - 1u).w;
+    float thin = min(float(word & 4095u) * 0.004, uintBitsToFloat(row(runs, word >> 13u).x));
     vec3 broad = broadNormal(pixel, depth, normal);
     float pixel_mm = depth * slope.y / size.y * 2.0;
-    shading = normalize(mix(normal, broad, 0.9 * smoothstep(0.25, 0.9, pixel_mm / (2.0 * (b.radius + b.side)))));
+    shading = normalize(mix(normal, broad, 0.9 * smoothstep(0.25, 0.9, pixel_mm / thin)));
     open *= 1.0 - hidden(pixel, ray * depth, broad, depth);
 #endif
     vec3 sum = brightest * (body * lightAt(shading).x + 0.04 * lightAt(reflect(normalize(ray), shading)).y);
@@ -161,7 +163,7 @@ void main() {
     if (id == marked) color.rgb = mix(color.rgb, vec3(1.0, 0.82, 0.25), 0.55);
   }
 #ifdef FINE
-  for (bool bed = id == 0u && has_bed && !normals && ray.z < 0.0; bed; bed = false) {
+  for (bool bed = id == 0u && has_bed && !as_normals && ray.z < 0.0; bed; bed = false) {
     float depth = bed_z / ray.z;
     color.a = hidden(pixel, ray * depth, vec3(0.0, 0.0, 1.0), depth) * (1.0 - bedFade(ray.xy * depth));
   }

@@ -118,8 +118,9 @@ function drawOwn(moving) {
   own.draw(camera, state, shownSize, moving);
   second.draw(camera, state, shownSize, moving);
   answer.draw(camera, aspect);
-  record({ kind: "own", number, at: performance.now(), width: shownSize[0], height: shownSize[1], bytes: 0 });
-  if (moving) say(`${shownSize[0]} × ${shownSize[1]}`);
+  const [width, height] = own.size;
+  record({ kind: "own", number, at: performance.now(), width, height, bytes: 0 });
+  if (moving) say(`${width} × ${height}`);
 }
 
 own.addEventListener("complete", () => {

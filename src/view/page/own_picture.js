@@ -3,6 +3,7 @@ import { BeadRenderer } from "./bead_renderer.js";
 import { BeadTable } from "./bead_table.js";
 import { BED_TINTS, EXCLUDED_TINTS, bedLines } from "./bed.js";
 import { KINDS, MoveTable } from "./move_table.js";
+import { Pace } from "./pace.js";
 import { cross, sub, unit } from "./camera.js";
 
 /** The camera of a state with an eye, as the server makes it. */
@@ -31,7 +32,8 @@ export class OwnPicture extends EventTarget {
   #counted = {};
   #frame = 0;
   #resting = null; // camera, state and size of a picture that is not complete yet
-  #frames = 0;
+  #frames = 0; // of those that move
+  #pace = new Pace();
 
   /** Events: "changed" when `ready` or `why` have changed; "complete" when a picture at rest has all its beads; "moves"
    * when `moves` has become complete. */
@@ -163,15 +165,32 @@ export class OwnPicture extends EventTarget {
     const renderer = this.#renderer;
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
-    renderer.resize(...size);
+    const scale = moving ? this.#pace.scale : 1;
+    renderer.resize(...size.map((side) => Math.max(1, Math.round(side * scale))));
     this.#select(state);
-    this.#selectLines(state);
+    this.#selectLines(state, scale);
     renderer.fine = !moving;
-    const done = renderer.draw(camera, state, 1, true);
-    if (!moving || this.#frames++ % 2 === 0) renderer.note();
     this.#resting = { camera, state };
-    if (done && !moving) return this.#tell("complete");
-    if (!done && !moving) this.#frame = requestAnimationFrame(() => this.#goOn());
+    if (moving) return this.#drawMoving(camera, state);
+    const done = renderer.draw(camera, state, 1, true);
+    renderer.note();
+    if (done) return this.#tell("complete");
+    this.#frame = requestAnimationFrame(() => this.#goOn());
+  }
+  #drawMoving(camera, state) {
+    const began = performance.now();
+    const renderer = this.#renderer;
+    renderer.draw(camera, state, 0, true);
+    const turn = this.#frames++ % 4;
+    if (turn === 0) renderer.note();
+    else if (turn === 2) renderer.lookFor(camera, state, this.#pace.scale < 1 ? 8 : 32);
+    else if (this.#pace.scale < 1) renderer.finish();
+    else return;
+    this.#pace.took(performance.now() - began);
+  }
+  /** Pixels of the last picture. */
+  get size() {
+    return this.#renderer.size;
   }
   #goOn() {
     this.#frame = 0;
@@ -186,13 +205,13 @@ export class OwnPicture extends EventTarget {
   lines() {
     return this.#renderer?.lines.alone() ?? null;
   }
-  #selectLines(state) {
+  #selectLines(state, scale) {
     const { lines } = this.#renderer;
     const ratio = Math.min(2, devicePixelRatio || 1);
     const kinds = KINDS.reduce((bits, [name], n) => bits | (state.also.includes(name) ? 1 << n : 0), 0);
     const end = this.#range[1] < this.table.texels ? this.table.beadOf(this.#range[1]) : ALL;
     this.#shown = { layers: [state.layers[0] || 1, state.layers[1] || ALL >>> 4], end };
-    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio });
+    if (lines.sets.has("moves")) lines.set("moves", { ...this.#shown, kinds, point: 7 * ratio * scale });
     const bed = { layers: [0, 0], end: ALL, kinds: state.also.some((name) => name.startsWith("bed")) ? 3 : 0, point: 0 };
     for (const name of ["bed", "excluded"]) if (lines.sets.has(name)) lines.set(name, bed);
   }

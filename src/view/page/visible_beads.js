@@ -1,9 +1,11 @@
 // Which beads a picture needs. Most beads are hidden by others, and those that were seen are seen again in the next
-// picture: so a picture of a moving view draws the beads that were seen, and each time another part of all others, from
-// which the pixels tell what has come into sight. A view at rest adds the parts until none is missing.
+// picture: so a picture of a moving view draws the beads that were seen, and of others those of which a point is not behind
+// its surface. A view at rest adds all beads, in parts, until none is missing.
 
 const PART = 16384; // beads
-const FORGET = 90; // pictures after which a bead that is not seen is left to the parts again
+// Looks after which a bead that is not seen is left out: one that was seen, and one that was expected.
+const FORGET = 12;
+const DOUBT = 2;
 
 export class VisibleBeads {
   constructor(texels) {
@@ -12,10 +14,9 @@ export class VisibleBeads {
     this.list = new Uint32Array(Math.min(texels, 4096));
     this.count = 0;
     this.changedFrom = 0; // the list's texture is right up to here
-    this.look = 1;
+    this.look = FORGET + 1;
     this.restart();
   }
-
 
   /** Another picture: nothing of it is drawn yet. */
   restart() {
@@ -32,12 +33,21 @@ export class VisibleBeads {
     return [first, Math.min(PART, this.texels - first)];
   }
 
-  /** Beads that may be seen next, by texel. */
-  expect(first, end) {
-    for (let n = first; n < end; ++n) this.#add(n);
+  #sought = 0;
+
+  /** The next `most` beads of a round through all, [first, count]. */
+  sought(most) {
+    const first = this.#sought >= this.texels ? 0 : this.#sought;
+    this.#sought = first + most;
+    return [first, Math.min(most, this.texels - first)];
   }
 
-  #add(n) {
+  /** Beads that may be seen next, by texel. */
+  expect(first, end) {
+    for (let n = first; n < end; ++n) if (this.seenAt[n] === 0) this.#add(n, this.look - FORGET + DOUBT);
+  }
+
+  #add(n, look) {
     if (this.seenAt[n] === 0) {
       if (this.count === this.list.length) {
         const longer = new Uint32Array(Math.min(this.texels, 2 * this.list.length));
@@ -46,7 +56,7 @@ export class VisibleBeads {
       }
       this.list[this.count++] = n;
     }
-    this.seenAt[n] = this.look;
+    this.seenAt[n] = look;
   }
 
   /** The pixels of a picture: texel + 1, or 0. */
@@ -56,9 +66,9 @@ export class VisibleBeads {
       const id = ids[n];
       if (id === last) continue;
       last = id;
-      if (id !== 0) this.#add(id - 1);
+      if (id !== 0) this.#add(id - 1, this.look);
     }
-    if (++this.look % FORGET !== 0) return;
+    if (++this.look % DOUBT !== 0) return;
     let kept = 0;
     for (let n = 0; n < this.count; ++n) {
       const texel = this.list[n];
@@ -68,7 +78,7 @@ export class VisibleBeads {
     this.count = kept;
     this.changedFrom = 0;
     if (this.look < 65000) return;
-    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = 1;
-    this.look = 2;
+    for (let n = 0; n < kept; ++n) this.seenAt[this.list[n]] = FORGET;
+    this.look = FORGET + 1;
   }
 }

@@ -62,3 +62,11 @@ export function makeTable(gl, values, each) {
   fillTable(gl, texture, values, each);
   return texture;
 }
+
+/** A buffer of them, which is bound. */
+export function makeIndices(gl, values) {
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, values, gl.STATIC_DRAW);
+  return buffer;
+}
