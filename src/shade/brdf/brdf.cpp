@@ -97,7 +97,9 @@ std::shared_ptr<const Brdf> plasticWithLines(const Preset& preset) {
 
 std::shared_ptr<const Brdf> translucent(const Preset& preset) { return makeTranslucent(preset, kOption); }
 
-constexpr std::array<Formula, 8> kFormulas{{
+std::shared_ptr<const Brdf> byDistance(const Preset& preset) { return makeTranslucentByDistance(preset, kOption); }
+
+constexpr std::array<Formula, 9> kFormulas{{
     {{"lambert:R,G,B", "ideally diffuse"}, ofColor<Lambert>},
     {{"plastic:R,G,B,ALPHA", "GGX alpha"}, ofColorAndAlpha<Plastic>},
     {{"fdm:R,G,B,ALPHA[,RATIO]", "gloss along lines"}, plasticWithLines},
@@ -107,6 +109,7 @@ constexpr std::array<Formula, 8> kFormulas{{
     {{"glitter:R,G,B[,FLAKE_MM]", ""}, glitter},
     {{"translucent:R,G,B,MEAN_FREE_PATH_MM[,G]", "light goes through; also natural-pla, clear-petg, lithophane-white"},
      translucent},
+    {{"td:R,G,B,TRANSMISSION_DISTANCE_MM", "the same by what meters of filament measure"}, byDistance},
 }};
 
 std::string_view nameOf(std::string_view text) { return text.substr(0, text.find(':')); }

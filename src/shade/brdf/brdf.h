@@ -80,6 +80,7 @@ extern const char* const kDefaultBrdf;
 ///   lambert:R,G,B        ideal diffuse
 ///   plastic:R,G,B,ALPHA  diffuse under a dielectric coat, ALPHA is GGX's alpha in [0.001, 1] (not "roughness")
 ///   translucent:...      light goes through it, see makeTranslucent in translucent.h, which has the names of some
+///   td:R,G,B,MM          the same by its transmission distance
 ///   metal:R,G,B,ALPHA    a conductor; R, G, B is what it reflects straight back
 ///   matte:R,G,B          rough and diffuse, without a coat: matte.h
 ///   fdm:R,G,B,ALPHA[,RATIO]  plastic whose gloss has the direction of printed lines: alpha is ALPHA on the mean, and

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace stratum::shade {
@@ -31,6 +32,13 @@ std::shared_ptr<const RoughInterface> filamentSurface() {
     return surface;
 }
 
+std::shared_ptr<const Translucent> make(const Color& color, double mean_free_path, float asymmetry) {
+    const Medium inside{scatteringAlbedo(color, asymmetry), mean_free_path, asymmetry};
+    return std::make_shared<Translucent>(inside, color, filamentSurface());
+}
+
+constexpr double kLeastByDistance = 0.02;  // mm
+
 }  // namespace
 
 Color scatteringAlbedo(const Color& color, float asymmetry) {
@@ -45,6 +53,17 @@ Color scatteringAlbedo(const Color& color, float asymmetry) {
         albedo[c] = static_cast<float>(std::clamp((1.0 - s * s) / (1.0 - g * s * s), 0.0, 1.0));
     }
     return albedo;
+}
+
+double meanFreePathOf(double transmission_distance, double albedo) {
+    // albedo atanh(k) / k rises with k from the albedo on.
+    double low = 0.0;
+    double high = 1.0;
+    for (int n = 0; n < 60; ++n) {
+        const double k = 0.5 * (low + high);
+        (albedo * std::atanh(k) < k ? low : high) = k;
+    }
+    return low * transmission_distance / std::numbers::ln10;
 }
 
 Translucent::Translucent(const Medium& inside, const Color& color, std::shared_ptr<const RoughInterface> surface)
@@ -72,11 +91,16 @@ bool isTranslucent(std::string_view text) {
     return std::any_of(kNamed.begin(), kNamed.end(), [text](const NamedMedium& named) { return named.name == text; });
 }
 
+std::shared_ptr<const Translucent> makeTranslucentByDistance(const Preset& preset, std::string_view option) {
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
+    requireRange(preset, 3, 0.1f, 1000.0f, option, "TRANSMISSION_DISTANCE_MM");
+    const Color color(preset.values[0], preset.values[1], preset.values[2]);
+    const auto albedo = static_cast<double>(scatteringAlbedo(Color(luminance(color)), 0.0f).r);
+    // What scatters more often looks the same, and takes longer.
+    return make(color, std::max(meanFreePathOf(static_cast<double>(preset.values[3]), albedo), kLeastByDistance), 0.0f);
+}
+
 std::shared_ptr<const Translucent> makeTranslucent(const Preset& preset, std::string_view option) {
-    const auto make = [](const Color& color, double mean_free_path, float asymmetry) {
-        const Medium inside{scatteringAlbedo(color, asymmetry), mean_free_path, asymmetry};
-        return std::make_shared<Translucent>(inside, color, filamentSurface());
-    };
     for (const NamedMedium& named : kNamed)
         if (named.name == preset.name) return make(named.color, named.mean_free_path, 0.0f);
     for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");

@@ -28,6 +28,12 @@ struct Medium {
 /// 1950) between a surface that reflects by Fresnel's equations: at most 0.003 off.
 Color scatteringAlbedo(const Color& color, float asymmetry);
 
+/// The mean free path in mm, for isotropic events of that albedo, with which light that has gone deep falls to a tenth
+/// in `transmission_distance` mm. That is how HueForge's transmission distance of filaments, which meters measure, is
+/// read commonly (T = 10^(-d / TD)). Deep light falls as exp(-k t) with t in free paths and albedo atanh(k) = k, the
+/// asymptotic solution of radiative transfer (Case, Zweifel, "Linear Transport Theory", 1967).
+double meanFreePathOf(double transmission_distance, double albedo);
+
 /// As a Brdf it is its opaque stand-in, plastic of the same color, for integrators that do not go inside. The path
 /// integrator uses the rest.
 class Translucent final : public Brdf {
@@ -84,6 +90,9 @@ std::vector<std::string> translucentNames();
 
 /// Whether the text of --brdf is the name of a preset.
 bool isTranslucent(std::string_view text);
+
+/// Of R, G, B, TRANSMISSION_DISTANCE_MM: meanFreePathOf() for the luminance. Throws UsageError.
+std::shared_ptr<const Translucent> makeTranslucentByDistance(const Preset& preset, std::string_view option);
 
 /// Of R, G, B, MEAN_FREE_PATH_MM and, if there are five numbers, G; or a preset by its name: natural-pla, clear-petg,
 /// lithophane-white. Throws UsageError.

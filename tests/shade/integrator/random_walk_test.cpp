@@ -81,6 +81,17 @@ TEST(RandomWalk, AbsorptionAloneIsBeersLaw) {
     }
 }
 
+TEST(RandomWalk, DeepLightFallsToATenthInTheTransmissionDistance) {
+    const float albedo = shade::scatteringAlbedo(Color(0.4f), 0.0f).r;
+    const Medium medium{Color(albedo), shade::meanFreePathOf(1.0, static_cast<double>(albedo)), 0.0f};
+    const double thin = throughSlab(medium, 1.5, kWalkers).transmitted;
+    const double thick = throughSlab(medium, 2.0, kWalkers).transmitted;
+    EXPECT_NEAR(thick / thin, std::pow(10.0, -0.5), 0.02 * std::pow(10.0, -0.5));
+    // Without scattering it is Beer's law; what absorbs nothing lets all through, whatever its free path.
+    EXPECT_NEAR(shade::meanFreePathOf(1.0, 0.0), 1.0 / std::log(10.0), 1e-12);
+    EXPECT_NEAR(shade::meanFreePathOf(1.0, 1.0), 0.0, 1e-6);
+}
+
 TEST(RandomWalk, ASlabScattersAsInVanDeHulstsTable) {
     // H. C. van de Hulst, "Multiple Light Scattering", 1980, as quoted by L. Wang, S. Jacques, L. Zheng, "MCML",
     // Computer Methods and Programs in Biomedicine 47, 1995, table 1: absorption 10 / cm, scattering 90 / cm, g 0.75,
