@@ -23,7 +23,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests/clients"))
 from chromium import browser
-from viewer_socket import soak
+from viewer_socket import resident, soak
 
 ORBIT = """
 const done = arguments[1], seconds = arguments[0], c = document.getElementById('picture'), b = c.getBoundingClientRect();
@@ -149,9 +149,7 @@ def turning(folder, path, seconds, page, rounds):
 
 
 def tell(seconds, process, clients):
-    with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
-        resident = int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) / 1024
-    print(f"  {seconds:.0f} s: {resident:.0f} MB, pictures of each client {[client.pictures for client in clients]}", flush=True)
+    print(f"  {seconds:.0f} s: {resident(process):.0f} MB, pictures of each client {[client.pictures for client in clients]}", flush=True)
 
 
 def main():

@@ -235,7 +235,7 @@ try:
     if huge := corpus("spot_1000cc_0.1mm_grid.gcode.gz"):
         agrees("spot, 692 000 beads", {"eye": [400, -100, 200], "look_at": [150, 150, 100], "fov": 1}, path=huge)
     if thin := corpus("gcode-preview-ripple_vase.gcode"):
-        # Its grooves are narrower than a pixel: three surfaces are in one, of which the reference has the mean.
+        # Where it disagrees, the mean of the reference's normals in a pixel is short, as where several surfaces meet in it.
         agrees("ripple vase", {"eye": [300, -200, 150], "look_at": [62, 24, 20], "fov": 1.5}, path=thin, least=0.99)
     streams()
 finally:

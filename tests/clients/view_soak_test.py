@@ -4,21 +4,19 @@ STRATUM_SOAK_SECONDS=600 is the long form; with STRATUM_BIN of a build under Thr
 """
 
 import os
-import re
 import subprocess
 import tempfile
 
 from run_tools import BIN, check, gcode
-from viewer_socket import soak
+from viewer_socket import resident, soak
 
 SECONDS = float(os.environ.get("STRATUM_SOAK_SECONDS", "20"))
-resident = []
+sizes = []
 
 
 def tell(seconds, process, clients):
-    with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
-        resident.append(int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) / 1024)
-    print(f"{seconds:.0f} s: {resident[-1]:.0f} MB, pictures {[client.pictures for client in clients]}", flush=True)
+    sizes.append(resident(process))
+    print(f"{seconds:.0f} s: {sizes[-1]:.0f} MB, pictures {[client.pictures for client in clients]}", flush=True)
 
 
 with tempfile.TemporaryFile("w+") as words:
@@ -37,4 +35,4 @@ check(alive, f"the server lives: {said[-2000:]}")
 check(min(client.pictures for client in clients) > SECONDS / 10, "each client has got pictures")
 check("Sanitizer" not in said, f"no report of a sanitizer: {said[:4000]}")
 check(process.returncode in (0, -15, 130, 143), f"it ends when it is told to: {process.returncode}")
-check(max(resident) < 1500, f"{max(resident):.0f} MB at most")
+check(max(sizes) < 1500, f"{max(sizes):.0f} MB at most")

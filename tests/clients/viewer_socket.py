@@ -48,6 +48,12 @@ class Socket:
             pass
 
 
+def resident(process):
+    """Its memory in MB."""
+    with open(f"/proc/{process.pid}/status", encoding="utf-8") as file:
+        return int(re.search(r"VmRSS:\s+(\d+)", file.read()).group(1)) / 1024
+
+
 def soak(process, url, seconds, tell):
     """Eight clients turn, slide and colour; returns them. tell(seconds, process, clients) each half minute."""
     clients = [Socket(url) for _ in range(8)]
