@@ -5,6 +5,7 @@
 
 #include "assemble/finished_picture.h"
 #include "shade/film/picture.h"
+#include "shade/integrator/radiance_cache.h"
 #include "shade/post/denoise.h"
 
 #include <fmt/format.h>
@@ -41,9 +42,21 @@ Json skippedBy(const TraceCommand& o, const assemble::TracedObjects& objects, co
     if (scene.lights.empty()) skip("lamps", "none asked for", "one shadow ray a hit and light");
     if (film.content() != shade::FilmContent::radiance)
         skip("light and material", "the integrator does not shade", "shadow and bounce rays");
+    if (o.render.integrator.exact_translucency && scene.anyTranslucent())
+        skip("radiance cache", "--exact-translucency", "the paths that fill it");
     if (!scene.smooth_normals)
         skip("smooth normals", "not asked for", "keeping the level set besides its bricks, 56 samples a hit");
     return skipped;
+}
+
+Json radianceCacheReport(const shade::RenderResult& result) {
+    const shade::RadianceCache* const cache = result.radiance_cache.get();
+    if (cache == nullptr) return nullptr;
+    return {{"paths", cache->paths()},
+            {"vertices", cache->vertices()},
+            {"cells", cache->known()},
+            {"bytes", cache->bytes()},
+            {"seconds", result.radiance_cache_seconds}};
 }
 
 struct Seconds {
@@ -66,6 +79,7 @@ Json reportOf(const TraceCommand& o, const Frame& frame, const std::string& outp
               {"exposure", o.tone.exposure},
               {"denoised", o.denoise.value_or(false)}}},
             {"rays", raysReport(rays)},
+            {"radiance_cache", radianceCacheReport(result)},
             {"march", objects.intersector->name()},
             {"march_bytes", objects.intersector->bytes()},
             {"on_demand", assemble::onDemandReport(objects)},

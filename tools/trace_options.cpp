@@ -190,6 +190,10 @@ void addMaterialOptions(CLI::App& app, TraceCommand& o) {
     app.add_option("--bounces", o.render.integrator.bounces, "path: scattering events (default 3)")
         ->type_name("N")
         ->group(kLight);
+    app.add_flag("--exact-translucency", o.render.integrator.exact_translucency,
+                 "path: follow all light in translucent plastic to its end; without it, light that has met four "
+                 "surfaces is the mean of such light near there")
+        ->group(kLight);
     app.add_option("--phong", o.phong, "phong: weights, exponent and mirror's share (default 1,1,1,500,0.2)")
         ->type_name("KA,KD,KS,SHININESS,KR")
         ->group(kLight);

@@ -263,6 +263,7 @@ def render(
     look_at: _Point | None = ..., up: _Point | None = ..., fov: float | None = ..., f_number: float | None = ...,
     aperture: float | None = ..., focus: float | _Point | None = ..., frame: Literal["part", "all"] | None = ...,
     zoom: float | None = ..., integrator: str | None = ..., bounces: int | None = ...,
+    exact_translucency: bool | None = ...,
     phong: Sequence[float] | None = ..., ao_distance: float | None = ...,
     brdf: str | PathLike[str] | None = ..., color: str | Sequence[str] | None = ..., color_by: str | None = ...,
     color_range: tuple[float, float] | None = ...,

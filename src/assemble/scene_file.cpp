@@ -155,6 +155,7 @@ void readIntegrator(const Json& integrator, const std::string& name, shade::Inte
     section.read("name", options.name);
     section.readInteger("bounces", options.bounces);
     section.read("ao_distance", options.ao_distance);
+    section.read("exact_translucency", options.exact_translucency);
     if (const auto p = section.numbers("phong", 5); !p.empty()) {
         const auto at = [&](std::size_t i) { return static_cast<float>(p[i]); };
         options.phong = {at(0), at(1), at(2), at(3), at(4)};

@@ -33,7 +33,7 @@ constexpr const char* kRender =
     R"(A Picture: ray-traces a Toolpath, or the file of that path: G-code in any container, or a .vdb with a level set. Of G-code only the
 voxels that rays meet are made. The options are those of vdbtrace, with its defaults: size (width, height), spp, noise,
 seconds, seed, crop, aov, denoise, exposure (stops), legend; view, eye, look_at, up, fov (degrees), f_number, aperture,
-focus, frame, zoom; integrator, bounces, phong, ao_distance; brdf, color, color_by, color_range, normals; env,
+focus, frame, zoom; integrator, bounces, exact_translucency, phong, ao_distance; brdf, color, color_by, color_range, normals; env,
 env_rotation (degrees), env_exposure (stops), lights, bed, bed_surface, background; march, brick_values, brick_cache,
 clip (nx, ny, nz, d), grid, file_up; of G-code those of read() and voxelize(), voxel_size "auto", and printed.
 

@@ -67,6 +67,7 @@ void readRender(Keywords& options, RenderCall& call) {
     call.exposure = options.number("exposure");
     assign(render.integrator.name, options.text("integrator"));
     assign(render.integrator.bounces, options.integer("bounces", 1, kMost));
+    assign(render.integrator.exact_translucency, options.flag("exact_translucency"));
     assign(render.integrator.ao_distance, options.number("ao_distance"));
     if (const std::vector<double> v = options.numbers("phong"); !v.empty()) {
         if (v.size() != 5) options.fail("phong", "(ka, kd, ks, shininess, kr)");

@@ -28,8 +28,8 @@ inline constexpr std::string_view kFileParameters = "precision=None, compression
 inline constexpr std::string_view kPictureParameters =
     "size=None, spp=None, noise=None, seconds=None, seed=None, crop=None, aov=None, denoise=None, "
     "exposure=None, legend=None, view=None, eye=None, look_at=None, up=None, fov=None, f_number=None, "
-    "aperture=None, focus=None, frame=None, zoom=None, integrator=None, bounces=None, phong=None, "
-    "ao_distance=None, brdf=None, color=None, color_by=None, color_range=None, normals=None, env=None, "
+    "aperture=None, focus=None, frame=None, zoom=None, integrator=None, bounces=None, exact_translucency=None, "
+    "phong=None, ao_distance=None, brdf=None, color=None, color_by=None, color_range=None, normals=None, env=None, "
     "env_rotation=None, env_exposure=None, lights=None, bed=None, bed_surface=None, background=None, "
     "march=None, brick_values=None, brick_cache=None, clip=None, grid=None, file_up=None, printed=None";
 

@@ -64,7 +64,8 @@ void RayIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const
 std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
                                            const trace::Intersector& print) {
     options.validate();
-    if (options.name == "direct") return std::make_unique<PathIntegrator>(scene, print, 1);
+    const RadianceCache* const cache = options.radiance_cache.get();
+    if (options.name == "direct") return std::make_unique<PathIntegrator>(scene, print, 1, cache);
     if (options.name == "ao") return std::make_unique<AmbientOcclusion>(scene, print, options.ao_distance);
     if (options.name == "normal") return std::make_unique<NormalIntegrator>(scene, print);
     if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
@@ -73,7 +74,7 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "layer" || options.name == "tool" || options.name == "feature")
         return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
     if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
-    return std::make_unique<PathIntegrator>(scene, print, options.bounces);
+    return std::make_unique<PathIntegrator>(scene, print, options.bounces, cache);
 }
 
 }  // namespace stratum::shade

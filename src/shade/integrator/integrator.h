@@ -15,6 +15,8 @@
 
 namespace stratum::shade {
 
+class RadianceCache;
+
 /// Rays traced against the print. Rays that need no traversal (over the far bed) are not counted, except primary ones:
 /// there is one a sample.
 struct RayCounts {
@@ -43,6 +45,10 @@ struct IntegratorOptions {
     int bounces = 3;            ///< path: scattering events, 1 to 64. 1 is direct light
     PhongOptions phong;
     double ao_distance = std::numeric_limits<double>::infinity();  ///< ao: world units; farther surfaces don't occlude
+    /// path, direct: every path in translucent solids is followed to its end, without a RadianceCache.
+    bool exact_translucency = false;
+    /// Of makeRadianceCache(). Null: render() makes it where the picture needs one.
+    std::shared_ptr<const RadianceCache> radiance_cache;
 
     /// Throws UsageError.
     void validate() const;
@@ -96,7 +102,8 @@ private:
                     trace::Tracer& tracer, RayCounts& counts, std::span<Pixel> pixels) const final;
 };
 
-/// The integrator of `options`. It keeps references: `scene` and `print` must outlive it. Throws UsageError.
+/// The integrator of `options`. It keeps references: `scene`, `print` and the radiance cache must outlive it. Throws
+/// UsageError.
 std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
                                            const trace::Intersector& print);
 

@@ -19,6 +19,11 @@ constexpr float kBedShare = 0.25f;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 /// Surfaces that a path through translucent solids may meet: far more than roulette lets it.
 constexpr int kMostSurfaces = 1 << 14;
+/// Translucent surfaces that a path meets before the cache is asked. With two instead of four pictures of clear plastic
+/// differ from exact ones by as much as 32 samples' noise; with six they are no better.
+constexpr int kFollowed = 4;
+/// What a path sees after an opaque surface is a mean over directions already: there it is half of them.
+constexpr int kFollowedAfterOpaque = 2;
 
 /// Sets the members of the two groups: indices of things on the print, and of things on the bed.
 template <typename Groups, typename Things, typename IsBed>
@@ -29,8 +34,9 @@ void gatherGroups(Groups& groups, const Things& things, const IsBed& isBed) {
 
 }  // namespace
 
-PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces)
-    : Integrator(scene, print), scene_(scene), bounces_(bounces) {
+PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces,
+                               const RadianceCache* cache)
+    : Integrator(scene, print), scene_(scene), bounces_(bounces), cache_(cache) {
     if (scene.bed) bed_sampler_ = scene.environment->makeBedSampler();
     for (const auto& light : scene.lights)
         if (light->hasExtent()) extended_lights_.push_back(light.get());
@@ -60,23 +66,36 @@ void PathIntegrator::LightBatch::resize(std::size_t count) {
     samples.resize(count);
 }
 
-void PathIntegrator::addPath(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput,
-                             std::size_t pixel, int scatterings, const Translucent* inside,
-                             std::vector<Path>& paths) const {
+bool PathIntegrator::endDeep(const PathState& state, const SurfacePoint& point, const glm::dvec3& direction,
+                             const Stream& stream) const {
+    if (cache_ == nullptr || state.crossings < (state.scatterings > 0 ? kFollowedAfterOpaque : kFollowed)) return false;
+    const Side side = point.from_inside ? Side::solid : Side::air;
+    Color& sum = stream.sums[state.pixel];
+    if (stream.deep != nullptr) {
+        stream.deep->push_back({cache_->cell(point.position, direction, side), static_cast<std::uint32_t>(state.pixel),
+                                state.throughput, sum});
+        return false;
+    }
+    Sampler& sampler = stream.samplers[state.pixel];
+    const glm::vec2 xy = sampler.next2D();
+    const glm::dvec3 u(xy.x, xy.y, sampler.next1D());
+    const std::optional<Color> light = cache_->radiance(cache_->cellNear(point.position, direction, side, u));
+    if (light) sum += state.throughput * *light;
+    return light.has_value();
+}
+
+void PathIntegrator::addPath(const PathState& state, const SurfacePoint& point, const glm::dvec3& direction,
+                             const Translucent* inside, const Stream& stream, std::vector<Path>& paths) const {
     const Translucent* solid = walk_ ? point.brdf->translucent() : nullptr;
-    if (solid == nullptr && scatterings >= bounces_) return;
-    Path& path = paths.emplace_back();
-    path.point = point;
-    path.direction = direction;
-    path.throughput = throughput;
-    path.pixel = pixel;
-    path.scatterings = scatterings;
+    if (solid == nullptr ? state.scatterings >= bounces_ : endDeep(state, point, direction, stream)) return;
+    Path& path = paths.emplace_back(state, point, direction);
     path.solid = solid;
     path.inside = inside;
     if (solid == nullptr) {
         ++path.scatterings;
         return;
     }
+    ++path.crossings;
     path.point.brdf = &solid->fromAir(path.side());
     if (point.from_inside) {
         path.point.normal = -point.normal;
@@ -268,7 +287,7 @@ void PathIntegrator::scatterAll(std::span<PathVertex> vertices, std::span<const 
         }
         const Path& path = *vertex.path;
         if (bounce.inside != nullptr) {
-            walkers.push_back({bounce.ray, bounce.inside, path.throughput, path.pixel, path.scatterings});
+            walkers.emplace_back(path, bounce.ray, bounce.inside);
             bounces.pop_back();
             continue;
         }
@@ -281,10 +300,30 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
                                 std::span<Pixel> pixels) const {
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Color> bare(scene_.catcher ? rays.size() : 0, Color(0.0f));
+    follow(rays, points, {samplers, sums, bare, nullptr}, tracer, counts);
+    scene_.catcher ? catchShadows(points, sums, bare, pixels) : blendBackdrop(rays, points, sums, pixels);
+}
+
+void PathIntegrator::followDeep(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                                std::span<Sampler> samplers, trace::Tracer& tracer,
+                                std::vector<DeepVertex>& vertices) const {
+    std::vector<Color> sums(rays.size(), Color(0.0f));
+    std::vector<Color> bare(scene_.catcher ? rays.size() : 0, Color(0.0f));
+    const std::size_t first = vertices.size();
+    RayCounts ignored;
+    follow(rays, points, {samplers, sums, bare, &vertices}, tracer, ignored);
+    // They have what the path had brought before.
+    for (DeepVertex& vertex : std::span(vertices).subspan(first)) vertex.light = sums[vertex.path] - vertex.light;
+}
+
+void PathIntegrator::follow(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points,
+                            const Stream& stream, trace::Tracer& tracer, RayCounts& counts) const {
+    const auto& [samplers, sums, bare, deep] = stream;
     std::vector<Path> paths;
     paths.reserve(rays.size());
     for (std::size_t n = 0; n < rays.size(); ++n)
-        if (fadeAt(points[n]) < 1.0f) addPath(points[n], rays[n].direction, Color(1.0f), n, 0, nullptr, paths);
+        if (fadeAt(points[n]) < 1.0f)
+            addPath({Color(1.0f), n, 0, 0}, points[n], rays[n].direction, nullptr, stream, paths);
 
     ShadowRays shadow_rays;
     // Bounces of the last step. They matter only if they hit nothing, so an occlusion test is enough.
@@ -349,77 +388,38 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
         for (const Bounce& bounce : bounces) bounce_rays.push_back(bounce.ray);
         hits.resize(bounce_rays.size());
         surfaces_.nearestBounced(bounce_rays, tracer, hits);
-        continuePaths(bounces, hits, sums, next_paths);
-        if (!walkers.empty()) walk(walkers, samplers, tracer, counts, next_paths);
+        continuePaths(bounces, hits, stream, next_paths);
+        if (!walkers.empty()) walk(walkers, stream, tracer, counts, next_paths);
         paths.swap(next_paths);
-    }
-
-    scene_.catcher ? catchShadows(points, sums, bare, pixels) : blendBackdrop(rays, points, sums, pixels);
-}
-
-void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays,
-                             std::span<const Bounce> bounces, std::span<Color> bare) const {
-    // What goes down from a bumpy bed meets the bed itself, with or without a print.
-    const auto add = [&](std::size_t pixel, const trace::Ray& ray, const Color& light) {
-        if (points[pixel].bed && ray.direction.z > 0.0) bare[pixel] += light;
-    };
-    for (const Bounce& bounce : bounces) {
-        const Path& path = *bounce.from->path;
-        if (points[path.pixel].bed) bare[path.pixel] += path.throughput * scene_.ambient;
-    }
-    for (std::size_t k = 0; k < shadow_rays.rays.size(); ++k)
-        add(shadow_rays.pixel[k], shadow_rays.rays[k], shadow_rays.light[k]);
-    for (const Bounce& bounce : bounces) {
-        const Path& path = *bounce.from->path;
-        add(path.pixel, bounce.ray, path.throughput * bounce.escaped);
-    }
-}
-
-void PathIntegrator::catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums,
-                                  std::span<const Color> bare, std::span<Pixel> pixels) const {
-    constexpr int kPlaces = 4;  // on a side of a light: its irradiance is a scale, not a shadow
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        const SurfacePoint& point = points[n];
-        if (!std::isfinite(point.t)) {
-            pixels[n] = {};
-        } else if (!point.bed) {
-            pixels[n] = {sums[n], 1.0f};
-        } else {
-            Color irradiance = scene_.catcher->irradiance;
-            for (const auto& light : scene_.lights) irradiance += irradianceFrom(*light, point.position, kPlaces);
-            const float all = luminance(point.albedo * irradiance) * kInvPi;
-            pixels[n] = {Color(0.0f), all > 0.0f ? luminance(bare[n] - sums[n]) / all : 0.0f};
-        }
     }
 }
 
 void PathIntegrator::continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits,
-                                   std::span<Color> sums, std::vector<Path>& next_paths) const {
+                                   const Stream& stream, std::vector<Path>& next_paths) const {
     next_paths.clear();
     next_paths.reserve(bounces.size());
     for (std::size_t k = 0; k < bounces.size(); ++k) {
         const Path& path = *bounces[k].from->path;
-        Color& sum = sums[path.pixel];
+        Color& sum = stream.sums[path.pixel];
         if (!std::isfinite(hits[k].t)) {
             sum += path.throughput * bounces[k].escaped;
             continue;
         }
         // Lights occlude nothing, so one may lie in front of the surface.
         sum += path.throughput * hitLights(bounces[k].ray, hits[k].t, bounces[k].pdf);
-        addPath(hits[k], bounces[k].ray.direction, path.throughput, path.pixel, path.scatterings, nullptr, next_paths);
+        addPath(path, hits[k], bounces[k].ray.direction, nullptr, stream, next_paths);
     }
 }
 
-void PathIntegrator::walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer,
-                          RayCounts& counts, std::vector<Path>& next_paths) const {
+void PathIntegrator::walk(std::vector<Walker>& walkers, const Stream& stream, trace::Tracer& tracer, RayCounts& counts,
+                          std::vector<Path>& next_paths) const {
     std::vector<Arrival> arrivals;
-    walk_->walk(walkers, samplers, tracer, counts, arrivals);
+    walk_->walk(walkers, stream.samplers, tracer, counts, arrivals);
     for (Arrival& arrival : arrivals) {
         Walker& walker = arrival.walker;
         // At a surface of little absorption a path may be reflected inwards again and again.
-        if (!survives(walker.throughput, samplers[walker.pixel])) continue;
-        addPath(arrival.point, walker.ray.direction, walker.throughput, walker.pixel, walker.scatterings, walker.solid,
-                next_paths);
+        if (!survives(walker.throughput, stream.samplers[walker.pixel])) continue;
+        addPath(walker, arrival.point, walker.ray.direction, walker.solid, stream, next_paths);
     }
 }
 

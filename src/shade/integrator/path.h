@@ -5,6 +5,7 @@
 #include "shade/environment/environment.h"
 #include "shade/frame.h"
 #include "shade/integrator/integrator.h"
+#include "shade/integrator/radiance_cache.h"
 #include "shade/integrator/random_walk.h"
 #include "shade/integrator/surface.h"
 
@@ -24,13 +25,21 @@ namespace stratum::shade {
 /// from there, is reflected inwards, or leaves. Such events do not count as bounces: the path ends by Russian roulette,
 /// or at the opaque surface that would be one too many. Lights are sampled from both sides of the surface, not from
 /// inside, where every ray would be refracted. A scene without such solids does nothing of this.
+/// With a RadianceCache a path ends at the fifth such surface that it meets, the third after an opaque one, with what
+/// the cache knows of such paths.
 ///
 /// All paths of a stream advance together by one vertex a step, so that rays of one kind are traced as a stream: first
 /// the shadow rays of a step, then the rays drawn from the BRDFs. The result of a path depends on its own ray and
 /// sampler alone.
 class PathIntegrator final : public Integrator {
 public:
-    PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces);
+    /// @param cache  null: every path is followed to its end; else it must outlive the integrator
+    PathIntegrator(const SceneDescription& scene, const trace::Intersector& print, int bounces,
+                   const RadianceCache* cache = nullptr);
+
+    /// Follows camera rays with these first hits to their ends, and lists the vertices that the cache would answer for.
+    void followDeep(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
+                    trace::Tracer& tracer, std::vector<DeepVertex>& vertices) const;
 
 protected:
     void seenStream(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, std::span<Sampler> samplers,
@@ -38,15 +47,21 @@ protected:
 
 private:
     /// A path up to its current vertex.
-    struct Path {
+    struct Path : PathState {
+        Path(const PathState& state, const SurfacePoint& at, const glm::dvec3& along)
+            : PathState(state), point(at), direction(along) {}
         SurfacePoint point;
-        glm::dvec3 direction;  // of the ray that met the point
-        Color throughput{1.0f};
-        std::size_t pixel = 0;
-        int scatterings = 0;                  // at opaque surfaces, this one included
+        glm::dvec3 direction;                 // of the ray that met the point
         const Translucent* solid = nullptr;   // of the point; null if it is opaque
         const Translucent* inside = nullptr;  // where the ray came through; null for air
         Side side() const { return point.from_inside ? Side::solid : Side::air; }
+    };
+    /// What the paths of a stream share.
+    struct Stream {
+        std::span<Sampler> samplers;
+        std::span<Color> sums;
+        std::span<Color> bare;          // empty without a shadow catcher
+        std::vector<DeepVertex>* deep;  // lists vertices for the cache; null: the cache is read
     };
     /// Rays, and the light that each adds to its pixel if it is unoccluded.
     struct ShadowRays {
@@ -98,10 +113,16 @@ private:
         void resize(std::size_t count);
     };
 
-    /// Adds a path at its next surface, unless that is an opaque one too many. Of a translucent solid the normals are
-    /// made to point to the air.
-    void addPath(const SurfacePoint& point, const glm::dvec3& direction, const Color& throughput, std::size_t pixel,
-                 int scatterings, const Translucent* inside, std::vector<Path>& paths) const;
+    /// Adds a path at its next surface, unless that is an opaque one too many, or the cache knows what it would bring.
+    /// Of a translucent solid the normals are made to point to the air.
+    void addPath(const PathState& state, const SurfacePoint& point, const glm::dvec3& direction,
+                 const Translucent* inside, const Stream& stream, std::vector<Path>& paths) const;
+    /// Adds what the cache knows of a path at a translucent surface to its sum; false if it must be followed.
+    bool endDeep(const PathState& state, const SurfacePoint& point, const glm::dvec3& direction,
+                 const Stream& stream) const;
+    /// All paths of a stream, to their ends.
+    void follow(std::span<const trace::Ray> rays, std::span<const SurfacePoint> points, const Stream& stream,
+                trace::Tracer& tracer, RayCounts& counts) const;
     void sampleEnvironment(const Group& group, std::span<const PathVertex> vertices, std::span<Sampler> samplers,
                            ShadowRays& shadow_rays, LightBatch& batch) const;
     /// Adds one shadow ray for each light.
@@ -115,7 +136,7 @@ private:
                     std::span<const glm::vec2> brdf_draws, std::span<Color> sums, std::vector<Bounce>& bounces,
                     std::vector<Walker>& walkers, BrdfBatch& batch) const;
     /// Walks on inside of solids, and lists the paths that go on from where they meet a surface.
-    void walk(std::vector<Walker>& walkers, std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
+    void walk(std::vector<Walker>& walkers, const Stream& stream, trace::Tracer& tracer, RayCounts& counts,
               std::vector<Path>& next_paths) const;
     /// Adds the environment's radiance to Bounce::escaped.
     void evalEscaped(const Group& group, std::span<Bounce> bounces, LightBatch& batch) const;
@@ -125,7 +146,7 @@ private:
     /// rays.
     void addUnoccluded(ShadowRays& shadow_rays, trace::Tracer& tracer, std::span<Color> sums) const;
     /// Adds the light that the bounces hit or escape to, and lists the paths that go on from their hits.
-    void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, std::span<Color> sums,
+    void continuePaths(std::span<const Bounce> bounces, std::span<const SurfacePoint> hits, const Stream& stream,
                        std::vector<Path>& next_paths) const;
     /// Adds what the first vertices would receive if nothing were in the way, in the order in which light is added to
     /// the sums: without a shadow the two are equal to the last bit.
@@ -144,6 +165,7 @@ private:
     const SceneDescription& scene_;
     std::unique_ptr<const EnvironmentSampler> bed_sampler_;
     int bounces_;
+    const RadianceCache* cache_;
     std::optional<RandomWalk> walk_;             // only where something is translucent
     std::vector<const Light*> extended_lights_;  // of the scene, see Light::hasExtent
 };

@@ -13,13 +13,21 @@
 
 namespace stratum::shade {
 
+/// What a path carries from surface to surface.
+struct PathState {
+    Color throughput{1.0f};
+    std::size_t pixel = 0;  ///< index of its sampler and of its sum
+    int scatterings = 0;    ///< at opaque surfaces
+    int crossings = 0;      ///< surfaces of translucent solids that it has met, from either side
+};
+
 /// A path inside of a solid.
-struct Walker {
+struct Walker : PathState {
+    Walker() = default;
+    Walker(const PathState& state, const trace::Ray& along, const Translucent* inside)
+        : PathState(state), ray(along), solid(inside) {}
     trace::Ray ray;  ///< from the surface, or from the last event, inwards
     const Translucent* solid = nullptr;
-    Color throughput{1.0f};
-    std::size_t pixel = 0;  ///< index of its sampler
-    int scatterings = 0;    ///< the path's own count, passed on
 };
 
 /// A walker that has met a surface: of the solid from inside, of the bed, of something in the solid.

@@ -2,8 +2,10 @@
 
 #include "base/error.h"
 #include "base/parallel_for.h"
+#include "base/stopwatch.h"
 #include "shade/camera/filter.h"
 #include "shade/integrator/checkpoint.h"
+#include "shade/integrator/deep_light.h"
 #include "shade/integrator/tile.h"
 
 #include <fmt/format.h>
@@ -28,6 +30,19 @@ constexpr int kFirstSamples = 16;
 /// The same with --time, where a tile can get more samples later.
 constexpr int kClockSamples = 4;
 
+/// The options with the radiance cache that the picture needs.
+IntegratorOptions withCache(const SceneDescription& scene, const trace::Intersector& print,
+                            const RenderOptions& options, const Progress& progress, double& seconds) {
+    IntegratorOptions kind = options.integrator;
+    if (kind.radiance_cache) return kind;
+    Stopwatch watch;
+    kind.radiance_cache = makeRadianceCache(scene, print, options, [&progress] {
+        if (progress) progress(0, 1);
+    });
+    seconds = watch.lap();
+    return kind;
+}
+
 /// What all tiles of a render share.
 class Renderer {
 public:
@@ -37,7 +52,8 @@ public:
           scene_(scene),
           options_(options),
           progress_(progress),
-          integrator_(makeIntegrator(options.integrator, scene, print)),
+          kind_(withCache(scene, print, options, progress, cache_seconds_)),
+          integrator_(makeIntegrator(kind_, scene, print)),
           recorder_(scene, print, options.aovs),
           // With --noise the number of samples of a tile depends on all of its pixels, so a crop needs whole tiles.
           region_(options.noise > 0.0 ? wholeTiles(options.region(), options.width, options.height) : options.region()),
@@ -57,8 +73,13 @@ public:
             tileByTile();
         const double mean_spp = static_cast<double>(state_.samples) / static_cast<double>(pixels_);
         const bool more = region_ != options_.region();
-        return {more ? state_.film.part(options_.region()) : std::move(state_.film), mean_spp, state_.rays,
-                state_.samples, pixels_};
+        return {more ? state_.film.part(options_.region()) : std::move(state_.film),
+                mean_spp,
+                state_.rays,
+                state_.samples,
+                pixels_,
+                kind_.radiance_cache,
+                cache_seconds_};
     }
 
 private:
@@ -85,6 +106,8 @@ private:
     const SceneDescription& scene_;
     const RenderOptions& options_;
     const Progress& progress_;
+    double cache_seconds_ = 0.0;
+    const IntegratorOptions kind_;
     const std::unique_ptr<Integrator> integrator_;
     const AovRecorder recorder_;
     const PixelFilter filter_;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace stratum::shade {
@@ -48,9 +49,11 @@ struct RenderOptions {
 struct RenderResult {
     Film film;              ///< of options.region()
     double mean_spp = 0.0;  ///< samples a pixel
-    RayCounts rays;         ///< the same for any number of threads
+    RayCounts rays;         ///< the same for any number of threads; without those of the radiance cache
     /// What mean_spp is the quotient of. With RenderOptions::noise: of whole tiles around a crop.
     std::uint64_t samples = 0, pixels = 0;
+    std::shared_ptr<const RadianceCache> radiance_cache;  ///< that it used; null: none
+    double radiance_cache_seconds = 0.0;                  ///< that it took to make it
 };
 
 /// Called from time to time from any thread, never from two at once, with the number of finished pixels.

@@ -49,12 +49,14 @@ void StillPicture::traceBand(const std::function<void()>& check) {
     const int end = std::min(options.height, next_row_ + bandRows(options.height));
     options.crop = shade::PixelBox{0, next_row_, options.width, end};
     options.margin = 0;
+    options.integrator.radiance_cache = whole_.radiance_cache;
     const shade::RenderResult band =
         shade::render(*picture_.print, picture_.scene, options, [&check](std::uint64_t, std::uint64_t) { check(); });
     if (next_row_ == 0)
         whole_.film =
             shade::Film(options.width, options.height, {0, 0, options.width, options.height}, band.film.content());
     copyBand(band.film, whole_.film);
+    whole_.radiance_cache = band.radiance_cache;
     whole_.rays += band.rays;
     whole_.samples += band.samples;
     whole_.pixels += band.pixels;

@@ -1,0 +1,112 @@
+#include "shade/integrator/deep_light.h"
+
+#include "base/parallel_for.h"
+#include "shade/integrator/path.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace stratum::shade {
+namespace {
+
+constexpr std::size_t kStream = 1024;   // paths at a time: enough to fill vectors
+constexpr std::size_t kBatch = 16;      // streams between two calls of `check`; their vertices are kept
+constexpr std::size_t kMostRounds = 8;  // of camera rays for one stream, most of which may miss the print
+constexpr std::uint32_t kSeed = 0xdee9u;
+
+/// The paths of one stream: what the camera sees of translucent prints.
+class DeepStream {
+public:
+    DeepStream(const SceneDescription& scene, const Surfaces& surfaces) : scene_(scene), surfaces_(surfaces) {}
+
+    /// Returns the number of paths.
+    std::size_t follow(const PathIntegrator& integrator, std::size_t number, trace::Tracer& tracer,
+                       std::vector<DeepVertex>& vertices) {
+        rays_.clear();
+        samplers_.clear();
+        points_.clear();
+        for (std::size_t round = 0; round < kMostRounds && rays_.size() < kStream; ++round)
+            look(number * kMostRounds + round, tracer);
+        integrator.followDeep(rays_, points_, samplers_, tracer, vertices);
+        return rays_.size();
+    }
+
+private:
+    void look(std::size_t round, trace::Tracer& tracer) {
+        std::vector<trace::Ray> rays(kStream);
+        std::vector<Sampler> samplers(kStream, Sampler(kSeed, 65536));
+        std::vector<SurfacePoint> points(kStream);
+        const glm::dvec2 size(scene_.camera.width(), scene_.camera.height());
+        for (std::size_t n = 0; n < kStream; ++n) {
+            samplers[n].start(0, 0, static_cast<std::uint32_t>(round * kStream + n));
+            const glm::dvec2 pixel = glm::dvec2(samplers[n].next2D()) * size;
+            rays[n] =
+                scene_.camera.hasLens() ? scene_.camera.ray(pixel, samplers[n].next2D()) : scene_.camera.ray(pixel);
+        }
+        surfaces_.nearest(rays, tracer, points);
+        for (std::size_t n = 0; n < kStream && rays_.size() < kStream; ++n) {
+            if (!std::isfinite(points[n].t) || points[n].brdf->translucent() == nullptr) continue;
+            rays_.push_back(rays[n]);
+            samplers_.push_back(samplers[n]);
+            points_.push_back(points[n]);
+        }
+    }
+
+    const SceneDescription& scene_;
+    const Surfaces& surfaces_;
+    std::vector<trace::Ray> rays_;
+    std::vector<Sampler> samplers_;
+    std::vector<SurfacePoint> points_;
+};
+
+constexpr double kMostPaths = 65536.0;
+
+/// As many cells as paths can tell of.
+int cellsFor(double paths) {
+    constexpr double kMostCells = 32.0;  // along the longest side
+    return static_cast<int>(std::lround(kMostCells * std::cbrt(paths / kMostPaths)));
+}
+
+std::size_t streamsFor(const RenderOptions& options) {
+    constexpr double kShare = 1.0 / 16.0, kUsualSpp = 32.0;
+    // How many samples a picture takes that is made to an error or by the clock is not known before.
+    const double spp = options.noise > 0.0 || options.seconds > 0.0 ? kUsualSpp : options.spp;
+    const double paths = std::min(kShare * spp * options.width * options.height, kMostPaths);
+    return std::max(std::size_t{1}, static_cast<std::size_t>(paths) / kStream);
+}
+
+}  // namespace
+
+std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& scene, const trace::Intersector& print,
+                                                       const RenderOptions& options,
+                                                       const std::function<void()>& check) {
+    const IntegratorOptions& kind = options.integrator;
+    if (kind.exact_translucency || (kind.name != "path" && kind.name != "direct") || !scene.anyTranslucent()) return {};
+    const std::size_t streams = streamsFor(options);
+    auto cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kStream)));
+    const PathIntegrator integrator(scene, print, kind.name == "direct" ? 1 : kind.bounces, cache.get());
+    const Surfaces surfaces(scene, print);
+    tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });
+    std::vector<std::vector<DeepVertex>> vertices(kBatch);
+    std::vector<std::size_t> followed(kBatch);
+    for (std::size_t first = 0; first < streams; first += kBatch) {
+        if (check) check();
+        const std::size_t count = std::min(kBatch, streams - first);
+        parallelFor(count, 1, [&](std::size_t from, std::size_t to) {
+            DeepStream stream(scene, surfaces);
+            for (std::size_t n = from; n != to; ++n) {
+                vertices[n].clear();
+                followed[n] = stream.follow(integrator, first + n, *tracers.local(), vertices[n]);
+            }
+        });
+        // One after the other, for the sums' bits.
+        for (std::size_t n = 0; n != count; ++n) cache->add(vertices[n], followed[n]);
+    }
+    return cache;
+}
+
+}  // namespace stratum::shade

@@ -1,0 +1,45 @@
+// PathIntegrator in a transparent picture: the shadow of the print, see ShadowCatcher.
+#include "shade/camera/sampling.h"
+#include "shade/integrator/path.h"
+
+#include <cmath>
+
+namespace stratum::shade {
+
+void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays,
+                             std::span<const Bounce> bounces, std::span<Color> bare) const {
+    // What goes down from a bumpy bed meets the bed itself, with or without a print.
+    const auto add = [&](std::size_t pixel, const trace::Ray& ray, const Color& light) {
+        if (points[pixel].bed && ray.direction.z > 0.0) bare[pixel] += light;
+    };
+    for (const Bounce& bounce : bounces) {
+        const Path& path = *bounce.from->path;
+        if (points[path.pixel].bed) bare[path.pixel] += path.throughput * scene_.ambient;
+    }
+    for (std::size_t k = 0; k < shadow_rays.rays.size(); ++k)
+        add(shadow_rays.pixel[k], shadow_rays.rays[k], shadow_rays.light[k]);
+    for (const Bounce& bounce : bounces) {
+        const Path& path = *bounce.from->path;
+        add(path.pixel, bounce.ray, path.throughput * bounce.escaped);
+    }
+}
+
+void PathIntegrator::catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums,
+                                  std::span<const Color> bare, std::span<Pixel> pixels) const {
+    constexpr int kPlaces = 4;  // on a side of a light: its irradiance is a scale, not a shadow
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const SurfacePoint& point = points[n];
+        if (!std::isfinite(point.t)) {
+            pixels[n] = {};
+        } else if (!point.bed) {
+            pixels[n] = {sums[n], 1.0f};
+        } else {
+            Color irradiance = scene_.catcher->irradiance;
+            for (const auto& light : scene_.lights) irradiance += irradianceFrom(*light, point.position, kPlaces);
+            const float all = luminance(point.albedo * irradiance) * kInvPi;
+            pixels[n] = {Color(0.0f), all > 0.0f ? luminance(bare[n] - sums[n]) / all : 0.0f};
+        }
+    }
+}
+
+}  // namespace stratum::shade
