@@ -2,7 +2,7 @@
 #pragma once
 
 #include "shade/integrator/integrator.h"
-#include "shade/integrator/surface.h"
+#include "shade/scene/surface.h"
 
 namespace stratum::shade {
 

@@ -4,7 +4,7 @@
 #include "shade/film/film.h"
 #include "shade/integrator/bare_light.h"
 #include "shade/integrator/integrator.h"
-#include "shade/integrator/surface.h"
+#include "shade/scene/surface.h"
 
 #include <cstddef>
 #include <cstdint>

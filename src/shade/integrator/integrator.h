@@ -3,8 +3,8 @@
 
 #include "shade/camera/sampler.h"
 #include "shade/film/film.h"
-#include "shade/integrator/surface.h"
 #include "shade/scene/scene.h"
+#include "shade/scene/surface.h"
 #include "trace/intersector.h"
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "shade/integrator/integrator.h"
 #include "shade/integrator/radiance_cache.h"
 #include "shade/integrator/random_walk.h"
-#include "shade/integrator/surface.h"
+#include "shade/scene/surface.h"
 
 #include <memory>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "shade/brdf/translucent.h"
 #include "shade/camera/sampler.h"
 #include "shade/integrator/integrator.h"
-#include "shade/integrator/surface.h"
+#include "shade/scene/surface.h"
 #include "trace/intersector.h"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "shade/integrator/tile.h"
 
-#include "shade/integrator/primary_rays.h"
+#include "shade/camera/primary_rays.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,10 @@
 
 #include "base/parallel_for.h"
 #include "shade/camera/filter.h"
+#include "shade/camera/primary_rays.h"
 #include "shade/camera/sampler.h"
 #include "shade/film/tonemap.h"
 #include "shade/integrator/ambient_occlusion.h"
-#include "shade/integrator/primary_rays.h"
 #include "shade/integrator/tile.h"
 
 #include <tbb/enumerable_thread_specific.h>

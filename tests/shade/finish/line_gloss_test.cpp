@@ -4,8 +4,8 @@
 #include "shade/analytic_prints.h"
 #include "shade/brdf_checks.h"
 #include "shade/frame.h"
-#include "shade/integrator/surface.h"
 #include "shade/scene/scene.h"
+#include "shade/scene/surface.h"
 
 #include <gtest/gtest.h>
 

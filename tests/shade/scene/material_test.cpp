@@ -4,9 +4,9 @@
 #include "shade/analytic_prints.h"
 #include "shade/brdf/lambert.h"
 #include "shade/integrator/render.h"
-#include "shade/integrator/surface.h"
 #include "shade/palette/filament_color.h"
 #include "shade/scene/scene.h"
+#include "shade/scene/surface.h"
 
 #include <gtest/gtest.h>
 

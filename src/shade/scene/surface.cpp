@@ -1,4 +1,4 @@
-#include "shade/integrator/surface.h"
+#include "shade/scene/surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "shade/integrator/primary_rays.h"
+#include "shade/camera/primary_rays.h"
 
 #include "on_each_target.h"
 

@@ -1,11 +1,11 @@
-#include "shade/integrator/primary_rays.h"
+#include "shade/camera/primary_rays.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shade/integrator/primary_rays.cpp"
+#define HWY_TARGET_INCLUDE "shade/camera/primary_rays.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
