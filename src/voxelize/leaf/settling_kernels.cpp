@@ -158,14 +158,18 @@ float FillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
-void MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
+float MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
     const F f;
+    VF least = hn::Set(f, 3e38F);
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF by = hn::Load(f, out.v + c);
         const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), by), hn::Zero(f));
-        hn::Store(hn::Mul(side, side), f, sides2.v + c);
+        const VF squared = hn::Mul(side, side);
+        hn::Store(squared, f, sides2.v + c);
+        least = hn::Min(least, squared);
         hn::Store(hn::Sub(hn::Load(f, d.v + c), by), f, d.v + c);
     });
+    return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
 void SectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
@@ -225,7 +229,9 @@ float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
     return HWY_DYNAMIC_DISPATCH(FillGrooves)(levels, rule, d, sides2);
 }
 
-void moveOut(const PlanField& out, PlanField& d, PlanField& sides2) { HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2); }
+float moveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
+    return HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2);
+}
 void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
     HWY_DYNAMIC_DISPATCH(SectionThickness)(sides2, swell, radius, straight, thickness);
 }

@@ -43,8 +43,8 @@ void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const
 /// so shallow that the layers above and below count as touching: negative there, so that they are welded.
 float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2);
 
-/// Outlines move out by `out`: d = d - out, sides2 = max(sqrt(sides2) - out, 0)^2.
-void moveOut(const PlanField& out, PlanField& d, PlanField& sides2);
+/// Outlines move out by `out`: d = d - out, sides2 = max(sqrt(sides2) - out, 0)^2; returns the least of it.
+float moveOut(const PlanField& out, PlanField& d, PlanField& sides2);
 
 /// Of a section with outlines moved out by `swell`: straight + 2 sqrt(radius^2 - side^2), 0 where side >= radius.
 void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness);
