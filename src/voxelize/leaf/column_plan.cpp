@@ -20,8 +20,9 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
         squaredSides(d_, sides2_);
     swollen_ = sides2_;
     float least = 0;
+    double most = 0;
     const bool swells = with_swell_ && swell(source.layer, d_, swollen_, least);
-    const bool rises = with_swell_ && raise(source.layer, nearest_, rise_);
+    const bool rises = with_swell_ && raise(source.layer, nearest_, rise_, most);
     return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr, rises ? &rise_ : nullptr};
 }
 

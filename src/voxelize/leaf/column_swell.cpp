@@ -72,9 +72,12 @@ bool LeafColumn::swell(std::uint32_t layer, PlanField& d, PlanField& sides2, flo
     return true;
 }
 
-bool LeafColumn::raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise) {
+bool LeafColumn::raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise, double& most) {
+    constexpr double kRounding = 1 + 1e-5;
+    most = 0;
     const Layer& of = stack_.layers[layer];
     const bool rises = valuesOf(layer, &SwellTile::rise, 1, scale_, rise);
+    if (rises) most = kRounding * static_cast<double>(*std::max_element(swell_nodes_.begin(), swell_nodes_.end()));
     if (!(of.crown > 0) || !valuesOf(layer, &SwellTile::open, 2, 1, between_)) return rises;
     if (!rises) std::fill(std::begin(rise.v), std::end(rise.v), 0.0F);
     lowerByCrown(between_, nearest, static_cast<float>(of.crown * scale_), static_cast<float>(of.radius * scale_),

@@ -215,7 +215,8 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
         settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
     if (with_swell_) swell(source.layer, plan.d, plan.sides2, least);
     if (static_cast<double>(least) >= reach * reach) return;
-    plan.most_rise = with_swell_ && raise(source.layer, nearest_, plan.rise) ? layer.most_rise : 0;
+    plan.most_rise = 0;
+    plan.rises = with_swell_ && raise(source.layer, nearest_, plan.rise, plan.most_rise);
     free_.pop_back();
     window_.push_back(slot);
     const std::pair entry{source.layer, slot};
@@ -334,7 +335,7 @@ void LeafColumn::gatherTerms(int k0) {
                 radius = plan.radius;
                 straight_sides = plan.half_side > 0;
                 // Below the center plane nothing is moved.
-                if (plan.most_rise > 0 && dz > 0) {
+                if (plan.rises && dz > 0) {
                     rises = true;
                     terms_.terms.push_back({&plan.sides2, 0, &plan.d, 0, &plan.rise, static_cast<float>(dz * scale_)});
                     continue;

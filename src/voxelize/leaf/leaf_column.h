@@ -125,7 +125,8 @@ private:
     struct PlanLayer {
         std::uint32_t layer;
         double center_z, half_height, radius, half_side;  // mm
-        double most_rise;                                 // mm, 0 where `rise` is not used
+        bool rises;                                       // whether `rise` is used
+        double most_rise;                                 // mm, the most of it
         PlanField d, sides2;                              // d: where beads settle, closed by what welds close
         PlanField rise;                                   // world units; below 0 in crowns
         PlanOwners owners;
@@ -158,8 +159,8 @@ private:
     /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed; `least` is of sides2 then.
     bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2, float& least);
     /// By how much the top of a layer is moved up, world units; `nearest`: as of forEachSides(). True if it is
-    /// anywhere.
-    bool raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise);
+    /// anywhere; `most`, mm, is as much or more.
+    bool raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise, double& most);
     void placeSwell();
     /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0. `number`:
     /// of the kind.

@@ -172,18 +172,6 @@ float MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
-void SectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
-    const F f;
-    const VF zero = hn::Zero(f);
-    forEachVector([&](std::size_t c) HWY_ATTR {
-        const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), hn::Set(f, swell)), zero);
-        const VF half2 = hn::Sub(hn::Set(f, radius * radius), hn::Mul(side, side));
-        const VF half = hn::Sqrt(hn::Max(half2, zero));
-        const VF whole = hn::Add(hn::Set(f, straight), hn::Add(half, half));
-        hn::Store(hn::IfThenElseZero(hn::Gt(half2, zero), whole), f, thickness.v + c);
-    });
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace stratum::voxelize
 HWY_AFTER_NAMESPACE();
@@ -197,7 +185,6 @@ HWY_EXPORT(PlanOfArc);
 HWY_EXPORT(LowerLevels);
 HWY_EXPORT(FillGrooves);
 HWY_EXPORT(MoveOut);
-HWY_EXPORT(SectionThickness);
 
 GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
     : table(curve.table().data()),
@@ -231,9 +218,6 @@ float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
 
 float moveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
     return HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2);
-}
-void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
-    HWY_DYNAMIC_DISPATCH(SectionThickness)(sides2, swell, radius, straight, thickness);
 }
 
 }  // namespace stratum::voxelize

@@ -46,7 +46,4 @@ float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
 /// Outlines move out by `out`: d = d - out, sides2 = max(sqrt(sides2) - out, 0)^2; returns the least of it.
 float moveOut(const PlanField& out, PlanField& d, PlanField& sides2);
 
-/// Of a section with outlines moved out by `swell`: straight + 2 sqrt(radius^2 - side^2), 0 where side >= radius.
-void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness);
-
 }  // namespace stratum::voxelize

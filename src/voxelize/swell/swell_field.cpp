@@ -15,26 +15,29 @@ namespace {
 
 int floorTo(int value, int step) { return (value >= 0 ? value : value - step + 1) / step; }
 
-// The nodes of a tile and the halo around it, of one layer, from the sums of the tiles around.
-SpreadNodes gather(const std::array<const TileSums*, 9>& around, std::uint32_t layer) {
+constexpr int kSpreadEdge = kTileCells + 2 * kSpreadHalo;
+
+// The nodes of a tile and the halo around it, of one layer, from the sums of the tiles around. `nodes`: 0 before.
+void gather(const std::array<const TileSums*, 9>& around, std::uint32_t layer, SpreadNodes& nodes) {
     static_assert(kSpreadHalo <= kTileCells);
-    SpreadNodes nodes(kTileCells + 2 * kSpreadHalo);
     for (int tile = 0; tile < 9; ++tile) {
         const TileSums::Layer* sums = around[static_cast<std::size_t>(tile)]->of(layer);
         if (sums == nullptr) continue;
         const int to_x = (tile % 3 - 1) * kTileCells + kSpreadHalo;
         const int to_y = (tile / 3 - 1) * kTileCells + kSpreadHalo;
-        for (int j = std::max(0, -to_y); j < std::min(TileSums::kNodes, nodes.edge - to_y); ++j)
-            for (int i = std::max(0, -to_x); i < std::min(TileSums::kNodes, nodes.edge - to_x); ++i) {
-                const std::size_t from = nodeIndex(j, TileSums::kNodes, i);
-                const std::size_t to = nodeIndex(j + to_y, nodes.edge, i + to_x);
-                nodes.surplus[to] += sums->surplus[from];
-                for (std::size_t level = 0; level < nodes.gain.size(); ++level)
-                    nodes.gain[level][to] += sums->gain[level][from];
-                nodes.open[to] += sums->open[from];
-            }
+        const int first = std::max(0, -to_x);
+        const int count = std::min(TileSums::kNodes, nodes.edge - to_x) - first;
+        for (int j = std::max(0, -to_y); j < std::min(TileSums::kNodes, nodes.edge - to_y); ++j) {
+            const auto add = [&](const TileSums::Nodes& values, std::vector<float>& row_by_row) {
+                const float* const from = values.data() + nodeIndex(j, TileSums::kNodes, first);
+                float* const to = row_by_row.data() + nodeIndex(j + to_y, nodes.edge, first + to_x);
+                for (int i = 0; i < count; ++i) to[i] += from[i];
+            };
+            add(sums->surplus, nodes.surplus);
+            for (std::size_t level = 0; level < nodes.gain.size(); ++level) add(sums->gain[level], nodes.gain[level]);
+            add(sums->open, nodes.open);
+        }
     }
-    return nodes;
 }
 
 // Spreads the surplus of a tile's layers, from the lowest: what has no place in one may find it in the next.
@@ -76,32 +79,37 @@ private:
     void spreadLayer(std::size_t number) {
         const std::uint32_t layer = layers_[number];
         const Layer& of = stack_.layers[layer];
-        const SpreadNodes nodes = gather(around_, layer);
-        const Spread spread = spreadSurplus(nodes, of.most_rise);
+        gather(around_, layer, nodes_);
+        const NodeBox box = nodes_.box();
+        constexpr NodeBox kOwn{kSpreadHalo, kSpreadHalo + kTileCells, kSpreadHalo, kSpreadHalo + kTileCells};
+        const Spread& spread = spreading_.spread(nodes_, box, kOwn, of.most_rise);
         const Volumes below = takeFromBelow(layer);
         for (int j = 0; j < kTileCells; ++j)
             for (int i = 0; i < kTileCells; ++i) {
-                const std::size_t n = nodeIndex(j + kSpreadHalo, nodes.edge, i + kSpreadHalo);
+                const std::size_t n = nodeIndex(j + kSpreadHalo, kSpreadEdge, i + kSpreadHalo);
                 const std::size_t own = nodeIndex(j, kTileCells, i);
                 // What comes from below takes what room the layer's own surplus has left, and the rest goes on.
                 double moves_up = std::max(static_cast<double>(spread.left[n]) + (below.empty() ? 0 : below[own]), 0.0);
+                const auto open = static_cast<double>(nodes_.open[n]);
+                const bool crowned = open > 0 && of.crown > 0;
+                if (!(moves_up > 0 || spread.given[n] > 0 || spread.raised[n] > 0 || crowned)) continue;
                 const auto place = [&moves_up](float already, double most) {
                     const double more = std::clamp(most - static_cast<double>(already), 0.0, moves_up);
                     moves_up -= more;
                     return static_cast<double>(already) + more;
                 };
-                const auto open = static_cast<double>(nodes.open[n]);
-                const double given = place(spread.given[n], static_cast<double>(nodes.gain.back()[n]));
+                const double given = place(spread.given[n], static_cast<double>(nodes_.gain.back()[n]));
                 const double raised = place(spread.raised[n], open * of.most_rise);
                 if (moves_up > 0) {
                     if (up_[number].empty()) up_[number].assign(NodeValues::kNodes, 0.0);
                     up_[number][own] = moves_up;
                 }
-                out_.set(layer, own, swellThatGains(nodes, n, given));
+                out_.set(layer, own, swellThatGains(nodes_, n, given));
                 if (!(open > 0)) continue;
                 rise_.set(layer, own, std::min(raised / open, of.most_rise));
-                if (of.crown > 0) open_.set(layer, own, openShare(layer, i, j, open));
+                if (crowned) open_.set(layer, own, openShare(layer, i, j, open));
             }
+        nodes_.clear(box);
     }
 
     // What the layers on which this one lies have left at each node.
@@ -135,7 +143,9 @@ private:
     const LayerStack& stack_;
     const std::array<const TileSums*, 9>& around_;
     std::vector<std::uint32_t> layers_;
-    std::vector<Volumes> up_;  // what has no place, by layers_
+    std::vector<Volumes> up_;         // what has no place, by layers_
+    SpreadNodes nodes_{kSpreadEdge};  // of the layer at hand; 0 between layers
+    Spreading spreading_{kSpreadEdge};
     Values out_, rise_, open_;
 };
 

@@ -82,25 +82,13 @@ TEST(SettlingKernels, BeadsThatMayNotFillAreTooFar) {
     EXPECT_GT(left_out, 100U);
 }
 
-TEST(SettlingKernels, ThicknessIsThatOfTheSection) {
-    PlanField sides2;
-    for (std::size_t c = 0; c < kColumnSamples; ++c) sides2.v[c] = 0.0004F * static_cast<float>(c);
-    PlanField thickness;
-    sectionThickness(sides2, 0.02F, 0.1F, 0.06F, thickness);
-    for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        const double side = std::max(std::sqrt(static_cast<double>(sides2.v[c])) - 0.02, 0.0);
-        const double expected = side < 0.1 ? 0.06 + 2 * std::sqrt(0.01 - side * side) : 0;
-        EXPECT_NEAR(thickness.v[c], expected, side > 0.0995 ? 3e-3 : 1e-6) << c;
-    }
-}
-
 TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
     const gcode::Toolpath toolpath = randomBeads(14);
     const SettlingCurve curve(3, 0.02);
     const GrooveRule rule(curve, 0.07);
     const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     struct Result {
-        PlanField levels, d, sides2, thickness;
+        PlanField levels, d, sides2;
         float least;
     };
     std::vector<Result> results;
@@ -119,7 +107,6 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
             for (std::size_t b = a + 1; b < plans.size(); ++b) lowerLevels(plans[a], plans[b], r.d, rule, r.levels);
         r.least = fillGrooves(r.levels, rule, r.d, r.sides2);
         moveOut(plans[1].d, r.d, r.sides2);
-        sectionThickness(r.sides2, 0.01F, 0.1F, 0, r.thickness);
         names += std::string(kernelTarget()) + " ";
         results.push_back(r);
     }
