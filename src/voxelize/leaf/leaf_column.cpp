@@ -249,10 +249,7 @@ float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanFiel
         filling_.erase(nearest, filling_.end());
     }
     PlanField levels;
-    std::fill(std::begin(levels.v), std::end(levels.v), kNoGroove);
-    for (auto a = filling_.begin(); a != filling_.end(); ++a)
-        for (auto b = a + 1; b != filling_.end(); ++b)
-            if (near_[*a].least + near_[*b].least < 2 * rule.radius) lowerLevels(near_[*a], near_[*b], d, rule, levels);
+    levelsBetween(near_, filling_, d, rule, levels);
     return fillGrooves(levels, rule, d, sides2);
 }
 
