@@ -35,15 +35,17 @@ std::optional<std::uint32_t> BeadLookup::ownerOf(const openvdb::Coord& voxel) {
     const openvdb::Coord origin = voxel & ~(voxelize::kLeafDim - 1);
     const auto bit = [&origin](int axis) { return static_cast<unsigned>(origin[axis]) >> 3; };
     constexpr unsigned kLast = kSide - 1;
-    Owned& leaf = cache_[(bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast)];
-    if (leaf.origin != origin) fill(leaf, origin);
+    const std::size_t place = (bit(0) & kLast) * kSide * kSide + (bit(1) & kLast) * kSide + (bit(2) & kLast);
+    if (origins_[place] != origin) fill(place, origin);
+    const Owned& leaf = cache_[place];
     const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
     if ((leaf.owned[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
     return leaf.bead[n];
 }
 
-void BeadLookup::fill(Owned& leaf, const openvdb::Coord& origin) {
-    leaf.origin = openvdb::Coord::max();  // invalid if evaluation throws
+void BeadLookup::fill(std::size_t place, const openvdb::Coord& origin) {
+    Owned& leaf = cache_[place];
+    origins_[place] = openvdb::Coord::max();  // invalid if evaluation throws
     leaf.owned = {};
     const voxelize::LeafContent content = maker_.make(origin, field_.printed());
     if (content != voxelize::LeafContent::outside) {
@@ -57,7 +59,7 @@ void BeadLookup::fill(Owned& leaf, const openvdb::Coord& origin) {
             leaf.owned[n >> 6] |= std::uint64_t{1} << (n & 63);
         }
     }
-    leaf.origin = origin;
+    origins_[place] = origin;
 }
 
 }  // namespace stratum::ondemand

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,19 +24,20 @@ public:
     std::optional<std::uint32_t> at(const glm::dvec3& position);
 
 private:
+    // Not initialized: most leaves of the cache are never used.
     struct Owned {
-        openvdb::Coord origin{openvdb::Coord::max()};
-        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> owned{};
-        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead{};
+        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> owned;
+        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead;
     };
     std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel);
-    void fill(Owned& leaf, const openvdb::Coord& origin);
+    void fill(std::size_t place, const openvdb::Coord& origin);
 
     static constexpr std::size_t kSide = 16;
     const PrintField& field_;
     const openvdb::math::MapBase::ConstPtr map_;
     LeafMaker maker_;
-    std::vector<Owned> cache_ = std::vector<Owned>(kSide * kSide * kSide);
+    std::vector<openvdb::Coord> origins_ = std::vector<openvdb::Coord>(kSide * kSide * kSide, openvdb::Coord::max());
+    std::unique_ptr<Owned[]> cache_ = std::make_unique_for_overwrite<Owned[]>(kSide * kSide * kSide);
 };
 
 }  // namespace stratum::ondemand

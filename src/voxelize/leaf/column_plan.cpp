@@ -19,9 +19,10 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     else
         squaredSides(d_, sides2_);
     swollen_ = sides2_;
-    if (with_swell_) findSwell(source.layer);
-    const bool swells = with_swell_ && swell(d_, swollen_);
-    const bool rises = with_swell_ && raise(layer, nearest_, rise_);
+    float least = 0;
+    double most = 0;
+    const bool swells = with_swell_ && swell(source.layer, d_, swollen_, least);
+    const bool rises = with_swell_ && raise(source.layer, nearest_, rise_, most);
     return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr, rises ? &rise_ : nullptr};
 }
 
@@ -34,10 +35,8 @@ const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
         settle(*layer.settling, layer.radius, d_, sides2_);
     else
         squaredSides(d_, sides2_);
-    if (with_swell_) {
-        findSwell(source.layer);
-        swell(d_, sides2_);
-    }
+    float least = 0;
+    if (with_swell_) swell(source.layer, d_, sides2_, least);
     return d_;
 }
 

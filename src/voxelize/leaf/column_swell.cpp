@@ -1,5 +1,6 @@
 // The part of LeafColumn that moves outlines out and tops up.
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/swell_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,82 +16,72 @@ void LeafColumn::placeSwell() {
     const int last_i = nodeBelow(middle_x_ + half_extent_) + 1;
     const int last_j = nodeBelow(middle_y_ + half_extent_) + 1;
     nodes_i_ = last_i - first_node_i_ + 1;
-    nodes_j_ = last_j - first_node_j_ + 1;
+    const int nodes_j = last_j - first_node_j_ + 1;
     const auto tileOf = [](int node) { return (node >= 0 ? node : node - kTileCells + 1) / kTileCells; };
     for (int y = tileOf(first_node_j_); y <= tileOf(last_j); ++y)
         for (int x = tileOf(first_node_i_); x <= tileOf(last_i); ++x) {
             const SwellTile* tile = stack_.swell->tile(toolpath_, stack_, x, y);
-            if (tile == nullptr || tile->layers.empty()) continue;
-            swell_sources_.push_back({tile, nullptr, std::max(x * kTileCells, first_node_i_),
+            if (tile == nullptr) continue;
+            swell_sources_.push_back({tile,
+                                      {},
+                                      std::max(x * kTileCells, first_node_i_),
                                       std::min(x * kTileCells + kTileCells - 1, last_i),
                                       std::max(y * kTileCells, first_node_j_),
                                       std::min(y * kTileCells + kTileCells - 1, last_j)});
         }
-    for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        const double x = (middle_x_ + static_cast<double>(grid_.qx.v[c]) / scale_) / kNodeSpacing - first_node_i_;
-        const double y = (middle_y_ + static_cast<double>(grid_.qy.v[c]) / scale_) / kNodeSpacing - first_node_j_;
-        // Rounding must not leave the nodes.
-        const int i = std::clamp(static_cast<int>(x), 0, nodes_i_ - 2);
-        const int j = std::clamp(static_cast<int>(y), 0, nodes_j_ - 2);
-        swell_node_[c] = static_cast<std::uint32_t>(nodeIndex(j, nodes_i_, i));
-        swell_x_.v[c] = nodeShare(std::clamp(static_cast<float>(x - i), 0.0F, 1.0F));
-        swell_y_.v[c] = nodeShare(std::clamp(static_cast<float>(y - j), 0.0F, 1.0F));
-    }
+    swell_nodes_.resize(static_cast<std::size_t>(nodes_i_) * static_cast<std::size_t>(nodes_j));
+    const auto rampsOf = [this](const PlanField& q, double middle, int first_node, int nodes, auto& ramps) {
+        ramps.resize(static_cast<std::size_t>(nodes - 1));
+        nodeRamps(q, static_cast<float>(1 / (scale_ * kNodeSpacing)),
+                  static_cast<float>(middle / kNodeSpacing - first_node), ramps);
+    };
+    rampsOf(grid_.qx, middle_x_, first_node_i_, nodes_i_, ramps_x_);
+    rampsOf(grid_.qy, middle_y_, first_node_j_, nodes_j, ramps_y_);
 }
 
-void LeafColumn::findSwell(std::uint32_t layer) {
+bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number) {
     if (!swell_placed_) placeSwell();
-    for (SwellSource& source : swell_sources_) source.layer = source.tile->of(layer);
-}
-
-bool LeafColumn::gatherNodes(std::vector<float> SwellTile::Layer::*values, std::vector<float>& nodes) const {
     bool found = false;
-    for (const SwellSource& source : swell_sources_) {
-        const SwellTile::Layer* from = source.layer;
-        if (from == nullptr || (from->*values).empty()) continue;
-        if (!found) nodes.assign(static_cast<std::size_t>(nodes_i_) * static_cast<std::size_t>(nodes_j_), 0.0F);
-        found = true;
+    for (SwellSource& source : swell_sources_) {
+        const NodeValues& values = source.tile->*kind;
+        const std::size_t place = source.next[number] = values.find(layer, source.next[number]);
+        if (place == values.layers().size() || values.layers()[place] != layer) continue;
+        ++source.next[number];  // of the next layer, most likely
         for (int j = source.first_j; j <= source.last_j; ++j)
-            for (int i = source.first_i; i <= source.last_i; ++i)
-                nodes[nodeIndex(j - first_node_j_, nodes_i_, i - first_node_i_)] =
-                    (from->*values)[nodeIndex(j & (kTileCells - 1), kTileCells, i & (kTileCells - 1))];
+            for (int i = source.first_i; i <= source.last_i; ++i) {
+                const float value = values.of(place, i & (kTileCells - 1), j & (kTileCells - 1));
+                if (!found && !(value > 0)) continue;
+                if (!found) std::fill(swell_nodes_.begin(), swell_nodes_.end(), 0.0F);
+                found = true;
+                swell_nodes_[nodeIndex(j - first_node_j_, nodes_i_, i - first_node_i_)] = value;
+            }
     }
     return found;
 }
 
-void LeafColumn::betweenNodes(const std::vector<float>& nodes, float scale, PlanField& values) const {
-    for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        const float fx = swell_x_.v[c];
-        const float fy = swell_y_.v[c];
-        const float* low = nodes.data() + swell_node_[c];
-        const float* high = low + nodes_i_;
-        const float at_low = low[0] + fx * (low[1] - low[0]);
-        const float at_high = high[0] + fx * (high[1] - high[0]);
-        values.v[c] = (at_low + fy * (at_high - at_low)) * scale;
-    }
-}
-
-bool LeafColumn::swell(PlanField& d, PlanField& sides2) {
-    if (!gatherNodes(&SwellTile::Layer::out, swell_nodes_)) return false;
-    betweenNodes(swell_nodes_, static_cast<float>(scale_), between_);
-    moveOut(between_, d, sides2);
+bool LeafColumn::valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number, double scale,
+                          PlanField& values) {
+    if (!gatherNodes(layer, kind, number)) return false;
+    betweenNodes(ramps_x_, ramps_y_, swell_nodes_.data(), static_cast<float>(scale), values);
     return true;
 }
 
-bool LeafColumn::raise(const Layer& of, const PlanField& nearest, PlanField& rise) {
-    const bool rises = gatherNodes(&SwellTile::Layer::rise, swell_nodes_);
-    const bool crowned = of.crown > 0 && gatherNodes(&SwellTile::Layer::open, open_nodes_);
-    if (!rises && !crowned) return false;
-    if (rises)
-        betweenNodes(swell_nodes_, static_cast<float>(scale_), rise);
-    else
-        std::fill(std::begin(rise.v), std::end(rise.v), 0.0F);
-    if (!crowned) return true;
-    betweenNodes(open_nodes_, 1, between_);
-    const auto crown = static_cast<float>(of.crown * scale_);
-    const auto radius = static_cast<float>(of.radius * scale_);
-    for (std::size_t c = 0; c < kColumnSamples; ++c)
-        rise.v[c] -= between_.v[c] * crownDepth(crown, radius, nearest.v[c]);
+bool LeafColumn::swell(std::uint32_t layer, PlanField& d, PlanField& sides2, float& least) {
+    if (!valuesOf(layer, &SwellTile::out, 0, scale_, between_)) return false;
+    least = moveOut(between_, d, sides2);
+    return true;
+}
+
+bool LeafColumn::raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise, double& most) {
+    constexpr double kRounding = 1 + 1e-5;
+    most = 0;
+    const Layer& of = stack_.layers[layer];
+    const bool rises = valuesOf(layer, &SwellTile::rise, 1, scale_, rise);
+    if (rises) most = kRounding * static_cast<double>(*std::max_element(swell_nodes_.begin(), swell_nodes_.end()));
+    if (!(of.crown > 0) || !valuesOf(layer, &SwellTile::open, 2, 1, between_)) return rises;
+    if (!rises) std::fill(std::begin(rise.v), std::end(rise.v), 0.0F);
+    lowerByCrown(between_, nearest, static_cast<float>(of.crown * scale_), static_cast<float>(of.radius * scale_),
+                 rise);
     return true;
 }
 

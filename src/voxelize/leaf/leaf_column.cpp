@@ -213,11 +213,10 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     const bool settles = layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1;
     float least =
         settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
-    if (with_swell_) findSwell(source.layer);
-    if (with_swell_ && swell(plan.d, plan.sides2))
-        least = *std::min_element(std::begin(plan.sides2.v), std::end(plan.sides2.v));
+    if (with_swell_) swell(source.layer, plan.d, plan.sides2, least);
     if (static_cast<double>(least) >= reach * reach) return;
-    plan.most_rise = with_swell_ && raise(layer, nearest_, plan.rise) ? layer.most_rise : 0;
+    plan.most_rise = 0;
+    plan.rises = with_swell_ && raise(source.layer, nearest_, plan.rise, plan.most_rise);
     free_.pop_back();
     window_.push_back(slot);
     const std::pair entry{source.layer, slot};
@@ -250,10 +249,7 @@ float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanFiel
         filling_.erase(nearest, filling_.end());
     }
     PlanField levels;
-    std::fill(std::begin(levels.v), std::end(levels.v), kNoGroove);
-    for (auto a = filling_.begin(); a != filling_.end(); ++a)
-        for (auto b = a + 1; b != filling_.end(); ++b)
-            if (near_[*a].least + near_[*b].least < 2 * rule.radius) lowerLevels(near_[*a], near_[*b], d, rule, levels);
+    levelsBetween(near_, filling_, d, rule, levels);
     return fillGrooves(levels, rule, d, sides2);
 }
 
@@ -335,7 +331,8 @@ void LeafColumn::gatherTerms(int k0) {
                 if (plan.half_height != half_height || dz <= -reach || dz >= reach + plan.most_rise) continue;
                 radius = plan.radius;
                 straight_sides = plan.half_side > 0;
-                if (plan.most_rise > 0) {
+                // Below the center plane nothing is moved.
+                if (plan.rises && dz > 0) {
                     rises = true;
                     terms_.terms.push_back({&plan.sides2, 0, &plan.d, 0, &plan.rise, static_cast<float>(dz * scale_)});
                     continue;

@@ -11,6 +11,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -124,7 +125,8 @@ private:
     struct PlanLayer {
         std::uint32_t layer;
         double center_z, half_height, radius, half_side;  // mm
-        double most_rise;                                 // mm, 0 where `rise` is not used
+        bool rises;                                       // whether `rise` is used
+        double most_rise;                                 // mm, the most of it
         PlanField d, sides2;                              // d: where beads settle, closed by what welds close
         PlanField rise;                                   // world units; below 0 in crowns
         PlanOwners owners;
@@ -154,18 +156,18 @@ private:
     float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
     /// The same for the beads in near_.
     float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2);
-    /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed.
-    bool swell(PlanField& d, PlanField& sides2);
+    /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed; `least` is of sides2 then.
+    bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2, float& least);
     /// By how much the top of a layer is moved up, world units; `nearest`: as of forEachSides(). True if it is
-    /// anywhere.
-    bool raise(const Layer& of, const PlanField& nearest, PlanField& rise);
+    /// anywhere; `most`, mm, is as much or more.
+    bool raise(std::uint32_t layer, const PlanField& nearest, PlanField& rise, double& most);
     void placeSwell();
-    /// The layer that swell() and raise() are of.
-    void findSwell(std::uint32_t layer);
-    /// One kind of values of a layer at the nodes of the open column, into `nodes`. False if there are none.
-    bool gatherNodes(std::vector<float> SwellTile::Layer::*values, std::vector<float>& nodes) const;
-    /// Those values at the samples, world units if they are mm.
-    void betweenNodes(const std::vector<float>& nodes, float scale, PlanField& values) const;
+    /// One kind of values of a layer at the nodes of the open column, into swell_nodes_. False if all are 0. `number`:
+    /// of the kind.
+    bool gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number);
+    /// Those values at the samples, times `scale`. False if all are 0.
+    bool valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number, double scale,
+                  PlanField& values);
     void addWelds(const PlanLayer& upper);
     void gatherTerms(int k0);
     /// Into the planes from k0, the first of a leaf.
@@ -213,15 +215,14 @@ private:
     // Where the swell of the open column comes from.
     struct SwellSource {
         const SwellTile* tile;
-        const SwellTile::Layer* layer;         // of findSwell()
+        std::array<std::size_t, 3> next;       // of each kind, the place where a layer is looked for first
         int first_i, last_i, first_j, last_j;  // nodes of the column that the tile owns
     };
     bool swell_placed_ = false;
-    int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0, nodes_j_ = 0;
+    int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0;
     std::vector<SwellSource> swell_sources_;
-    std::vector<float> swell_nodes_, open_nodes_;
-    std::uint32_t swell_node_[kColumnSamples];  // of each sample, the place of the node below it
-    PlanField swell_x_, swell_y_;               // and nodeShare() of the next one
+    std::vector<float> swell_nodes_;
+    std::vector<PlanField> ramps_x_, ramps_y_;  // of nodeRamps()
     LeafTerms terms_;
     LeafPlanes phi_{};
 };

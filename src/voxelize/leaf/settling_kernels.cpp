@@ -110,32 +110,63 @@ HWY_INLINE VF lookUp(const float* table, VF z) {
     return hn::Add(low, hn::Mul(hn::Sub(at, hn::ConvertTo(f, step)), hn::Sub(high, low)));
 }
 
-void LowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels) {
+// The level of the groove between two beads at one vector of samples.
+HWY_INLINE VF lowerLevel(const BeadPlan& a, const BeadPlan& b, std::size_t c, VF least, const GrooveRule& rule,
+                         VF levels) {
     const F f;
     const VF zero = hn::Zero(f);
     const VF one = hn::Set(f, 1.0F);
+    const VF gap = hn::Add(hn::Max(hn::Load(f, a.d.v + c), zero), hn::Max(hn::Load(f, b.d.v + c), zero));
+    // Deep in a flat nothing changes.
+    const auto near = hn::And(hn::Lt(gap, hn::Set(f, 2 * rule.radius)), hn::Gt(least, hn::Set(f, -rule.weld_level)));
+    if (hn::AllFalse(f, near)) return levels;
+    const VF cosine =
+        dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
+    const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
+                           hn::Set(f, static_cast<float>(-1 / kOpposite)));
+    const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
+    const VF half_gap = hn::Add(hn::Mul(gap, hn::Set(f, 1 / (2 * rule.radius))), penalty);  // radii
+    const VF open = hn::Mul(hn::Sub(half_gap, hn::Set(f, rule.closing)), hn::Set(f, rule.per_open));
+    const auto fills = hn::And(near, hn::Lt(open, one));
+    if (hn::AllFalse(f, fills)) return levels;
+    const VF q = hn::Min(hn::Max(open, zero), one);
+    const VF z = hn::Sub(one, hn::Sqrt(hn::Sub(one, hn::Sqrt(q))));
+    const VF level = hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
+    return hn::IfThenElse(fills, hn::Min(levels, level), levels);
+}
+
+void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_t> which, const PlanField& d,
+                   const GrooveRule& rule, PlanField& levels) {
+    const F f;
     const VF two_radii = hn::Set(f, 2 * rule.radius);
-    const VF per_two_radii = hn::Set(f, 1 / (2 * rule.radius));
+    constexpr std::size_t kSome = 64;  // beads at a time
+    const BeadPlan* near[2][kSome];
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF least = hn::Load(f, d.v + c);
-        const VF gap = hn::Add(hn::Max(hn::Load(f, a.d.v + c), zero), hn::Max(hn::Load(f, b.d.v + c), zero));
-        // Deep in a flat nothing changes.
-        const auto near = hn::And(hn::Lt(gap, two_radii), hn::Gt(least, hn::Set(f, -rule.weld_level)));
-        if (hn::AllFalse(f, near)) return;
-        const VF cosine =
-            dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
-        const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
-                               hn::Set(f, static_cast<float>(-1 / kOpposite)));
-        const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
-        const VF half_gap = hn::Add(hn::Mul(gap, per_two_radii), penalty);  // radii
-        const VF open = hn::Mul(hn::Sub(half_gap, hn::Set(f, rule.closing)), hn::Set(f, rule.per_open));
-        const auto fills = hn::And(near, hn::Lt(open, one));
-        if (hn::AllFalse(f, fills)) return;
-        const VF q = hn::Min(hn::Max(open, zero), one);
-        const VF z = hn::Sub(one, hn::Sqrt(hn::Sub(one, hn::Sqrt(q))));
-        const VF level = hn::Mul(lookUp(rule.table, z), hn::Set(f, rule.radius));
-        const VF before = hn::Load(f, levels.v + c);
-        hn::Store(hn::IfThenElse(fills, hn::Min(before, level), before), f, levels.v + c);
+        VF lowest = hn::Set(f, kNoGroove);
+        // Of all beads of a column few are near to the samples of one vector.
+        const auto gather = [&](std::size_t first, const BeadPlan** found) HWY_ATTR {
+            std::size_t count = 0;
+            for (const std::uint32_t n : which.subspan(first, std::min(kSome, which.size() - first))) {
+                found[count] = &plans[n];
+                count += hn::AllFalse(f, hn::Lt(hn::Load(f, plans[n].d.v + c), two_radii)) ? 0 : 1;
+            }
+            return count;
+        };
+        const bool deep = hn::AllFalse(f, hn::Gt(least, hn::Set(f, -rule.weld_level)));
+        for (std::size_t first = 0; !deep && first < which.size(); first += kSome) {
+            const std::size_t count = gather(first, near[0]);
+            for (std::size_t a = 0; a < count; ++a)
+                for (std::size_t b = a + 1; b < count; ++b)
+                    lowest = lowerLevel(*near[0][a], *near[0][b], c, least, rule, lowest);
+            for (std::size_t second = first + kSome; count > 0 && second < which.size(); second += kSome) {
+                const std::size_t others = gather(second, near[1]);
+                for (std::size_t a = 0; a < count; ++a)
+                    for (std::size_t b = 0; b < others; ++b)
+                        lowest = lowerLevel(*near[0][a], *near[1][b], c, least, rule, lowest);
+            }
+        }
+        hn::Store(lowest, f, levels.v + c);
     });
 }
 
@@ -158,26 +189,18 @@ float FillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d,
     return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
-void MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
+float MoveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
     const F f;
+    VF least = hn::Set(f, 3e38F);
     forEachVector([&](std::size_t c) HWY_ATTR {
         const VF by = hn::Load(f, out.v + c);
         const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), by), hn::Zero(f));
-        hn::Store(hn::Mul(side, side), f, sides2.v + c);
+        const VF squared = hn::Mul(side, side);
+        hn::Store(squared, f, sides2.v + c);
+        least = hn::Min(least, squared);
         hn::Store(hn::Sub(hn::Load(f, d.v + c), by), f, d.v + c);
     });
-}
-
-void SectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
-    const F f;
-    const VF zero = hn::Zero(f);
-    forEachVector([&](std::size_t c) HWY_ATTR {
-        const VF side = hn::Max(hn::Sub(hn::Sqrt(hn::Load(f, sides2.v + c)), hn::Set(f, swell)), zero);
-        const VF half2 = hn::Sub(hn::Set(f, radius * radius), hn::Mul(side, side));
-        const VF half = hn::Sqrt(hn::Max(half2, zero));
-        const VF whole = hn::Add(hn::Set(f, straight), hn::Add(half, half));
-        hn::Store(hn::IfThenElseZero(hn::Gt(half2, zero), whole), f, thickness.v + c);
-    });
+    return hn::GetLane(hn::MinOfLanes(f, least));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -190,10 +213,9 @@ namespace stratum::voxelize {
 HWY_EXPORT(PlanOfLine);
 HWY_EXPORT(PlanOfTaper);
 HWY_EXPORT(PlanOfArc);
-HWY_EXPORT(LowerLevels);
+HWY_EXPORT(LevelsBetween);
 HWY_EXPORT(FillGrooves);
 HWY_EXPORT(MoveOut);
-HWY_EXPORT(SectionThickness);
 
 GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
     : table(curve.table().data()),
@@ -218,16 +240,16 @@ void planOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out)
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
     HWY_DYNAMIC_DISPATCH(PlanOfArc)(grid, arc, out);
 }
-void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels) {
-    HWY_DYNAMIC_DISPATCH(LowerLevels)(a, b, d, rule, levels);
+void levelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_t> which, const PlanField& d,
+                   const GrooveRule& rule, PlanField& levels) {
+    HWY_DYNAMIC_DISPATCH(LevelsBetween)(plans, which, d, rule, levels);
 }
 float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2) {
     return HWY_DYNAMIC_DISPATCH(FillGrooves)(levels, rule, d, sides2);
 }
 
-void moveOut(const PlanField& out, PlanField& d, PlanField& sides2) { HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2); }
-void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness) {
-    HWY_DYNAMIC_DISPATCH(SectionThickness)(sides2, swell, radius, straight, thickness);
+float moveOut(const PlanField& out, PlanField& d, PlanField& sides2) {
+    return HWY_DYNAMIC_DISPATCH(MoveOut)(out, d, sides2);
 }
 
 }  // namespace stratum::voxelize

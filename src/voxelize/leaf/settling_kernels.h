@@ -6,6 +6,9 @@
 #include "voxelize/beads/settling.h"
 #include "voxelize/leaf/leaf_kernels.h"
 
+#include <cstdint>
+#include <span>
+
 namespace stratum::voxelize {
 
 /// One bead over a column: d = rho - half_flat, and the direction away from its path.
@@ -35,18 +38,16 @@ bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent);
 /// Above every level.
 constexpr float kNoGroove = 1e30F;
 
-/// levels = min(levels, level of the groove between the two beads), where they have one. `d`: the minimum over all
-/// beads.
-void lowerLevels(const BeadPlan& a, const BeadPlan& b, const PlanField& d, const GrooveRule& rule, PlanField& levels);
+/// The lowest level of the grooves between each two of those beads of `plans`, kNoGroove where they have none. `d`: the
+/// minimum over all beads.
+void levelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_t> which, const PlanField& d,
+                   const GrooveRule& rule, PlanField& levels);
 
 /// sides2 = max(min(d, levels), 0)^2; returns the least of it. Afterwards d is min(d, levels), less where the groove is
 /// so shallow that the layers above and below count as touching: negative there, so that they are welded.
 float fillGrooves(const PlanField& levels, const GrooveRule& rule, PlanField& d, PlanField& sides2);
 
-/// Outlines move out by `out`: d = d - out, sides2 = max(sqrt(sides2) - out, 0)^2.
-void moveOut(const PlanField& out, PlanField& d, PlanField& sides2);
-
-/// Of a section with outlines moved out by `swell`: straight + 2 sqrt(radius^2 - side^2), 0 where side >= radius.
-void sectionThickness(const PlanField& sides2, float swell, float radius, float straight, PlanField& thickness);
+/// Outlines move out by `out`: d = d - out, sides2 = max(sqrt(sides2) - out, 0)^2; returns the least of it.
+float moveOut(const PlanField& out, PlanField& d, PlanField& sides2);
 
 }  // namespace stratum::voxelize

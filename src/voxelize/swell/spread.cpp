@@ -1,11 +1,11 @@
 #include "voxelize/swell/spread.h"
 
-#include "voxelize/swell/tent.h"
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace stratum::voxelize {
+
 SpreadNodes::SpreadNodes(int the_edge) : edge(the_edge) {
     const std::size_t count = static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
     surplus.assign(count, 0.0F);
@@ -13,55 +13,132 @@ SpreadNodes::SpreadNodes(int the_edge) : edge(the_edge) {
     open.assign(count, 0.0F);
 }
 
-Spread spreadSurplus(const SpreadNodes& nodes, double most_rise) {
-    const auto most_height = static_cast<float>(most_rise);
-    const std::vector<float>& most = nodes.gain.back();
-    const std::size_t count = most.size();
-    Tent tent(nodes.edge);
-    Spread spread{std::vector<float>(count, 0.0F), std::vector<float>(count, 0.0F), nodes.surplus};
-    std::vector<float>& given = spread.given;
-    std::vector<float>& left = spread.left;
-    std::vector<float> room = most;
-    std::vector<float> around(count);
-    std::vector<float> offered(count);
-    std::vector<float> taken(count, 0.0F);
-    // What nodes send to one for each mm^3, or mm^2, of its `places`, and in proportion to theirs: what `sends` chooses
-    // of what they have left. Where there are no places, it stays.
-    const auto send = [&](const std::vector<float>& places, int reach, std::vector<float>& sums, const auto& sends) {
-        tent.sum(places, reach, around);
-        for (std::size_t n = 0; n < count; ++n) {
-            const bool goes = around[n] > 0 && sends(left[n]);
-            around[n] = goes ? left[n] / around[n] : 0;
-            if (goes) left[n] = 0;
+NodeBox SpreadNodes::box() const {
+    NodeBox box{edge, 0, edge, 0};
+    std::vector<float> columns(static_cast<std::size_t>(edge), 0.0F);
+    for (int row = 0; row < edge; ++row) {
+        const std::size_t first = nodeIndex(row, edge, 0);
+        float any = 0;
+        for (std::size_t n = 0; n < columns.size(); ++n) {
+            // All but the surplus are 0 or more.
+            const float sum = std::abs(surplus[first + n]) + gain.back()[first + n] + open[first + n];
+            columns[n] += sum;
+            any = std::max(any, sum);
         }
-        tent.sum(around, reach, sums);
-    };
-    const auto surplus = [](float volume) { return volume > 0; };
-    const auto lack = [](float volume) { return volume < 0; };
-    const auto both = [](float) { return true; };
-    const auto moveOut = [&](int reach, bool first) {
-        send(room, reach, offered, surplus);
-        // What a free end holds more than it was fed, others were given too much: it is taken back.
-        if (!first) send(given, reach, taken, lack);
-        for (std::size_t n = 0; n < count; ++n) {
-            const float wanted = given[n] * (1 + taken[n]) + room[n] * offered[n];
-            given[n] = std::clamp(wanted, 0.0F, most[n]);
-            left[n] += wanted - given[n];
-            room[n] = most[n] - given[n];
-        }
-    };
-    moveOut(kNear, true);
-    if (std::any_of(nodes.open.begin(), nodes.open.end(), [](float area) { return area > 0; })) {
-        // Of both signs: what a node lacks, its neighbours' surplus fills first.
-        send(nodes.open, kUp, offered, both);
-        for (std::size_t n = 0; n < count; ++n) {
-            const float wanted = nodes.open[n] * offered[n];
-            spread.raised[n] = std::clamp(wanted, 0.0F, nodes.open[n] * most_height);
-            left[n] += wanted - spread.raised[n];
-        }
+        if (!(any > 0)) continue;
+        box.y0 = std::min(box.y0, row);
+        box.y1 = row + 1;
     }
-    moveOut(kFar, false);
-    return spread;
+    for (int column = 0; column < edge; ++column) {
+        if (!(columns[static_cast<std::size_t>(column)] > 0)) continue;
+        box.x0 = std::min(box.x0, column);
+        box.x1 = column + 1;
+    }
+    return box;
+}
+
+void SpreadNodes::clear(const NodeBox& where) {
+    if (where.empty()) return;
+    for (int row = where.y0; row < where.y1; ++row) {
+        const auto clearRow = [&](std::vector<float>& values) {
+            std::fill_n(values.data() + nodeIndex(row, edge, where.x0), where.x1 - where.x0, 0.0F);
+        };
+        clearRow(surplus);
+        for (std::vector<float>& level : gain) clearRow(level);
+        clearRow(open);
+    }
+}
+
+Spreading::Spreading(int edge) : edge_(edge), tent_(edge) {
+    const std::size_t count = static_cast<std::size_t>(edge) * static_cast<std::size_t>(edge);
+    for (std::vector<float>* values :
+         {&spread_.given, &spread_.raised, &spread_.left, &room_, &around_, &offered_, &taken_})
+        values->assign(count, 0.0F);
+}
+
+template <typename Visit>
+void Spreading::forEach(const NodeBox& box, Visit visit) const {
+    for (int row = box.y0; row < box.y1; ++row) {
+        const std::size_t first = nodeIndex(row, edge_, 0);
+        for (std::size_t n = first + static_cast<std::size_t>(box.x0); n < first + static_cast<std::size_t>(box.x1);
+             ++n)
+            visit(n);
+    }
+}
+
+void Spreading::send(const std::vector<float>& places, int reach, Sign sign, const NodeBox& to,
+                     std::vector<float>& sums) {
+    const NodeBox from = to.grown(reach).within(box_);
+    tent_.sum(places, box_, reach, from, around_);
+    const float least = sign == Sign::surplus ? 0.0F : std::numeric_limits<float>::lowest();
+    const float most = sign == Sign::lack ? 0.0F : std::numeric_limits<float>::max();
+    float* const around = around_.data();
+    float* const left = spread_.left.data();
+    // Without branches, for several nodes at a time.
+    forEach(from, [=](std::size_t n) {
+        const float volume = left[n];
+        const float place = around[n];
+        const bool goes = (place > 0) & (volume > least) & (volume < most);
+        around[n] = goes ? volume / place : 0.0F;
+        left[n] = goes ? 0.0F : volume;
+    });
+    tent_.sum(around_, from, reach, to, sums);
+}
+
+void Spreading::moveOut(const std::vector<float>& most, int reach, bool take_back, const NodeBox& to) {
+    send(room_, reach, Sign::surplus, to, offered_);
+    // What a free end holds more than it was fed, others were given too much: it is taken back.
+    if (take_back) send(spread_.given, reach, Sign::lack, to, taken_);
+    float* const given = spread_.given.data();
+    float* const left = spread_.left.data();
+    float* const room = room_.data();
+    const float* const limit = most.data();
+    const float* const offered = offered_.data();
+    const float* const taken = taken_.data();
+    forEach(to, [=](std::size_t n) {
+        const float kept = take_back ? given[n] * (1 + taken[n]) : given[n];
+        const float wanted = kept + room[n] * offered[n];
+        const float gets = std::min(std::max(wanted, 0.0F), limit[n]);
+        given[n] = gets;
+        left[n] += wanted - gets;
+        room[n] = limit[n] - gets;
+    });
+}
+
+void Spreading::raise(const std::vector<float>& open, float most_height, const NodeBox& to) {
+    // Of both signs: what a node lacks, its neighbours' surplus fills first.
+    send(open, kUp, Sign::both, to, offered_);
+    float* const raised = spread_.raised.data();
+    float* const left = spread_.left.data();
+    const float* const area = open.data();
+    const float* const offered = offered_.data();
+    forEach(to, [=](std::size_t n) {
+        const float wanted = area[n] * offered[n];
+        const float gets = std::min(std::max(wanted, 0.0F), area[n] * most_height);
+        raised[n] = gets;
+        left[n] += wanted - gets;
+    });
+}
+
+const Spread& Spreading::spread(const SpreadNodes& nodes, const NodeBox& box, const NodeBox& wanted, double most_rise) {
+    const auto around = [&](int reach) { return wanted.grown(reach).within(NodeBox::all(edge_)); };
+    forEach(wanted, [this](std::size_t n) { spread_.given[n] = spread_.raised[n] = spread_.left[n] = 0; });
+    box_ = box.within(around(kSpreadHalo));
+    bool any_surplus = false;
+    bool any_open = false;
+    forEach(box_, [&](std::size_t n) {
+        spread_.given[n] = spread_.raised[n] = 0;
+        spread_.left[n] = nodes.surplus[n];
+        room_[n] = nodes.gain.back()[n];
+        any_surplus |= nodes.surplus[n] > 0;
+        any_open |= nodes.open[n] > 0;
+    });
+    if (!any_surplus) return spread_;
+    // What a step makes right, the next needs a little farther out than it is right itself.
+    moveOut(nodes.gain.back(), kNear, false, around(2 * kFar).within(box_));
+    if (any_open) raise(nodes.open, static_cast<float>(most_rise), around(kFar).within(box_));
+    moveOut(nodes.gain.back(), kFar, true, around(0).within(box_));
+    return spread_;
 }
 
 double swellThatGains(const SpreadNodes& nodes, std::size_t n, double given) {

@@ -15,33 +15,29 @@ namespace {
 
 int floorTo(int value, int step) { return (value >= 0 ? value : value - step + 1) / step; }
 
-template <typename Value>
-const Value* find(const std::vector<std::uint32_t>& layers, const std::vector<Value>& values, std::uint32_t layer) {
-    const auto found = std::lower_bound(layers.begin(), layers.end(), layer);
-    return found != layers.end() && *found == layer ? &values[static_cast<std::size_t>(found - layers.begin())]
-                                                    : nullptr;
-}
+constexpr int kSpreadEdge = kTileCells + 2 * kSpreadHalo;
 
-// The nodes of a tile and the halo around it, of one layer, from the sums of the tiles around.
-SpreadNodes gather(const std::array<const TileSums*, 9>& around, std::uint32_t layer) {
+// The nodes of a tile and the halo around it, of one layer, from the sums of the tiles around. `nodes`: 0 before.
+void gather(const std::array<const TileSums*, 9>& around, std::uint32_t layer, SpreadNodes& nodes) {
     static_assert(kSpreadHalo <= kTileCells);
-    SpreadNodes nodes(kTileCells + 2 * kSpreadHalo);
     for (int tile = 0; tile < 9; ++tile) {
         const TileSums::Layer* sums = around[static_cast<std::size_t>(tile)]->of(layer);
         if (sums == nullptr) continue;
         const int to_x = (tile % 3 - 1) * kTileCells + kSpreadHalo;
         const int to_y = (tile / 3 - 1) * kTileCells + kSpreadHalo;
-        for (int j = std::max(0, -to_y); j < std::min(TileSums::kNodes, nodes.edge - to_y); ++j)
-            for (int i = std::max(0, -to_x); i < std::min(TileSums::kNodes, nodes.edge - to_x); ++i) {
-                const std::size_t from = nodeIndex(j, TileSums::kNodes, i);
-                const std::size_t to = nodeIndex(j + to_y, nodes.edge, i + to_x);
-                nodes.surplus[to] += sums->surplus[from];
-                for (std::size_t level = 0; level < nodes.gain.size(); ++level)
-                    nodes.gain[level][to] += sums->gain[level][from];
-                nodes.open[to] += sums->open[from];
-            }
+        const int first = std::max(0, -to_x);
+        const int count = std::min(TileSums::kNodes, nodes.edge - to_x) - first;
+        for (int j = std::max(0, -to_y); j < std::min(TileSums::kNodes, nodes.edge - to_y); ++j) {
+            const auto add = [&](const TileSums::Nodes& values, std::vector<float>& row_by_row) {
+                const float* const from = values.data() + nodeIndex(j, TileSums::kNodes, first);
+                float* const to = row_by_row.data() + nodeIndex(j + to_y, nodes.edge, first + to_x);
+                for (int i = 0; i < count; ++i) to[i] += from[i];
+            };
+            add(sums->surplus, nodes.surplus);
+            for (std::size_t level = 0; level < nodes.gain.size(); ++level) add(sums->gain[level], nodes.gain[level]);
+            add(sums->open, nodes.open);
+        }
     }
-    return nodes;
 }
 
 // Spreads the surplus of a tile's layers, from the lowest: what has no place in one may find it in the next.
@@ -57,55 +53,63 @@ public:
     }
 
     SwellTile spread() {
-        SwellTile tile;
-        for (std::size_t number = 0; number < layers_.size(); ++number) {
-            SwellTile::Layer swell = spreadLayer(number);
-            if (swell.out.empty() && swell.rise.empty() && swell.open.empty()) continue;
-            tile.layers.push_back(layers_[number]);
-            tile.swell.push_back(std::move(swell));
-        }
-        return tile;
+        for (std::size_t number = 0; number < layers_.size(); ++number) spreadLayer(number);
+        return {out_.arranged(), rise_.arranged(), open_.arranged()};
     }
 
 private:
     using Volumes = std::vector<double>;  // mm^3, of the nodes that the tile owns; empty: none
 
-    SwellTile::Layer spreadLayer(std::size_t number) {
+    // The values of layers, from the lowest.
+    struct Values {
+        std::vector<std::uint32_t> layers;
+        std::vector<float> values;
+
+        void set(std::uint32_t layer, std::size_t node, double value) {
+            if (!(value > 0)) return;
+            if (layers.empty() || layers.back() != layer) {
+                layers.push_back(layer);
+                values.resize(values.size() + NodeValues::kNodes, 0.0F);
+            }
+            values[values.size() - NodeValues::kNodes + node] = static_cast<float>(value);
+        }
+        NodeValues arranged() { return {std::move(layers), values}; }
+    };
+
+    void spreadLayer(std::size_t number) {
         const std::uint32_t layer = layers_[number];
         const Layer& of = stack_.layers[layer];
-        const SpreadNodes nodes = gather(around_, layer);
-        const Spread spread = spreadSurplus(nodes, of.most_rise);
+        gather(around_, layer, nodes_);
+        const NodeBox box = nodes_.box();
+        constexpr NodeBox kOwn{kSpreadHalo, kSpreadHalo + kTileCells, kSpreadHalo, kSpreadHalo + kTileCells};
+        const Spread& spread = spreading_.spread(nodes_, box, kOwn, of.most_rise);
         const Volumes below = takeFromBelow(layer);
-        SwellTile::Layer swell;
-        const auto set = [](std::vector<float>& values, std::size_t node, double value) {
-            if (!(value > 0)) return;
-            if (values.empty()) values.assign(SwellTile::kNodes, 0.0F);
-            values[node] = static_cast<float>(value);
-        };
         for (int j = 0; j < kTileCells; ++j)
             for (int i = 0; i < kTileCells; ++i) {
-                const std::size_t n = nodeIndex(j + kSpreadHalo, nodes.edge, i + kSpreadHalo);
+                const std::size_t n = nodeIndex(j + kSpreadHalo, kSpreadEdge, i + kSpreadHalo);
                 const std::size_t own = nodeIndex(j, kTileCells, i);
                 // What comes from below takes what room the layer's own surplus has left, and the rest goes on.
                 double moves_up = std::max(static_cast<double>(spread.left[n]) + (below.empty() ? 0 : below[own]), 0.0);
+                const auto open = static_cast<double>(nodes_.open[n]);
+                const bool crowned = open > 0 && of.crown > 0;
+                if (!(moves_up > 0 || spread.given[n] > 0 || spread.raised[n] > 0 || crowned)) continue;
                 const auto place = [&moves_up](float already, double most) {
                     const double more = std::clamp(most - static_cast<double>(already), 0.0, moves_up);
                     moves_up -= more;
                     return static_cast<double>(already) + more;
                 };
-                const auto open = static_cast<double>(nodes.open[n]);
-                const double given = place(spread.given[n], static_cast<double>(nodes.gain.back()[n]));
+                const double given = place(spread.given[n], static_cast<double>(nodes_.gain.back()[n]));
                 const double raised = place(spread.raised[n], open * of.most_rise);
                 if (moves_up > 0) {
-                    if (up_[number].empty()) up_[number].assign(SwellTile::kNodes, 0.0);
+                    if (up_[number].empty()) up_[number].assign(NodeValues::kNodes, 0.0);
                     up_[number][own] = moves_up;
                 }
-                set(swell.out, own, swellThatGains(nodes, n, given));
+                out_.set(layer, own, swellThatGains(nodes_, n, given));
                 if (!(open > 0)) continue;
-                set(swell.rise, own, std::min(raised / open, of.most_rise));
-                if (of.crown > 0) set(swell.open, own, openShare(layer, i, j, open));
+                rise_.set(layer, own, std::min(raised / open, of.most_rise));
+                if (crowned) open_.set(layer, own, openShare(layer, i, j, open));
             }
-        return swell;
+        nodes_.clear(box);
     }
 
     // What the layers on which this one lies have left at each node.
@@ -139,16 +143,42 @@ private:
     const LayerStack& stack_;
     const std::array<const TileSums*, 9>& around_;
     std::vector<std::uint32_t> layers_;
-    std::vector<Volumes> up_;  // what has no place, by layers_
+    std::vector<Volumes> up_;         // what has no place, by layers_
+    SpreadNodes nodes_{kSpreadEdge};  // of the layer at hand; 0 between layers
+    Spreading spreading_{kSpreadEdge};
+    Values out_, rise_, open_;
 };
 
 }  // namespace
 
 const TileSums::Layer* TileSums::of(std::uint32_t layer) const {
-    const std::unique_ptr<Layer>* found = find(layers, sums, layer);
-    return found != nullptr ? found->get() : nullptr;
+    const auto found = std::lower_bound(layers.begin(), layers.end(), layer);
+    if (found == layers.end() || *found != layer) return nullptr;
+    return sums[static_cast<std::size_t>(found - layers.begin())].get();
 }
-const SwellTile::Layer* SwellTile::of(std::uint32_t layer) const { return find(layers, swell, layer); }
+
+NodeValues::NodeValues(std::vector<std::uint32_t> layers, const std::vector<float>& values)
+    : layers_(std::move(layers)), values_(values.size()) {
+    static_assert(kTileCells % kBlock == 0);
+    float* to = values_.data();
+    for (int block_j = 0; block_j < kTileCells; block_j += kBlock)
+        for (int block_i = 0; block_i < kTileCells; block_i += kBlock)
+            for (std::size_t place = 0; place < layers_.size(); ++place)
+                for (int j = block_j; j < block_j + kBlock; ++j, to += kBlock)
+                    std::copy_n(values.data() + place * kNodes + nodeIndex(j, kTileCells, block_i), kBlock, to);
+}
+
+std::size_t NodeValues::find(std::uint32_t layer, std::size_t guess) const {
+    if (guess <= layers_.size() && (guess == 0 || layers_[guess - 1] < layer) &&
+        (guess == layers_.size() || layers_[guess] >= layer))
+        return guess;
+    return static_cast<std::size_t>(std::lower_bound(layers_.begin(), layers_.end(), layer) - layers_.begin());
+}
+
+float NodeValues::at(std::uint32_t layer, int i, int j) const {
+    const std::size_t place = find(layer);
+    return place < layers_.size() && layers_[place] == layer ? of(place, i, j) : 0.0F;
+}
 
 void SwellField::list(const gcode::Toolpath& toolpath, const LayerStack& stack) const {
     // Isolated: a thread that waits for its own loop must not take up work that waits for this list.
@@ -216,13 +246,14 @@ Swell SwellField::at(const gcode::Toolpath& toolpath, const LayerStack& stack, s
         const int tile_x = floorTo(node_i, kTileCells);
         const int tile_y = floorTo(node_j, kTileCells);
         const SwellTile* from = tile(toolpath, stack, tile_x, tile_y);
-        const SwellTile::Layer* nodes = from == nullptr ? nullptr : from->of(layer);
-        if (nodes == nullptr) continue;
-        const std::size_t place = nodeIndex(node_j - tile_y * kTileCells, kTileCells, node_i - tile_x * kTileCells);
+        if (from == nullptr) continue;
+        const auto valueOf = [&](const NodeValues& values) {
+            return static_cast<double>(values.at(layer, node_i - tile_x * kTileCells, node_j - tile_y * kTileCells));
+        };
         const double weight = nodeShare(1 - std::abs(in_x - node_i)) * nodeShare(1 - std::abs(in_y - node_j));
-        if (!nodes->out.empty()) sum.out += weight * static_cast<double>(nodes->out[place]);
-        if (!nodes->rise.empty()) sum.rise += weight * static_cast<double>(nodes->rise[place]);
-        if (!nodes->open.empty()) sum.open += weight * static_cast<double>(nodes->open[place]);
+        sum.out += weight * valueOf(from->out);
+        sum.rise += weight * valueOf(from->rise);
+        sum.open += weight * valueOf(from->open);
     }
     return sum;
 }

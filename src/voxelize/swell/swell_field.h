@@ -80,18 +80,43 @@ struct Swell {
     double open = 0;  ///< the share of the plastic that has nothing on it; only with crowns
 };
 
-/// Swell of a tile by the nodes that it owns, kTileCells along each edge. Layers without any are left out.
-struct SwellTile {
+/// One number for each layer and node of those that a tile owns, kTileCells along each edge. Layers with 0 all over are
+/// left out. A column of leaves asks for the same few nodes of all layers: squares of kBlock x kBlock nodes have those
+/// of all layers side by side.
+class NodeValues {
+public:
+    static constexpr int kBlock = 4;
+    static constexpr std::size_t kBlockNodes = std::size_t{kBlock} * kBlock;
     static constexpr std::size_t kNodes = std::size_t{kTileCells} * kTileCells;
-    /// As Swell has them, by node; empty where all are 0.
-    struct Layer {
-        std::vector<float> out, rise, open;
-        bool operator==(const Layer&) const = default;
-    };
-    std::vector<std::uint32_t> layers;  ///< ascending
-    std::vector<Layer> swell;           ///< in the same order
 
-    const Layer* of(std::uint32_t layer) const;
+    NodeValues() = default;
+    /// `layers` ascending; `values` of each in the same order, row by row.
+    NodeValues(std::vector<std::uint32_t> layers, const std::vector<float>& values);
+
+    /// Ascending.
+    const std::vector<std::uint32_t>& layers() const { return layers_; }
+    /// The place in layers() of a layer, or of the next one; `guess` is tried first.
+    std::size_t find(std::uint32_t layer, std::size_t guess = 0) const;
+    /// 0 where the layer is left out.
+    float at(std::uint32_t layer, int i, int j) const;
+    /// Of the layer at that place.
+    float of(std::size_t place, int i, int j) const {
+        const int block = j / kBlock * (kTileCells / kBlock) + i / kBlock;
+        const int within = j % kBlock * kBlock + i % kBlock;
+        return values_[(static_cast<std::size_t>(block) * layers_.size() + place) * kBlockNodes +
+                       static_cast<std::size_t>(within)];
+    }
+
+    bool operator==(const NodeValues&) const = default;
+
+private:
+    std::vector<std::uint32_t> layers_;
+    std::vector<float> values_;
+};
+
+/// As Swell has them.
+struct SwellTile {
+    NodeValues out, rise, open;
 };
 
 /// mm by which a crown lowers the top of a layer: `d` is the distance from the flat of the nearest bead (mm), before

@@ -14,18 +14,36 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // out[n] = sum of (1 - |step| / (reach + 1)) from[n + step * stride]. Reads, and writes, whole vectors.
-void SumAlong(const float* HWY_RESTRICT from, std::size_t stride, int reach, std::size_t count,
-              float* HWY_RESTRICT out) {
+template <int kReach>
+HWY_INLINE void sumAlong(const float* HWY_RESTRICT from, std::size_t stride, std::size_t count,
+                         float* HWY_RESTRICT out) {
     const hn::CappedTag<float, 16> d;
     for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
-        auto sum = hn::Zero(d);
-        for (int step = -reach; step <= reach; ++step) {
-            const float weight = 1 - static_cast<float>(step < 0 ? -step : step) / static_cast<float>(reach + 1);
-            const float* at = from + n + static_cast<std::ptrdiff_t>(step) * static_cast<std::ptrdiff_t>(stride);
+        auto sum = hn::LoadU(d, from + n);
+        for (int step = 1; step <= kReach; ++step) {
+            const auto weight = hn::Set(d, 1 - static_cast<float>(step) / static_cast<float>(kReach + 1));
+            const auto way = static_cast<std::ptrdiff_t>(stride) * step;
+            const auto both = hn::Add(hn::LoadU(d, from + n - way), hn::LoadU(d, from + n + way));
             // No fused multiply-add: see leaf_kernels.h.
-            sum = hn::Add(sum, hn::Mul(hn::Set(d, weight), hn::LoadU(d, at)));
+            sum = hn::Add(sum, hn::Mul(weight, both));
         }
         hn::StoreU(sum, d, out + n);
+    }
+}
+
+void SumAlong(const float* HWY_RESTRICT from, std::size_t stride, int reach, std::size_t count,
+              float* HWY_RESTRICT out) {
+    switch (reach) {
+        case 0:
+            return sumAlong<0>(from, stride, count, out);
+        case 1:
+            return sumAlong<1>(from, stride, count, out);
+        case 2:
+            return sumAlong<2>(from, stride, count, out);
+        case 3:
+            return sumAlong<3>(from, stride, count, out);
+        default:
+            return sumAlong<Tent::kMostReach>(from, stride, count, out);
     }
 }
 
@@ -48,32 +66,36 @@ constexpr std::size_t kPad = Tent::kMostReach + kMostLanes;
 
 Tent::Tent(int edge)
     : edge_(edge),
-      stride_(static_cast<std::size_t>(edge) + 2 * kPad),
-      given_(stride_ * (static_cast<std::size_t>(edge) + 2 * kPad), 0.0F),
-      rows_(given_.size(), 0.0F) {}
+      stride_(static_cast<std::size_t>(edge) + kPad),
+      line_(stride_ + kPad),
+      rows_(stride_ * (static_cast<std::size_t>(edge) + 2 * kMostReach) + kMostLanes, 0.0F) {}
 
-void Tent::sum(const std::vector<float>& values, int reach, std::vector<float>& out) {
+void Tent::sum(const std::vector<float>& values, const NodeBox& from, int reach, const NodeBox& to,
+               std::vector<float>& out) {
+    if (to.empty()) return;
     const auto edge = static_cast<std::size_t>(edge_);
-    const auto rowOf = [this](std::vector<float>& padded, std::size_t row) {
-        return padded.data() + (row + kPad) * stride_ + kPad;
+    const auto count = static_cast<std::size_t>(to.x1 - to.x0);
+    const auto rowOf = [&](int row) {
+        return rows_.data() + static_cast<std::size_t>(row + kMostReach) * stride_ + static_cast<std::size_t>(to.x0);
     };
-    const auto sumAlong = [](const float* from, std::size_t stride, int reach, std::size_t count, float* out) {
-        HWY_DYNAMIC_DISPATCH(SumAlong)(from, stride, reach, count, out);
+    const auto sumAlong = [reach, count](const float* values, std::size_t stride, float* sums) {
+        HWY_DYNAMIC_DISPATCH(SumAlong)(values, stride, reach, count, sums);
     };
-    for (std::size_t row = 0; row < edge; ++row) {
-        std::copy_n(values.data() + row * edge, edge, rowOf(given_, row));
-        sumAlong(rowOf(given_, row), 1, reach, edge, rowOf(rows_, row));
-        // What the last vector wrote beyond the square.
-        std::fill_n(rowOf(rows_, row) + edge, kMostLanes, 0.0F);
+    const NodeBox read = to.grown(reach).within(from);
+    float* const line = line_.data() + kPad;
+    std::fill(line_.begin(), line_.end(), 0.0F);
+    for (int row = to.y0 - reach; row < to.y1 + reach; ++row) {
+        if (read.empty() || row < read.y0 || row >= read.y1) {
+            std::fill_n(rowOf(row), count, 0.0F);
+            continue;
+        }
+        std::copy_n(values.data() + static_cast<std::size_t>(row) * edge + read.x0, read.x1 - read.x0, line + read.x0);
+        sumAlong(line + to.x0, 1, rowOf(row));
     }
-    out.resize(values.size());
-    // Row 0 of given_ is not needed any more, and has room for whole vectors.
-    float* const line = rowOf(given_, 0);
-    for (std::size_t row = 0; row < edge; ++row) {
-        sumAlong(rowOf(rows_, row), stride_, reach, edge, line);
-        std::copy_n(line, edge, out.data() + row * edge);
+    for (int row = to.y0; row < to.y1; ++row) {
+        sumAlong(rowOf(row), stride_, line);
+        std::copy_n(line, count, out.data() + static_cast<std::size_t>(row) * edge + to.x0);
     }
-    std::fill_n(line + edge, kMostLanes, 0.0F);
 }
 
 }  // namespace stratum::voxelize

@@ -1,6 +1,7 @@
 #include "voxelize/swell/tile_sums.h"
 
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/swell/node_sums.h"
 #include "voxelize/swell/open_top.h"
 
 #include <algorithm>
@@ -15,128 +16,122 @@ namespace stratum::voxelize {
 namespace {
 
 constexpr int kNodes = TileSums::kNodes;
-constexpr int kColumnCells = 2;
-constexpr int kTileColumns = kTileCells / kColumnCells;
-constexpr int kColumnNodes = kColumnCells + 1;
+constexpr int kTileColumns = kTileCells / kSquareCells;
 
 using Layers = std::map<std::uint32_t, std::unique_ptr<TileSums::Layer>>;
-// The weights of a column's nodes at its points.
-using Weights = std::array<PlanField, std::size_t{kColumnNodes} * kColumnNodes>;
 
-Weights columnWeights(const ColumnGrid& points) {
-    Weights weights{};
-    // From the middle of the samples to that of the square.
-    const double shift = 0.5 * cellLattice().voxel_size;
-    for (int node = 0; node < kColumnNodes * kColumnNodes; ++node) {
-        const int column = node % kColumnNodes;
-        const int row = node / kColumnNodes;
-        for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const double x = (static_cast<double>(points.qx.v[c]) - shift) / kNodeSpacing + 1;
-            const double y = (static_cast<double>(points.qy.v[c]) - shift) / kNodeSpacing + 1;
-            weights[static_cast<std::size_t>(node)].v[c] = static_cast<float>(
-                nodeShare(std::max(1 - std::abs(x - column), 0.0)) * nodeShare(std::max(1 - std::abs(y - row), 0.0)));
-        }
+// The points of a column of cellLattice(), from the middle of its square.
+ColumnGrid pointsOfSquare() {
+    const auto voxel = static_cast<float>(cellLattice().voxel_size);
+    ColumnGrid points = ColumnGrid::spread(voxel);
+    // The column has its middle between its samples.
+    for (std::size_t c = 0; c < kColumnSamples; ++c) {
+        points.qx.v[c] -= 0.5F * voxel;
+        points.qy.v[c] -= 0.5F * voxel;
     }
-    return weights;
+    return points;
 }
 
-// The volume (mm^3) under the points of a column by node, less that with no swell for a swell > 0.
+// What a column's layers hold and gain, added to the nodes of its square.
 class ColumnSums {
 public:
-    ColumnSums()
-        : points_(ColumnGrid::spread(static_cast<float>(cellLattice().voxel_size))), weights_(columnWeights(points_)) {}
+    ColumnSums() : nodes_(pointsOfSquare()) {}
 
     // Returns the points with plastic, bit c for point c.
     // `tops`: if not null, the highest plastic of the layers below at each point, mm: what this layer shares with them
     // it does not hold.
     std::uint64_t add(const Layer& layer, const PlanField& sides2, int first_node, TileSums::Layer& sums,
                       PlanField* tops) const {
+        thread_local PressedLayer pressed;
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(2 * layer.half_side);
-        float least = std::numeric_limits<float>::max();
-        float most = 0;
-        for (const float side2 : sides2.v) {
-            least = std::min(least, side2);
-            most = std::max(most, side2);
+        pressLayer(sides2, radius, straight, pressed);
+        if (pressed.kind == PressedLayer::Kind::nothing) return 0;
+        if (pressed.kind == PressedLayer::Kind::flat) {
+            const float held = straight + 2 * radius;
+            if (tops == nullptr) {
+                addFlat(-held, first_node, sums.surplus);
+                return kAllPoints;
+            }
+            for (PlanField& gain : pressed.fields) gain = {};
+            std::fill(std::begin(pressed.fields[0].v), std::end(pressed.fields[0].v), held);
+            pressed.solid = kAllPoints;
         }
-        const float reach = radius + static_cast<float>(kMostSwell);
-        if (least >= reach * reach) return 0;
-        PlanField held;
-        const auto thicknessAt = [&](float swell) { sectionThickness(sides2, swell, radius, straight, held); };
-        thicknessAt(0);
-        addTo(held, -1, first_node, sums.surplus);
-        if (tops != nullptr) addShared(layer, held, *tops, first_node, sums.surplus);
-        // Flats all over gain nothing.
-        if (!(most > 0)) return kAllPoints;
-        std::uint64_t solid = 0;
-        for (std::size_t c = 0; c < kColumnSamples; ++c) solid |= std::uint64_t{held.v[c] > 0} << c;
-        const PlanField before = held;
-        for (int level = 0; level < TileSums::kLevels; ++level) {
-            thicknessAt(static_cast<float>(kMostSwell * (level + 1) / TileSums::kLevels));
-            for (std::size_t c = 0; c < kColumnSamples; ++c) held.v[c] -= before.v[c];
-            addTo(held, 1, first_node, sums.gain[static_cast<std::size_t>(level)]);
+        if (tops != nullptr) takeShared(layer, pressed.fields[0], *tops);
+        const NodeSums::Sums by_node = nodes_.of(pressed.fields);
+        for (std::size_t node = 0; node < NodeSums::kNodes; ++node) {
+            const std::size_t place = placeOf(first_node, node);
+            sums.surplus[place] -= by_node[node][0];
+            for (std::size_t level = 0; level < sums.gain.size(); ++level)
+                sums.gain[level][place] += by_node[node][1 + level];
         }
-        return solid;
+        return pressed.solid;
     }
 
-    // The area under those points.
-    void addArea(std::uint64_t points, int first_node, TileSums::Nodes& nodes) const {
-        if (points == 0) return;
-        PlanField ones;
-        for (std::size_t c = 0; c < kColumnSamples; ++c) ones.v[c] = points >> c & 1 ? 1.0F : 0.0F;
-        addTo(ones, 1, first_node, nodes);
+    // The area of a top, with `solid` points of which `open` have nothing on them. Of one with a crown, also that of
+    // its plastic, and what the crown takes is left over. `nearest`, `sides2`: used only then.
+    void addTop(const Layer& layer, std::uint64_t solid, std::uint64_t open, const PlanField& nearest,
+                const PlanField& sides2, int first_node, TileSums::Layer& sums) const {
+        const bool crowned = layer.crown > 0;
+        if (!crowned && open == 0) return;
+        if (!crowned && open == kAllPoints) return addFlat(1, first_node, sums.open);
+        if (crowned && open == 0 && solid == kAllPoints) return addFlat(1, first_node, sums.solid);
+        thread_local std::array<PlanField, NodeSums::kFields> fields;
+        const auto ones = [](std::uint64_t points, PlanField& field) {
+            for (std::size_t c = 0; c < kColumnSamples; ++c) field.v[c] = static_cast<float>(points >> c & 1);
+        };
+        ones(open, fields[0]);
+        ones(crowned ? solid : 0, fields[1]);
+        if (crowned && open != 0)
+            crownTakes(layer, nearest, sides2, fields[0], fields[2]);
+        else
+            fields[2] = {};
+        const NodeSums::Sums by_node = nodes_.of(fields);
+        for (std::size_t node = 0; node < NodeSums::kNodes; ++node) {
+            const std::size_t place = placeOf(first_node, node);
+            sums.open[place] += by_node[node][0];
+            sums.solid[place] += by_node[node][1];
+            sums.surplus[place] += by_node[node][2];
+        }
     }
 
-    // What the crown takes from those points is left over.
-    void addCrown(const Layer& layer, const PlanField& nearest, const PlanField& sides2, std::uint64_t points,
-                  int first_node, TileSums::Nodes& surplus) const {
+private:
+    static constexpr std::uint64_t kAllPoints = ~std::uint64_t{0};
+
+    static std::size_t placeOf(int first_node, std::size_t node) {
+        const auto n = static_cast<int>(node);
+        return static_cast<std::size_t>(first_node + n % kSquareNodes + n / kSquareNodes * kNodes);
+    }
+
+    void addFlat(float height, int first_node, TileSums::Nodes& nodes) const {
+        for (std::size_t node = 0; node < NodeSums::kNodes; ++node)
+            nodes[placeOf(first_node, node)] += height * nodes_.area(node);
+    }
+
+    static void takeShared(const Layer& layer, PlanField& held, PlanField& tops) {
+        const auto center = static_cast<float>(layer.center_z);
+        for (std::size_t c = 0; c < kColumnSamples; ++c) {
+            const float half = 0.5F * held.v[c];
+            if (!(half > 0)) continue;
+            held.v[c] -= std::clamp(tops.v[c] - (center - half), 0.0F, held.v[c]);
+            tops.v[c] = std::max(tops.v[c], center + half);
+        }
+    }
+
+    // `open`: 1 where the top is.
+    static void crownTakes(const Layer& layer, const PlanField& nearest, const PlanField& sides2, const PlanField& open,
+                           PlanField& taken) {
         const auto crown = static_cast<float>(layer.crown);
         const auto radius = static_cast<float>(layer.radius);
         const auto straight = static_cast<float>(layer.half_side);
-        PlanField taken;
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
             const float above = straight + std::sqrt(std::max(radius * radius - sides2.v[c], 0.0F));
             // The upper half loses no more than half of it: see PlaneTerm::rise.
-            const float depth = std::min(crownDepth(crown, radius, nearest.v[c]), 0.5F * above);
-            taken.v[c] = points >> c & 1 ? depth : 0.0F;
-        }
-        addTo(taken, 1, first_node, surplus);
-    }
-
-    static constexpr std::uint64_t kAllPoints = ~std::uint64_t{0};
-
-private:
-    void addShared(const Layer& layer, const PlanField& held, PlanField& tops, int first_node,
-                   TileSums::Nodes& surplus) const {
-        PlanField shared;
-        bool any = false;
-        for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            const auto center = static_cast<float>(layer.center_z);
-            const float half = 0.5F * held.v[c];
-            shared.v[c] = half > 0 ? std::clamp(tops.v[c] - (center - half), 0.0F, held.v[c]) : 0.0F;
-            any |= shared.v[c] > 0;
-            if (half > 0) tops.v[c] = std::max(tops.v[c], center + half);
-        }
-        if (any) addTo(shared, 1, first_node, surplus);
-    }
-
-    void addTo(const PlanField& held, float sign, int first_node, TileSums::Nodes& nodes) const {
-        constexpr auto kArea =
-            static_cast<float>(kColumnCells * kColumnCells * kNodeSpacing * kNodeSpacing / kColumnSamples);
-        for (int node = 0; node < kColumnNodes * kColumnNodes; ++node) {
-            // Eight sums side by side, which the compiler keeps in registers.
-            float part[8] = {};
-            const float* weight = weights_[static_cast<std::size_t>(node)].v;
-            for (std::size_t c = 0; c < kColumnSamples; c += 8)
-                for (std::size_t lane = 0; lane < 8; ++lane) part[lane] += weight[c + lane] * held.v[c + lane];
-            const float sum = ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
-            const int place = first_node + node % kColumnNodes + node / kColumnNodes * kNodes;
-            nodes[static_cast<std::size_t>(place)] += sign * kArea * sum;
+            taken.v[c] = open.v[c] * std::min(crownDepth(crown, radius, nearest.v[c]), 0.5F * above);
         }
     }
 
-    const ColumnGrid points_;
-    const Weights weights_;
+    const NodeSums nodes_;
 };
 
 // Lays a bead's volume along its path, evenly over the width of a box of its height.
@@ -280,6 +275,7 @@ bool layersOverlap(const LayerStack& stack) {
 // Of a top in a column.
 struct TopFields {
     TileSums::Layer* sums = nullptr;
+    std::uint64_t solid = 0;
     PlanField sides2, nearest;  // only with a crown
 };
 
@@ -287,7 +283,7 @@ struct TopFields {
 
 Lattice cellLattice() {
     Lattice lattice;
-    lattice.voxel_size = kColumnCells * kNodeSpacing / kLeafDim;
+    lattice.voxel_size = kSquareCells * kNodeSpacing / kLeafDim;
     lattice.half_width = 2;  // points lie up to a voxel beyond a leaf's outer samples
     return lattice;
 }
@@ -308,7 +304,7 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             if (bin == PlanBins::kNone) continue;
             ranks.insert(ranks.end(), bins[bin].begin(), bins[bin].end());
             column.open(bins.originI(bin), bins.originJ(bin), bins[bin], std::numeric_limits<std::uint32_t>::max());
-            const int first_node = kColumnCells * (cj * kNodes + ci);
+            const int first_node = kSquareCells * (cj * kNodes + ci);
             if (overlap) std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
             tops.clear();
             fields.clear();
@@ -320,18 +316,16 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
                 addTop(layer, solid, tops);
                 TopFields& top = fields.emplace_back();
                 top.sums = &sums;
+                top.solid = solid;
                 if (!(of.crown > 0)) return;
-                kSums.addArea(solid, first_node, sums.solid);
                 top.sides2 = sides2;
                 top.nearest = nearest;
             });
             coverTops(stack, tops);
             for (std::size_t n = 0; n < tops.size(); ++n) {
                 const TopFields& top = fields[n];
-                kSums.addArea(tops[n].open, first_node, top.sums->open);
-                const Layer& of = stack.layers[tops[n].layer];
-                if (of.crown > 0 && tops[n].open != 0)
-                    kSums.addCrown(of, top.nearest, top.sides2, tops[n].open, first_node, top.sums->surplus);
+                kSums.addTop(stack.layers[tops[n].layer], top.solid, tops[n].open, top.nearest, top.sides2, first_node,
+                             *top.sums);
             }
         }
     std::sort(ranks.begin(), ranks.end());

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <random>
 
 namespace stratum::voxelize {
@@ -82,16 +83,33 @@ TEST(SettlingKernels, BeadsThatMayNotFillAreTooFar) {
     EXPECT_GT(left_out, 100U);
 }
 
-TEST(SettlingKernels, ThicknessIsThatOfTheSection) {
-    PlanField sides2;
-    for (std::size_t c = 0; c < kColumnSamples; ++c) sides2.v[c] = 0.0004F * static_cast<float>(c);
-    PlanField thickness;
-    sectionThickness(sides2, 0.02F, 0.1F, 0.06F, thickness);
-    for (std::size_t c = 0; c < kColumnSamples; ++c) {
-        const double side = std::max(std::sqrt(static_cast<double>(sides2.v[c])) - 0.02, 0.0);
-        const double expected = side < 0.1 ? 0.06 + 2 * std::sqrt(0.01 - side * side) : 0;
-        EXPECT_NEAR(thickness.v[c], expected, side > 0.0995 ? 3e-3 : 1e-6) << c;
+// More beads than are looked at together, and each pair alone.
+TEST(SettlingKernels, LevelsAreTheLowestOfAllPairs) {
+    const gcode::Toolpath toolpath = randomBeads(150);
+    const SettlingCurve curve(3, 0.02);
+    const GrooveRule rule(curve, 0.07);
+    const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
+    std::vector<BeadPlan> plans;
+    std::vector<std::uint32_t> which;
+    for (const gcode::Bead& bead : toolpath.beads) {
+        if (plans.size() % 5 != 1) which.push_back(static_cast<std::uint32_t>(plans.size()));
+        plans.push_back(planOf(grid, toolpath, bead));
     }
+    PlanField d;
+    std::fill(std::begin(d.v), std::end(d.v), 0.01F);
+    PlanField levels;
+    levelsBetween(plans, which, d, rule, levels);
+    PlanField expected;
+    std::fill(std::begin(expected.v), std::end(expected.v), kNoGroove);
+    for (std::size_t a = 0; a < which.size(); ++a)
+        for (std::size_t b = a + 1; b < which.size(); ++b) {
+            PlanField pair;
+            const std::uint32_t two[] = {which[a], which[b]};
+            levelsBetween(plans, two, d, rule, pair);
+            for (std::size_t c = 0; c < kColumnSamples; ++c) expected.v[c] = std::min(expected.v[c], pair.v[c]);
+        }
+    EXPECT_EQ(std::memcmp(&levels, &expected, sizeof levels), 0);
+    EXPECT_LT(*std::min_element(std::begin(levels.v), std::end(levels.v)), 0.07F);
 }
 
 TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
@@ -100,7 +118,7 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
     const GrooveRule rule(curve, 0.07);
     const ColumnGrid grid(static_cast<float>(kGrooveVoxel));
     struct Result {
-        PlanField levels, d, sides2, thickness;
+        PlanField levels, d, sides2;
         float least;
     };
     std::vector<Result> results;
@@ -111,15 +129,14 @@ TEST(SettlingKernels, EveryInstructionSetGivesTheSameBytes) {
         std::vector<BeadPlan> plans;
         for (const gcode::Bead& bead : toolpath.beads) plans.push_back(planOf(grid, toolpath, bead));
         for (std::size_t c = 0; c < kColumnSamples; ++c) {
-            r.levels.v[c] = kNoGroove;
             r.d.v[c] = plans[0].d.v[c];
             for (const BeadPlan& plan : plans) r.d.v[c] = std::min(r.d.v[c], plan.d.v[c]);
         }
-        for (std::size_t a = 0; a < plans.size(); ++a)
-            for (std::size_t b = a + 1; b < plans.size(); ++b) lowerLevels(plans[a], plans[b], r.d, rule, r.levels);
+        std::vector<std::uint32_t> all(plans.size());
+        std::iota(all.begin(), all.end(), 0U);
+        levelsBetween(plans, all, r.d, rule, r.levels);
         r.least = fillGrooves(r.levels, rule, r.d, r.sides2);
         moveOut(plans[1].d, r.d, r.sides2);
-        sectionThickness(r.sides2, 0.01F, 0.1F, 0, r.thickness);
         names += std::string(kernelTarget()) + " ";
         results.push_back(r);
     }

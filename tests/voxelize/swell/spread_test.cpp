@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 namespace stratum::voxelize {
 namespace {
@@ -19,6 +20,9 @@ SpreadNodes outline(double most) {
         for (std::size_t level = 0; level < nodes.gain.size(); ++level)
             nodes.gain[level][nodeAt(20, j)] = most * static_cast<double>(level + 1) / TileSums::kLevels;
     return nodes;
+}
+Spread spreadSurplus(const SpreadNodes& nodes, double most_rise) {
+    return Spreading(kEdge).spread(nodes, nodes.box(), NodeBox::all(kEdge), most_rise);
 }
 double sum(const std::vector<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
@@ -112,6 +116,37 @@ TEST(SpreadSurplus, NothingBeyondTheHaloMatters) {
             }
     EXPECT_EQ(spreadSurplus(nodes, kMostRise).given[nodeAt(20, 18)], before[nodeAt(20, 18)]);
     EXPECT_GT(before[nodeAt(20, 18)], 0);
+}
+
+// One that spreads layer after layer keeps nothing of those before, and leaves out what no wanted node depends on.
+TEST(SpreadSurplus, TheWantedNodesAreRightInAnyOrder) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> value(0, 1);
+    std::vector<SpreadNodes> layers;
+    for (int n = 0; n < 8; ++n) {
+        SpreadNodes& nodes = layers.emplace_back(kEdge);
+        for (int j = n; j < kEdge - 3 * n; ++j)
+            for (int i = 2 * n; i < kEdge - n; ++i) {
+                const std::size_t at = nodeAt(i, j);
+                nodes.surplus[at] = 0.02F * value(random) - 0.01F;
+                for (std::vector<float>& level : nodes.gain)
+                    level[at] = value(random) < 0.3F ? 0.02F * value(random) : 0;
+                nodes.open[at] = n % 2 == 0 ? 0.1F * value(random) : 0;
+            }
+    }
+    const NodeBox wanted{kSpreadHalo, kEdge - kSpreadHalo, kSpreadHalo, kEdge - kSpreadHalo};
+    Spreading one(kEdge);
+    for (const std::size_t n : {3, 0, 7, 1, 5, 2, 6, 4, 0}) {
+        const Spread whole = spreadSurplus(layers[n], 0.05);
+        const Spread& part = one.spread(layers[n], layers[n].box(), wanted, 0.05);
+        for (int j = wanted.y0; j < wanted.y1; ++j)
+            for (int i = wanted.x0; i < wanted.x1; ++i) {
+                const std::size_t at = nodeAt(i, j);
+                ASSERT_EQ(part.given[at], whole.given[at]) << n;
+                ASSERT_EQ(part.raised[at], whole.raised[at]) << n;
+                ASSERT_EQ(part.left[at], whole.left[at]) << n;
+            }
+    }
 }
 
 TEST(SwellThatGains, InvertsTheGain) {

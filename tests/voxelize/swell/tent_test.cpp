@@ -24,8 +24,8 @@ TEST(Tent, SumsAreThoseOfTheDefinition) {
         Tent tent(edge);
         std::vector<float> sums;
         for (int reach = 0; reach <= Tent::kMostReach; ++reach) {
-            tent.sum(nodes, reach, sums);
-            ASSERT_EQ(sums.size(), nodes.size());
+            sums.assign(nodes.size(), 0.0F);
+            tent.sum(nodes, NodeBox::all(edge), reach, NodeBox::all(edge), sums);
             for (int j = 0; j < edge; ++j)
                 for (int i = 0; i < edge; ++i) {
                     double expected = 0;
@@ -39,12 +39,37 @@ TEST(Tent, SumsAreThoseOfTheDefinition) {
     }
 }
 
+TEST(Tent, NothingOutsideTheBoxesIsReadOrWritten) {
+    constexpr int kEdge = 30;
+    const std::vector<float> nodes = randomNodes(kEdge);
+    const NodeBox from{3, 20, 7, 30};
+    const NodeBox to{0, 25, 5, 29};
+    std::vector<float> without = nodes;
+    for (int j = 0; j < kEdge; ++j)
+        for (int i = 0; i < kEdge; ++i)
+            if (NodeBox{i, i + 1, j, j + 1}.within(from).empty()) without[static_cast<std::size_t>(j * kEdge + i)] = 0;
+    Tent tent(kEdge);
+    for (const int reach : {4, 1, 2}) {
+        std::vector<float> sums(nodes.size(), 7);
+        std::vector<float> expected(nodes.size(), 7);
+        tent.sum(nodes, from, reach, to, sums);
+        Tent(kEdge).sum(without, NodeBox::all(kEdge), reach, NodeBox::all(kEdge), expected);
+        for (int j = 0; j < kEdge; ++j)
+            for (int i = 0; i < kEdge; ++i) {
+                const auto at = static_cast<std::size_t>(j * kEdge + i);
+                const NodeBox node{i, i + 1, j, j + 1};
+                ASSERT_EQ(sums[at], node.within(to).empty() ? 7 : expected[at]);
+            }
+    }
+}
+
 TEST(Tent, EveryInstructionSetGivesTheSameBytes) {
     const std::vector<float> nodes = randomNodes(45);
     std::vector<std::vector<float>> results;
     for (std::int64_t rest = hwy::SupportedTargets() & ~HWY_DISABLED_TARGETS; rest != 0; rest &= rest - 1) {
         hwy::SetSupportedTargetsForTest(rest & -rest);
-        Tent(45).sum(nodes, 4, results.emplace_back());
+        results.emplace_back(nodes.size());
+        Tent(45).sum(nodes, NodeBox::all(45), 4, NodeBox::all(45), results.back());
     }
     hwy::SetSupportedTargetsForTest(0);
     for (const std::vector<float>& sums : results) EXPECT_EQ(sums, results[0]);
