@@ -66,6 +66,8 @@ export class Answer {
   lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
   measuring = false;
   head = null; // where the nozzle is
+  camera = null;
+  aspect = 1;
 
   constructor(place, marks) {
     this.place = place;
@@ -75,7 +77,12 @@ export class Answer {
   clear() {
     this.points = [];
     this.place.hidden = true;
-    this.draw(null, 1);
+    this.draw();
+  }
+  /** Another input. */
+  reset() {
+    this.lines = this.head = this.camera = null;
+    this.clear();
   }
 
   show(found) {
@@ -115,8 +122,9 @@ export class Answer {
     return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(mm(this.points[0]))], ["To", point(mm(this.points[1]))]];
   }
 
-  /** On top of the picture that this camera of the server shows. */
-  draw(camera, aspect) {
+  /** On top of the picture that this camera of the server shows; by default the last one. */
+  draw(camera = this.camera, aspect = this.aspect) {
+    Object.assign(this, { camera, aspect });
     const canvas = this.marks;
     const ratio = devicePixelRatio || 1;
     canvas.width = Math.round(canvas.clientWidth * ratio);

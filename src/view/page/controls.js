@@ -106,16 +106,30 @@ export class Controls {
     }));
   }
 
-  /** Layers low to high of all; the ends that are those of the print are left open. */
+  /** Layers low to high of all, NaN: from the first, to the last; the ends that are those of the print are left open. */
   setLayers(low, high, moving) {
     const count = this.layerCount;
-    low = Math.max(1, Math.min(count, Math.round(low) || 1));
-    high = Math.max(low, Math.min(count, Math.round(high) || count));
+    if (!count) return;
+    const within = (layer, least, open) => Math.max(least, Math.min(count, Number.isNaN(layer) ? open : Math.round(layer)));
+    low = within(low, 1, 1);
+    high = within(high, low, count);
     this.state().beads = null;
     this.state().layers = [low === 1 && high === count ? 0 : low, high === count ? 0 : high];
     this.hold();
     this.show();
     this.changed(moving);
+  }
+
+  /** Makes a layer the last one, or that which is shown alone. */
+  goTo(layer) {
+    const low = byId("one-layer").checked ? layer : Math.min(this.state().layers[0] || 1, layer);
+    this.setLayers(low, layer, false);
+  }
+
+  /** Another input: what was chosen of the last one is not of this one. */
+  reset() {
+    this.stop();
+    byId("one-layer").checked = false;
   }
 
   #bindLayers() {
@@ -131,7 +145,7 @@ export class Controls {
       });
     byId("one-layer").addEventListener("change", (e) => this.setLayers(e.target.checked ? Number(high.value) : 1, Number(high.value), false));
     for (const id of ["layer-from", "layer-to"])
-      byId(id).addEventListener("change", () => this.setLayers(Number(byId("layer-from").value), Number(byId("layer-to").value), false));
+      byId(id).addEventListener("change", () => this.setLayers(byId("layer-from").valueAsNumber, byId("layer-to").valueAsNumber, false));
   }
 
   #bindProgress() {
@@ -157,15 +171,16 @@ export class Controls {
     byId("play").setAttribute("aria-pressed", "true");
     byId("play").textContent = "❚❚";
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    let value = this.state().printed >= 100 ? 0.5 : this.state().printed;
+    if (this.state().printed >= 100) this.state().printed = 0.5;
     this.#playing = setInterval(() => {
-      value = Math.min(100, value + (still ? 10 : 0.5));
+      const value = Math.min(100, this.state().printed + (still ? 10 : 0.5)); // the slider may have been moved
       set(value, value < 100);
       if (value >= 100) this.stop();
     }, still ? 1500 : 100);
   }
 
   stop() {
+    if (!this.#playing) return;
     clearInterval(this.#playing);
     this.#playing = 0;
     byId("play").setAttribute("aria-pressed", "false");

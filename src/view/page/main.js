@@ -56,19 +56,14 @@ const second = new SecondPrint({ url, own, state: () => state, changed: () => as
 const finder = new Finder({
   send: (message) => connection.send(message),
   go: (bead, layer, lines) => {
-    goTo(layer);
+    controls.goTo(layer);
     motion.go(bead, lines);
   },
-  layer: goTo,
+  goTo: (layer) => controls.goTo(layer),
+  layers: () => controls.layerCount,
 });
 let movesAsked = false;
 const answer = new Answer(byId("answer"), byId("marks"));
-
-/** The last layer that is shown. */
-function goTo(layer) {
-  const one = byId("one-layer").checked;
-  controls.setLayers(one ? layer : Math.min(state.layers[0] || 1, layer), layer, false);
-}
 
 // ---------------------------------------------------------------- asking
 
@@ -227,18 +222,38 @@ connection.addEventListener("stranger", () => trouble("The server was started an
 on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
-  const files = byId("file");
-  files.replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
-  files.parentElement.hidden = false;
+  byId("file").replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
   saving.forget();
-  file = Math.min(file, detail.files.length - 1);
-  files.value = String(file);
-  second.setFiles(detail.files, file);
-  document.title = `${detail.files[file]} · vdbview`;
+  nameFile(file);
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
   askBeads();
 });
+/** One of the inputs, or the last one. */
+function nameFile(wanted) {
+  const names = [...byId("file").options].map((each) => each.textContent);
+  file = Math.min(wanted, names.length - 1);
+  byId("file").value = String(file);
+  document.title = `${names[file]} · vdbview`;
+  second.setFiles(names, file);
+}
+function openFile(wanted, view) {
+  controls.reset();
+  nameFile(wanted);
+  setState(view);
+  latest = 0;
+  answer.reset();
+  generation = undefined;
+  own.refuse("the beads are not here yet");
+  connection.send({ type: "open", file });
+  ask(false);
+  askBeads();
+}
+function setState(view) {
+  state = view;
+  orbit = view.camera.eye ? orbitOf(view.camera) : null;
+  viewFrom = number + 1;
+}
 function askBeads() {
   movesAsked = false;
   if (streamed) own.refuse("");
@@ -358,15 +373,19 @@ handleInput(picture, {
   },
   key: (event) => {
     const views = ["iso", "front", "back", "left", "right", "top", "bottom"];
-    const [low, high] = [state.layers[0] || 1, state.layers[1] || controls.layerCount];
-    const keys = {
-      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+    const last = state.layers[1] || controls.layerCount;
+    const ofPrints = {
       t: () => motion.toggle("travels"), s: () => motion.toggle("seams"), l: () => byId("one-layer").click(), p: () => byId("play").click(),
-      "[": () => controls.setLayers(low, high - 1, false), "]": () => controls.setLayers(low, high + 1, false),
+      "[": () => controls.goTo(last - 1), "]": () => controls.goTo(last + 1),
       ",": () => motion.step(-1), ".": () => motion.step(1), "/": () => finder.open(),
     };
-    if (event.key in views) setView(views[event.key]);
-    else keys[event.key.toLowerCase()]?.();
+    const keys = {
+      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+      ...(controls.layerCount > 0 && ofPrints),
+    };
+    const act = event.key in views ? () => setView(views[event.key]) : keys[event.key.toLowerCase()];
+    act?.();
+    return act !== undefined;
   },
 });
 
@@ -394,20 +413,7 @@ const saving = new Saving(byId("save"), {
   say,
   name: () => byId("file").selectedOptions[0]?.textContent ?? "",
 });
-byId("file").addEventListener("change", () => {
-  file = Number(byId("file").value);
-  state = initial();
-  orbit = null;
-  latest = 0;
-  answer.clear();
-  second.setFiles([...byId("file").options].map((each) => each.textContent), file);
-  document.title = `${byId("file").selectedOptions[0].textContent} · vdbview`;
-  generation = undefined;
-  own.refuse("the beads are not here yet");
-  connection.send({ type: "open", file });
-  ask(false);
-  askBeads();
-});
+byId("file").addEventListener("change", () => openFile(Number(byId("file").value), initial()));
 function showPanels(shown) {
   byId("side").classList.toggle("closed", !shown);
   byId("panels").setAttribute("aria-expanded", String(shown));
@@ -415,9 +421,10 @@ function showPanels(shown) {
 byId("panels").addEventListener("click", () => showPanels(byId("side").classList.contains("closed")));
 if (matchMedia("(max-width: 760px)").matches) showPanels(false); // the picture first
 window.addEventListener("hashchange", () => {
-  ({ state, wrong } = fromFragment(location.hash));
+  const { state: view, file: linked, wrong } = fromFragment(location.hash);
   if (wrong) trouble(wrong);
-  orbit = state.camera.eye ? orbitOf(state.camera) : null;
+  if (linked !== file) return openFile(linked, view);
+  setState(view);
   controls.show();
   ask(false);
 });

@@ -32,7 +32,10 @@ export class SecondPrint {
 
   /** The inputs, of which one is shown. */
   setFiles(names, file) {
-    byId("second").replaceChildren(new Option("nothing", ""), ...names.map((name, n) => new Option(name, String(n))).filter((_, n) => n !== file));
+    const list = byId("second");
+    const chosen = list.value; // stays, also when the server comes back
+    list.replaceChildren(new Option("nothing", ""), ...names.map((name, n) => new Option(name, String(n))).filter((_, n) => n !== file));
+    list.value = list.querySelector(`[value="${chosen}"]`) ? chosen : "";
     byId("second-group").hidden = names.length < 2;
     if (this.shown) this.#open();
   }
