@@ -9,6 +9,7 @@ from run_tools import BIN, check, gcode, run, skip_without
 
 skip_without(("chromium", "chromedriver"), ("selenium",))
 
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
 from chromium import browser
@@ -154,6 +155,53 @@ def no_print():
         check(settled()["camera"]["view"] == "front", "keys of the camera work")
 
 
+def failed_saving():
+    """What can't be shown can't be saved: the button says so by being free again."""
+    with drawn(gcode("tile.gcode")):
+        js("for (const box of document.querySelectorAll('#features input')) box.click()")
+        until("document.body.classList.contains('stale')", "nothing is left to show")
+        name = js("const save = document.getElementById('save'); save.click(); return save.textContent")
+        check(name == "Cancel saving", "it tries to save")
+        until("document.getElementById('save').textContent === 'Save picture'", "and has given it up", 20)
+        check(js("return document.getElementById('trouble').checkVisibility()"), "with a word")
+
+
+def focus():
+    """A list that is made anew keeps the focus where it was."""
+    focused = "document.activeElement.dataset.name ?? document.activeElement.value"
+    box = """document.querySelector('#features input[value="infill"]')"""
+    item = """[...document.querySelectorAll('#legend li')].find((each) => each.textContent.startsWith('infill'))"""
+    path = os.path.join(FOLDER, "copy.gcode")
+    shutil.copy(gcode("tile.gcode"), path)
+    with drawn(path, {"color_by": "feature"}):
+        until(item, "the legend")
+        for checked in ("false", "true"):
+            js(f"{item}.focus()")
+            page.switch_to.active_element.send_keys(" ")
+            until(f"{item}.getAttribute('aria-checked') === '{checked}' && window.vdbviewLog.at(-1).kind === 'final'", f"infill: {checked}")
+            check(js(f"return {focused}") == "infill", "the legend's entry has the focus still")
+        js(f"{box}.focus(); {box}.dataset.old = '1'")
+        with open(path, "a", encoding="utf-8") as file:
+            file.write("; written anew\n")
+        until(f"!{box}.dataset.old", "the list of features is made anew")
+        check(js(f"return {focused}") == "infill", "its box has the focus still")
+
+
+def double_click():
+    """The camera turns about what is under the double click, not about what was clicked before."""
+    camera = {"eye": [100, 40, 120], "look_at": [100, 100, 0], "fov": 20}
+    with drawn(gcode("tile.gcode"), {"camera": camera}):
+        picture = page.find_element(By.ID, "picture")
+        ActionChains(page).move_to_element_with_offset(picture, -60, 0).click().perform()
+        first = until("window.vdbviewFound?.position", "a click")
+        press("\ue00c")  # Escape: what is told lies over the picture
+        ActionChains(page).move_to_element_with_offset(picture, 20, 5).double_click().perform()
+        until("!location.hash.includes('%5B100%2C100%2C0%5D')", "it turns about another place", 30)
+        place, target = js("return window.vdbviewFound.position"), settled()["camera"]["look_at"]
+        off = lambda a, b: max(abs(p - q) for p, q in zip(a, b))
+        check(off(place, target) < 1e-3 and off(first, target) > 1, f"about {target}; clicked before was {first}")
+
+
 def nozzle():
     """Esc takes the marks of clicks away, and not the nozzle."""
     drawn_marks = """const c = document.getElementById('marks');
@@ -172,6 +220,9 @@ try:
     another_input()
     server_comes_back()
     no_print()
+    failed_saving()
+    focus()
+    double_click()
     nozzle()
 finally:
     page.quit()

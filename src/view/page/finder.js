@@ -1,7 +1,7 @@
 // Finds a text, a line, a time or a layer of the program, and goes there.
 import { linesOf, secondsOf } from "./answer.js";
+import { byId } from "./elements.js";
 
-const byId = (id) => document.getElementById(id);
 const HINTS = { text: "M106", line: "1200", time: "1:25:00", layer: "12" };
 
 export class Finder {

@@ -3,6 +3,7 @@ import { Answer, clock } from "./answer.js";
 import { OrbitCamera, handleInput, sub, unit } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { byId, setOptions } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
 import { KINDS } from "./move_table.js";
@@ -12,7 +13,6 @@ import { Saving } from "./saving.js";
 import { SecondPrint } from "./second_print.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
-const byId = (id) => document.getElementById(id);
 const picture = byId("picture");
 const context = picture.getContext("2d");
 
@@ -142,21 +142,22 @@ function setView(view) {
 
 function fit() {
   if (!box || !camera) return;
-  orbit ??= OrbitCamera.from(camera, middle());
-  orbit.fit(box, aspect);
+  turned().fit(box, aspect);
   ask(false);
 }
 
 /** A named view is fitted to what is shown; from here on it stays where it was seen from. */
 function hold() {
-  if (!orbit && camera && box && latest >= viewFrom) orbit = OrbitCamera.from(camera, middle());
+  if (camera && box && latest >= viewFrom) turned();
 }
 
 const middle = () => [0, 1, 2].map((n) => (box[n] + box[n + 3]) / 2);
+/** The camera that turns, from where the last picture was seen. */
+const turned = () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera());
 
 // ---------------------------------------------------------------- pictures
 
-let shownKind = 0; // decoding may end in another order than it began
+let [arrivedLast, drawnLast] = [0, 0]; // decoding may end in another order than it began
 
 connection.addEventListener("picture", async ({ detail }) => {
   const arrived = performance.now();
@@ -164,11 +165,12 @@ connection.addEventListener("picture", async ({ detail }) => {
     connection.send({ type: "shown" });
     return saving.take(detail.file);
   }
-  const order = ++shownKind;
+  const order = ++arrivedLast;
   const bitmap = await createImageBitmap(detail.file);
   connection.send({ type: "shown" });
-  if (own.ready && detail.number !== number) return bitmap.close(); // it has moved on
-  if (order !== shownKind && detail.kind === "moving") return;
+  const late = order < drawnLast || (order < arrivedLast && detail.kind === "moving");
+  if (late || (own.ready && detail.number !== number)) return bitmap.close(); // it has moved on
+  drawnLast = order;
   if (picture.width !== bitmap.width || picture.height !== bitmap.height) {
     picture.width = bitmap.width;
     picture.height = bitmap.height;
@@ -222,7 +224,7 @@ connection.addEventListener("stranger", () => trouble("The server was started an
 on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
-  byId("file").replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
+  setOptions(byId("file"), detail.files.map((name, n) => [name, n]));
   saving.forget();
   nameFile(file);
   if (file > 0) connection.send({ type: "open", file });
@@ -259,12 +261,7 @@ function askBeads() {
   if (streamed) own.refuse("");
   else connection.send({ type: "beads" });
 }
-on("beads", (detail) => own.begin(detail, detail.file));
-on("bead-part", (detail) => own.add(detail, detail.file));
-on("no-beads", (detail) => own.refuse(detail.text));
-on("colors", (detail) => own.paint(detail.palette, detail.values, detail.file));
-on("moves", (detail) => own.beginMoves(detail));
-on("move-part", (detail) => own.addMoves(detail, detail.file));
+own.listen(connection);
 on("no-moves", (detail) => {
   movesAsked = false;
   state.also = [];
@@ -327,6 +324,7 @@ on("progress", (detail) => {
 });
 on("saving", (detail) => saving.progress(detail));
 on("failed", (detail) => {
+  saving.forget(); // the server has given up all of this view
   trouble(detail.text, "view");
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
@@ -337,6 +335,7 @@ on("refused", (detail) => {
 });
 on("inspected", (detail) => {
   window.vdbviewFound = detail;
+  if (turns) turnAbout(detail);
   answer.show(detail);
   answer.draw(camera, aspect);
 });
@@ -351,6 +350,14 @@ function setMeasuring(on) {
   if (on) say("click two points");
 }
 
+let turns = false; // about what the server finds under a double click
+function turnAbout({ position }) {
+  turns = false;
+  if (!position || !camera) return;
+  turned().target = position;
+  ask(false);
+}
+
 async function copy(text, what) {
   try {
     await navigator.clipboard.writeText(text);
@@ -360,11 +367,12 @@ async function copy(text, what) {
   }
 }
 
-const turning = { orbit: () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera()), moved: ask };
+const turning = { orbit: turned, moved: ask };
 handleInput(byId("second-beads"), { ...turning, clicked: () => {}, key: () => {} });
 handleInput(picture, {
   ...turning,
   clicked: (x, y) => {
+    turns = false;
     // At once what the table says; the server answers with the place, the time and the line.
     const texel = answer.measuring ? -1 : own.at(x, y);
     window.vdbviewPicked = texel < 0 ? null : own.table.describe(texel);
@@ -392,13 +400,7 @@ handleInput(picture, {
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => setView(button.dataset.view));
 byId("fit").addEventListener("click", fit);
 byId("help").addEventListener("click", () => byId("keys").showModal());
-picture.addEventListener("dblclick", () => {
-  const place = window.vdbviewFound?.position;
-  if (!place || !camera) return;
-  orbit ??= OrbitCamera.from(camera, middle());
-  orbit.target = place;
-  ask(false);
-});
+picture.addEventListener("dblclick", () => (turns = true));
 byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring));
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
