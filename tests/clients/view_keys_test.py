@@ -187,6 +187,37 @@ def focus():
         check(js(f"return {focused}") == "infill", "its box has the focus still")
 
 
+def written_anew():
+    """A file that is written again and again takes no more of the GPU each time."""
+    count = """window.live = new Set();
+               window.programs = 0;
+               const gl = WebGL2RenderingContext.prototype;
+               for (const kind of ["Texture", "Buffer", "Program", "Framebuffer"]) {
+                 const [make, free] = [gl["create" + kind], gl["delete" + kind]];
+                 gl["create" + kind] = function () {
+                   const made = make.call(this);
+                   window.live.add(made);
+                   window.programs += kind === "Program";
+                   return made;
+                 };
+                 gl["delete" + kind] = function (it) {
+                   window.live.delete(it);
+                   free.call(this, it);
+                 };
+               }"""
+    path = os.path.join(FOLDER, "again.gcode")
+    shutil.copy(gcode("tile.gcode"), path)
+    with drawn(path):
+        js(count)
+        live = []
+        for n in range(1, 4):
+            with open(path, "a", encoding="utf-8") as file:
+                file.write("; written anew\n")
+            until(f"window.programs >= {6 * n} && document.body.dataset.moving === 'own'", "it is drawn anew")
+            live.append(js("return window.live.size"))
+        check(live[0] == live[1] == live[2] > 0, f"as many objects as before: {live}")
+
+
 def double_click():
     """The camera turns about what is under the double click, not about what was clicked before."""
     camera = {"eye": [100, 40, 120], "look_at": [100, 100, 0], "fov": 20}
@@ -222,6 +253,7 @@ try:
     no_print()
     failed_saving()
     focus()
+    written_anew()
     double_click()
     nozzle()
 finally:

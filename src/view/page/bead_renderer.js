@@ -3,7 +3,7 @@ import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from
 import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
-import { ROW, fillTable, makeIndices, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
+import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
 import { dot, project, sub } from "./camera.js";
 
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
@@ -48,8 +48,8 @@ export class BeadRenderer {
     for (let y = 0; y < GRID[1]; ++y)
       for (let x = 0; x < GRID[0]; ++x) grid.push(...[0, 1, GRID[0] + 1, GRID[0] + 1, 1, GRID[0] + 2].map((k) => y * (GRID[0] + 1) + x + k));
     this.grid = makeIndices(gl, Uint16Array.from(grid));
-    this.target = gl.createFramebuffer();
-    this.found = gl.createFramebuffer();
+    this.target = makeFramebuffer(gl);
+    this.found = makeFramebuffer(gl);
     const found = makeTexture(gl);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, SOUGHT / ROW, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
@@ -59,6 +59,11 @@ export class BeadRenderer {
     this.look = null;
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
+  }
+
+  /** It draws no more. */
+  release() {
+    release(this.gl);
   }
 
   /** By run, which are shown; and the texels from, to that are printed. */

@@ -100,8 +100,9 @@ export class BeadTable {
 
   /** Where a bead begins and ends, mm. */
   ends(texel) {
-    const [x, y, z] = this.words.subarray(4 * texel, 4 * texel + 3);
-    const at = (...steps) => steps.map((n, axis) => this.low[axis] + n * this.grain[axis]);
+    const { words, low, grain } = this;
+    const at = (x, y, z) => [low[0] + x * grain[0], low[1] + y * grain[1], low[2] + z * grain[2]];
+    const [x, y, z] = [words[4 * texel], words[4 * texel + 1], words[4 * texel + 2]];
     return [at(x & 65535, x >>> 16, z & 65535), at(y & 65535, y >>> 16, z >>> 16)];
   }
   width(texel) {

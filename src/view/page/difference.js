@@ -7,7 +7,10 @@ const CELL = [0.5, 0.5, 0.05]; // mm, of the map that finds a bead by its middle
 function endsOf(table) {
   const ends = new Float64Array(7 * table.texels).fill(NaN);
   for (let n = 0; n < table.texels; ++n) {
-    ends.set([...table.ends(n).flat(), table.width(n)], 7 * n);
+    const [from, to] = table.ends(n);
+    ends.set(from, 7 * n);
+    ends.set(to, 7 * n + 3);
+    ends[7 * n + 6] = table.width(n);
     if (table.hasExtra(n)) ++n;
   }
   return ends;

@@ -148,6 +148,7 @@ export class OwnPicture extends EventTarget {
   #stop(why) {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
+    this.#renderer?.release();
     this.#renderer = null;
     this.why = why;
     this.#tell("changed");
