@@ -47,6 +47,6 @@ BUILD_PACKAGES=(clang lld ccache cmake ninja-build libopenvdb-dev libnanovdb-dev
 # are started by their test, not as services of the machine. GCC compiles the programs of others that use our libraries.
 TEST_PACKAGES=(g++ admesh calculix-ccx ffmpeg 'lib3mf1|lib3mf1t64' libgtest-dev libopenvdb-tools libnanovdb-tools blender python3 python3-openvdb mypy
     prusa-slicer slurmctld slurmd slurm-client munge chromium chromium-driver python3-selenium python3-pandas python3-matplotlib appstream desktop-file-utils
-    shared-mime-info libxml2-utils dpkg-dev file mmdebstrap xvfb locales libgl1-mesa-dri)
+    shared-mime-info libxml2-utils dpkg-dev file mmdebstrap xvfb locales libgl1-mesa-dri libx11-6 tesseract-ocr)
 # What the benchmarks (-DSTRATUM_BENCH=ON) measure against, and draw with.
 BENCH_PACKAGES=(libembree-dev python3-matplotlib)

@@ -20,6 +20,7 @@ import zlib
 
 from png_file import png_pixels
 from run_tools import BIN, check, corpus, gcode
+from slicer_preview import PROGRAMS, Preview, make_locale
 
 FOLDER = tempfile.mkdtemp(prefix="stratum_thumbnails_")
 GCODE2VDB = os.path.join(BIN, "gcode2vdb")
@@ -353,40 +354,6 @@ check(not os.path.exists(path("refused.3mf")), "  leaves no file behind")
 # --- PrusaSlicer's own eyes -------------------------------------------------------------------------------------------
 
 
-class Viewer:
-    """PrusaSlicer's G-code viewer on a display of its own, which is a file of pixels."""
-
-    def __init__(self, source, locale):
-        self.folder = tempfile.mkdtemp(dir=FOLDER)
-        # It chooses its number, and tells it when programs may connect.
-        read, written = os.pipe()
-        self.programs = [subprocess.Popen(["Xvfb", "-displayfd", str(written), "-screen", "0", "800x600x24", "-fbdir",
-                                           self.folder], pass_fds=(written,), stdout=subprocess.DEVNULL,
-                                          stderr=subprocess.DEVNULL)]
-        os.close(written)
-        with os.fdopen(read) as said:
-            display = ":" + said.readline().strip()
-        environment = dict(os.environ, DISPLAY=display, LOCPATH=locale, LC_ALL="en_US.UTF-8", LANG="en_US.UTF-8",
-                           LIBGL_ALWAYS_SOFTWARE="1", HOME=self.folder)
-        self.programs.append(subprocess.Popen(["prusa-gcodeviewer", "--datadir", self.folder, source], env=environment,
-                                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
-
-    def screen(self):
-        """The pixels of the XWD file, without its head."""
-        try:
-            with open(os.path.join(self.folder, "Xvfb_screen0"), "rb") as file:
-                data = file.read()
-            head = struct.unpack(">25I", data[:100])
-            return data[head[0] + 12 * head[19]:]
-        except (OSError, struct.error):
-            return b""
-
-    def close(self):
-        for program in reversed(self.programs):
-            program.kill()
-            program.wait()
-
-
 ORANGE = bytes((56, 125, 255))  # of an external perimeter in the legend: blue, green, red
 
 
@@ -402,11 +369,7 @@ def shown(viewers, seconds):
     return before if rests == 4 else None
 
 
-locale = os.path.join(FOLDER, "locale")
-os.mkdir(locale)
-if all(shutil.which(program) for program in ("prusa-gcodeviewer", "Xvfb", "localedef")):
-    # Without this language it asks for it in a window, and waits.
-    subprocess.run(["localedef", "-i", "en_US", "-f", "UTF-8", os.path.join(locale, "en_US.UTF-8")], capture_output=True)
+if all(shutil.which(program) for program in PROGRAMS):
     # Three layers and the end: it draws all of a print again and again, by the processor.
     layers = TEXT.split(b";LAYER_CHANGE")
     write("before.gcode", b";LAYER_CHANGE".join([*layers[:4], layers[-1]]))
@@ -416,7 +379,8 @@ if all(shutil.which(program) for program in ("prusa-gcodeviewer", "Xvfb", "local
         first, rest = file.read().split(b"\n", 1)
         more = pictures.read().count(b"\n") - rest.count(b"\n") - 1
     write("before.gcode", first + b"\n" + b";\n" * more + rest)
-    viewers = [Viewer(path(name), locale) for name in ("before.gcode", "after.gcode")]
+    locale = make_locale(FOLDER)
+    viewers = [Preview(path(name), locale) for name in ("before.gcode", "after.gcode")]
     try:
         screens = shown(viewers, 150)
         check(screens is not None, "PrusaSlicer's viewer opens the file with and without our pictures")

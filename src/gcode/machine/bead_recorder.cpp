@@ -53,24 +53,25 @@ void BeadRecorder::tag(const Tag& tag, std::uint32_t line) {
             stopObject();
             break;
         case Tag::Kind::color_change:
-            if (const auto color = parseColor(tag.text))
-                toolpath_.color_changes.push_back(
-                    {.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
-                     .tool = tag.tool < 0 ? next_.tool : static_cast<std::uint8_t>(tag.tool),
-                     .color = *color});
+            changeColor(tag.tool < 0 ? next_.tool : static_cast<std::uint8_t>(tag.tool), parseColor(tag.text), line);
             break;
     }
 }
 
 void BeadRecorder::changeFilament(std::uint32_t line) {
-    auto& changes = toolpath_.color_changes;
+    const auto& changes = toolpath_.color_changes;
     const bool named = !changes.empty() && changes.back().first_bead == toolpath_.beads.size();
-    if (named || toolpath_.empty()) return;
-    changes.push_back({.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
-                       .tool = next_.tool,
-                       .color = {},
-                       .stated = false});
-    warnings_.add("M600 changes the filament, and the file doesn't say to which colour; one of a palette stands for it",
+    if (!named) changeColor(next_.tool, std::nullopt, line);
+}
+
+void BeadRecorder::changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line) {
+    if (!color && toolpath_.empty()) return;  // the filament is changed before the print
+    toolpath_.color_changes.push_back({.first_bead = static_cast<std::uint32_t>(toolpath_.beads.size()),
+                                       .tool = tool,
+                                       .color = color.value_or(Rgb{}),
+                                       .stated = color.has_value()});
+    if (color) return;
+    warnings_.add("the filament is changed, and the file doesn't say to which colour; one of a palette stands for it",
                   line);
 }
 

@@ -35,7 +35,7 @@ public:
     void stopObject() { next_.object = 0; }
     /// Renames the current object; if another object has that name, it becomes the current one.
     void renameObject(std::string_view name, std::uint32_t line);
-    /// M600: a manual change of filament. Warns if no tag has stated the new color, which is then left open.
+    /// M600: a manual change of filament. Warns if no tag has announced it: the new color is then left open.
     void changeFilament(std::uint32_t line);
     /// The nozzle of a tool shall have this temperature, in degrees Celsius, from this line on. Nothing is printed by
     /// one that is off.
@@ -58,6 +58,7 @@ public:
     const std::vector<double>& runZ() const { return run_z_; }
 
 private:
+    void changeColor(std::uint8_t tool, std::optional<Rgb> color, std::uint32_t line);
     void markLayer(const Tag& tag);
     void restartLayers();
     void countLayer(const Point& from, const Point& to, bool sloped);

@@ -91,16 +91,18 @@ Tag ofMarkup(std::string_view text) {
     return {};
 }
 
-// PrusaSlicer and its kin: "COLOR_CHANGE,T0,#ED1C24".
+// PrusaSlicer and its kin: "COLOR_CHANGE,T0,#ED1C24"; before 2.3 without the color, which its preview then takes from a
+// list. `text`: behind the name.
 Tag ofColorChange(std::string_view text) {
+    if (!text.empty() && text.front() != ',') return {};
+    take(text, ",");
     Tag tag{.kind = Tag::Kind::color_change};
     if (text.starts_with('T') && text.size() > 1 && text[1] >= '0' && text[1] <= '9') {
         tag.tool = text[1] - '0';
         if (text.size() > 2 && text[2] >= '0' && text[2] <= '9') tag.tool = tag.tool * 10 + text[2] - '0';
     }
     const auto color = text.find('#');
-    if (color == std::string_view::npos) return {};
-    tag.text = text.substr(color, 7);
+    if (color != std::string_view::npos) tag.text = text.substr(color, 7);
     return tag;
 }
 
@@ -149,7 +151,7 @@ Tag parseTag(std::string_view comment) {
         case 'C':
             if (take(text, "CHANGE_LAYER")) return layerChange("CHANGE_LAYER");
             if (text.starts_with("CP TOOLCHANGE WIPE")) return {.kind = Tag::Kind::filament_loaded};
-            if (take(text, "COLOR_CHANGE,")) return ofColorChange(text);
+            if (take(text, "COLOR_CHANGE")) return ofColorChange(text);
             break;
         case 'M':
             if (take(text, "MESH:")) return text == "NONMESH" ? Tag{.kind = Tag::Kind::object_stop} : ofObject(text);

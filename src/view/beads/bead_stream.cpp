@@ -55,7 +55,9 @@ bool BeadStream::sendPart() {
         }
         generation_ = document_.generation();
         next_ = 0;
+        // With another table the page forgets what it had of the one before.
         colors_key_.reset();
+        light_key_.clear();
         Json head = table_->head();
         head["generation"] = generation_;
         output_.picture(head, bytesOf(table_->runs()));

@@ -1,4 +1,5 @@
 // What a click has found: the bead, its line of G-code, and the distance of two clicks. Marks follow the picture.
+import { element } from "./elements.js";
 import { project, sub, size, times } from "./camera.js";
 
 const fixed = (value, digits = 2) => value.toFixed(digits);
@@ -33,17 +34,8 @@ function rowsOf(found, mm) {
 
 /** Lines of G-code as a list, one of them marked by its number. */
 export function linesOf(lines, here) {
-  const list = document.createElement("ol");
-  list.setAttribute("aria-label", "Lines of G-code");
-  for (const line of lines) {
-    const item = document.createElement("li");
-    const number = document.createElement("span");
-    number.textContent = line.number;
-    item.append(number, line.text);
-    if (line.number === here) item.className = "this";
-    list.append(item);
-  }
-  return list;
+  const item = ({ number, text }) => element("li", { className: number === here ? "this" : "" }, element("span", { textContent: number }), text);
+  return element("ol", { ariaLabel: "Lines of G-code" }, ...lines.map(item));
 }
 
 /** A nozzle whose tip is at a place of the canvas. */
@@ -66,6 +58,8 @@ export class Answer {
   lines = null; // a canvas of the browser's own lines, for the finished picture, which has none
   measuring = false;
   head = null; // where the nozzle is
+  camera = null;
+  aspect = 1;
 
   constructor(place, marks) {
     this.place = place;
@@ -75,7 +69,12 @@ export class Answer {
   clear() {
     this.points = [];
     this.place.hidden = true;
-    this.draw(null, 1);
+    this.draw();
+  }
+  /** Another input. */
+  reset() {
+    this.lines = this.head = this.camera = null;
+    this.clear();
   }
 
   show(found) {
@@ -83,26 +82,13 @@ export class Answer {
       if (!this.measuring) this.clear();
       return;
     }
-    if (!this.measuring) this.points = [];
-    if (this.points.length >= 2) this.points = [];
+    if (!this.measuring || this.points.length >= 2) this.points = [];
     if (found.position) this.points.push(found.position);
     const title = this.measuring ? (this.points.length === 2 ? "Distance" : "Click the second point") : found.bead ? "Bead" : "Surface";
-    const head = document.createElement("header");
-    const heading = document.createElement("h2");
-    heading.textContent = title;
-    const close = document.createElement("button");
-    close.textContent = "Close";
+    const close = element("button", { textContent: "Close" });
     close.addEventListener("click", () => this.clear());
-    head.append(heading, close);
-    const list = document.createElement("dl");
-    for (const [name, value] of this.#rows(found)) {
-      const term = document.createElement("dt");
-      term.textContent = name;
-      const text = document.createElement("dd");
-      text.textContent = value;
-      list.append(term, text);
-    }
-    this.place.replaceChildren(head, list);
+    const rows = this.#rows(found).flatMap(([name, value]) => [element("dt", { textContent: name }), element("dd", { textContent: value })]);
+    this.place.replaceChildren(element("header", {}, element("h2", { textContent: title }), close), element("dl", {}, ...rows));
     if (found.lines && !this.measuring) this.place.append(linesOf(found.lines, found.bead.line));
     this.place.hidden = false;
   }
@@ -115,8 +101,9 @@ export class Answer {
     return [["Distance", `${fixed(size(way), 3)} mm`], ["In x, y, z", point(way)], ["From", point(mm(this.points[0]))], ["To", point(mm(this.points[1]))]];
   }
 
-  /** On top of the picture that this camera of the server shows. */
-  draw(camera, aspect) {
+  /** On top of the picture that this camera of the server shows; by default the last one. */
+  draw(camera = this.camera, aspect = this.aspect) {
+    Object.assign(this, { camera, aspect });
     const canvas = this.marks;
     const ratio = devicePixelRatio || 1;
     canvas.width = Math.round(canvas.clientWidth * ratio);

@@ -3,8 +3,8 @@ import { SOUGHT, beadFragments, beadVertices, seekFragments, seekVertices } from
 import { GRID, backFragments, backVertices, lightFragments, screenVertices } from "./light_shaders.js";
 import { VisibleBeads } from "./visible_beads.js";
 import { LineRenderer } from "./line_renderer.js";
-import { ROW, fillTable, makeIndices, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
-import { dot, sub } from "./camera.js";
+import { ROW, fillTable, makeFramebuffer, makeIndices, makeProgram, makeTable, makeTexture, release, setUniforms } from "./webgl.js";
+import { dot, project, sub } from "./camera.js";
 
 const DRAW = 16384; // beads a call: their corners are counted in 16 bits
 
@@ -48,8 +48,8 @@ export class BeadRenderer {
     for (let y = 0; y < GRID[1]; ++y)
       for (let x = 0; x < GRID[0]; ++x) grid.push(...[0, 1, GRID[0] + 1, GRID[0] + 1, 1, GRID[0] + 2].map((k) => y * (GRID[0] + 1) + x + k));
     this.grid = makeIndices(gl, Uint16Array.from(grid));
-    this.target = gl.createFramebuffer();
-    this.found = gl.createFramebuffer();
+    this.target = makeFramebuffer(gl);
+    this.found = makeFramebuffer(gl);
     const found = makeTexture(gl);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, SOUGHT / ROW, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.found);
@@ -59,6 +59,11 @@ export class BeadRenderer {
     this.look = null;
     this.lines = new LineRenderer(gl);
     if (gl.getError()) throw new Error("not enough memory on its GPU");
+  }
+
+  /** It draws no more. */
+  release() {
+    release(this.gl);
   }
 
   /** By run, which are shown; and the texels from, to that are printed. */
@@ -212,7 +217,7 @@ export class BeadRenderer {
     }
     const light = this.fine ? this.light : this.plain;
     gl.useProgram(light.program);
-    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), as_normals: Number(as_normals), albedo: look.albedo, reach: look.reach, marked: this.marked ?? 0 });
+    setUniforms(gl, light, { ...values, colored: Number(this.colored ?? false), as_normals: Number(as_normals), albedo: look.albedo, reach: look.reach });
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.SCISSOR_TEST);
@@ -226,21 +231,16 @@ export class BeadRenderer {
   #frame(camera) {
     const { low, grain } = this.table;
     const [width, height] = this.size;
-    const tangent = Math.tan((camera.fov * Math.PI) / 360);
-    const least = [Infinity, Infinity];
-    const most = [-Infinity, -Infinity];
-    for (let n = 0; n < 8; ++n) {
-      const way = sub(low.map((v, axis) => (n & (1 << axis) ? v + 65535 * grain[axis] + 3 : v - 3)), camera.eye);
-      const depth = dot(way, camera.forward);
-      if (depth < 1e-3) return [0, 0, width, height];
-      const scale = height / (2 * depth * tangent);
-      [dot(way, camera.right) * scale + width / 2, dot(way, camera.up) * scale + height / 2].forEach((v, axis) => {
-        least[axis] = Math.min(least[axis], v);
-        most[axis] = Math.max(most[axis], v);
-      });
-    }
-    const [x, y] = least.map((v) => Math.max(0, Math.floor(v - 8)));
-    return [x, y, Math.max(0, Math.min(width, Math.ceil(most[0] + 8)) - x), Math.max(0, Math.min(height, Math.ceil(most[1] + 8)) - y)];
+    const corner = (n) => low.map((v, axis) => (n & (1 << axis) ? v + 65535 * grain[axis] + 3 : v - 3));
+    const places = [0, 1, 2, 3, 4, 5, 6, 7].map((n) => project(camera, width / height, corner(n)));
+    if (places.includes(null)) return [0, 0, width, height];
+    const span = (values, side) => {
+      const first = Math.max(0, Math.floor(Math.min(...values) * side - 8));
+      return [first, Math.max(0, Math.min(side, Math.ceil(Math.max(...values) * side + 8)) - first)];
+    };
+    const [x, across] = span(places.map(([right]) => right), width);
+    const [y, up] = span(places.map(([, down]) => 1 - down), height);
+    return [x, y, across, up];
   }
 
   /** Looks in the last picture for `rows` more of the beads that may have come into sight; the next one has them. */

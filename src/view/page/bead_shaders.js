@@ -14,22 +14,23 @@ precision highp float;
 precision highp int;
 precision highp usampler2D;
 precision highp sampler2D;
-// A unit vector in 32 bits, by an octahedron.
-uint packed(vec3 v) {
+// A direction as a place of the unit square, by an octahedron; and a unit vector in 32 bits.
+vec2 folded(vec2 p) { return (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0); }
+vec2 octahedral(vec3 v) {
   v /= abs(v.x) + abs(v.y) + abs(v.z);
-  vec2 p = v.z < 0.0 ? (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0) : v.xy;
-  return packUnorm2x16(0.5 * p + 0.5);
+  return 0.5 * (v.z < 0.0 ? folded(v.xy) : v.xy) + 0.5;
 }
+uint packed(vec3 v) { return packUnorm2x16(octahedral(v)); }
 vec3 unpacked(uint word) {
   vec2 p = 2.0 * unpackUnorm2x16(word) - 1.0;
   vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  if (v.z < 0.0) v.xy = (1.0 - abs(v.yx)) * vec2(v.x < 0.0 ? -1.0 : 1.0, v.y < 0.0 ? -1.0 : 1.0);
+  if (v.z < 0.0) v.xy = folded(v.xy);
   return normalize(v);
 }
 uvec4 row(usampler2D table, uint n) { return texelFetch(table, ivec2(n & ${(1 << ROW_BITS) - 1}u, n >> ${ROW_BITS}u), 0); }`;
 
 // What the programs share: a bead of the table, and where a ray meets it.
-export const BEAD = `
+const BEAD = `
 uniform usampler2D beads;   // a texel a bead, and one more for an arc or a bead that widens: see bead_table.h
 uniform usampler2D runs;    // height, straight side (floats); layer; feature, tool, object
 uniform vec3 eye;           // from the corner that the table counts from

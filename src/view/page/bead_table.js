@@ -1,4 +1,16 @@
 // The beads of a print as the server streams them: 16 bytes each, and properties by run. Numbers, no drawing.
+import { sub } from "./camera.js";
+
+/** The least number from 0 to `count` for which it is true; once true, it stays so. */
+function leastThat(isTrue, count) {
+  let [low, high] = [0, count];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (isTrue(middle)) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+}
 
 const asFloat = (word) => new Float32Array(Uint32Array.of(word).buffer)[0];
 
@@ -31,26 +43,10 @@ export class BeadTable {
 
   /** The number of a texel's bead, and the other way round: a bead and its extra are one. */
   beadOf(texel) {
-    return texel - this.#extrasBefore(texel);
+    return texel - leastThat((n) => this.extras[n] >= texel, this.extras.length);
   }
   texelOf(bead) {
-    if (!this.extras.length) return bead;
-    let [low, high] = [0, this.texels];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.beadOf(middle + 1) <= bead) low = middle + 1;
-      else high = middle;
-    }
-    return low;
-  }
-  #extrasBefore(texel) {
-    let [low, high] = [0, this.extras.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.extras[middle] < texel) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+    return this.extras.length ? leastThat((texel) => this.beadOf(texel + 1) > bead, this.texels) : bead;
   }
 
   layerOf(texel) {
@@ -96,37 +92,48 @@ export class BeadTable {
     const shown = this.shown(state);
     const [first, end] = this.range(state);
     for (let texel = first; texel < end; ++texel) {
-      const word = this.words[4 * texel + 3];
-      if (shown[word >>> 13]) take(texel, word >>> 13);
-      if (word & 4096) ++texel;
+      const run = this.words[4 * texel + 3] >>> 13;
+      if (shown[run]) take(texel, run);
+      if (this.hasExtra(texel)) ++texel;
     }
+  }
+
+  /** Where a bead begins and ends, mm. */
+  ends(texel) {
+    const { words, low, grain } = this;
+    const at = (x, y, z) => [low[0] + x * grain[0], low[1] + y * grain[1], low[2] + z * grain[2]];
+    const [x, y, z] = [words[4 * texel], words[4 * texel + 1], words[4 * texel + 2]];
+    return [at(x & 65535, x >>> 16, z & 65535), at(y & 65535, y >>> 16, z >>> 16)];
+  }
+  width(texel) {
+    return (this.words[4 * texel + 3] & 4095) * 0.004;
+  }
+  hasExtra(texel) {
+    return (this.words[4 * texel + 3] & 4096) !== 0;
   }
 
   /** Of the path of a bead, mm. */
   length(texel) {
-    const { words, grain } = this;
-    const [x, y, z, w] = words.subarray(4 * texel, 4 * texel + 4);
-    const ends = [[x & 65535, y & 65535], [x >>> 16, y >>> 16], [z & 65535, z >>> 16]].map(([a, b], axis) => (b - a) * grain[axis]);
-    const sweep = w & 4096 ? asFloat(words[4 * texel + 6]) : 0;
-    if (!sweep) return Math.hypot(...ends);
-    const [right, up] = [0, 1].map((axis) => asFloat(words[4 * texel + 4 + axis]) - ((axis ? x >>> 16 : x & 65535) * grain[axis]));
-    return Math.hypot(Math.hypot(right, up) * sweep, ends[2]);
+    const [from, to] = this.ends(texel);
+    const sweep = this.hasExtra(texel) ? asFloat(this.words[4 * texel + 6]) : 0;
+    if (!sweep) return Math.hypot(...sub(to, from));
+    // The center counts from the corner of the table.
+    const radius = Math.hypot(...[0, 1].map((axis) => asFloat(this.words[4 * texel + 4 + axis]) + this.low[axis] - from[axis]));
+    return Math.hypot(radius * sweep, to[2] - from[2]);
   }
 
   /** What the table knows of a bead, as the server describes it. */
   describe(texel) {
-    const [x, y, z, w] = this.words.subarray(4 * texel, 4 * texel + 4);
-    const run = this.runs.subarray(4 * (w >>> 13), 4 * (w >>> 13) + 4);
-    const at = (n, axis) => this.low[axis] + n * this.grain[axis];
-    const from = [at(x & 65535, 0), at(x >>> 16, 1), at(z & 65535, 2)];
-    const to = [at(y & 65535, 0), at(y >>> 16, 1), at(z >>> 16, 2)];
+    const first = 4 * (this.words[4 * texel + 3] >>> 13);
+    const run = this.runs.subarray(first, first + 4);
+    const [from, to] = this.ends(texel);
     return {
       number: this.beadOf(texel),
       layer: run[2],
       feature: this.features[run[3] & 255],
       tool: (run[3] >>> 8) & 255,
       object: this.objects[run[3] >>> 16] || undefined,
-      width_mm: (w & 4095) * 0.004,
+      width_mm: this.width(texel),
       height_mm: asFloat(run[0]),
       from,
       to,

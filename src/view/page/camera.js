@@ -89,7 +89,8 @@ export function project(camera, aspect, point) {
   return [0.5 + dot(way, camera.right) / (scale * aspect), 0.5 - dot(way, camera.up) / scale];
 }
 
-/** Mouse, touch and keys on an element. Calls moved(moving) after each change of orbit(), and clicked(x, y) in 0..1. */
+/** Mouse, touch and keys on an element. Calls moved(moving) after each change of orbit(), and clicked(x, y) in 0..1.
+ * key(event) returns whether another key is for the page. */
 export function handleInput(element, { orbit, moved, clicked, key }) {
   const pointers = new Map();
   let travelled = 0;
@@ -160,7 +161,7 @@ export function handleInput(element, { orbit, moved, clicked, key }) {
     else if (way) orbit().turn(way[0] * 0.08, -way[1] * 0.08);
     else if (event.key === "+" || event.key === "=") orbit().zoom(0.9);
     else if (event.key === "-") orbit().zoom(1 / 0.9);
-    else return key(event);
+    else return key(event) && event.preventDefault(); // else it would be typed where the focus goes
     event.preventDefault();
     moved(true);
     clearTimeout(wheelTimer);

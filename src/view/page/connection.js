@@ -50,6 +50,7 @@ export class Connection extends EventTarget {
   }
 
   #take(data) {
+    if (this.#closed) return; // it was on its way
     if (typeof data === "string") {
       const message = JSON.parse(data);
       this.#tell(message.type, message);

@@ -1,6 +1,5 @@
 // The panel beside the picture: what it shows is the state, what is changed there changes the state.
-
-const byId = (id) => document.getElementById(id);
+import { byId, checkbox, follow, renew, setOptions } from "./elements.js";
 
 export class Controls {
   #facts = null;
@@ -32,8 +31,7 @@ export class Controls {
     this.#facts = facts;
     const print = facts.print;
     for (const group of document.querySelectorAll(".of-prints")) group.hidden = !print;
-    const materials = byId("material");
-    materials.replaceChildren(new Option("as the file says", ""), new Option("a colour", "#"), ...facts.materials.map((name) => new Option(name, name)));
+    setOptions(byId("material"), [["as the file says", ""], ["a colour", "#"], ...facts.materials.map((name) => [name, name])]);
     if (print) {
       for (const id of ["layer-low", "layer-high", "layer-from", "layer-to"]) byId(id).max = print.layers;
       this.#checks("features", print.features.map((f) => [f.name, f.name.replaceAll("-", " ")]), (list) => (this.state().hidden_features = list.off));
@@ -42,7 +40,8 @@ export class Controls {
       byId("objects-group").hidden = print.objects.length < 2;
       byId("tools-group").hidden = print.tools.length < 2;
     }
-    byId("color-by").replaceChildren(new Option("the material", ""), ...facts.attributes.map((name) => new Option(name === "color" ? "the file's colours" : name.replace("_", " "), name)));
+    const attributes = facts.attributes.map((name) => [name === "color" ? "the file's colours" : name.replace("_", " "), name]);
+    setOptions(byId("color-by"), [["the material", ""], ...attributes]);
     this.show();
   }
 
@@ -97,20 +96,16 @@ export class Controls {
       this.hold();
       this.changed(false);
     };
-    place.replaceChildren(...entries.map(([value, text]) => {
-      const label = document.createElement("label");
-      const box = Object.assign(document.createElement("input"), { type: "checkbox", value });
-      box.addEventListener("change", collect);
-      label.append(box, text);
-      return label;
-    }));
+    renew(place, ...entries.map(([value, text]) => checkbox(value, collect, text)));
   }
 
-  /** Layers low to high of all; the ends that are those of the print are left open. */
+  /** Layers low to high of all, NaN: from the first, to the last; the ends that are those of the print are left open. */
   setLayers(low, high, moving) {
     const count = this.layerCount;
-    low = Math.max(1, Math.min(count, Math.round(low) || 1));
-    high = Math.max(low, Math.min(count, Math.round(high) || count));
+    if (!count) return;
+    const within = (layer, least, open) => Math.max(least, Math.min(count, Number.isNaN(layer) ? open : Math.round(layer)));
+    low = within(low, 1, 1);
+    high = within(high, low, count);
     this.state().beads = null;
     this.state().layers = [low === 1 && high === count ? 0 : low, high === count ? 0 : high];
     this.hold();
@@ -118,20 +113,26 @@ export class Controls {
     this.changed(moving);
   }
 
+  /** Makes a layer the last one, or that which is shown alone. */
+  goTo(layer) {
+    const low = byId("one-layer").checked ? layer : Math.min(this.state().layers[0] || 1, layer);
+    this.setLayers(low, layer, false);
+  }
+
+  /** Another input: what was chosen of the last one is not of this one. */
+  reset() {
+    this.stop();
+    byId("one-layer").checked = false;
+  }
+
   #bindLayers() {
-    const low = byId("layer-low");
-    const high = byId("layer-high");
-    for (const [slider, moving] of [[low, true], [low, false], [high, true], [high, false]])
-      slider.addEventListener(moving ? "input" : "change", () => {
-        // A handle pushes the other one.
-        const [a, b] = [Number(low.value), Number(high.value)];
-        if (byId("one-layer").checked) return this.setLayers(Number(slider.value), Number(slider.value), moving);
-        if (slider === low) this.setLayers(a, Math.max(a, b), moving);
-        else this.setLayers(Math.min(a, b), b, moving);
-      });
-    byId("one-layer").addEventListener("change", (e) => this.setLayers(e.target.checked ? Number(high.value) : 1, Number(high.value), false));
+    const [low, high, one] = ["layer-low", "layer-high", "one-layer"].map(byId);
+    // A handle pushes the other one.
+    follow(low, (layer, moving) => this.setLayers(layer, one.checked ? layer : Math.max(layer, Number(high.value)), moving));
+    follow(high, (layer, moving) => this.setLayers(one.checked ? layer : Math.min(layer, Number(low.value)), layer, moving));
+    one.addEventListener("change", () => this.setLayers(one.checked ? Number(high.value) : 1, Number(high.value), false));
     for (const id of ["layer-from", "layer-to"])
-      byId(id).addEventListener("change", () => this.setLayers(Number(byId("layer-from").value), Number(byId("layer-to").value), false));
+      byId(id).addEventListener("change", () => this.setLayers(byId("layer-from").valueAsNumber, byId("layer-to").valueAsNumber, false));
   }
 
   #bindProgress() {
@@ -142,9 +143,7 @@ export class Controls {
       this.show();
       this.changed(moving);
     };
-    const slider = byId("printed");
-    slider.addEventListener("input", () => set(Number(slider.value), true));
-    slider.addEventListener("change", () => set(Number(slider.value), false));
+    follow(byId("printed"), set);
     byId("by-time").addEventListener("change", () => {
       this.state().by_time = byId("by-time").value !== "";
       this.hold();
@@ -157,15 +156,16 @@ export class Controls {
     byId("play").setAttribute("aria-pressed", "true");
     byId("play").textContent = "❚❚";
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    let value = this.state().printed >= 100 ? 0.5 : this.state().printed;
+    if (this.state().printed >= 100) this.state().printed = 0.5;
     this.#playing = setInterval(() => {
-      value = Math.min(100, value + (still ? 10 : 0.5));
+      const value = Math.min(100, this.state().printed + (still ? 10 : 0.5)); // the slider may have been moved
       set(value, value < 100);
       if (value >= 100) this.stop();
     }, still ? 1500 : 100);
   }
 
   stop() {
+    if (!this.#playing) return;
     clearInterval(this.#playing);
     this.#playing = 0;
     byId("play").setAttribute("aria-pressed", "false");
@@ -206,13 +206,9 @@ export class Controls {
   #bindLight() {
     const sky = () => `sky:${byId("sun-height").value},${byId("sun-turn").value}`;
     byId("light").addEventListener("change", (e) => this.#set("light", e.target.value === "sky:" ? sky() : e.target.value));
-    const follow = (id, take) => {
-      byId(id).addEventListener("input", () => take(true));
-      byId(id).addEventListener("change", () => take(false));
-    };
-    for (const id of ["sun-height", "sun-turn"]) follow(id, (moving) => this.#set("light", sky(), moving));
-    follow("light-turn", (moving) => this.#set("light_rotation", Number(byId("light-turn").value), moving));
-    follow("exposure", (moving) => this.#set("exposure", Number(byId("exposure").value), moving));
+    for (const id of ["sun-height", "sun-turn"]) follow(byId(id), (_, moving) => this.#set("light", sky(), moving));
+    follow(byId("light-turn"), (degrees, moving) => this.#set("light_rotation", degrees, moving));
+    follow(byId("exposure"), (stops, moving) => this.#set("exposure", stops, moving));
     byId("own-exposure").addEventListener("change", (e) => this.#set("exposure", e.target.checked ? Number(byId("exposure").value) : null));
     byId("bed").addEventListener("change", (e) => {
       const value = e.target.value;
@@ -244,17 +240,16 @@ export class Controls {
   }
 
   #bindSection() {
-    const take = (moving) => this.#set("clip", this.#section(), moving);
+    const take = (moving = false) => this.#set("clip", this.#section(), moving);
     // A new cut faces the camera.
     const face = () => {
       const eye = this.eye();
       const axis = Number(byId("cut-axis").value);
       if (eye && this.#box) byId("cut-flip").checked = eye[axis] < (this.#box[axis] + this.#box[axis + 3]) / 2;
-      take(false);
+      take();
     };
     for (const id of ["cut", "cut-axis"]) byId(id).addEventListener("change", face);
-    byId("cut-flip").addEventListener("change", () => take(false));
-    byId("cut-at").addEventListener("input", () => take(true));
-    byId("cut-at").addEventListener("change", () => take(false));
+    byId("cut-flip").addEventListener("change", () => take());
+    follow(byId("cut-at"), (_, moving) => take(moving));
   }
 }

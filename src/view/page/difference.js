@@ -5,14 +5,13 @@ const CELL = [0.5, 0.5, 0.05]; // mm, of the map that finds a bead by its middle
 
 /** Six coordinates of the ends, and the width, of each bead of a table; null where a texel is none. */
 function endsOf(table) {
-  const { words, low, grain, texels } = table;
-  const ends = new Float64Array(7 * texels).fill(NaN);
-  for (let n = 0; n < texels; ++n) {
-    const [x, y, z, w] = words.subarray(4 * n, 4 * n + 4);
-    const a = [x & 65535, x >>> 16, z & 65535].map((v, axis) => low[axis] + v * grain[axis]);
-    const b = [y & 65535, y >>> 16, z >>> 16].map((v, axis) => low[axis] + v * grain[axis]);
-    ends.set([...a, ...b, (w & 4095) * 0.004], 7 * n);
-    if (w & 4096) ++n;
+  const ends = new Float64Array(7 * table.texels).fill(NaN);
+  for (let n = 0; n < table.texels; ++n) {
+    const [from, to] = table.ends(n);
+    ends.set(from, 7 * n);
+    ends.set(to, 7 * n + 3);
+    ends[7 * n + 6] = table.width(n);
+    if (table.hasExtra(n)) ++n;
   }
   return ends;
 }

@@ -1,15 +1,16 @@
 // Finds a text, a line, a time or a layer of the program, and goes there.
 import { linesOf, secondsOf } from "./answer.js";
+import { byId } from "./elements.js";
 
-const byId = (id) => document.getElementById(id);
 const HINTS = { text: "M106", line: "1200", time: "1:25:00", layer: "12" };
 
 export class Finder {
   #line = 0; // that was found last
 
-  /** send(message): to the server; go(bead, layer, lines): shows what is printed up to a bead; layer(number): a layer. */
-  constructor({ send, go, layer }) {
-    Object.assign(this, { send, go, layer });
+  /** send(message): to the server; go(bead, layer, lines): shows what is printed up to a bead; goTo(number): a layer, of
+   * layers(). */
+  constructor({ send, go, goTo, layers }) {
+    Object.assign(this, { send, go, goTo, layers });
     byId("find").addEventListener("submit", (event) => (event.preventDefault(), this.#ask(false)));
     byId("find-back").addEventListener("click", () => this.#ask(true));
     byId("find-what").addEventListener("change", () => {
@@ -40,8 +41,15 @@ export class Finder {
     if (what === "text") return this.send({ type: "find", text: wanted, line: this.#line, back });
     const number = what === "time" ? secondsOf(wanted) : /^\d+$/.test(wanted) ? Number(wanted) : NaN;
     if (!(number >= 0 && number < 1e9) || (what === "line" && !number)) return this.#say(`That is no ${what}: write it as ${HINTS[what]}.`);
-    if (what === "layer") return this.layer(number);
+    if (what === "layer") return this.#askLayer(number);
     this.send({ type: "find", [what === "time" ? "seconds" : "line"]: number });
+  }
+
+  #askLayer(number) {
+    const count = this.layers();
+    if (number < 1 || number > count) return this.#say(`The print has layers 1 to ${count}.`);
+    this.goTo(number);
+    this.#say(`layer ${number}`);
   }
 
   /** What the server has found. */

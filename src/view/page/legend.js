@@ -1,5 +1,6 @@
 // What the colours mean, in units as people write them.
 import { clock, secondsOf } from "./answer.js";
+import { element, renew, setOptions, swatch } from "./elements.js";
 
 const UNITS = { "mm^3/s": "mm³/s", C: "°C", s: "h:min:s" };
 const BARS = 32;
@@ -27,19 +28,18 @@ export class Legend {
     const gone = ({ title, entries }) => old.filter(({ name }) => title === "feature" && this.hidden().includes(name) && !entries.some((each) => each.name === name));
     this.#legends = legends.map((each) => ({ ...each, entries: [...each.entries, ...gone(each)] }));
     this.place.hidden = legends.length === 0;
-    this.place.replaceChildren(...this.#legends.flatMap((each) => [
-      element("h2", "", [each.title.replace("_", " "), UNITS[each.unit] ?? each.unit].filter(Boolean).join(", ")),
+    renew(this.place, ...this.#legends.flatMap((each) => [
+      element("h2", {}, [each.title.replace("_", " "), UNITS[each.unit] ?? each.unit].filter(Boolean).join(", ")),
       ...(each.ramp.length ? this.#scale(each) : [this.#list(each)]),
     ]));
     this.weigh();
   }
 
   #scale({ least, most, unit, ramp }) {
-    const bar = element("div", "ramp");
+    const bar = element("div", { className: "ramp" });
     bar.style.backgroundImage = `linear-gradient(to right, ${ramp.join(", ")})`;
-    const ends = element("form", "ends");
     const inputs = [least, most].map((value, n) => {
-      const input = Object.assign(element("input"), { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });
+      const input = element("input", { value: number(value, unit), ariaLabel: n ? "Most" : "Least" });
       input.addEventListener("change", () => {
         const typed = inputs.map((each) => (unit === "s" ? secondsOf(each.value.trim()) : Number(each.value || NaN)));
         // What was not typed keeps its digits.
@@ -49,19 +49,18 @@ export class Legend {
       });
       return input;
     });
-    ends.addEventListener("submit", (event) => event.preventDefault());
-    const all = Object.assign(element("button", "", "All"), { type: "button", title: "From the least value to the most", hidden: !this.range() });
+    const all = element("button", { type: "button", title: "From the least value to the most", hidden: !this.range() }, "All");
     all.addEventListener("click", () => this.setRange(null));
-    ends.append(inputs[0], all, inputs[1]);
-    const by = element("select", "by");
-    by.append(new Option("by length", ""), new Option("by time", "1"));
+    const ends = element("form", { className: "ends" }, inputs[0], all, inputs[1]);
+    ends.addEventListener("submit", (event) => event.preventDefault());
+    const by = element("select", { className: "by", ariaLabel: "Histogram" });
+    setOptions(by, [["by length", ""], ["by time", "1"]]);
     by.value = this.#by_time ? "1" : "";
-    by.ariaLabel = "Histogram";
     by.addEventListener("change", () => {
       this.#by_time = by.value !== "";
       this.weigh();
     });
-    return [element("div", "bars"), bar, ends, by];
+    return [element("div", { className: "bars" }), bar, ends, by];
   }
 
   /** The histogram of what is shown now. */
@@ -75,7 +74,7 @@ export class Legend {
     const highest = Math.max(...sums);
     const unit = (sum) => (this.#by_time ? clock(sum) : `${(sum / 1000).toFixed(2)} m`);
     bars.replaceChildren(...sums.map((sum, n) => {
-      const bar = Object.assign(element("i"), { title: `from ${Number((least + ((most - least) * n) / BARS).toPrecision(4))}: ${unit(sum)}` });
+      const bar = element("i", { title: `from ${Number((least + ((most - least) * n) / BARS).toPrecision(4))}: ${unit(sum)}` });
       bar.style.height = `${highest ? (100 * sum) / highest : 0}%`;
       return bar;
     }));
@@ -84,24 +83,18 @@ export class Legend {
   #list({ title, entries }) {
     const list = element("ul");
     for (const { name, color } of entries) {
-      const item = element("li");
-      const swatch = element("span", "swatch");
-      swatch.style.background = color;
-      item.append(swatch, name);
+      const item = element("li", {}, swatch(color), name);
       list.append(item);
       if (title !== "feature" || !this.#shares.has(name)) continue;
-      item.append(element("output", "", `${(100 * this.#shares.get(name)).toFixed(1)} %`));
+      item.append(element("output", {}, `${(100 * this.#shares.get(name)).toFixed(1)} %`));
       item.setAttribute("role", "checkbox");
       item.setAttribute("aria-checked", String(!this.hidden().includes(name)));
       item.tabIndex = 0;
+      item.dataset.name = name;
       const press = () => this.toggle(name);
       item.addEventListener("click", press);
       item.addEventListener("keydown", (event) => (event.key === " " || event.key === "Enter") && (event.preventDefault(), press()));
     }
     return list;
   }
-}
-
-function element(tag, className = "", textContent = "") {
-  return Object.assign(document.createElement(tag), { className, textContent });
 }

@@ -15,10 +15,8 @@ uniform sampler2D light;    // octahedral: light on a matt surface by its normal
 
 vec2 lightAt(vec3 way) {
   way.xy = vec2(turned.x * way.x + turned.y * way.y, turned.x * way.y - turned.y * way.x);
-  way /= abs(way.x) + abs(way.y) + abs(way.z);
-  vec2 p = way.z < 0.0 ? (1.0 - abs(way.yx)) * vec2(way.x < 0.0 ? -1.0 : 1.0, way.y < 0.0 ? -1.0 : 1.0) : way.xy;
   float side = float(textureSize(light, 0).x);
-  return textureLod(light, ((0.5 * p + 0.5) * (side - 1.0) + 0.5) / side, 0.0).xy;
+  return textureLod(light, (octahedral(way) * (side - 1.0) + 0.5) / side, 0.0).xy;
 }
 vec3 display(vec3 c) {      // Khronos PBR Neutral, as tonemap.cpp, and sRGB
   c = max(c * scale, vec3(0.0));
@@ -95,7 +93,6 @@ uniform bool colored, as_normals;
 uniform vec2 size;
 uniform vec3 albedo;
 uniform float reach;        // mm: what is farther away keeps no light off
-uniform uint marked;        // texel + 1
 out vec4 color;
 
 vec3 rayAt(vec2 pixel) { vec2 at = (2.0 * pixel / size - 1.0) * slope; return forward + at.x * right + at.y * up; }
@@ -160,7 +157,6 @@ void main() {
 #endif
     vec3 sum = brightest * (body * lightAt(shading).x + 0.04 * lightAt(reflect(normalize(ray), shading)).y);
     color.rgb = display(open * sum);
-    if (id == marked) color.rgb = mix(color.rgb, vec3(1.0, 0.82, 0.25), 0.55);
   }
 #ifdef FINE
   for (bool bed = id == 0u && has_bed && !as_normals && ray.z < 0.0; bed; bed = false) {

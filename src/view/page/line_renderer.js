@@ -1,7 +1,7 @@
 // Thin lines and round marks in the picture: travels, seams and the like, and the bed. Beads in front of them hide them.
 import { HEAD, NEAR } from "./bead_shaders.js";
 import { LINES } from "./move_table.js";
-import { makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
+import { makeFramebuffer, makeProgram, makeTable, makeTexture, setUniforms } from "./webgl.js";
 
 const vertices = `${HEAD}
 uniform usampler2D records; // two texels each, see move_table.h; the last word has the layer instead of the line
@@ -52,7 +52,7 @@ export class LineRenderer {
   constructor(gl) {
     this.gl = gl;
     this.program = makeProgram(gl, vertices, fragments);
-    this.target = gl.createFramebuffer();
+    this.target = makeFramebuffer(gl);
     this.image = makeTexture(gl);
   }
 

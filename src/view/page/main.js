@@ -3,6 +3,7 @@ import { Answer, clock } from "./answer.js";
 import { OrbitCamera, handleInput, sub, unit } from "./camera.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
+import { byId, setOptions } from "./elements.js";
 import { Finder } from "./finder.js";
 import { MotionPanel } from "./motion_panel.js";
 import { KINDS } from "./move_table.js";
@@ -12,7 +13,6 @@ import { Saving } from "./saving.js";
 import { SecondPrint } from "./second_print.js";
 import { fromFragment, initial, toFragment, toMessage } from "./state.js";
 
-const byId = (id) => document.getElementById(id);
 const picture = byId("picture");
 const context = picture.getContext("2d");
 
@@ -56,19 +56,14 @@ const second = new SecondPrint({ url, own, state: () => state, changed: () => as
 const finder = new Finder({
   send: (message) => connection.send(message),
   go: (bead, layer, lines) => {
-    goTo(layer);
+    controls.goTo(layer);
     motion.go(bead, lines);
   },
-  layer: goTo,
+  goTo: (layer) => controls.goTo(layer),
+  layers: () => controls.layerCount,
 });
 let movesAsked = false;
 const answer = new Answer(byId("answer"), byId("marks"));
-
-/** The last layer that is shown. */
-function goTo(layer) {
-  const one = byId("one-layer").checked;
-  controls.setLayers(one ? layer : Math.min(state.layers[0] || 1, layer), layer, false);
-}
 
 // ---------------------------------------------------------------- asking
 
@@ -147,21 +142,22 @@ function setView(view) {
 
 function fit() {
   if (!box || !camera) return;
-  orbit ??= OrbitCamera.from(camera, middle());
-  orbit.fit(box, aspect);
+  turned().fit(box, aspect);
   ask(false);
 }
 
 /** A named view is fitted to what is shown; from here on it stays where it was seen from. */
 function hold() {
-  if (!orbit && camera && box && latest >= viewFrom) orbit = OrbitCamera.from(camera, middle());
+  if (camera && box && latest >= viewFrom) turned();
 }
 
 const middle = () => [0, 1, 2].map((n) => (box[n] + box[n + 3]) / 2);
+/** The camera that turns, from where the last picture was seen. */
+const turned = () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera());
 
 // ---------------------------------------------------------------- pictures
 
-let shownKind = 0; // decoding may end in another order than it began
+let [arrivedLast, drawnLast] = [0, 0]; // decoding may end in another order than it began
 
 connection.addEventListener("picture", async ({ detail }) => {
   const arrived = performance.now();
@@ -169,11 +165,12 @@ connection.addEventListener("picture", async ({ detail }) => {
     connection.send({ type: "shown" });
     return saving.take(detail.file);
   }
-  const order = ++shownKind;
+  const order = ++arrivedLast;
   const bitmap = await createImageBitmap(detail.file);
   connection.send({ type: "shown" });
-  if (own.ready && detail.number !== number) return bitmap.close(); // it has moved on
-  if (order !== shownKind && detail.kind === "moving") return;
+  const late = order < drawnLast || (order < arrivedLast && detail.kind === "moving");
+  if (late || (own.ready && detail.number !== number)) return bitmap.close(); // it has moved on
+  drawnLast = order;
   if (picture.width !== bitmap.width || picture.height !== bitmap.height) {
     picture.width = bitmap.width;
     picture.height = bitmap.height;
@@ -227,29 +224,44 @@ connection.addEventListener("stranger", () => trouble("The server was started an
 on("hello", (detail) => {
   if (wrong) trouble(wrong);
   wrong = "";
-  const files = byId("file");
-  files.replaceChildren(...detail.files.map((name, n) => new Option(name, String(n))));
-  files.parentElement.hidden = false;
+  setOptions(byId("file"), detail.files.map((name, n) => [name, n]));
   saving.forget();
-  file = Math.min(file, detail.files.length - 1);
-  files.value = String(file);
-  second.setFiles(detail.files, file);
-  document.title = `${detail.files[file]} · vdbview`;
+  nameFile(file);
   if (file > 0) connection.send({ type: "open", file });
   ask(false);
   askBeads();
 });
+/** One of the inputs, or the last one. */
+function nameFile(wanted) {
+  const names = [...byId("file").options].map((each) => each.textContent);
+  file = Math.min(wanted, names.length - 1);
+  byId("file").value = String(file);
+  document.title = `${names[file]} · vdbview`;
+  second.setFiles(names, file);
+}
+function openFile(wanted, view) {
+  controls.reset();
+  nameFile(wanted);
+  setState(view);
+  latest = 0;
+  answer.reset();
+  generation = undefined;
+  own.refuse("the beads are not here yet");
+  connection.send({ type: "open", file });
+  ask(false);
+  askBeads();
+}
+function setState(view) {
+  state = view;
+  orbit = view.camera.eye ? orbitOf(view.camera) : null;
+  viewFrom = number + 1;
+}
 function askBeads() {
   movesAsked = false;
   if (streamed) own.refuse("");
   else connection.send({ type: "beads" });
 }
-on("beads", (detail) => own.begin(detail, detail.file));
-on("bead-part", (detail) => own.add(detail, detail.file));
-on("no-beads", (detail) => own.refuse(detail.text));
-on("colors", (detail) => own.paint(detail.palette, detail.values, detail.file));
-on("moves", (detail) => own.beginMoves(detail));
-on("move-part", (detail) => own.addMoves(detail, detail.file));
+own.listen(connection);
 on("no-moves", (detail) => {
   movesAsked = false;
   state.also = [];
@@ -312,6 +324,7 @@ on("progress", (detail) => {
 });
 on("saving", (detail) => saving.progress(detail));
 on("failed", (detail) => {
+  saving.forget(); // the server has given up all of this view
   trouble(detail.text, "view");
   document.body.classList.add("stale"); // what is on the screen is not what was asked for
   byId("command").textContent = "";
@@ -322,6 +335,7 @@ on("refused", (detail) => {
 });
 on("inspected", (detail) => {
   window.vdbviewFound = detail;
+  if (turns) turnAbout(detail);
   answer.show(detail);
   answer.draw(camera, aspect);
 });
@@ -336,6 +350,14 @@ function setMeasuring(on) {
   if (on) say("click two points");
 }
 
+let turns = false; // about what the server finds under a double click
+function turnAbout({ position }) {
+  turns = false;
+  if (!position || !camera) return;
+  turned().target = position;
+  ask(false);
+}
+
 async function copy(text, what) {
   try {
     await navigator.clipboard.writeText(text);
@@ -345,11 +367,12 @@ async function copy(text, what) {
   }
 }
 
-const turning = { orbit: () => (orbit ??= camera && box ? OrbitCamera.from(camera, middle()) : new OrbitCamera()), moved: ask };
+const turning = { orbit: turned, moved: ask };
 handleInput(byId("second-beads"), { ...turning, clicked: () => {}, key: () => {} });
 handleInput(picture, {
   ...turning,
   clicked: (x, y) => {
+    turns = false;
     // At once what the table says; the server answers with the place, the time and the line.
     const texel = answer.measuring ? -1 : own.at(x, y);
     window.vdbviewPicked = texel < 0 ? null : own.table.describe(texel);
@@ -358,28 +381,26 @@ handleInput(picture, {
   },
   key: (event) => {
     const views = ["iso", "front", "back", "left", "right", "top", "bottom"];
-    const [low, high] = [state.layers[0] || 1, state.layers[1] || controls.layerCount];
-    const keys = {
-      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+    const last = state.layers[1] || controls.layerCount;
+    const ofPrints = {
       t: () => motion.toggle("travels"), s: () => motion.toggle("seams"), l: () => byId("one-layer").click(), p: () => byId("play").click(),
-      "[": () => controls.setLayers(low, high - 1, false), "]": () => controls.setLayers(low, high + 1, false),
+      "[": () => controls.goTo(last - 1), "]": () => controls.goTo(last + 1),
       ",": () => motion.step(-1), ".": () => motion.step(1), "/": () => finder.open(),
     };
-    if (event.key in views) setView(views[event.key]);
-    else keys[event.key.toLowerCase()]?.();
+    const keys = {
+      f: fit, m: () => setMeasuring(!answer.measuring), escape: () => answer.clear(), "?": () => byId("keys").showModal(),
+      ...(controls.layerCount > 0 && ofPrints),
+    };
+    const act = event.key in views ? () => setView(views[event.key]) : keys[event.key.toLowerCase()];
+    act?.();
+    return act !== undefined;
   },
 });
 
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => setView(button.dataset.view));
 byId("fit").addEventListener("click", fit);
 byId("help").addEventListener("click", () => byId("keys").showModal());
-picture.addEventListener("dblclick", () => {
-  const place = window.vdbviewFound?.position;
-  if (!place || !camera) return;
-  orbit ??= OrbitCamera.from(camera, middle());
-  orbit.target = place;
-  ask(false);
-});
+picture.addEventListener("dblclick", () => (turns = true));
 byId("measure").addEventListener("click", () => setMeasuring(!answer.measuring));
 byId("trouble-close").addEventListener("click", () => (byId("trouble").hidden = true));
 byId("copy-command").addEventListener("click", () => copy(byId("command").textContent, "command"));
@@ -394,20 +415,7 @@ const saving = new Saving(byId("save"), {
   say,
   name: () => byId("file").selectedOptions[0]?.textContent ?? "",
 });
-byId("file").addEventListener("change", () => {
-  file = Number(byId("file").value);
-  state = initial();
-  orbit = null;
-  latest = 0;
-  answer.clear();
-  second.setFiles([...byId("file").options].map((each) => each.textContent), file);
-  document.title = `${byId("file").selectedOptions[0].textContent} · vdbview`;
-  generation = undefined;
-  own.refuse("the beads are not here yet");
-  connection.send({ type: "open", file });
-  ask(false);
-  askBeads();
-});
+byId("file").addEventListener("change", () => openFile(Number(byId("file").value), initial()));
 function showPanels(shown) {
   byId("side").classList.toggle("closed", !shown);
   byId("panels").setAttribute("aria-expanded", String(shown));
@@ -415,9 +423,10 @@ function showPanels(shown) {
 byId("panels").addEventListener("click", () => showPanels(byId("side").classList.contains("closed")));
 if (matchMedia("(max-width: 760px)").matches) showPanels(false); // the picture first
 window.addEventListener("hashchange", () => {
-  ({ state, wrong } = fromFragment(location.hash));
+  const { state: view, file: linked, wrong } = fromFragment(location.hash);
   if (wrong) trouble(wrong);
-  orbit = state.camera.eye ? orbitOf(state.camera) : null;
+  if (linked !== file) return openFile(linked, view);
+  setState(view);
   controls.show();
   ask(false);
 });

@@ -1,8 +1,7 @@
 // Beside the picture: what the machine does besides beads, the layer's height and time, and its moves with their lines.
 import { clock, linesOf } from "./answer.js";
+import { byId, checkbox, element, follow, swatch } from "./elements.js";
 import { KINDS } from "./move_table.js";
-
-const byId = (id) => document.getElementById(id);
 
 export class MotionPanel {
   #layers = null; // of the server: heights and times
@@ -14,21 +13,12 @@ export class MotionPanel {
   /** own: the browser's own picture; send(message): to the server. The others as those of Controls. */
   constructor({ state, changed, hold, own, send }) {
     Object.assign(this, { state, changed, hold, own, send });
-    byId("also").replaceChildren(...[...KINDS, ["bed and grid of 10 mm", "#1973cc"]].map(([name, color]) => {
-      const label = document.createElement("label");
-      const box = Object.assign(document.createElement("input"), { type: "checkbox", value: name });
-      const swatch = Object.assign(document.createElement("span"), { className: "swatch" });
-      swatch.style.background = color;
-      box.addEventListener("change", () => this.toggle(name, box.checked));
-      label.append(box, swatch, name, document.createElement("output"));
-      return label;
-    }));
+    byId("also").replaceChildren(...[...KINDS, ["bed and grid of 10 mm", "#1973cc"]].map(([name, color]) =>
+      checkbox(name, (box) => this.toggle(name, box.checked), swatch(color), name, element("output"))));
     byId("layers-group").addEventListener("focusin", () => this.#askLayers());
     byId("layers-group").addEventListener("input", () => this.#askLayers());
     byId("moves-group").addEventListener("toggle", () => this.show());
-    const slider = byId("moves");
-    slider.addEventListener("input", () => this.#move(Number(slider.value), true));
-    slider.addEventListener("change", () => this.#move(Number(slider.value), false));
+    follow(byId("moves"), (move, moving) => this.#move(move, moving));
   }
 
   /** The file was read, perhaps anew. */

@@ -13,7 +13,6 @@ export class MoveTable {
   constructor({ count, generation }, beads) {
     Object.assign(this, { count, generation, beads });
     this.words = new Uint32Array(8 * count);
-    this.lines = new Uint32Array(count); // of the program
     this.begins = new Uint8Array(count); // 0: it goes on with the one before it
     this.totals = KINDS.map(() => 0);
     this.got = 0;
@@ -31,7 +30,6 @@ export class MoveTable {
     const last = beads.texels - beads.extras.length - 1;
     for (const end = this.got + part.length / 8; this.got < end; ++this.got) {
       const word = words[8 * this.got + 7];
-      this.lines[this.got] = word & 0xfffffff;
       this.begins[this.got] = word >>> 31 ? 0 : 1;
       this.totals[(word >>> 28) & 7] += this.begins[this.got];
       // What leads to a bead is of its layer; what comes behind the last bead, of that one's.

@@ -53,6 +53,16 @@ export class OwnPicture extends EventTarget {
 
   // ---------------------------------------------------------------- from the server
 
+  /** Takes from a connection what it draws. */
+  listen(connection) {
+    const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail, detail.file));
+    on("beads", (head, runs) => this.begin(head, runs));
+    on("bead-part", (part, bytes) => this.add(part, bytes));
+    on("no-beads", ({ text }) => this.refuse(text));
+    on("colors", ({ palette, values }, places) => this.paint(palette, values, places));
+    on("moves", (head) => this.beginMoves(head));
+    on("move-part", (part, bytes) => this.addMoves(part, bytes));
+  }
   begin(head, runs) {
     this.#stop("the beads are on their way");
     this.table = new BeadTable(head, runs);
@@ -138,6 +148,7 @@ export class OwnPicture extends EventTarget {
   #stop(why) {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
+    this.#renderer?.release();
     this.#renderer = null;
     this.why = why;
     this.#tell("changed");

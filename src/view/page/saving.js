@@ -1,4 +1,5 @@
 // The button that saves a finished picture: asks for it, tells how far it is, and hands the file to the browser.
+import { element } from "./elements.js";
 
 export class Saving {
   #goesOn = false;
@@ -33,9 +34,8 @@ export class Saving {
   take(blob) {
     this.#set(false);
     window.vdbviewSaved = blob;
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = `${this.name().replace(/\.[^.]*$/, "") || "picture"}.png`;
+    const name = this.name().replace(/\.[^.]*$/, "") || "picture";
+    const link = element("a", { href: URL.createObjectURL(blob), download: `${name}.png` });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
     this.say("saved");

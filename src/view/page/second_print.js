@@ -1,10 +1,10 @@
 // Another of the inputs beside the first: the same camera and selection, and what of the beads differs.
 import { Connection } from "./connection.js";
 import { amount, onlyIn } from "./difference.js";
+import { byId, setOptions } from "./elements.js";
 import { OwnPicture } from "./own_picture.js";
 import { initial, toMessage } from "./state.js";
 
-const byId = (id) => document.getElementById(id);
 const GREY = [0.35, 0.35, 0.35];
 const [GONE, NEW] = [[0.75, 0.03, 0.02], [0.02, 0.45, 0.05]];
 
@@ -32,7 +32,10 @@ export class SecondPrint {
 
   /** The inputs, of which one is shown. */
   setFiles(names, file) {
-    byId("second").replaceChildren(new Option("nothing", ""), ...names.map((name, n) => new Option(name, String(n))).filter((_, n) => n !== file));
+    const list = byId("second");
+    const chosen = list.value; // stays, also when the server comes back
+    setOptions(list, [["nothing", ""], ...names.map((name, n) => [name, n]).filter(([, n]) => n !== file)]);
+    list.value = list.querySelector(`[value="${chosen}"]`) ? chosen : "";
     byId("second-group").hidden = names.length < 2;
     if (this.shown) this.#open();
   }
@@ -58,7 +61,8 @@ export class SecondPrint {
     }
     const own = this.#own;
     own.refuse("the beads are not here yet");
-    const on = (type, take) => connection.addEventListener(type, ({ detail }) => connection === this.#connection && take(detail));
+    own.listen(connection);
+    const on = (type, take) => connection.addEventListener(type, ({ detail }) => take(detail));
     let generation;
     on("hello", () => {
       connection.send({ type: "open", file: Number(file) });
@@ -68,10 +72,7 @@ export class SecondPrint {
       if (generation !== undefined && generation !== facts.generation) connection.send({ type: "beads" });
       generation = facts.generation;
     });
-    on("beads", (head) => own.begin(head, head.file));
-    on("bead-part", (part) => own.add(part, part.file));
-    on("no-beads", ({ text }) => (own.refuse(text), this.#say(`It can't be shown here: ${text}.`)));
-    on("colors", ({ palette, values, file: places }) => own.paint(palette, values, places));
+    on("no-beads", ({ text }) => this.#say(`It can't be shown here: ${text}.`));
     on("look", (look) => own.illuminate(look));
     on("loading", ({ step }) => own.ready || this.#say(`${step} …`));
     on("failed", ({ text }) => this.#say(text));

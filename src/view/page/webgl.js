@@ -4,15 +4,30 @@ export const ROW_BITS = 11;
 /** Texels a row of all tables. */
 export const ROW = 1 << ROW_BITS;
 
+const made = new WeakMap(); // by context
+function make(gl, kind) {
+  const object = gl[`create${kind}`]();
+  if (!made.has(gl)) made.set(gl, []);
+  made.get(gl).push([kind, object]);
+  return object;
+}
+/** Gives back what was made in a context: a browser would keep it on its GPU for long. */
+export function release(gl) {
+  for (const [kind, object] of made.get(gl) ?? []) gl[`delete${kind}`](object);
+  made.delete(gl);
+}
+export const makeFramebuffer = (gl) => make(gl, "Framebuffer");
+
 /** Throws an Error with what the compiler says. */
 export function makeProgram(gl, vertices, fragments) {
-  const program = gl.createProgram();
+  const program = make(gl, "Program");
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertices], [gl.FRAGMENT_SHADER, fragments]]) {
     const shader = gl.createShader(kind);
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`its shader: ${gl.getShaderInfoLog(shader)}`);
     gl.attachShader(program, shader);
+    gl.deleteShader(shader); // with the program
   }
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`its shaders: ${gl.getProgramInfoLog(program)}`);
@@ -32,7 +47,7 @@ export function setUniforms(gl, { places }, values) {
 }
 
 export function makeTexture(gl, filter = gl.NEAREST) {
-  const texture = gl.createTexture();
+  const texture = make(gl, "Texture");
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
@@ -65,7 +80,7 @@ export function makeTable(gl, values, each) {
 
 /** A buffer of them, which is bound. */
 export function makeIndices(gl, values) {
-  const buffer = gl.createBuffer();
+  const buffer = make(gl, "Buffer");
   gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffer);
   gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, values, gl.STATIC_DRAW);
   return buffer;

@@ -97,11 +97,25 @@ TEST(BeadColors, ByBead) {
 }
 
 TEST(BeadColors, AChangeToAnUnnamedColorIsRemarked) {
-    EXPECT_EQ(warningCount(readProgram("M83\nG1 Z.2\nG1 X10 E1\nM600\nG1 X0 E1\n"), "M600 changes"), 1U);
-    // PrusaSlicer 2.2 named the tool only.
-    EXPECT_EQ(warningCount(readProgram("M83\nG1 Z.2\nG1 X10 E1\n;COLOR_CHANGE,T0\nM600\nG1 X0 E1\n"), "M600 changes"),
-              1U);
-    EXPECT_EQ(warningCount(readProgram("M600\nM83\nG1 Z.2\nG1 X10 E1\n"), "M600"), 0U);
+    const auto warnings = [](std::string_view program) {
+        return warningCount(readProgram(program), "to which colour");
+    };
+    EXPECT_EQ(warnings("M83\nG1 Z.2\nG1 X10 E1\nM600\nG1 X0 E1\n"), 1U);
+    EXPECT_EQ(warnings("M600\nM83\nG1 Z.2\nG1 X10 E1\n"), 0U);
+    EXPECT_EQ(warnings(";COLOR_CHANGE,T0\nM83\nG1 Z.2\nG1 X10 E1\n"), 0U);
+}
+
+// PrusaSlicer before 2.3 named the tool at most, and the printer's command may be none that is known. Its preview of
+// each of these has a second color.
+TEST(BeadColors, AChangeNeedsNoNamedColor) {
+    for (const std::string change :
+         {";COLOR_CHANGE,T0\nM600\n", ";COLOR_CHANGE,T0\nPAUSE\n", ";COLOR_CHANGE\n", ";COLOR_CHANGE,T0,#12\n"}) {
+        const Toolpath toolpath = readProgram("M83\nG1 Z.2\nG1 X10 E1\n" + change + "G1 X0 E1\n");
+        EXPECT_EQ(allColors(toolpath).size(), 2U) << change;
+        EXPECT_EQ(toolpath.color_changes.size(), 1U) << change;
+        EXPECT_EQ(warningCount(toolpath, "to which colour"), 1U) << change;
+    }
+    EXPECT_TRUE(readProgram("M83\nG1 Z.2\nG1 X10 E1\n;COLOR_CHANGED\nG1 X0 E1\n").color_changes.empty());
 }
 
 struct CorpusColors {

@@ -19,7 +19,7 @@ TEST(Color, SixDigits) {
 TEST(Color, ChangesByTheFile) {
     const Toolpath toolpath = readProgram(
         "M83\nG1 Z.2\nG1 X10 E1\n;COLOR_CHANGE,T0,#ED1C24\nM600\nG1 X0 "
-        "E1\n;COLOR_CHANGE,T12,#000001\n;COLOR_CHANGE,x\n");
+        "E1\n;COLOR_CHANGE,T12,#000001\n");
     ASSERT_EQ(toolpath.color_changes.size(), 2U);
     EXPECT_EQ(toolpath.color_changes[0].first_bead, 1U);
     EXPECT_EQ(toolpath.color_changes[0].tool, 0);

@@ -1,0 +1,261 @@
+"""The viewer by its keys and from one state to the next, in headless Chromium: what a hand does, with real key presses."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+
+from run_tools import BIN, check, gcode, run, skip_without
+
+skip_without(("chromium", "chromedriver"), ("selenium",))
+
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+
+from chromium import browser
+from program_counts import Program
+from viewer_page import ViewerPage
+
+FOLDER = tempfile.mkdtemp(prefix="stratum_keys_")
+page = browser(f"{FOLDER}/profile", 900, 640, 400)
+viewer = ViewerPage(page)
+js, until, drawn, set_slider = viewer.js, viewer.until, viewer.drawn, viewer.set_slider
+LAYERS = Program(gcode("tile.gcode")).layers
+
+
+def press(keys, place="picture"):
+    page.find_element(By.ID, place).send_keys(keys)
+
+
+def layers():
+    return [int(js("return document.getElementById(arguments[0]).value", name)) for name in ("layer-low", "layer-high")]
+
+
+def one_layer(on):
+    js("const box = document.getElementById('one-layer'); if (box.checked !== arguments[0]) box.click()", on)
+
+
+def at_layers(low, high, text):
+    check(layers() == [low, high], f"{text}: layers {layers()}")
+
+
+def settled():
+    """The state is in the address, as a view at rest has it."""
+    js("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return js("return JSON.parse(decodeURIComponent(location.hash.slice(1)) || '{}')")
+
+
+def keys_of_layers():
+    """[ and ] end at the first and the last layer, and go on with one layer alone."""
+    with drawn(gcode("tile.gcode"), {"layers": [1, 3]}):
+        press("[")
+        press("[")
+        at_layers(1, 1, "down to the first")
+        press("[")
+        at_layers(1, 1, "and no farther")
+        for value in ("0", "-3"):
+            js("const to = document.getElementById('layer-to'); to.value = arguments[0]; to.dispatchEvent(new Event('change'))", value)
+            at_layers(1, 1, f"to {value} is to the first")
+        js("const to = document.getElementById('layer-to'); to.value = ''; to.dispatchEvent(new Event('change'))")
+        at_layers(1, LAYERS, "to nothing is to the last")
+        press("]")
+        at_layers(1, LAYERS, "which is the last")
+        press("l")
+        at_layers(LAYERS, LAYERS, "L: one alone")
+        press("[[")
+        at_layers(LAYERS - 2, LAYERS - 2, "two down")
+        press("]")
+        at_layers(LAYERS - 1, LAYERS - 1, "one up, alone")
+        press("l")
+        at_layers(1, LAYERS - 1, "with those below it")
+
+
+def search_by_keys():
+    """/ goes to the search, and is not typed there; what is no layer is said."""
+    result = "document.getElementById('find-result').textContent"
+    with drawn(gcode("tile.gcode")):
+        press("/")
+        page.switch_to.active_element.send_keys("M106")
+        check(js("return document.getElementById('find-for').value") == "M106", "what is typed after / is the text")
+        js("const what = document.getElementById('find-what'); what.value = 'layer'; what.dispatchEvent(new Event('change'))")
+        for wanted in ("0", str(LAYERS + 1)):
+            js("document.getElementById('find-for').value = arguments[0]", wanted)
+            press("\n", "find-for")
+            check(js(f"return {result}") == f"The print has layers 1 to {LAYERS}.", f"layer {wanted} is none: {js(f'return {result}')}")
+            at_layers(1, LAYERS, "nothing moves")
+        js("document.getElementById('find-for').value = 2")
+        press("\n", "find-for")
+        at_layers(1, 2, "layer 2 is one")
+        check(js(f"return {result}") == "layer 2", "and is said")
+
+
+def play():
+    """A hand on the slider wins over the clock; another input ends it."""
+    printed = "Number(document.getElementById('printed').value)"
+    playing = "document.getElementById('play').getAttribute('aria-pressed') === 'true'"
+    with drawn(gcode("tile.gcode"), None, gcode("two_tone.gcode")):
+        press("p")
+        until(f"{printed} > 1 && {printed} < 30", "it plays")
+        set_slider("printed", 60)
+        until(f"{printed} > 60.5", "it goes on from there", 3)
+        check(js(f"return {printed}") < 80, "not from where it was")
+        js("const file = document.getElementById('file'); file.value = '1'; file.dispatchEvent(new Event('change'))")
+        check(not js(f"return {playing}"), "another input is not played")
+        until(f"{printed} === 100", "and is whole")
+
+
+def another_input():
+    """What was chosen of one input is not of the next; a link leads to its input; the print beside it stays when the
+    server is back."""
+    with drawn(gcode("tile.gcode"), None, gcode("two_tone.gcode")):
+        one_layer(True)
+        js("const file = document.getElementById('file'); file.value = '1'; file.dispatchEvent(new Event('change'))")
+        until("document.getElementById('facts').textContent.includes('12 layers')", "the second input")
+        check(not js("return document.getElementById('one-layer').checked"), "all of its layers, as the box says")
+        check(layers() == [1, 12], f"and the sliders: {layers()}")
+        js("location.hash = '#' + encodeURIComponent(JSON.stringify({ layers: [1, 2] }))")
+        until(f"document.getElementById('facts').textContent.includes('{LAYERS} layers')", "a link to the first one leads there")
+        check(js("return document.getElementById('file').value") == "0", "as the list says")
+        until("document.getElementById('layer-high').value === '2'", "with its layers")
+
+
+def server_comes_back():
+    """The print beside the first one stays when the server was away."""
+    options = (gcode("two_tone.gcode"), "--voxel-size", "0.2", "--token-file", os.path.join(FOLDER, "token"))
+    with viewer.of(gcode("tile.gcode"), *options) as process:
+        viewer.drawn_here()
+        port = js("return location.port")
+        js("const second = document.getElementById('second'); second.value = '1'; second.dispatchEvent(new Event('change'))")
+        until("document.getElementById('stage').classList.contains('two')", "two prints")
+        process.terminate()
+        process.wait()
+        until("document.body.dataset.connection === 'gone'", "the server is gone")
+        again = [os.path.join(BIN, "vdbview"), gcode("tile.gcode"), *options, "--port", port, "--quiet"]
+        with subprocess.Popen(again, stdout=subprocess.PIPE, text=True) as server:
+            try:
+                until("document.body.dataset.connection === 'open'", "and back")
+                viewer.drawn_here()
+                check(js("return document.getElementById('second').value") == "1", "the second print is beside it, as before")
+            finally:
+                page.get("about:blank")
+                server.terminate()
+
+
+def no_print():
+    """Keys of prints do nothing to a level set."""
+    vdb = os.path.join(FOLDER, "tile.vdb")
+    run(os.path.join(BIN, "gcode2vdb"), gcode("tile.gcode"), "--voxel-size", "0.3", "-o", vdb)
+    with viewer.of(vdb):
+        until("window.vdbviewLog.at(-1)?.kind === 'final'", "its picture")
+        before = settled()
+        press("[]lpts,.")
+        check(settled() == before, f"the view is as it was: {settled()}")
+        check(not js("return document.getElementById('trouble').checkVisibility()"), "and nothing is wrong")
+        press("1")
+        check(settled()["camera"]["view"] == "front", "keys of the camera work")
+
+
+def failed_saving():
+    """What can't be shown can't be saved: the button says so by being free again."""
+    with drawn(gcode("tile.gcode")):
+        js("for (const box of document.querySelectorAll('#features input')) box.click()")
+        until("document.body.classList.contains('stale')", "nothing is left to show")
+        name = js("const save = document.getElementById('save'); save.click(); return save.textContent")
+        check(name == "Cancel saving", "it tries to save")
+        until("document.getElementById('save').textContent === 'Save picture'", "and has given it up", 20)
+        check(js("return document.getElementById('trouble').checkVisibility()"), "with a word")
+
+
+def focus():
+    """A list that is made anew keeps the focus where it was."""
+    focused = "document.activeElement.dataset.name ?? document.activeElement.value"
+    box = """document.querySelector('#features input[value="infill"]')"""
+    item = """[...document.querySelectorAll('#legend li')].find((each) => each.textContent.startsWith('infill'))"""
+    path = os.path.join(FOLDER, "copy.gcode")
+    shutil.copy(gcode("tile.gcode"), path)
+    with drawn(path, {"color_by": "feature"}):
+        until(item, "the legend")
+        for checked in ("false", "true"):
+            js(f"{item}.focus()")
+            page.switch_to.active_element.send_keys(" ")
+            until(f"{item}.getAttribute('aria-checked') === '{checked}' && window.vdbviewLog.at(-1).kind === 'final'", f"infill: {checked}")
+            check(js(f"return {focused}") == "infill", "the legend's entry has the focus still")
+        js(f"{box}.focus(); {box}.dataset.old = '1'")
+        with open(path, "a", encoding="utf-8") as file:
+            file.write("; written anew\n")
+        until(f"!{box}.dataset.old", "the list of features is made anew")
+        check(js(f"return {focused}") == "infill", "its box has the focus still")
+
+
+def written_anew():
+    """A file that is written again and again takes no more of the GPU each time."""
+    count = """window.live = new Set();
+               window.programs = 0;
+               const gl = WebGL2RenderingContext.prototype;
+               for (const kind of ["Texture", "Buffer", "Program", "Framebuffer"]) {
+                 const [make, free] = [gl["create" + kind], gl["delete" + kind]];
+                 gl["create" + kind] = function () {
+                   const made = make.call(this);
+                   window.live.add(made);
+                   window.programs += kind === "Program";
+                   return made;
+                 };
+                 gl["delete" + kind] = function (it) {
+                   window.live.delete(it);
+                   free.call(this, it);
+                 };
+               }"""
+    path = os.path.join(FOLDER, "again.gcode")
+    shutil.copy(gcode("tile.gcode"), path)
+    with drawn(path):
+        js(count)
+        live = []
+        for n in range(1, 4):
+            with open(path, "a", encoding="utf-8") as file:
+                file.write("; written anew\n")
+            until(f"window.programs >= {6 * n} && document.body.dataset.moving === 'own'", "it is drawn anew")
+            live.append(js("return window.live.size"))
+        check(live[0] == live[1] == live[2] > 0, f"as many objects as before: {live}")
+
+
+def double_click():
+    """The camera turns about what is under the double click, not about what was clicked before."""
+    camera = {"eye": [100, 40, 120], "look_at": [100, 100, 0], "fov": 20}
+    with drawn(gcode("tile.gcode"), {"camera": camera}):
+        picture = page.find_element(By.ID, "picture")
+        ActionChains(page).move_to_element_with_offset(picture, -60, 0).click().perform()
+        first = until("window.vdbviewFound?.position", "a click")
+        press("\ue00c")  # Escape: what is told lies over the picture
+        ActionChains(page).move_to_element_with_offset(picture, 20, 5).double_click().perform()
+        until("!location.hash.includes('%5B100%2C100%2C0%5D')", "it turns about another place", 30)
+        place, target = js("return window.vdbviewFound.position"), settled()["camera"]["look_at"]
+        off = lambda a, b: max(abs(p - q) for p, q in zip(a, b))
+        check(off(place, target) < 1e-3 and off(first, target) > 1, f"about {target}; clicked before was {first}")
+
+
+def nozzle():
+    """Esc takes the marks of clicks away, and not the nozzle."""
+    drawn_marks = """const c = document.getElementById('marks');
+                     return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v)"""
+    with drawn(gcode("tile.gcode"), {"printed": 50}):
+        settled()
+        check(js(drawn_marks), "the nozzle is there")
+        press("\ue00c")  # Escape
+        check(js(drawn_marks), "and stays")
+
+
+try:
+    keys_of_layers()
+    search_by_keys()
+    play()
+    another_input()
+    server_comes_back()
+    no_print()
+    failed_saving()
+    focus()
+    written_anew()
+    double_click()
+    nozzle()
+finally:
+    page.quit()
+    shutil.rmtree(FOLDER, ignore_errors=True)
