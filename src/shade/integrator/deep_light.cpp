@@ -63,19 +63,21 @@ private:
     std::vector<SurfacePoint> points_;
 };
 
-constexpr double kMostPaths = 65536.0;
+/// With so many paths, cells are as small as they get; more make their means better.
+constexpr double kEnough = 65536.0;
 
 /// As many cells as paths can tell of.
 int cellsFor(double paths) {
-    constexpr double kMostCells = 32.0;  // along the longest side
-    return static_cast<int>(std::lround(kMostCells * std::cbrt(paths / kMostPaths)));
+    constexpr double kMostCells = 32.0;  // along the longest side; with 64 pictures were no better
+    return static_cast<int>(std::lround(kMostCells * std::cbrt(std::min(paths / kEnough, 1.0))));
 }
 
 std::size_t streamsFor(const RenderOptions& options) {
-    constexpr double kShare = 1.0 / 16.0, kUsualSpp = 32.0;
+    constexpr double kMost = 262144.0, kUsualSpp = 32.0;
     // How many samples a picture takes that is made to an error or by the clock is not known before.
     const double spp = options.noise > 0.0 || options.seconds > 0.0 ? kUsualSpp : options.spp;
-    const double paths = std::min(kShare * spp * options.width * options.height, kMostPaths);
+    const double samples = spp * options.width * options.height;
+    const double paths = std::max(std::min(samples / 16.0, kEnough), std::min(samples / 32.0, kMost));
     return std::max(std::size_t{1}, static_cast<std::size_t>(paths) / kStream);
 }
 

@@ -68,7 +68,7 @@ Tent::Tent(int edge)
     : edge_(edge),
       stride_(static_cast<std::size_t>(edge) + kPad),
       line_(stride_ + kPad),
-      rows_(stride_ * (static_cast<std::size_t>(edge) + 2 * kMostReach) + kMostLanes, 0.0F) {}
+      rows_(stride_ * (static_cast<std::size_t>(edge) + std::size_t{2} * kMostReach) + kMostLanes, 0.0F) {}
 
 void Tent::sum(const std::vector<float>& values, const NodeBox& from, int reach, const NodeBox& to,
                std::vector<float>& out) {

@@ -99,8 +99,9 @@ private:
     static constexpr std::uint64_t kAllPoints = ~std::uint64_t{0};
 
     static std::size_t placeOf(int first_node, std::size_t node) {
-        const auto n = static_cast<int>(node);
-        return static_cast<std::size_t>(first_node + n % kSquareNodes + n / kSquareNodes * kNodes);
+        constexpr auto kSide = static_cast<std::size_t>(kSquareNodes);
+        constexpr auto kRow = static_cast<std::size_t>(kNodes);
+        return static_cast<std::size_t>(first_node) + node % kSide + node / kSide * kRow;
     }
 
     void addFlat(float height, int first_node, TileSums::Nodes& nodes) const {
