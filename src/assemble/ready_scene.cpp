@@ -16,7 +16,7 @@ Stage makeStage(const TracedObjects& objects, const StageOptions& options, const
         seen.frame = objects.part;
         seen.outline = objects.outline;
     }
-    if (seen.transparent && !shade::catchesShadows(options.render.integrator)) seen.bed = false;
+    if (seen.transparent && !shade::followsPaths(options.render.integrator)) seen.bed = false;
     // An integrator without light needs no environment.
     if (!needs_light && seen.env == "studio") seen.env = "constant:0,0,0";
     Stage stage = [&] {

@@ -142,5 +142,10 @@ void primaryRays(const Camera& camera, const PixelFilter& filter, std::span<cons
     }
 }
 
+trace::Ray anyPrimaryRay(const Camera& camera, Sampler& sampler) {
+    const glm::dvec2 pixel = glm::dvec2(sampler.next2D()) * glm::dvec2(camera.width(), camera.height());
+    return camera.hasLens() ? camera.ray(pixel, sampler.next2D()) : camera.ray(pixel);
+}
+
 }  // namespace stratum::shade
 #endif  // HWY_ONCE

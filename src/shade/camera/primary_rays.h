@@ -18,4 +18,7 @@ namespace stratum::shade {
 void primaryRays(const Camera& camera, const PixelFilter& filter, std::span<const glm::ivec2> pixels,
                  std::span<Sampler> samplers, std::span<trace::Ray> rays);
 
+/// A ray through a place of the frame, and of the lens if there is one, that the next numbers of the sampler choose.
+trace::Ray anyPrimaryRay(const Camera& camera, Sampler& sampler);
+
 }  // namespace stratum::shade

@@ -1,6 +1,7 @@
 #include "shade/integrator/deep_light.h"
 
 #include "base/parallel_for.h"
+#include "shade/camera/primary_rays.h"
 #include "shade/integrator/path.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -40,12 +41,9 @@ private:
         std::vector<trace::Ray> rays(kStream);
         std::vector<Sampler> samplers(kStream, Sampler(kSeed, 65536));
         std::vector<SurfacePoint> points(kStream);
-        const glm::dvec2 size(scene_.camera.width(), scene_.camera.height());
         for (std::size_t n = 0; n < kStream; ++n) {
             samplers[n].start(0, 0, static_cast<std::uint32_t>(round * kStream + n));
-            const glm::dvec2 pixel = glm::dvec2(samplers[n].next2D()) * size;
-            rays[n] =
-                scene_.camera.hasLens() ? scene_.camera.ray(pixel, samplers[n].next2D()) : scene_.camera.ray(pixel);
+            rays[n] = anyPrimaryRay(scene_.camera, samplers[n]);
         }
         surfaces_.nearest(rays, tracer, points);
         for (std::size_t n = 0; n < kStream && rays_.size() < kStream; ++n) {
@@ -87,10 +85,10 @@ std::shared_ptr<const RadianceCache> makeRadianceCache(const SceneDescription& s
                                                        const RenderOptions& options,
                                                        const std::function<void()>& check) {
     const IntegratorOptions& kind = options.integrator;
-    if (kind.exact_translucency || (kind.name != "path" && kind.name != "direct") || !scene.anyTranslucent()) return {};
+    if (kind.exact_translucency || !followsPaths(kind) || !scene.anyTranslucent()) return {};
     const std::size_t streams = streamsFor(options);
     auto cache = std::make_shared<RadianceCache>(print.bounds(), cellsFor(static_cast<double>(streams * kStream)));
-    const PathIntegrator integrator(scene, print, kind.name == "direct" ? 1 : kind.bounces, cache.get());
+    const PathIntegrator integrator(scene, print, bouncesOf(kind), cache.get());
     const Surfaces surfaces(scene, print);
     tbb::enumerable_thread_specific<std::unique_ptr<trace::Tracer>> tracers([&print] { return print.makeTracer(); });
     std::vector<std::vector<DeepVertex>> vertices(kBatch);

@@ -43,7 +43,9 @@ bool needsLight(const IntegratorOptions& options) {
     return std::find(kGeometry.begin(), kGeometry.end(), options.name) == kGeometry.end();
 }
 
-bool catchesShadows(const IntegratorOptions& options) { return options.name == "path" || options.name == "direct"; }
+bool followsPaths(const IntegratorOptions& options) { return options.name == "path" || options.name == "direct"; }
+
+int bouncesOf(const IntegratorOptions& options) { return options.name == "direct" ? 1 : options.bounces; }
 
 void Integrator::radianceStream(std::span<trace::Ray> rays, std::span<Sampler> samplers, trace::Tracer& tracer,
                                 RayCounts& counts, std::span<SurfacePoint> points, std::span<Pixel> pixels) const {
@@ -64,8 +66,6 @@ void RayIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<const
 std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, const SceneDescription& scene,
                                            const trace::Intersector& print) {
     options.validate();
-    const RadianceCache* const cache = options.radiance_cache.get();
-    if (options.name == "direct") return std::make_unique<PathIntegrator>(scene, print, 1, cache);
     if (options.name == "ao") return std::make_unique<AmbientOcclusion>(scene, print, options.ao_distance);
     if (options.name == "normal") return std::make_unique<NormalIntegrator>(scene, print);
     if (options.name == "depth") return std::make_unique<DepthIntegrator>(scene, print);
@@ -74,7 +74,7 @@ std::unique_ptr<Integrator> makeIntegrator(const IntegratorOptions& options, con
     if (options.name == "layer" || options.name == "tool" || options.name == "feature")
         return std::make_unique<LabelIntegrator>(scene, print, parseLabel(options.name));
     if (options.name == "phong") return std::make_unique<PhongIntegrator>(scene, print, options.phong);
-    return std::make_unique<PathIntegrator>(scene, print, options.bounces, cache);
+    return std::make_unique<PathIntegrator>(scene, print, bouncesOf(options), options.radiance_cache.get());
 }
 
 }  // namespace stratum::shade

@@ -57,9 +57,12 @@ struct IntegratorOptions {
 /// Whether the integrator of that name evaluates lights; false for those of geometry and ambient occlusion.
 bool needsLight(const IntegratorOptions& options);
 
-/// Whether the integrator of that name makes a bed a ShadowCatcher: path and direct. The others see no bed in a
-/// transparent picture.
-bool catchesShadows(const IntegratorOptions& options);
+/// Whether the integrator of that name follows paths of light: path and direct. They alone go inside of translucent
+/// solids and make a bed a ShadowCatcher. The others see no bed in a transparent picture.
+bool followsPaths(const IntegratorOptions& options);
+
+/// Scattering events of those two: 1 of direct.
+int bouncesOf(const IntegratorOptions& options);
 
 /// Immutable; shared by all threads.
 class Integrator {

@@ -60,7 +60,7 @@ private:
     struct Stream {
         std::span<Sampler> samplers;
         std::span<Color> sums;
-        std::span<Color> bare;          // empty without a shadow catcher
+        std::span<Color> bare;          // empty where nobody asks for it
         std::vector<DeepVertex>* deep;  // lists vertices for the cache; null: the cache is read
     };
     /// Rays, and the light that each adds to its pixel if it is unoccluded.

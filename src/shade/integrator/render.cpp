@@ -4,6 +4,7 @@
 #include "base/parallel_for.h"
 #include "base/stopwatch.h"
 #include "shade/camera/filter.h"
+#include "shade/camera/primary_rays.h"
 #include "shade/integrator/checkpoint.h"
 #include "shade/integrator/deep_light.h"
 #include "shade/integrator/tile.h"
@@ -125,10 +126,7 @@ std::string Renderer::identity() const {
     for (int n = 0; n < kProbes; ++n) {
         Sampler sampler(0x9e3779b9u, kProbes);
         sampler.start(0, 0, static_cast<std::uint32_t>(n));
-        const glm::dvec2 place(sampler.next2D());
-        const glm::dvec2 pixel = place * glm::dvec2(options_.width, options_.height);
-        worker.rays.push_back(scene_.camera.hasLens() ? scene_.camera.ray(pixel, sampler.next2D())
-                                                      : scene_.camera.ray(pixel));
+        worker.rays.push_back(anyPrimaryRay(scene_.camera, sampler));
         worker.samplers.push_back(sampler);
     }
     worker.points.resize(kProbes);
