@@ -7,7 +7,7 @@
 
 namespace stratum::tools {
 
-void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndKind& nozzle) {
+void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozzle) {
     const char* group = "Film";
     app.add_option(
            "--film", film.output,
@@ -50,13 +50,24 @@ void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndKind& nozz
     const auto hot_end = [&](const char* name, assemble::HotEndKind kind, const char* help) {
         return app
             .add_flag_callback(
-                name, [&nozzle, kind] { nozzle = kind; }, help)
+                name, [&nozzle, kind] { nozzle.kind = kind; }, help)
             ->group(group);
     };
     auto* metal = hot_end("--nozzle", assemble::HotEndKind::metal,
                           "G-code: a hot end stands where the last bead ends; of pictures, too");
     hot_end("--clear-nozzle", assemble::HotEndKind::clear, "The same of glass, through which the part is seen")
         ->excludes(metal);
+    app.add_option_function<std::string>(
+           "--hot-end",
+           [&nozzle](const std::string& name) {
+               nozzle.shape = *valueOf(assemble::kHotEndShapes, name);
+               if (nozzle.kind == assemble::HotEndKind::none) nozzle.kind = assemble::HotEndKind::metal;
+           },
+           "Which one: slender (the default, smaller above a small part), v6 or volcano (of E3D, full size); implies "
+           "--nozzle")
+        ->check(oneOf(assemble::kHotEndShapes))
+        ->type_name("NAME")
+        ->group(group);
 }
 
 std::string givenFilmOptions(const FilmCommand& film) {

@@ -36,8 +36,8 @@ inline constexpr Names<voxelize::GrowthBy, 3> kGrowths = {{{"time", voxelize::Gr
                                                            {"filament", voxelize::GrowthBy::volume},
                                                            {"layers", voxelize::GrowthBy::layers}}};
 
-/// @param nozzle  --nozzle and --clear-nozzle, which pictures have, too
-void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndKind& nozzle);
+/// @param nozzle  --nozzle, --clear-nozzle and --hot-end, which pictures have, too
+void addFilmOptions(CLI::App& app, FilmCommand& film, assemble::HotEndLook& nozzle);
 
 /// What of them is on this command line besides --film itself, "--fps, --grow".
 std::string givenFilmOptions(const FilmCommand& film);

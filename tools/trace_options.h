@@ -50,7 +50,7 @@ struct TraceCommand {
     bool linear = false;      // the output keeps linear values: an .exr. Set when its name is checked
     std::string turns;        // --turntable, as given
     int turntable = 1;        // pictures of each camera
-    assemble::HotEndKind nozzle = assemble::HotEndKind::none;
+    assemble::HotEndLook nozzle;
     bool spp_given = false, exposure_given = false;
     std::optional<bool> denoise;  // empty: as fits the picture
     march::BrickValues values = march::BrickValues::Int16;

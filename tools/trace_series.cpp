@@ -99,7 +99,7 @@ public:
         if (!o_.render.checkpoint.empty()) o_.render.source = sourceOf(o_, objects.source);
         scene_->objects = objects.materials;
         scene_->labels = objects.labels;
-        if (o_.nozzle != assemble::HotEndKind::none) hot_end_.emplace(objects, *scene_, o_.nozzle);
+        if (o_.nozzle.kind != assemble::HotEndKind::none) hot_end_.emplace(objects, *scene_, o_.nozzle);
         frames(n, objects, watch);
     }
 

@@ -44,7 +44,7 @@ void refuse(const TraceCommand& o, bool pieces) {
         throw UsageError(
             "--shard: --time gives its samples to the noisiest tiles of the whole picture; use --spp, --noise, "
             "or --shard-by frames");
-    if (pieces && o.nozzle == assemble::HotEndKind::clear)
+    if (pieces && o.nozzle.kind == assemble::HotEndKind::clear)
         throw UsageError("--shard: --clear-nozzle is drawn into whole pictures; use --nozzle, or --shard-by frames");
     if (!pieces && !o.shard.resume) return;
     if (isStandardOutput(o.output))

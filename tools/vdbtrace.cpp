@@ -53,13 +53,13 @@ void checkPrints(const tools::TraceCommand& o, const std::vector<std::string>& g
 }
 
 void checkNozzle(const tools::TraceCommand& o) {
-    if (o.nozzle == assemble::HotEndKind::none) return;
+    if (o.nozzle.kind == assemble::HotEndKind::none) return;
     if (o.objects.size() > 1 || (o.objects.size() == 1 && !o.objects.front().placement.isIdentity()))
         throw UsageError("--nozzle is of one print alone, which stands where its file says");
     if (!o.file_up.empty()) throw UsageError("--nozzle stands above a print, whose z is up; leave out --file-up");
     constexpr std::array<std::string_view, 3> kOfLight = {"path", "direct", "phong"};
     const std::string& integrator = o.render.integrator.name;
-    if (o.nozzle == assemble::HotEndKind::clear &&
+    if (o.nozzle.kind == assemble::HotEndKind::clear &&
         std::find(kOfLight.begin(), kOfLight.end(), integrator) == kOfLight.end())
         throw UsageError(
             fmt::format("--clear-nozzle is drawn into pictures of light, not of --integrator {}; write "

@@ -19,7 +19,7 @@ MovingScene::MovingScene(assemble::TracedObjects objects, assemble::Stage stage,
     if (motion_.grow) growing_ = assemble::growingPrint(objects_);
     if (motion_.grow && motion_.frames > 1 && (!growing_ || growing_->moments() != motion_.frames))
         throw UsageError("a film of a print that grows needs one print of G-code, and as many moments as frames");
-    if (motion_.nozzle != assemble::HotEndKind::none) hot_end_.emplace(objects_, scene_, motion_.nozzle);
+    if (motion_.nozzle.kind != assemble::HotEndKind::none) hot_end_.emplace(objects_, scene_, motion_.nozzle);
     if (!motion_.path.empty()) planCameras(options);
 }
 

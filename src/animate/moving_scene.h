@@ -16,12 +16,12 @@ namespace stratum::animate {
 /// What moves while the frames pass.
 struct Motion {
     std::size_t frames = 1;
-    bool grow = false;     ///< the print grows: frame n is moment n of its series
-    std::size_t held = 0;  ///< the last frames show the finished part alone, without a hot end
-    double turns = 0.0;    ///< revolutions of the camera about the part, counter-clockwise as seen from above
-    double ease = 0.0;     ///< of the turns: see paced()
-    assemble::HotEndKind nozzle = assemble::HotEndKind::none;  ///< stands at the end of the last bead
-    std::vector<CameraKey> path;                               ///< or the camera goes this way; empty: it does not
+    bool grow = false;            ///< the print grows: frame n is moment n of its series
+    std::size_t held = 0;         ///< the last frames show the finished part alone, without a hot end
+    double turns = 0.0;           ///< revolutions of the camera about the part, counter-clockwise as seen from above
+    double ease = 0.0;            ///< of the turns: see paced()
+    assemble::HotEndLook nozzle;  ///< stands at the end of the last bead
+    std::vector<CameraKey> path;  ///< or the camera goes this way; empty: it does not
 };
 
 /// Light, bed and exposure are those of the whole print for all frames. Not while rays are traced.

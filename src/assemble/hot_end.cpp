@@ -5,7 +5,6 @@
 #include "base/parallel_for.h"
 #include "shade/brdf/brdf.h"
 #include "trace/box_corners.h"
-#include "trace/convex_solid.h"
 #include "trace/scene_intersector.h"
 
 #include <glm/geometric.hpp>
@@ -14,44 +13,25 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace stratum::assemble {
 namespace {
 
-// Reflectances at normal incidence: brass, aluminium and iron as in "Physically Based" (physicallybased.info, 2023).
-constexpr std::string_view kBrass = "metal:0.91,0.78,0.42,0.25";
-constexpr std::string_view kAluminium = "metal:0.91,0.92,0.92,0.35";
-constexpr std::string_view kSteel = "metal:0.53,0.51,0.49,0.3";
-
-struct Part {
-    std::shared_ptr<const trace::Intersector> solid;
-    std::string_view metal;
-};
-
-// In mm above the tip.
-std::vector<Part> makeParts() {
-    return {{trace::makeConeSolid(0, 0.5, 3, 3.0), kBrass},
-            {trace::makeHexagonSolid(7, 3, 6), kBrass},
-            {trace::makeBoxSolid({-6, -6, 6}, {9, 6, 14}), kSteel},
-            {trace::makeConeSolid(14, 1.6, 17, 1.6), kSteel},
-            {trace::makeConeSolid(17, 5, 27, 5), kAluminium}};
-}
-
 constexpr double kPartOfThat = 40.0;  // mm: the larger side of the smallest part under a hot end of full size
 constexpr double kSmallest = 0.25;
 
-double scaleFor(const TracedObjects& objects) {
+double scaleFor(const TracedObjects& objects, HotEndShape shape) {
+    if (shape != HotEndShape::slender) return 1.0;
     const trace::Box box = objects.part ? *objects.part : objects.intersector->bounds();
     const glm::dvec3 size = box.max - box.min;
     return std::clamp(std::max({size.x, size.y, size.z}) / kPartOfThat, kSmallest, 1.0);
 }
 
-std::vector<trace::SceneObject> placedParts(const glm::dvec3& tip, double scale) {
+std::vector<trace::SceneObject> placedAt(const glm::dvec3& tip, const std::vector<HotEndPart>& parts, double scale) {
     std::vector<trace::SceneObject> placed;
-    for (Part& part : makeParts()) placed.push_back({std::move(part.solid), {glm::dmat3(scale), tip}});
+    for (const HotEndPart& part : parts) placed.push_back({part.solid, {glm::dmat3(scale), tip}});
     return placed;
 }
 
@@ -76,9 +56,9 @@ shade::PixelBox pixelsOf(const trace::Box& box, const shade::Camera& camera, con
 // lit from above over the left shoulder of who looks.
 class Glass {
 public:
-    Glass(const shade::Camera& camera, double white)
+    Glass(const shade::Camera& camera, double white, const std::vector<HotEndPart>& parts)
         : white_(white), light_(glm::normalize(glm::dvec3(0, 0, 1) - 0.7 * camera.right() - camera.forward())) {
-        for (const Part& part : makeParts())
+        for (const HotEndPart& part : parts)
             tints_.push_back(shade::ObjectMaterial(shade::makeBrdf(part.metal)).only().albedo);
     }
 
@@ -97,26 +77,29 @@ private:
 
 }  // namespace
 
-HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, HotEndKind kind)
-    : print_(objects.intersector), kind_(kind), scale_(scaleFor(objects)) {
+HotEnd::HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, const HotEndLook& look)
+    : print_(objects.intersector),
+      kind_(look.kind),
+      parts_(makeHotEndParts(look.shape)),
+      scale_(scaleFor(objects, look.shape)) {
     if (objects.prints.empty())
         throw UsageError("--nozzle needs G-code: a level set doesn't know where its last bead ends");
     layers_ = objects.prints.front();
     if (kind_ != HotEndKind::metal) return;
     if (scene.objects.empty()) scene.objects.emplace_back(scene.material);
-    for (const Part& part : makeParts()) scene.objects.emplace_back(shade::makeBrdf(part.metal));
+    for (const HotEndPart& part : parts_) scene.objects.emplace_back(shade::makeBrdf(part.metal));
 }
 
 std::shared_ptr<const trace::Intersector> HotEnd::at(std::size_t moment) const {
-    return kind_ == HotEndKind::metal ? withHotEnd(print_, layers_->tipAt(moment), scale_) : print_;
+    return kind_ == HotEndKind::metal ? withHotEnd(print_, layers_->tipAt(moment), parts_, scale_) : print_;
 }
 
 void HotEnd::drawOver(std::size_t moment, const shade::Camera& camera, double white, shade::Film& film) const {
     if (kind_ != HotEndKind::clear) return;
-    const auto solids = trace::makeSceneIntersector(placedParts(layers_->tipAt(moment), scale_));
+    const auto solids = trace::makeSceneIntersector(placedAt(layers_->tipAt(moment), parts_, scale_));
     const shade::PixelBox pixels = pixelsOf(solids->bounds(), camera, film.region());
     if (pixels.width() <= 0 || pixels.height() <= 0) return;
-    const Glass glass(camera, white);
+    const Glass glass(camera, white, parts_);
     constexpr int kSide = 3;  // samples of a pixel, each way
     parallelFor(static_cast<std::size_t>(pixels.height()), 8, [&](std::size_t begin, std::size_t end) {
         const auto hot_end = solids->makeTracer();
@@ -143,8 +126,9 @@ void HotEnd::drawOver(std::size_t moment, const shade::Camera& camera, double wh
 }
 
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
-                                                     const glm::dvec3& tip, double scale) {
-    std::vector<trace::SceneObject> objects = placedParts(tip, scale);
+                                                     const glm::dvec3& tip, const std::vector<HotEndPart>& parts,
+                                                     double scale) {
+    std::vector<trace::SceneObject> objects = placedAt(tip, parts, scale);
     objects.insert(objects.begin(), {print, {}});
     return trace::makeSceneIntersector(std::move(objects));
 }

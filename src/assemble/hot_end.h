@@ -1,6 +1,7 @@
 // The hot end of a printer above its print, for pictures of a print that grows.
 #pragma once
 
+#include "assemble/hot_end_parts.h"
 #include "assemble/traced_objects.h"
 #include "base/names.h"
 #include "shade/camera/camera.h"
@@ -12,6 +13,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace stratum::assemble {
 
@@ -23,13 +25,18 @@ enum class HotEndKind {
 inline constexpr Names<HotEndKind, 3> kHotEnds = {
     {{"none", HotEndKind::none}, {"metal", HotEndKind::metal}, {"clear", HotEndKind::clear}}};
 
-/// A print with the hot end that lays it. It is 27 mm high, and less where the part is smaller than 40 mm: it has two
-/// thirds of its larger side, but a quarter of its size at least. Immutable.
+struct HotEndLook {
+    HotEndKind kind = HotEndKind::none;
+    HotEndShape shape = HotEndShape::slender;
+};
+
+/// A print with the hot end that lays it. A slender one is 27 mm high, and less where the part is smaller than 40 mm:
+/// it has two thirds of its larger side, but a quarter of its size at least. Others have their own size. Immutable.
 class HotEnd {
 public:
     /// Adds the metals of a solid one to the materials of a scene of those objects. Throws UsageError if none of them
     /// is a print.
-    HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, HotEndKind kind);
+    HotEnd(const TracedObjects& objects, shade::SceneDescription& scene, const HotEndLook& look);
 
     /// What is traced at that moment, see LazyPrint: the print, with a solid hot end at the end of its last bead.
     std::shared_ptr<const trace::Intersector> at(std::size_t moment) const;
@@ -45,14 +52,16 @@ private:
     std::shared_ptr<const trace::Intersector> print_;
     std::shared_ptr<const LazyPrint> layers_;
     HotEndKind kind_;
+    std::vector<HotEndPart> parts_;
     double scale_ = 1.0;
 };
 
-/// The print with a nozzle of brass, 7 mm across flats with a tip 1 mm wide, a block that heats it, a heat break and a
-/// cold end, as solids of closed form: so slender that the print stays in sight. `scale` times that size.
+/// The print with a hot end, `scale` times the size of its parts.
 /// @param print  object 0, as it is alone; its world space is print space
 /// @param tip    the middle of the nozzle's tip, mm
+/// @param parts  objects 1 and on
 std::shared_ptr<const trace::Intersector> withHotEnd(const std::shared_ptr<const trace::Intersector>& print,
-                                                     const glm::dvec3& tip, double scale = 1.0);
+                                                     const glm::dvec3& tip, const std::vector<HotEndPart>& parts,
+                                                     double scale = 1.0);
 
 }  // namespace stratum::assemble

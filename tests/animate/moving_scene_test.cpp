@@ -121,7 +121,7 @@ TEST(MovingScene, TheHotEndStandsOnTheLastBead) {
     Motion motion;
     motion.frames = kFrames;
     motion.grow = true;
-    motion.nozzle = assemble::HotEndKind::metal;
+    motion.nozzle.kind = assemble::HotEndKind::metal;
     MovingScene moving = sceneOf(motion, kFrames);
     ASSERT_EQ(moving.scene().objects.size(), 6u);
     const shade::Camera camera = moving.scene().camera;
@@ -152,7 +152,7 @@ TEST(MovingScene, TheFinishedPartIsHeldWithoutAHotEnd) {
         motion.frames = kFrames;
         motion.grow = true;
         motion.held = 4;
-        motion.nozzle = kind;
+        motion.nozzle.kind = kind;
         MovingScene moving = sceneOf(motion, kFrames);
         moving.show(kFrames - 5);
         const int grown = covered(moving);

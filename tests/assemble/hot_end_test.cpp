@@ -13,7 +13,7 @@ namespace {
 TEST(HotEnd, StandsWithItsTipOnAPlace) {
     const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, 0}, 5));
     const glm::dvec3 tip(3, 4, 8);
-    const auto both = withHotEnd(ball, tip);
+    const auto both = withHotEnd(ball, tip, makeHotEndParts(HotEndShape::slender));
     const auto tracer = both->makeTracer();
     trace::Ray ray;
     ray.origin = {3, 4, 7};
@@ -43,7 +43,7 @@ TEST(HotEnd, IsOfMetalAndLeavesThePrintItsMaterial) {
         readTracedObjects({test::objectOf(test::sourceDir() / "data/gcode/tile.gcode")}, test::coarseTracing());
     shade::SceneDescription scene = makeStage(objects, {}).scene;
     ASSERT_TRUE(scene.objects.empty());
-    const HotEnd hot_end(objects, scene, HotEndKind::metal);
+    const HotEnd hot_end(objects, scene, {HotEndKind::metal});
     ASSERT_EQ(scene.objects.size(), 6u);
     EXPECT_EQ(scene.objects.front().only().brdf, scene.material);
     const shade::Color brass = scene.objects[1].only().albedo;
@@ -52,9 +52,42 @@ TEST(HotEnd, IsOfMetalAndLeavesThePrintItsMaterial) {
 
 TEST(HotEnd, IsSmallerAboveASmallPart) {
     const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, 0}, 5));
-    const double top = withHotEnd(ball, {0, 0, 5})->bounds().max.z;
-    EXPECT_NEAR(withHotEnd(ball, {0, 0, 5}, 0.25)->bounds().max.z - 5, 0.25 * (top - 5), 1e-9);
+    const auto parts = makeHotEndParts(HotEndShape::slender);
+    const double top = withHotEnd(ball, {0, 0, 5}, parts)->bounds().max.z;
+    EXPECT_NEAR(withHotEnd(ball, {0, 0, 5}, parts, 0.25)->bounds().max.z - 5, 0.25 * (top - 5), 1e-9);
     EXPECT_NEAR(top, 32, 1e-9);
+}
+
+// Lengths that the maker states: in all, from the tip to the lowest fin, across the fins, and of the block.
+TEST(HotEnd, HasTheOutlineOfItsMaker) {
+    const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, -5}, 5));
+    struct Outline {
+        HotEndShape shape;
+        double height, block, sink;  // mm
+    };
+    for (const auto& [shape, height, block, sink] :
+         {Outline{HotEndShape::v6, 62.3, 23.0, 19.6}, Outline{HotEndShape::volcano, 70.8, 11.5, 28.1}}) {
+        const auto both = withHotEnd(ball, {0, 0, 0}, makeHotEndParts(shape));
+        EXPECT_NEAR(both->bounds().max.z, height, 1e-9);
+        const auto tracer = both->makeTracer();
+        const auto width = [&](double z) {
+            double across = 0.0;
+            for (const double side : {-1.0, 1.0}) {
+                trace::Ray ray;
+                ray.origin = {50 * side, 0, z};
+                ray.direction = {-side, 0, 0};
+                trace::Hit hit;
+                if (!tracer->intersect(ray, hit)) return 0.0;
+                across += side * hit.position.x;
+            }
+            return across;
+        };
+        EXPECT_NEAR(width(12), block, 1e-9);
+        EXPECT_NEAR(width(sink + 0.5), 22.3, 1e-9);
+        EXPECT_NEAR(width(sink - 0.5), 2.96, 1e-9);  // the heat break
+        EXPECT_NEAR(width(sink + 1.75), 9.0, 1e-9);  // between two fins
+        EXPECT_NEAR(width(sink + 25.5), 22.0, 1e-9);
+    }
 }
 
 TEST(HotEnd, AClearOneIsDrawnOverThePictureAndLetsThePartThrough) {
@@ -64,7 +97,7 @@ TEST(HotEnd, AClearOneIsDrawnOverThePictureAndLetsThePartThrough) {
     options.render.width = 80;
     options.render.height = 60;
     shade::SceneDescription scene = makeStage(objects, options).scene;
-    const HotEnd clear(objects, scene, HotEndKind::clear);
+    const HotEnd clear(objects, scene, {HotEndKind::clear});
     EXPECT_TRUE(scene.objects.empty());
     EXPECT_EQ(clear.at(0), objects.intersector);
     const shade::Film empty(80, 60, {0, 0, 80, 60});
@@ -90,7 +123,7 @@ TEST(HotEnd, AClearOneIsDrawnOverThePictureAndLetsThePartThrough) {
     shade::Film crop(80, 60, {20, 10, 60, 40});
     for (shade::Pixel& pixel : crop.pixels()) pixel = {shade::Color(0.5F), 1.0F};
     const shade::Film before = crop;
-    HotEnd(objects, scene, HotEndKind::metal).drawOver(0, scene.camera, 1.0, crop);
+    HotEnd(objects, scene, {HotEndKind::metal}).drawOver(0, scene.camera, 1.0, crop);
     EXPECT_EQ(crop.at(30, 20).rgb, before.at(30, 20).rgb);
     clear.drawOver(0, scene.camera, 1.0, crop);
     for (int y = 10; y < 40; ++y)
