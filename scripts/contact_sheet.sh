@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Default pictures of twenty real files on one sheet: many slicers, colours, sizes. Each is "vdbtrace FILE" without an
-# option (one is half printed). Files of the corpus that are not there are left out and named.
+# Pictures of forty real prints on one sheet: many slicers, colours, sizes, and ten white, black or clear ones. Each is
+# "vdbtrace FILE" without an option but its plastic (one is half printed). Files of the corpus that are not there are left out and named.
 # scripts/contact_sheet.sh SHEET.jpg [FOLDER for the single pictures, 1280 x 960; those that are there are kept]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -45,4 +45,24 @@ picture "PrusaSlicer, supports" data/gcode/knot.gcode
 picture "FlashPrint, .gx" "$corpus/slicer-meta-FlashPrint.gx"
 picture "PrusaSlicer, 1000 cm3" "$corpus/spot_1000cc_0.1mm_grid.gcode.gz"
 picture "by hand, one square" "$corpus/gcode-preview-square.gcode"
-montage "${tiles[@]}" -tile 4x -geometry 400x300+6+4 -font DejaVu-Sans -pointsize 15 -quality 88 -background white "$sheet"
+picture "Anycubic Slicer, many colours" "$corpus/AnycubicSlicerImageIntractor-multicolor.gcode.gz"
+picture "PrusaSlicer, XL" "$corpus/ChestnutLabs-prim_cube_xl.bgcode"
+picture "Creality Print" "$corpus/K1_Series_Klipper-K1C_3DBenchy.gcode.gz"
+picture "Cura 15" "$corpus/OctoPrint-bp_case_cura15.gcode.gz"
+picture "Slic3r, without tags" "$corpus/RRFInstall-cube_huelle.gcode.gz"
+picture "KISSlicer" "$corpus/demestav-thinbox_kisslicer.gcode.gz"
+picture "PrusaSlicer, MMU2" "$corpus/gcode-metadata-mk3s_mmu2s.gcode.gz"
+picture "Cura, two extruders" "$corpus/gcode_metadata-cura_2ext.ufp"
+picture "Kiri:Moto" "$corpus/preprocess_cancellation-kirimoto.gcode"
+picture "PrusaSlicer, arcs" data/gcode/gear.gcode
+picture "white" data/gcode/knot.gcode --color white
+picture "white, Cura" "$corpus/bgautrea-ender3_cura.gcode.gz" --color white
+picture "white, Slic3r" "$corpus/slic3r_vol.gcode" --color white
+picture "black" data/gcode/hull.gcode --color black
+picture "black, a plate" "$corpus/preprocess_cancellation-superslicer.gcode" --color black
+picture "Prusament Galaxy Black" data/gcode/gear.gcode --color "Prusament Galaxy Black"
+picture "silver" "$corpus/RepRapFirmware-SD-benchy_pathio.gcode" --color silver
+picture "clear PETG" data/gcode/hull.gcode --brdf clear-petg
+picture "natural PLA" data/gcode/vase.gcode --brdf natural-pla
+picture "white lithophane PLA" data/gcode/gear.gcode --brdf lithophane-white
+montage "${tiles[@]}" -tile 5x -geometry 400x300+6+4 -font DejaVu-Sans -pointsize 15 -quality 88 -background white "$sheet"
