@@ -24,8 +24,10 @@ void compare(double measured, double footer, fmt::memory_buffer& out) {
     out.push_back('\n');
 }
 
+// Of a list by tool, which may be short.
+double at(const std::vector<double>& list, std::size_t tool) { return tool < list.size() ? list[tool] : 0.0; }
+
 void describeFilament(const Toolpath& toolpath, fmt::memory_buffer& out) {
-    const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
     const std::size_t tools = std::max(toolpath.filament_by_tool.size(), toolpath.footer_by_tool.size());
     // Some slicers count the prime lines of the start program, others don't: the nearer sum is compared.
     const double part = toolpath.filament_mm - toolpath.prime_mm;
@@ -53,8 +55,7 @@ template <typename Value>
 std::vector<Value> inUse(const std::vector<Value>& by_tool, const Toolpath& toolpath) {
     std::vector<Value> values;
     for (std::size_t tool = 0; tool < by_tool.size(); ++tool) {
-        const bool prints = tool < toolpath.filament_by_tool.size() && toolpath.filament_by_tool[tool] > 0;
-        if (!prints || by_tool[tool] == Value{}) continue;
+        if (!(at(toolpath.filament_by_tool, tool) > 0) || by_tool[tool] == Value{}) continue;
         if (std::find(values.begin(), values.end(), by_tool[tool]) == values.end()) values.push_back(by_tool[tool]);
     }
     return values;
@@ -76,6 +77,26 @@ void describeStated(const Toolpath& toolpath, fmt::memory_buffer& out) {
     if (stated.layer_height) parts.push_back(fmt::format("layers of {:g} mm", *stated.layer_height));
     if (stated.first_layer_height) parts.push_back(fmt::format("the first {:g} mm", *stated.first_layer_height));
     if (!parts.empty()) fmt::format_to(std::back_inserter(out), "the file says: {}\n", fmt::join(parts, ", "));
+}
+
+// One line of the colors of the tools that print, as pictures show them, or none.
+void describeColors(const Toolpath& toolpath, fmt::memory_buffer& out) {
+    std::vector<std::string> parts;
+    const auto add = [&](std::size_t tool, const Rgb& color, bool stated, const std::string& since) {
+        parts.push_back(fmt::format("T{} #{:02X}{:02X}{:02X}{}{}", tool, color[0], color[1], color[2],
+                                    stated ? "" : " (not stated)", since));
+    };
+    for (std::size_t tool = 0; tool < toolpath.tool_colors.size(); ++tool) {
+        if (!toolpath.tool_colors[tool] || !(at(toolpath.filament_by_tool, tool) > 0)) continue;
+        const auto& guessed = toolpath.palette_tools;
+        add(tool, *toolpath.tool_colors[tool], std::find(guessed.begin(), guessed.end(), tool) == guessed.end(), {});
+    }
+    for (const ColorChange& change : toolpath.color_changes) {
+        if (change.first_bead >= toolpath.beads.size()) continue;
+        const Run& run = toolpath.runOf(toolpath.beads[change.first_bead]);
+        add(change.tool, change.color, change.stated, fmt::format(" from layer {} on", run.layer));
+    }
+    if (!parts.empty()) fmt::format_to(std::back_inserter(out), "colors: {}\n", fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -120,6 +141,7 @@ std::string summarize(const Toolpath& toolpath) {
                    toolpath.layer_count, toolpath.beads.size(), toolpath.arcs.size(), length / 1000,
                    toolpath.extruded_mm3);
     describeFilament(toolpath, out);
+    describeColors(toolpath, out);
     for (std::size_t i = 0; i < totals.size(); ++i) {
         if (totals[i].beads == 0) continue;
         fmt::format_to(std::back_inserter(out), "  {:<20}{:>9} beads {:>10.2f} m {:>11.2f} mm^3\n",

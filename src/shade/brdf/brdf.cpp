@@ -54,11 +54,6 @@ std::filesystem::path tableNamed(std::string_view text) {
 
 constexpr std::string_view kOption = "--brdf";
 
-Color bodyColor(const Preset& preset) {
-    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, kOption, "a reflectance");
-    return {preset.values[0], preset.values[1], preset.values[2]};
-}
-
 float glossAlpha(const Preset& preset) {
     requireRange(preset, 3, Plastic::kMinAlpha, 1.0f, kOption, "ALPHA (GGX)");
     return preset.values[3];
@@ -73,26 +68,26 @@ struct Formula {
 
 template <typename Material>
 std::shared_ptr<const Brdf> ofColor(const Preset& preset) {
-    return std::make_shared<Material>(bodyColor(preset));
+    return std::make_shared<Material>(bodyColor(preset, kOption));
 }
 
 template <typename Material>
 std::shared_ptr<const Brdf> ofColorAndAlpha(const Preset& preset) {
-    const Color color = bodyColor(preset);
+    const Color color = bodyColor(preset, kOption);
     return std::make_shared<Material>(color, glossAlpha(preset));
 }
 
 std::shared_ptr<const Brdf> glitter(const Preset& preset) {
     if (preset.values.size() == 3) return ofColor<Glitter>(preset);
     requireRange(preset, 3, Glitter::kMinSize, Glitter::kMaxSize, kOption, "the size of flakes in mm");
-    return std::make_shared<Glitter>(bodyColor(preset), static_cast<double>(preset.values[3]));
+    return std::make_shared<Glitter>(bodyColor(preset, kOption), static_cast<double>(preset.values[3]));
 }
 
 std::shared_ptr<const Brdf> plasticWithLines(const Preset& preset) {
     const float alpha = glossAlpha(preset);
-    if (preset.values.size() == 4) return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset), alpha));
+    if (preset.values.size() == 4) return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset, kOption), alpha));
     requireRange(preset, 4, 1.0f, kMostLineRatio, kOption, "RATIO, of alpha across the line to along it,");
-    return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset), alpha, preset.values[4]));
+    return std::make_shared<Plastic>(plasticOfLines(bodyColor(preset, kOption), alpha, preset.values[4]));
 }
 
 std::shared_ptr<const Brdf> translucent(const Preset& preset) { return makeTranslucent(preset, kOption); }

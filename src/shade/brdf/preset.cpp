@@ -40,4 +40,9 @@ void requireRange(const Preset& preset, std::size_t index, float low, float high
             fmt::format("{} {}: {} is {}; it must be from {} to {}", option, preset.name, what, value, low, high));
 }
 
+Color bodyColor(const Preset& preset, std::string_view option) {
+    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
+    return {preset.values[0], preset.values[1], preset.values[2]};
+}
+
 }  // namespace stratum::shade

@@ -1,6 +1,8 @@
 // Parses options like `plastic:0.8,0.2,0.1,0.25`: a name and numbers.
 #pragma once
 
+#include "shade/color.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -24,5 +26,8 @@ void requireValues(const Preset& preset, std::size_t count, std::string_view opt
 /// Throws UsageError unless values[index] is in [low, high].
 void requireRange(const Preset& preset, std::size_t index, float low, float high, std::string_view option,
                   std::string_view what);
+
+/// The first three values, R,G,B. Throws UsageError unless each is a reflectance, in [0, 1].
+Color bodyColor(const Preset& preset, std::string_view option);
 
 }  // namespace stratum::shade

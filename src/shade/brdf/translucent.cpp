@@ -92,9 +92,8 @@ bool isTranslucent(std::string_view text) {
 }
 
 std::shared_ptr<const Translucent> makeTranslucentByDistance(const Preset& preset, std::string_view option) {
-    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
+    const Color color = bodyColor(preset, option);
     requireRange(preset, 3, 0.1f, 1000.0f, option, "TRANSMISSION_DISTANCE_MM");
-    const Color color(preset.values[0], preset.values[1], preset.values[2]);
     const auto albedo = static_cast<double>(scatteringAlbedo(Color(luminance(color)), 0.0f).r);
     // What scatters more often looks the same, and takes longer.
     return make(color, std::max(meanFreePathOf(static_cast<double>(preset.values[3]), albedo), kLeastByDistance), 0.0f);
@@ -103,13 +102,12 @@ std::shared_ptr<const Translucent> makeTranslucentByDistance(const Preset& prese
 std::shared_ptr<const Translucent> makeTranslucent(const Preset& preset, std::string_view option) {
     for (const NamedMedium& named : kNamed)
         if (named.name == preset.name) return make(named.color, named.mean_free_path, 0.0f);
-    for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1.0f, option, "a reflectance");
+    const Color color = bodyColor(preset, option);
     requireRange(preset, 3, Translucent::kMinMeanFreePath, Translucent::kMaxMeanFreePath, option, "MEAN_FREE_PATH_MM");
     if (preset.values.size() == 5)
         requireRange(preset, 4, -Translucent::kMaxAsymmetry, Translucent::kMaxAsymmetry, option,
                      "G (mean cosine of scattering)");
-    return make(Color(preset.values[0], preset.values[1], preset.values[2]), static_cast<double>(preset.values[3]),
-                preset.values.size() == 5 ? preset.values[4] : 0.0f);
+    return make(color, static_cast<double>(preset.values[3]), preset.values.size() == 5 ? preset.values[4] : 0.0f);
 }
 
 }  // namespace stratum::shade
