@@ -91,6 +91,27 @@ Color Environment::radiance(const glm::vec3& direction) const {
     return radiance;
 }
 
+Color Environment::irradianceFromAbove() const {
+    // Uniform in azimuth and in squared sine, which is the density of the cosine.
+    constexpr int kRings = 256;
+    constexpr int kAngles = 512;
+    glm::dvec3 sum(0.0);
+    std::vector<glm::vec3> ring(kAngles);
+    std::vector<Color> radiances(kAngles);
+    for (int i = 0; i < kRings; ++i) {
+        const double sine2 = (i + 0.5) / kRings;
+        const double r = std::sqrt(sine2);
+        const double z = std::sqrt(1.0 - sine2);
+        for (int j = 0; j < kAngles; ++j) {
+            const double phi = 2.0 * std::numbers::pi * (j + 0.5) / kAngles;
+            ring[static_cast<std::size_t>(j)] = glm::vec3(r * std::cos(phi), r * std::sin(phi), z);
+        }
+        radianceStream(ring, radiances);
+        for (const Color& radiance : radiances) sum += glm::dvec3(radiance);
+    }
+    return Color(sum * (std::numbers::pi / (kRings * kAngles)));
+}
+
 bool isEnvironmentPreset(std::string_view text) {
     return std::find(kPresets.begin(), kPresets.end(), nameOf(text)) != kPresets.end();
 }
@@ -120,27 +141,6 @@ std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const 
     requireValues(preset, 3, kOption, "constant:R,G,B");
     for (std::size_t i = 0; i < 3; ++i) requireRange(preset, i, 0.0f, 1e6f, kOption, "a radiance");
     return std::make_shared<ConstantEnvironment>(Color(preset.values[0], preset.values[1], preset.values[2]));
-}
-
-Color irradianceFromAbove(const Environment& environment) {
-    // Uniform in azimuth and in squared sine, which is the density of the cosine.
-    constexpr int kRings = 256;
-    constexpr int kAngles = 512;
-    glm::dvec3 sum(0.0);
-    std::vector<glm::vec3> ring(kAngles);
-    std::vector<Color> radiances(kAngles);
-    for (int i = 0; i < kRings; ++i) {
-        const double sine2 = (i + 0.5) / kRings;
-        const double r = std::sqrt(sine2);
-        const double z = std::sqrt(1.0 - sine2);
-        for (int j = 0; j < kAngles; ++j) {
-            const double phi = 2.0 * std::numbers::pi * (j + 0.5) / kAngles;
-            ring[static_cast<std::size_t>(j)] = glm::vec3(r * std::cos(phi), r * std::sin(phi), z);
-        }
-        environment.radianceStream(ring, radiances);
-        for (const Color& radiance : radiances) sum += glm::dvec3(radiance);
-    }
-    return Color(sum * (std::numbers::pi / (kRings * kAngles)));
 }
 
 }  // namespace stratum::shade

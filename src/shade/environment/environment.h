@@ -59,6 +59,9 @@ public:
     /// Unbiased alone: pdf > 0 wherever light comes from above. The environment must outlive it. By the cosine alone,
     /// which suits an environment that is nearly constant.
     virtual std::unique_ptr<const EnvironmentSampler> makeBedSampler() const;
+    /// Irradiance of a horizontal surface that faces up. (relative, times pi) By quadrature, exact to a thousandth
+    /// where radiance is smooth.
+    virtual Color irradianceFromAbove() const;
     /// A light of this environment that is not in its radiance, because it is too small for a table. Null if there is
     /// none.
     virtual std::shared_ptr<const Light> sun() const { return nullptr; }
@@ -80,8 +83,5 @@ struct EnvironmentPlacement {
 ///   anything else     a .hdr or .exr file, see MapEnvironment
 /// Throws UsageError, InputError.
 std::shared_ptr<const Environment> makeEnvironment(std::string_view text, const EnvironmentPlacement& placement);
-
-/// Irradiance of a horizontal surface that faces up, by quadrature. (relative, times pi)
-Color irradianceFromAbove(const Environment& environment);
 
 }  // namespace stratum::shade

@@ -150,4 +150,28 @@ std::unique_ptr<const EnvironmentSampler> MapEnvironment::makeBedSampler() const
     return std::make_unique<MapBedSampler>(map_, rotation_);
 }
 
+Color MapEnvironment::irradianceFromAbove() const {
+    // A row's weight: the integral of its share in the interpolation between rows, times the cosine.
+    constexpr int kSteps = 16;  // a row; the horizon lies between two of them
+    const double step = std::numbers::pi / (map_.height * kSteps);
+    std::vector<double> weights(static_cast<std::size_t>(map_.height), 0.0);
+    for (int n = 0; 2 * n < map_.height * kSteps; ++n) {
+        const double theta = (n + 0.5) * step;
+        const double row = std::clamp((n + 0.5) / kSteps - 0.5, 0.0, map_.height - 1.0);
+        const auto low = static_cast<std::size_t>(row);
+        const double share = row - static_cast<double>(low);
+        const double weight = std::sin(theta) * std::cos(theta) * step;
+        weights[low] += (1.0 - share) * weight;
+        weights[std::min(low + 1, weights.size() - 1)] += share * weight;
+    }
+    const auto width = static_cast<std::size_t>(map_.width);
+    glm::dvec3 sum(0.0);
+    for (std::size_t y = 0; y < weights.size() && weights[y] > 0.0; ++y) {
+        glm::dvec3 row(0.0);
+        for (std::size_t x = 0; x < width; ++x) row += glm::dvec3(map_.texels[y * width + x]);
+        sum += weights[y] * row;
+    }
+    return Color(sum * (2.0 * std::numbers::pi / map_.width));
+}
+
 }  // namespace stratum::shade

@@ -38,6 +38,8 @@ PathIntegrator::PathIntegrator(const SceneDescription& scene, const trace::Inter
                                const RadianceCache* cache)
     : Integrator(scene, print), scene_(scene), bounces_(bounces), cache_(cache) {
     if (scene.bed) bed_sampler_ = scene.environment->makeBedSampler();
+    if (scene.bed && !scene.catcher && scene.lights.empty() && !scene.bed->texture.bumpy())
+        bare_bed_ = BareBed{scene.environment->irradianceFromAbove() * kInvPi + scene.ambient, print.bounds()};
     for (const auto& light : scene.lights)
         if (light->hasExtent()) extended_lights_.push_back(light.get());
     if (scene.anyTranslucent()) walk_.emplace(surfaces_, print.bounds(), scene.mm_per_unit);
@@ -299,8 +301,9 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
                                 std::span<Sampler> samplers, trace::Tracer& tracer, RayCounts& counts,
                                 std::span<Pixel> pixels) const {
     std::vector<Color> sums(rays.size(), Color(0.0f));
-    std::vector<Color> bare(scene_.catcher ? rays.size() : 0, Color(0.0f));
+    std::vector<Color> bare(scene_.catcher || bare_bed_ ? rays.size() : 0, Color(0.0f));
     follow(rays, points, {samplers, sums, bare, nullptr}, tracer, counts);
+    if (bare_bed_) knowBareBed(points, bare, sums);
     scene_.catcher ? catchShadows(points, sums, bare, pixels) : blendBackdrop(rays, points, sums, pixels);
 }
 

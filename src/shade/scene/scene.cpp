@@ -19,7 +19,7 @@ namespace {
 
 /// Radiance of the bare paper far from the print.
 Color paperRadiance(const SceneDescription& scene, const Color& albedo, const glm::dvec3& point) {
-    Color irradiance = irradianceFromAbove(*scene.environment) + kPi * scene.ambient;
+    Color irradiance = scene.environment->irradianceFromAbove() + kPi * scene.ambient;
     for (const auto& light : scene.lights) irradiance += irradianceFrom(*light, point);
     return albedo * irradiance * kInvPi;
 }
@@ -146,7 +146,7 @@ SceneDescription makeScene(const SceneOptions& options, const trace::Intersector
     if (options.transparent) {
         if (scene.bed)
             scene.catcher =
-                ShadowCatcher{irradianceFromAbove(*scene.environment) + kPi * scene.ambient,
+                ShadowCatcher{scene.environment->irradianceFromAbove() + kPi * scene.ambient,
                               luminance(paperRadiance(scene, bed.texture.mean(), {bed.center.x, bed.center.y, bed.z}))};
         return scene;
     }

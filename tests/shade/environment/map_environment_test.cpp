@@ -197,6 +197,19 @@ TEST(MapEnvironment, TheBedsSamplesAloneAreComplete) {
     EXPECT_LT(std::sqrt(squares / kSide / kSide - mean * mean), 0.2 * mean);
 }
 
+TEST(MapEnvironment, IrradianceIsThatOfItsTexels) {
+    for (const int height : {16, 32, 64}) {
+        const MapEnvironment env(sunny(height), 0.3, 2.0f);
+        glm::dvec3 expected(0.0);
+        overMap(env, {0, 0, 1}, 2048, [&](const shade::EnvironmentSample& there, double area) {
+            expected += double(std::max(there.direction.z, 0.0f)) * area * glm::dvec3(there.radiance);
+            return 0.0;
+        });
+        const Color irradiance = env.irradianceFromAbove();
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(irradiance[c] / expected[c], 1.0, 5e-5) << height;
+    }
+}
+
 /// Direct light of a ball, seen at many points, against the sum over all texels.
 class BallInTheSun {
 public:

@@ -17,7 +17,7 @@ TEST(Sky, LightsASheetToTheStudiosLevel) {
     for (const double elevation : {0.1, 0.6, 1.2}) {
         for (const double turbidity : {2.0, 6.0}) {
             const auto sky = shade::makeSky({elevation, 1.0, turbidity});
-            const Color e = shade::irradianceFromAbove(*sky) + shade::irradianceFrom(*sky->sun(), glm::dvec3(0.0));
+            const Color e = sky->irradianceFromAbove() + shade::irradianceFrom(*sky->sun(), glm::dvec3(0.0));
             EXPECT_NEAR(shade::luminance(e) * shade::kInvPi, shade::kStudioLevel, 0.02f) << elevation;
         }
     }
@@ -45,7 +45,7 @@ TEST(Sky, IsFiniteForEveryDay) {
                 EXPECT_TRUE(shade::isFinite(c));
                 EXPECT_GE(std::min({c.r, c.g, c.b}), 0.0f);
             }
-            EXPECT_GT(shade::luminance(shade::irradianceFromAbove(*sky)), 0.0f);
+            EXPECT_GT(shade::luminance(sky->irradianceFromAbove()), 0.0f);
         }
     }
 }

@@ -1,7 +1,9 @@
-// Transparent pictures: what of the bed's light the print keeps, against form factors and against the opaque picture.
+// What of the bed's light the print keeps, against form factors: in transparent pictures, and as a control variate in
+// opaque ones.
 #include "shade/scene/scene.h"
 
 #include "shade/analytic_prints.h"
+#include "shade/environment/studio.h"
 #include "shade/integrator/path.h"
 #include "shade/integrator/render.h"
 #include "shade/mean_radiance.h"
@@ -9,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace stratum {
@@ -102,6 +106,60 @@ TEST(ShadowCatcher, OverTheBareBedThePictureIsTheOpaqueOne) {
     }
     EXPECT_LT(difference, 0.01 * light);
     EXPECT_GT(shadow, 0.3);
+}
+
+/// Mean and standard deviation of the luminance of single samples at a place on the bed.
+std::array<double, 2> onTheBed(const trace::Intersector& print, const shade::SceneDescription& scene,
+                               const glm::dvec3& place) {
+    constexpr std::uint32_t kSamples = 16384;
+    const shade::PathIntegrator integrator(scene, print, 3);
+    const auto tracer = print.makeTracer();
+    shade::Sampler sampler(1, kSamples);
+    shade::RayCounts rays;
+    shade::TraceContext context{*tracer, sampler, rays};
+    trace::Ray ray;
+    ray.origin = place + glm::dvec3(9, -9, 4);
+    ray.direction = glm::normalize(place - ray.origin);
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::uint32_t s = 0; s < kSamples; ++s) {
+        sampler.start(3, 4, s);
+        const double value = double(shade::luminance(test::radianceOf(integrator, ray, context).rgb));
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / kSamples;
+    return {mean, std::sqrt(std::max(squares / kSamples - mean * mean, 0.0))};
+}
+
+TEST(BareBed, ABlackBallTakesItsFormFactorAndABareBedHasNoNoise) {
+    constexpr double kRadius = 1.0, kHeight = 2.5;
+    const auto ball = test::sphere({0, 0, kHeight}, kRadius);
+    auto scene = transparentScene(ball, "lambert:0,0,0", "constant:1,1,1");
+    scene.transparent = false;
+    scene.catcher.reset();
+    scene.bed->fade_begin = 1e6;
+    scene.bed->fade_end = 2e6;
+    const double white = double(shade::luminance(scene.bed->texture.mean()));
+    for (const double x : {0.0, 1.0, 3.0, 10.0}) {
+        const double r = std::hypot(x, kHeight);
+        const auto [mean, noise] = onTheBed(ball, scene, {x, 0, 0});
+        EXPECT_NEAR(mean / white, 1.0 - kRadius * kRadius * kHeight / (r * r * r), 0.004) << x;
+    }
+    scene.environment = shade::makeEnvironment("studio", {});
+    const auto near = onTheBed(ball, scene, {1.5, 0, 0});
+    const auto far = onTheBed(ball, scene, {400, 0, 0});
+    EXPECT_LT(far[1], 1e-3 * far[0]);
+    EXPECT_GT(near[1], 30 * far[1]);
+    EXPECT_NEAR(far[0] / white, double(shade::kStudioLevel), 0.005);
+    // As far as it is bare, sampled light is the same to what float sums allow, lamps or not.
+    scene.lights.push_back(shade::parseLight("directional:0,0,-1,0,0,0"));  // no control variate beside lamps
+    const auto sampled = onTheBed(ball, scene, {400, 0, 0});
+    EXPECT_GT(sampled[1], 20 * far[1]);
+    EXPECT_NEAR(sampled[0], far[0], 4 * sampled[1] / std::sqrt(16384.0));
+    const auto sampled_near = onTheBed(ball, scene, {1.5, 0, 0});
+    EXPECT_NEAR(sampled_near[0], near[0], 4 * (sampled_near[1] + near[1]) / std::sqrt(16384.0));
+    EXPECT_LT(near[1], sampled_near[1]);
 }
 
 TEST(ShadowCatcher, DenoisingSmoothsTheShadowAndKeepsThePrint) {

@@ -1,10 +1,21 @@
-// PathIntegrator in a transparent picture: the shadow of the print, see ShadowCatcher.
+// PathIntegrator on the bed: what the print takes from its light. That is all that a transparent picture shows of it,
+// see ShadowCatcher, and all that must be sampled in others.
 #include "shade/camera/sampling.h"
 #include "shade/integrator/path.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace stratum::shade {
+
+float PathIntegrator::BareBed::share(const glm::dvec3& place) const {
+    const double height = print.max.z - place.z;
+    if (!(height > 0.0)) return 1.0f;
+    const double x = std::max({print.min.x - place.x, place.x - print.max.x, 0.0});
+    const double y = std::max({print.min.y - place.y, place.y - print.max.y, 0.0});
+    const double sine2 = height * height / (height * height + x * x + y * y);  // of the elevation of its top, at most
+    return static_cast<float>(1.0 - 0.5 * sine2);
+}
 
 void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays,
                              std::span<const Bounce> bounces, std::span<Color> bare) const {
@@ -22,6 +33,13 @@ void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowR
         const Path& path = *bounce.from->path;
         add(path.pixel, bounce.ray, path.throughput * bounce.escaped);
     }
+}
+
+void PathIntegrator::knowBareBed(std::span<const SurfacePoint> points, std::span<const Color> bare,
+                                 std::span<Color> sums) const {
+    for (std::size_t n = 0; n < points.size(); ++n)
+        if (std::isfinite(points[n].t) && points[n].bed)
+            sums[n] += bare_bed_->share(points[n].position) * (points[n].albedo * bare_bed_->radiance - bare[n]);
 }
 
 void PathIntegrator::catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums,
