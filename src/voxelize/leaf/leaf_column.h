@@ -225,6 +225,7 @@ private:
     int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0;
     std::vector<SwellSource> swell_sources_;
     std::vector<float> swell_nodes_;
+    float largest_node_ = 0;                    // of valuesOf(), before it is scaled
     std::vector<PlanField> ramps_x_, ramps_y_;  // of nodeRamps()
     LeafTerms terms_;
     LeafPlanes phi_{};

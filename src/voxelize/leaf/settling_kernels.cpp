@@ -34,13 +34,14 @@ void PlanOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
         const VF n = across(line, qx, qy);
         VF x = hn::Mul(n, hn::Set(f, line.nx));
         VF y = hn::Mul(n, hn::Set(f, line.ny));
+        VF rho = hn::Abs(n);  // as distance() has it
         if (!line.spans) {
             const VF s = along(line, qx, qy);
             const VF past = hn::Sub(s, hn::Min(hn::Max(s, hn::Set(f, line.lo)), hn::Set(f, line.hi)));
             x = hn::Add(x, hn::Mul(past, hn::Set(f, line.ux)));
             y = hn::Add(y, hn::Mul(past, hn::Set(f, line.uy)));
+            rho = hn::Sqrt(dot(n, past, n, past));
         }
-        const VF rho = distance(line, qx, qy);
         storePlan(hn::Sub(rho, hn::Set(f, line.half_flat)), x, y, rho, c, out);
         least = hn::Min(least, rho);
     });
@@ -131,6 +132,8 @@ HWY_INLINE VF lowerLevel(const BeadPlan& a, const BeadPlan& b, std::size_t c, VF
     if (hn::AllFalse(f, near)) return levels;
     const VF cosine =
         dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
+    // From here on half_gap below is 1 and more.
+    if (hn::AllFalse(f, hn::Lt(cosine, hn::Set(f, 0.01F)))) return levels;
     const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
                            hn::Set(f, static_cast<float>(-1 / kOpposite)));
     const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
