@@ -2,12 +2,11 @@
 
 namespace stratum::voxelize {
 
-PlanLayers::PlanLayers(bool keep) {
+PlanLayers::PlanLayers(bool keep) : places_(keep ? kSide * kSide * kSide : 0) {
     if (!keep) return;
-    constexpr std::size_t kPlaces = std::size_t{kSide} * kSide * kSide;
-    keys_.resize(kPlaces);
-    in_use_.resize(kPlaces);
-    kept_ = std::make_unique_for_overwrite<PlanLayer[]>(kPlaces);
+    keys_.resize(places_);
+    in_use_.resize(places_);
+    kept_ = std::make_unique_for_overwrite<PlanLayer[]>(places_);
 }
 
 std::uint32_t PlanLayers::placeOf(const PlanKey& key) {
@@ -25,9 +24,8 @@ std::uint32_t PlanLayers::take(const PlanKey& key) {
             return place;
         }
     }
-    const auto first = static_cast<std::uint32_t>(keys_.size());
     if (free_.empty()) {
-        free_.push_back(first + static_cast<std::uint32_t>(more_.size()));
+        free_.push_back(places_ + static_cast<std::uint32_t>(more_.size()));
         more_.emplace_back();
     }
     const std::uint32_t slot = free_.back();
@@ -36,7 +34,7 @@ std::uint32_t PlanLayers::take(const PlanKey& key) {
 }
 
 void PlanLayers::release(std::uint32_t slot) {
-    if (slot < keys_.size())
+    if (slot < places_)
         in_use_[slot] = false;
     else
         free_.push_back(slot);

@@ -42,15 +42,15 @@ public:
     /// A slot in use from now on; nothing else changes it until release(). It may have to be filled; see isFilled().
     std::uint32_t take(const PlanKey& key);
     /// Whether the slot has what was put into it for that key.
-    bool isFilled(std::uint32_t slot) const { return slot < keys_.size() && keys_[slot].has_value(); }
+    bool isFilled(std::uint32_t slot) const { return slot < places_ && keys_[slot].has_value(); }
     void setFilled(std::uint32_t slot, const PlanKey& key) {
-        if (slot < keys_.size()) keys_[slot] = key;
+        if (slot < places_) keys_[slot] = key;
     }
     void release(std::uint32_t slot);
 
-    PlanLayer& operator[](std::uint32_t slot) { return slot < keys_.size() ? kept_[slot] : more_[slot - keys_.size()]; }
+    PlanLayer& operator[](std::uint32_t slot) { return slot < places_ ? kept_[slot] : more_[slot - places_]; }
     const PlanLayer& operator[](std::uint32_t slot) const {
-        return slot < keys_.size() ? kept_[slot] : more_[slot - keys_.size()];
+        return slot < places_ ? kept_[slot] : more_[slot - places_];
     }
 
 private:
@@ -58,6 +58,7 @@ private:
     static constexpr std::uint32_t kSide = 16;
     static std::uint32_t placeOf(const PlanKey& key);
 
+    const std::uint32_t places_;                // of kept_
     std::vector<std::optional<PlanKey>> keys_;  // of kept_; none: not filled
     std::vector<bool> in_use_;                  // of kept_
     std::unique_ptr<PlanLayer[]> kept_;         // not initialized: most are never used
