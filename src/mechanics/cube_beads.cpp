@@ -45,7 +45,7 @@ void setBeads(const gcode::Toolpath& toolpath, std::span<const std::uint32_t> se
               const voxelize::Lattice& lattice, SolidElements& elements) {
     const voxelize::LayerStack stack = voxelize::stackLayers(toolpath, selection);
     const voxelize::Lattice middles = middlesOf(toolpath, stack, lattice, elements);
-    const voxelize::PrintColumns columns(toolpath, stack, middles, 1, voxelize::LeafColumn::Kind::owners,
+    const voxelize::PrintColumns columns(toolpath, stack, middles, 1, voxelize::LeafColumn::Kind::values,
                                          availableMemory());
     if (columns.size() == 0 || elements.list.empty()) return;
     std::vector<SolidElement>& list = elements.list;

@@ -5,18 +5,17 @@
 namespace stratum::ondemand {
 namespace {
 
-constexpr std::uint32_t kEnd = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-BeadLookup::BeadLookup(const PrintField& field)
-    : field_(field), map_(field.transform().baseMap()), maker_(field.layout(), true) {}
+BeadLookup::BeadLookup(const PrintField& field) : field_(field), map_(field.transform().baseMap()) {}
 
 std::optional<std::uint32_t> BeadLookup::at(const glm::dvec3& position) {
     const openvdb::Vec3d p = map_->applyInverseMap(openvdb::Vec3d(position.x, position.y, position.z));
     const openvdb::Coord cell = openvdb::Coord::floor(p);
     double nearest = 4.0;  // more than any corner's
-    std::uint32_t bead = kEnd;
+    std::uint32_t bead = kNobody;
     for (int c = 0; c < 8; ++c) {
         const openvdb::Coord voxel = cell.offsetBy(c >> 2, c >> 1 & 1, c & 1);
         const double square = (p - voxel.asVec3d()).lengthSqr();
@@ -26,7 +25,7 @@ std::optional<std::uint32_t> BeadLookup::at(const glm::dvec3& position) {
         nearest = square;
         bead = *here;
     }
-    if (bead == kEnd) return std::nullopt;
+    if (bead == kNobody) return std::nullopt;
     return bead;
 }
 
@@ -39,25 +38,21 @@ std::optional<std::uint32_t> BeadLookup::ownerOf(const openvdb::Coord& voxel) {
     if (origins_[place] != origin) fill(place, origin);
     const Owned& leaf = cache_[place];
     const openvdb::Index n = voxelize::Leaf::coordToOffset(voxel);
-    if ((leaf.owned[n >> 6] >> (n & 63) & 1) == 0) return std::nullopt;
-    return leaf.bead[n];
+    if ((leaf.outside[n >> 6] >> (n & 63) & 1) != 0 || leaf.rank[n] == kNobody) return std::nullopt;
+    return field_.layout().stack.beads[leaf.rank[n]];
 }
 
 void BeadLookup::fill(std::size_t place, const openvdb::Coord& origin) {
     Owned& leaf = cache_[place];
     origins_[place] = openvdb::Coord::max();  // invalid if evaluation throws
-    leaf.owned = {};
-    const voxelize::LeafContent content = maker_.make(origin, field_.printed());
+    leaf.outside.fill(~std::uint64_t{0});
+    LeafMaker& maker = field_.maker();
+    const voxelize::LeafContent content = maker.make(origin, field_.printed());
     if (content != voxelize::LeafContent::outside) {
         std::array<float, voxelize::Leaf::SIZE> values;
-        voxelize::storeLeaf(maker_.column().planes(), values.data());
-        maker_.column().owners(leaf.bead);
-        for (std::size_t n = 0; n < values.size(); ++n) {
-            std::uint32_t& bead = leaf.bead[n];
-            if (values[n] >= field_.background() || bead == kEnd) continue;
-            bead = field_.layout().stack.beads[bead];
-            leaf.owned[n >> 6] |= std::uint64_t{1} << (n & 63);
-        }
+        voxelize::storeLeaf(maker.column().planes(), values.data());
+        voxelize::maskFrom(values.data(), field_.background(), leaf.outside.data());
+        maker.owners(leaf.rank);
     }
     origins_[place] = origin;
 }

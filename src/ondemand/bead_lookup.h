@@ -26,8 +26,8 @@ public:
 private:
     // Not initialized: most leaves of the cache are never used.
     struct Owned {
-        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> owned;
-        std::array<std::uint32_t, voxelize::Leaf::SIZE> bead;
+        std::array<std::uint64_t, voxelize::Leaf::NodeMaskType::WORD_COUNT> outside;  // at the background
+        std::array<std::uint32_t, voxelize::Leaf::SIZE> rank;
     };
     std::optional<std::uint32_t> ownerOf(const openvdb::Coord& voxel);
     void fill(std::size_t place, const openvdb::Coord& origin);
@@ -35,7 +35,6 @@ private:
     static constexpr std::size_t kSide = 16;
     const PrintField& field_;
     const openvdb::math::MapBase::ConstPtr map_;
-    LeafMaker maker_;
     std::vector<openvdb::Coord> origins_ = std::vector<openvdb::Coord>(kSide * kSide * kSide, openvdb::Coord::max());
     std::unique_ptr<Owned[]> cache_ = std::make_unique_for_overwrite<Owned[]>(kSide * kSide * kSide);
 };

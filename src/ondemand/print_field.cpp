@@ -58,6 +58,8 @@ PrintField::PrintField(std::shared_ptr<const gcode::Toolpath> toolpath, std::spa
 
 PrintField::~PrintField() = default;
 
+LeafMaker& PrintField::maker() const { return threads_->workers.local().maker; }
+
 bool PrintField::samples(const openvdb::Coord& origin, march::FieldSamples& out) const {
     Worker& worker = threads_->workers.local();
     ++worker.made;

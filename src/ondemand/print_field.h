@@ -52,6 +52,8 @@ public:
     std::size_t bytes() const override;
 
     const PrintLayout& layout() const { return layout_; }
+    /// What the calling thread makes samples() with: it keeps what leaves nearby need too.
+    LeafMaker& maker() const;
     const PrintFieldTimes& times() const { return times_; }
     /// Leaves evaluated so far, by all threads. Not while rays are traced.
     std::size_t leavesMade() const;

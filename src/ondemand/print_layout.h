@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace stratum::ondemand {
@@ -37,17 +38,18 @@ struct PrintLayout {
 /// Evaluates single leaves at any position. Belongs to one thread.
 class LeafMaker {
 public:
-    /// `layout` must outlive it. With `owners` its column records them.
-    explicit LeafMaker(const PrintLayout& layout, bool owners = false)
+    /// `layout` must outlive it.
+    explicit LeafMaker(const PrintLayout& layout)
         : layout_(layout),
-          column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit,
-                  owners ? voxelize::LeafColumn::Kind::owners : voxelize::LeafColumn::Kind::values) {}
+          column_(*layout.toolpath, layout.stack, layout.lattice, layout.unit, voxelize::LeafColumn::Kind::kept) {}
 
     /// Evaluates the leaf from this index-space coordinate, and optionally the plane above it, of the beads below index
     /// `end`. The values are column().planes().
     voxelize::LeafContent make(const openvdb::Coord& origin, std::uint32_t end,
                                std::size_t planes = voxelize::kLeafPlanes);
     const voxelize::LeafColumn& column() const { return column_; }
+    /// LeafColumn::owners() of that leaf.
+    void owners(std::span<std::uint32_t, voxelize::Leaf::SIZE> ranks) { column_.owners(ranks); }
 
 private:
     const PrintLayout& layout_;

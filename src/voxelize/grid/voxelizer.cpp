@@ -222,12 +222,11 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
     const BeadAttributes values(s.toolpath, wanted,
                                 overfill ? overfillOfBeads(s.toolpath, s.stack) : std::vector<float>());
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-    const PrintColumns owning(s.columns, LeafColumn::Kind::owners);
     const auto fill = [&](std::size_t c, LeafColumn& column) {
         std::array<std::uint32_t, Leaf::SIZE> owners{};
         for (const LeafRange& range : column.touched())
             for (int k = range.first; k <= range.second; ++k) {
-                const openvdb::Coord origin(owning.bins().originI(c), owning.bins().originJ(c), k * kLeafDim);
+                const openvdb::Coord origin(s.columns.bins().originI(c), s.columns.bins().originJ(c), k * kLeafDim);
                 if (s.grid->tree().probeConstLeaf(origin) == nullptr) continue;
                 column.evaluate(k);
                 column.owners(owners);
@@ -236,7 +235,7 @@ std::vector<openvdb::GridBase::Ptr> Voxelizer::attributes(std::span<const Attrib
                 for (std::size_t n = 0; n < wanted.size(); ++n) fillLeaf(*grids[n], wanted[n], origin, values, owners);
             }
     };
-    owning.forEach(s.printed, fill, s.options.progress);
+    s.columns.forEach(s.printed, fill, s.options.progress);
     return grids;
 }
 

@@ -8,11 +8,9 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     gatherPaths(source, true);
     line_ids_.insert(line_ids_.end(), taper_ids_.begin(), taper_ids_.end());
     line_ids_.insert(line_ids_.end(), arc_ids_.begin(), arc_ids_.end());
-    near_.clear();
-    for (const LocalLine& line : lines_) planOfLine(grid_, line, near_.emplace_back());
-    for (const LocalTaper& taper : tapers_) planOfTaper(grid_, taper, near_.emplace_back());
-    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
+    planPaths(nullptr);
     minimumOfPaths(d_, nullptr);
+    minimumOfPlans(nearBeads(), d_);
     if (with_swell_ && layer.crown > 0) nearest_ = d_;
     if (layer.settling != nullptr)
         fillBetweenNear(GrooveRule(*layer.settling, layer.radius * scale_), d_, sides2_);
@@ -23,18 +21,13 @@ LeafColumn::LayerPlan LeafColumn::planLayer(const ColumnLayer& source) {
     double most = 0;
     const bool swells = with_swell_ && swell(source.layer, d_, swollen_, least);
     const bool rises = with_swell_ && raise(source.layer, nearest_, rise_, most);
-    return {&layer, line_ids_, near_, &sides2_, swells ? &swollen_ : nullptr, rises ? &rise_ : nullptr};
+    return {&layer, line_ids_, nearBeads(), &sides2_, swells ? &swollen_ : nullptr, rises ? &rise_ : nullptr};
 }
 
 const PlanField& LeafColumn::fieldOf(const ColumnLayer& source) {
     const Layer& layer = stack_.layers[source.layer];
     gatherPaths(source, false);
-    minimumOfPaths(d_, nullptr);
-    if (layer.crown > 0) nearest_ = d_;
-    if (layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1)
-        settle(*layer.settling, layer.radius, d_, sides2_);
-    else
-        squaredSides(d_, sides2_);
+    fieldOfPaths(layer, d_, sides2_);
     float least = 0;
     if (with_swell_) swell(source.layer, d_, sides2_, least);
     return d_;

@@ -62,7 +62,8 @@ bool LeafColumn::gatherNodes(std::uint32_t layer, NodeValues SwellTile::*kind, s
 bool LeafColumn::valuesOf(std::uint32_t layer, NodeValues SwellTile::*kind, std::size_t number, double scale,
                           PlanField& values) {
     if (!gatherNodes(layer, kind, number)) return false;
-    betweenNodes(ramps_x_, ramps_y_, swell_nodes_.data(), static_cast<float>(scale), values);
+    largest_node_ = *std::max_element(swell_nodes_.begin(), swell_nodes_.end());
+    betweenNodes(ramps_x_, ramps_y_, swell_nodes_, static_cast<float>(scale), values);
     return true;
 }
 
@@ -77,7 +78,7 @@ bool LeafColumn::raise(std::uint32_t layer, const PlanField& nearest, PlanField&
     most = 0;
     const Layer& of = stack_.layers[layer];
     const bool rises = valuesOf(layer, &SwellTile::rise, 1, scale_, rise);
-    if (rises) most = kRounding * static_cast<double>(*std::max_element(swell_nodes_.begin(), swell_nodes_.end()));
+    if (rises) most = kRounding * static_cast<double>(largest_node_);
     if (!(of.crown > 0) || !valuesOf(layer, &SwellTile::open, 2, 1, between_)) return rises;
     if (!rises) std::fill(std::begin(rise.v), std::end(rise.v), 0.0F);
     lowerByCrown(between_, nearest, static_cast<float>(of.crown * scale_), static_cast<float>(of.radius * scale_),

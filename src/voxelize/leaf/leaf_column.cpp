@@ -50,11 +50,11 @@ LeafColumn::LeafColumn(const gcode::Toolpath& toolpath, const LayerStack& stack,
       lattice_(lattice),
       scale_(scale),
       band_(lattice.background()),
-      with_owners_(kind == Kind::owners),
       with_swell_(stack.swell != nullptr && kind != Kind::spread_without_swell),
       grid_(spreadOver(kind) ? ColumnGrid::spread(static_cast<float>(lattice.voxel_size * scale))
                              : ColumnGrid(static_cast<float>(lattice.voxel_size * scale))),
-      half_extent_(0.5 * (spreadOver(kind) ? kLeafDim + 1 : kLeafDim - 1) * lattice.voxel_size) {
+      half_extent_(0.5 * (spreadOver(kind) ? kLeafDim + 1 : kLeafDim - 1) * lattice.voxel_size),
+      slots_(kind == Kind::kept) {
     for (const Layer& layer : stack.layers) thickest_ = std::max(thickest_, layer.halfHeight() + layer.most_rise);
     weld_offsets_.assign(stack.layers.size() + 1, 0);
     for (const Weld& weld : stack.welds) ++weld_offsets_[weld.upper + 1];
@@ -106,7 +106,7 @@ void LeafColumn::open(int i, int j, std::span<const std::uint32_t> ranks, std::u
     column_layers_.clear();
     direct_.clear();
     next_layer_ = first_direct_ = 0;
-    free_.insert(free_.end(), window_.begin(), window_.end());
+    for (const std::uint32_t slot : window_) slots_.release(slot);
     swell_placed_ = false;
     window_.clear();
     by_layer_.clear();
@@ -192,32 +192,36 @@ void LeafColumn::minimumOfPaths(PlanField& d, PlanOwners* owners) const {
     if (!arcs_.empty()) minimumOfArcs(grid_, arcs_, d, arc_ids_.data(), owners);
 }
 
-void LeafColumn::loadLayer(const ColumnLayer& source) {
+void LeafColumn::fillLayer(const ColumnLayer& source, PlanLayer& plan) {
     const Layer& layer = stack_.layers[source.layer];
-    gatherPaths(source, with_owners_);
-    if (free_.empty()) {
-        free_.push_back(static_cast<std::uint32_t>(slots_.size()));
-        slots_.emplace_back();
-    }
-    const std::uint32_t slot = free_.back();
-    PlanLayer& plan = slots_[slot];
+    gatherPaths(source, false);
     plan.layer = source.layer;
     plan.center_z = layer.center_z;
     plan.half_height = layer.halfHeight();
     plan.radius = layer.radius;
     plan.half_side = layer.half_side;
-    minimumOfPaths(plan.d, with_owners_ ? &plan.owners : nullptr);
-    if (with_swell_ && layer.crown > 0) nearest_ = plan.d;
+    plan.owned = plan.rises = false;
+    plan.most_rise = 0;
     // Nothing of the column within the band: neither a surface nor a weld.
     const double reach = (layer.radius + band_) * scale_;
-    const bool settles = layer.settling != nullptr && lines_.size() + tapers_.size() + arcs_.size() > 1;
-    float least =
-        settles ? settle(*layer.settling, layer.radius, plan.d, plan.sides2) : squaredSides(plan.d, plan.sides2);
+    float least = fieldOfPaths(layer, plan.d, plan.sides2);
     if (with_swell_) swell(source.layer, plan.d, plan.sides2, least);
-    if (static_cast<double>(least) >= reach * reach) return;
-    plan.most_rise = 0;
-    plan.rises = with_swell_ && raise(source.layer, nearest_, plan.rise, plan.most_rise);
-    free_.pop_back();
+    plan.beyond_band = static_cast<double>(least) >= reach * reach;
+    if (!plan.beyond_band) plan.rises = with_swell_ && raise(source.layer, nearest_, plan.rise, plan.most_rise);
+}
+
+void LeafColumn::loadLayer(const ColumnLayer& source) {
+    const PlanKey key{i_, j_, source.layer, end_};
+    const std::uint32_t slot = slots_.take(key);
+    PlanLayer& plan = slots_[slot];
+    if (!slots_.isFilled(slot)) {
+        fillLayer(source, plan);
+        slots_.setFilled(slot, key);
+    }
+    if (plan.beyond_band) {
+        slots_.release(slot);
+        return;
+    }
     window_.push_back(slot);
     const std::pair entry{source.layer, slot};
     by_layer_.insert(std::lower_bound(by_layer_.begin(), by_layer_.end(), entry), entry);
@@ -226,21 +230,44 @@ void LeafColumn::loadLayer(const ColumnLayer& source) {
     addWelds(plan);
 }
 
-float LeafColumn::settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2) {
-    const GrooveRule rule(curve, radius * scale_);
-    const double half_extent = half_extent_ * scale_;
-    near_.clear();
-    for (const LocalLine& line : lines_)
-        if (mayFill(line, rule, half_extent)) planOfLine(grid_, line, near_.emplace_back());
-    for (const LocalTaper& taper : tapers_)
-        if (mayFill(taper.line, rule, half_extent)) planOfTaper(grid_, taper, near_.emplace_back());
-    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, near_.emplace_back());
+float LeafColumn::fieldOfPaths(const Layer& layer, PlanField& d, PlanField& sides2) {
+    if (layer.settling == nullptr || lines_.size() + tapers_.size() + arcs_.size() < 2) {
+        minimumOfPaths(d, nullptr);
+        if (layer.crown > 0) nearest_ = d;
+        return squaredSides(d, sides2);
+    }
+    const GrooveRule rule(*layer.settling, layer.radius * scale_);
+    planPaths(&rule);
+    minimumOfPaths(d, nullptr);
+    minimumOfPlans(nearBeads(), d);
+    if (layer.crown > 0) nearest_ = d;
     return fillBetweenNear(rule, d, sides2);
 }
 
+void LeafColumn::planPaths(const GrooveRule* rule) {
+    near_count_ = 0;
+    const double half_extent = half_extent_ * scale_;
+    const auto move = [&](auto& paths, const auto& lineOf, const auto& planOf) {
+        std::erase_if(paths, [&](const auto& path) {
+            const bool may_fill = rule == nullptr || mayFill(lineOf(path), *rule, half_extent);
+            if (may_fill) planOf(grid_, path, nextNear());
+            return may_fill;
+        });
+    };
+    move(
+        lines_, [](const LocalLine& line) -> const LocalLine& { return line; }, planOfLine);
+    move(
+        tapers_, [](const LocalTaper& taper) -> const LocalLine& { return taper.line; }, planOfTaper);
+    for (const LocalArc& arc : arcs_) planOfArc(grid_, arc, nextNear());
+    arcs_.clear();
+}
+
 float LeafColumn::fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2) {
-    filling_.resize(near_.size());
-    std::iota(filling_.begin(), filling_.end(), 0U);
+    // Where flats are two radii apart or more, there is no groove to fill.
+    filling_.clear();
+    for (std::uint32_t n = 0; n < near_count_; ++n)
+        if (near_[n].least < 2 * rule.radius) filling_.push_back(n);
+    if (filling_.size() < 2) return squaredSides(d, sides2);
     if (filling_.size() > kMostFilling) {
         const auto nearest = filling_.begin() + kMostFilling;
         std::nth_element(filling_.begin(), nearest, filling_.end(), [this](std::uint32_t a, std::uint32_t b) {
@@ -292,7 +319,11 @@ void LeafColumn::moveWindow(double z_min, double z_max) {
     };
     // In order, because the first of equally near beads is the owner.
     std::size_t kept = 0;
-    for (const std::uint32_t slot : window_) (passed(slot) ? free_.emplace_back() : window_[kept++]) = slot;
+    for (const std::uint32_t slot : window_)
+        if (passed(slot))
+            slots_.release(slot);
+        else
+            window_[kept++] = slot;
     if (kept != window_.size()) {
         window_.resize(kept);
         std::erase_if(by_layer_, [&](const auto& entry) { return passed(entry.second); });

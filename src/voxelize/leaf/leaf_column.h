@@ -6,6 +6,7 @@
 #include "voxelize/beads/layer_stack.h"
 #include "voxelize/beads/plan_bins.h"
 #include "voxelize/leaf/leaf_kernels.h"
+#include "voxelize/leaf/plan_layers.h"
 #include "voxelize/leaf/settling_kernels.h"
 #include "voxelize/swell/swell_field.h"
 
@@ -37,8 +38,8 @@ LeafRange leavesAround(const Lattice& lattice, const LayerStack& stack);
 class LeafColumn {
 public:
     enum class Kind : std::uint8_t {
-        values,                ///< of leaves
-        owners,                ///< and the nearest bead of each voxel; see owners()
+        values,                ///< of leaves, and the nearest bead of each voxel; see owners()
+        kept,                  ///< the same of single leaves in any order: plan fields are kept for later ones
         spread,                ///< for measurements: plan fields at ColumnGrid::spread()
         spread_without_swell,  ///< the same without what LayerStack::swell adds
     };
@@ -75,8 +76,8 @@ public:
     const LeafPlanes& planes() const { return phi_; }
 
     /// For each voxel of the leaf just evaluated, in leaf order, the rank of the bead whose surface is nearest; of
-    /// equally near beads the earlier one. Only of that kind, and only where a bead is within the band.
-    void owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const;
+    /// equally near beads the earlier one. Only where a bead is within the band.
+    void owners(std::span<std::uint32_t, Leaf::SIZE> ranks);
 
     /// World units a mm.
     double scale() const { return scale_; }
@@ -122,15 +123,6 @@ private:
         std::uint32_t first, last;  // entries of ranks_
         bool loaded;
     };
-    struct PlanLayer {
-        std::uint32_t layer;
-        double center_z, half_height, radius, half_side;  // mm
-        bool rises;                                       // whether `rise` is used
-        double most_rise;                                 // mm, the most of it
-        PlanField d, sides2;                              // d: where beads settle, closed by what welds close
-        PlanField rise;                                   // world units; below 0 in crowns
-        PlanOwners owners;
-    };
     struct PlanWeld {
         double interface_low, interface_high;  // mm, the two planes that touch
         double middle_z, half;                 // mm
@@ -150,12 +142,22 @@ private:
     /// The least plan distance to those paths.
     void minimumOfPaths(PlanField& d, PlanOwners* owners) const;
     void loadLayer(const ColumnLayer& source);
+    void fillLayer(const ColumnLayer& source, PlanLayer& plan);
+    void findOwners(PlanLayer& plan);
     LayerPlan planLayer(const ColumnLayer& source);
     const PlanField& fieldOf(const ColumnLayer& source);
-    /// Fills the grooves of a layer whose d is the minimum over its paths; returns the least of sides2.
-    float settle(const SettlingCurve& curve, double radius, PlanField& d, PlanField& sides2);
-    /// The same for the beads in near_.
+    /// d over those paths, before the outlines of the layer move out, and squared; returns the least of the latter.
+    /// Where the layer has a crown, nearest_ is d before grooves are filled.
+    float fieldOfPaths(const Layer& layer, PlanField& d, PlanField& sides2);
+    /// Moves those paths into near_, as beads; with a rule only those that may fill a groove by it.
+    void planPaths(const GrooveRule* rule);
+    std::span<const BeadPlan> nearBeads() const { return std::span(near_).first(near_count_); }
+    /// Fills the grooves between the beads in near_; d is the minimum over all paths.
     float fillBetweenNear(const GrooveRule& rule, PlanField& d, PlanField& sides2);
+    BeadPlan& nextNear() {
+        if (near_count_ == near_.size()) near_.emplace_back();
+        return near_[near_count_++];
+    }
     /// Moves the outlines of a layer out by LayerStack::swell. True if anything changed; `least` is of sides2 then.
     bool swell(std::uint32_t layer, PlanField& d, PlanField& sides2, float& least);
     /// By how much the top of a layer is moved up, world units; `nearest`: as of forEachSides(). True if it is
@@ -177,7 +179,7 @@ private:
     const LayerStack& stack_;
     const Lattice& lattice_;
     const double scale_, band_;  // world units a mm; mm
-    const bool with_owners_, with_swell_;
+    const bool with_swell_;
     const ColumnGrid grid_;
     const double half_extent_;               // mm: the samples' coordinates from the middle of the column
     double thickest_ = 0;                    // mm, the largest half height of a layer
@@ -195,9 +197,9 @@ private:
     std::size_t first_direct_ = 0;
     std::vector<LeafRange> ranges_;
 
-    // The window. Slots are reused; window_ lists those in use, by_layer_ finds them by (layer, slot), ascending.
-    std::vector<PlanLayer> slots_;
-    std::vector<std::uint32_t> window_, free_;
+    // The window: window_ lists the slots in use, by_layer_ finds them by (layer, slot), ascending.
+    PlanLayers slots_;
+    std::vector<std::uint32_t> window_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> by_layer_;
     std::vector<std::pair<double, std::size_t>> partners_;  // of a layer to weld: gap, place in by_layer_
     std::vector<PlanWeld> welds_;
@@ -207,6 +209,7 @@ private:
     std::vector<LocalArc> arcs_;
     std::vector<std::uint32_t> line_ids_, taper_ids_, arc_ids_;
     std::vector<BeadPlan> near_;          // beads that may fill a groove; all of the layer in planLayer()
+    std::size_t near_count_ = 0;          // of near_, those in use
     std::vector<std::uint32_t> filling_;  // of near_, those that do
     PlanField d_, sides2_;                // of planLayer()
     PlanField swollen_, rise_;            // likewise
@@ -222,6 +225,7 @@ private:
     int first_node_i_ = 0, first_node_j_ = 0, nodes_i_ = 0;
     std::vector<SwellSource> swell_sources_;
     std::vector<float> swell_nodes_;
+    float largest_node_ = 0;                    // of valuesOf(), before it is scaled
     std::vector<PlanField> ramps_x_, ramps_y_;  // of nodeRamps()
     LeafTerms terms_;
     LeafPlanes phi_{};

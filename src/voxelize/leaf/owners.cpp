@@ -1,6 +1,7 @@
 // LeafColumn::owners: the bead whose surface is nearest to each voxel.
 #include "voxelize/beads/bead_field.h"
 #include "voxelize/leaf/leaf_column.h"
+#include "voxelize/leaf/owner_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,16 @@
 
 namespace stratum::voxelize {
 
-void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
+void LeafColumn::findOwners(PlanLayer& plan) {
+    const auto source = std::lower_bound(
+        column_layers_.begin(), column_layers_.end(), plan.layer,
+        [](const ColumnLayer& column_layer, std::uint32_t layer) { return column_layer.layer < layer; });
+    gatherPaths(*source, true);
+    minimumOfPaths(between_, &plan.owners);
+    plan.owned = true;
+}
+
+void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) {
     constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
     // Plane by plane, as plan fields are.
     PlanField nearest[kLeafPlanes];
@@ -17,39 +27,22 @@ void LeafColumn::owners(std::span<std::uint32_t, Leaf::SIZE> ranks) const {
     for (PlanOwners& plane : owners) std::fill(std::begin(plane.v), std::end(plane.v), kNobody);
     const int k0 = leaf_k_ * kLeafDim;
     for (const std::uint32_t slot : window_) {
-        const PlanLayer& plan = slots_[slot];
-        const auto radius = static_cast<float>(plan.radius * scale_);
-        const auto half_side = static_cast<float>(plan.half_side * scale_);
+        PlanLayer& plan = slots_[slot];
+        if (!plan.owned) findOwners(plan);
+        OwnedLayer layer{.sides2 = &plan.sides2,
+                         .d = plan.half_side > 0 ? &plan.d : nullptr,
+                         .owners = &plan.owners,
+                         .radius = static_cast<float>(plan.radius * scale_),
+                         .half_side = static_cast<float>(plan.half_side * scale_)};
         for (int z = 0; z < kLeafDim; ++z) {
             const double dz = sampleZ(k0 + z) - plan.center_z;
             const double reach = plan.half_height + band_;
             if (dz <= -reach || dz >= reach + plan.most_rise) continue;
-            PlanField over;
-            if (plan.rises && dz > 0) {
-                // As PlaneTerm::rise has it.
-                const auto height = static_cast<float>(dz * scale_);
-                for (std::size_t c = 0; c < kColumnSamples; ++c)
-                    over.v[c] = std::max(std::min(height - plan.rise.v[c], 2 * height), 0.0F) - half_side;
-            } else {
-                const auto level = static_cast<float>((std::abs(dz) - plan.half_side) * scale_);
-                std::fill(std::begin(over.v), std::end(over.v), level);
-            }
-            PlanField distance;
-            for (std::size_t c = 0; c < kColumnSamples; ++c) {
-                const float above = std::max(over.v[c], 0.0F);
-                distance.v[c] = std::sqrt(plan.sides2.v[c] + above * above) - radius;
-            }
-            if (plan.half_side > 0)
-                for (std::size_t c = 0; c < kColumnSamples; ++c)
-                    distance.v[c] += std::min(std::max(plan.d.v[c], over.v[c]), 0.0F);
-            float* const least = nearest[static_cast<std::size_t>(z)].v;
-            std::uint32_t* const owner = owners[static_cast<std::size_t>(z)].v;
-            for (std::size_t c = 0; c < kColumnSamples; ++c) {
-                const std::uint32_t rank = plan.owners.v[c];
-                const bool nearer = (distance.v[c] < least[c]) | ((distance.v[c] == least[c]) & (rank < owner[c]));
-                least[c] = nearer ? distance.v[c] : least[c];
-                owner[c] = nearer ? rank : owner[c];
-            }
+            // As PlaneTerm::rise has it.
+            layer.rise = plan.rises && dz > 0 ? &plan.rise : nullptr;
+            layer.dz = static_cast<float>(dz * scale_);
+            layer.over = static_cast<float>((std::abs(dz) - plan.half_side) * scale_);
+            takeNearer(layer, nearest[z], owners[z]);
         }
     }
     for (std::size_t n = 0; n < Leaf::SIZE; ++n) ranks[n] = owners[n % kLeafPlanes].v[n / kLeafPlanes];

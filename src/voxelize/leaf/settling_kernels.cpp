@@ -34,13 +34,14 @@ void PlanOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out) {
         const VF n = across(line, qx, qy);
         VF x = hn::Mul(n, hn::Set(f, line.nx));
         VF y = hn::Mul(n, hn::Set(f, line.ny));
+        VF rho = hn::Abs(n);  // as distance() has it
         if (!line.spans) {
             const VF s = along(line, qx, qy);
             const VF past = hn::Sub(s, hn::Min(hn::Max(s, hn::Set(f, line.lo)), hn::Set(f, line.hi)));
             x = hn::Add(x, hn::Mul(past, hn::Set(f, line.ux)));
             y = hn::Add(y, hn::Mul(past, hn::Set(f, line.uy)));
+            rho = hn::Sqrt(dot(n, past, n, past));
         }
-        const VF rho = distance(line, qx, qy);
         storePlan(hn::Sub(rho, hn::Set(f, line.half_flat)), x, y, rho, c, out);
         least = hn::Min(least, rho);
     });
@@ -98,6 +99,15 @@ void PlanOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
     out.least = std::max(hn::GetLane(hn::MinOfLanes(f, least)) - arc.half_flat, 0.0F);
 }
 
+void MinimumOfPlans(std::span<const BeadPlan> plans, PlanField& d) {
+    const F f;
+    forEachVector([&](std::size_t c) HWY_ATTR {
+        VF least = hn::Load(f, d.v + c);
+        for (const BeadPlan& plan : plans) least = hn::Min(least, hn::Load(f, plan.d.v + c));
+        hn::Store(least, f, d.v + c);
+    });
+}
+
 // Linear interpolation in the table, at z in [0, 1].
 HWY_INLINE VF lookUp(const float* table, VF z) {
     const F f;
@@ -122,6 +132,8 @@ HWY_INLINE VF lowerLevel(const BeadPlan& a, const BeadPlan& b, std::size_t c, VF
     if (hn::AllFalse(f, near)) return levels;
     const VF cosine =
         dot(hn::Load(f, a.nx.v + c), hn::Load(f, a.ny.v + c), hn::Load(f, b.nx.v + c), hn::Load(f, b.ny.v + c));
+    // From here on half_gap below is 1 and more.
+    if (hn::AllFalse(f, hn::Lt(cosine, hn::Set(f, 0.01F)))) return levels;
     const VF off = hn::Mul(hn::Max(hn::Sub(cosine, hn::Set(f, static_cast<float>(kOpposite))), zero),
                            hn::Set(f, static_cast<float>(-1 / kOpposite)));
     const VF penalty = hn::Mul(hn::Set(f, static_cast<float>(0.5 * kTurnPenalty)), hn::Mul(off, off));
@@ -153,17 +165,18 @@ void LevelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_
             }
             return count;
         };
+        const auto lower = [&](const BeadPlan& a, const BeadPlan& b) HWY_ATTR {
+            if (a.least + b.least < 2 * rule.radius) lowest = lowerLevel(a, b, c, least, rule, lowest);
+        };
         const bool deep = hn::AllFalse(f, hn::Gt(least, hn::Set(f, -rule.weld_level)));
         for (std::size_t first = 0; !deep && first < which.size(); first += kSome) {
             const std::size_t count = gather(first, near[0]);
             for (std::size_t a = 0; a < count; ++a)
-                for (std::size_t b = a + 1; b < count; ++b)
-                    lowest = lowerLevel(*near[0][a], *near[0][b], c, least, rule, lowest);
+                for (std::size_t b = a + 1; b < count; ++b) lower(*near[0][a], *near[0][b]);
             for (std::size_t second = first + kSome; count > 0 && second < which.size(); second += kSome) {
                 const std::size_t others = gather(second, near[1]);
                 for (std::size_t a = 0; a < count; ++a)
-                    for (std::size_t b = 0; b < others; ++b)
-                        lowest = lowerLevel(*near[0][a], *near[1][b], c, least, rule, lowest);
+                    for (std::size_t b = 0; b < others; ++b) lower(*near[0][a], *near[1][b]);
             }
         }
         hn::Store(lowest, f, levels.v + c);
@@ -213,6 +226,7 @@ namespace stratum::voxelize {
 HWY_EXPORT(PlanOfLine);
 HWY_EXPORT(PlanOfTaper);
 HWY_EXPORT(PlanOfArc);
+HWY_EXPORT(MinimumOfPlans);
 HWY_EXPORT(LevelsBetween);
 HWY_EXPORT(FillGrooves);
 HWY_EXPORT(MoveOut);
@@ -226,7 +240,8 @@ GrooveRule::GrooveRule(const SettlingCurve& curve, double the_radius)
 
 bool mayFill(const LocalLine& line, const GrooveRule& rule, double half_extent) {
     const double past = std::max({static_cast<double>(line.lo), -static_cast<double>(line.hi), 0.0});
-    const double from_middle = std::hypot(static_cast<double>(line.n0), past) - static_cast<double>(line.half_flat);
+    const double from_path = std::sqrt(static_cast<double>(line.n0) * static_cast<double>(line.n0) + past * past);
+    const double from_middle = from_path - static_cast<double>(line.half_flat);
     constexpr double kSlack = 1e-5;  // of floats
     return from_middle * (1 - kSlack) < 2 * static_cast<double>(rule.radius) + half_extent * std::sqrt(2.0);
 }
@@ -240,6 +255,7 @@ void planOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out)
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out) {
     HWY_DYNAMIC_DISPATCH(PlanOfArc)(grid, arc, out);
 }
+void minimumOfPlans(std::span<const BeadPlan> plans, PlanField& d) { HWY_DYNAMIC_DISPATCH(MinimumOfPlans)(plans, d); }
 void levelsBetween(std::span<const BeadPlan> plans, std::span<const std::uint32_t> which, const PlanField& d,
                    const GrooveRule& rule, PlanField& levels) {
     HWY_DYNAMIC_DISPATCH(LevelsBetween)(plans, which, d, rule, levels);

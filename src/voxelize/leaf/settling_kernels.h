@@ -21,6 +21,9 @@ void planOfLine(const ColumnGrid& grid, const LocalLine& line, BeadPlan& out);
 void planOfTaper(const ColumnGrid& grid, const LocalTaper& taper, BeadPlan& out);
 void planOfArc(const ColumnGrid& grid, const LocalArc& arc, BeadPlan& out);
 
+/// d = min(d, d of each).
+void minimumOfPlans(std::span<const BeadPlan> plans, PlanField& d);
+
 /// The constants of a layer, world units.
 struct GrooveRule {
     const float* table;  ///< SettlingCurve::table()

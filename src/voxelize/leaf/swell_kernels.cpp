@@ -27,13 +27,13 @@ void NodeRamps(const PlanField& q, float per_unit, float first, std::span<PlanFi
 }
 
 void BetweenNodes(std::span<const PlanField> ramps_x, std::span<const PlanField> ramps_y,
-                  const float* HWY_RESTRICT nodes, float scale, PlanField& values) {
+                  const float* HWY_RESTRICT steps, float scale, PlanField& values) {
     const F f;
     const auto alongRow = [&](std::size_t row, std::size_t c) HWY_ATTR {
-        const float* at = nodes + row * (ramps_x.size() + 1);
+        const float* at = steps + row * (ramps_x.size() + 1);
         VF value = hn::Set(f, at[0]);
         for (std::size_t n = 0; n < ramps_x.size(); ++n)
-            value = hn::Add(value, hn::Mul(hn::Load(f, ramps_x[n].v + c), hn::Set(f, at[n + 1] - at[n])));
+            value = hn::Add(value, hn::Mul(hn::Load(f, ramps_x[n].v + c), hn::Set(f, at[n + 1])));
         return value;
     };
     forEachVector([&](std::size_t c) HWY_ATTR {
@@ -76,9 +76,13 @@ HWY_EXPORT(LowerByCrown);
 void nodeRamps(const PlanField& q, float per_unit, float first, std::span<PlanField> ramps) {
     HWY_DYNAMIC_DISPATCH(NodeRamps)(q, per_unit, first, ramps);
 }
-void betweenNodes(std::span<const PlanField> ramps_x, std::span<const PlanField> ramps_y, const float* nodes,
+void betweenNodes(std::span<const PlanField> ramps_x, std::span<const PlanField> ramps_y, std::span<float> nodes,
                   float scale, PlanField& values) {
-    HWY_DYNAMIC_DISPATCH(BetweenNodes)(ramps_x, ramps_y, nodes, scale, values);
+    // Of each row the first node, and the steps from there on.
+    const std::size_t width = ramps_x.size() + 1;
+    for (std::size_t first = 0; first < nodes.size(); first += width)
+        for (std::size_t n = first + width - 1; n > first; --n) nodes[n] -= nodes[n - 1];
+    HWY_DYNAMIC_DISPATCH(BetweenNodes)(ramps_x, ramps_y, nodes.data(), scale, values);
 }
 void lowerByCrown(const PlanField& share, const PlanField& nearest, float crown, float radius, PlanField& rise) {
     HWY_DYNAMIC_DISPATCH(LowerByCrown)(share, nearest, crown, radius, rise);

@@ -12,8 +12,9 @@ namespace stratum::voxelize {
 /// before it and 1 from the next one on. `q` is of a ColumnGrid; its points are q * per_unit + first nodes past node 0.
 void nodeRamps(const PlanField& q, float per_unit, float first, std::span<PlanField> ramps);
 
-/// Values between the nodes of a window, times `scale`. `nodes`: row by row along y, one more of each than ramps.
-void betweenNodes(std::span<const PlanField> ramps_x, std::span<const PlanField> ramps_y, const float* nodes,
+/// Values between the nodes of a window, times `scale`. `nodes`: row by row along y, one more of each than ramps; what
+/// they hold afterwards is of no use.
+void betweenNodes(std::span<const PlanField> ramps_x, std::span<const PlanField> ramps_y, std::span<float> nodes,
                   float scale, PlanField& values);
 
 /// rise = rise - share * crownDepth(crown, radius, nearest).

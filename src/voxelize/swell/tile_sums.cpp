@@ -5,6 +5,7 @@
 #include "voxelize/swell/open_top.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -77,8 +78,9 @@ public:
         if (!crowned && open == kAllPoints) return addFlat(1, first_node, sums.open);
         if (crowned && open == 0 && solid == kAllPoints) return addFlat(1, first_node, sums.solid);
         thread_local std::array<PlanField, NodeSums::kFields> fields;
-        const auto ones = [](std::uint64_t points, PlanField& field) {
-            for (std::size_t c = 0; c < kColumnSamples; ++c) field.v[c] = static_cast<float>(points >> c & 1);
+        const auto ones = [this](std::uint64_t points, PlanField& field) {
+            for (std::size_t c = 0; c < kColumnSamples; c += 8)
+                std::copy_n(ones_[points >> c & 0xff].data(), 8, field.v + c);
         };
         ones(open, fields[0]);
         ones(crowned ? solid : 0, fields[1]);
@@ -132,7 +134,16 @@ private:
         }
     }
 
+    // Of each byte its bits, from the lowest, as numbers.
+    static std::array<std::array<float, 8>, 256> onesOfBytes() {
+        std::array<std::array<float, 8>, 256> ones;
+        for (std::size_t byte = 0; byte < ones.size(); ++byte)
+            for (std::size_t bit = 0; bit < 8; ++bit) ones[byte][bit] = static_cast<float>(byte >> bit & 1);
+        return ones;
+    }
+
     const NodeSums nodes_;
+    const std::array<std::array<float, 8>, 256> ones_ = onesOfBytes();
 };
 
 // Lays a bead's volume along its path, evenly over the width of a box of its height.
@@ -273,7 +284,7 @@ bool layersOverlap(const LayerStack& stack) {
     });
 }
 
-// Of a top in a column.
+// Of a top in a column, in the order of the tops.
 struct TopFields {
     TileSums::Layer* sums = nullptr;
     std::uint64_t solid = 0;
@@ -308,14 +319,14 @@ TileSums sumTile(const gcode::Toolpath& toolpath, const LayerStack& stack, const
             const int first_node = kSquareCells * (cj * kNodes + ci);
             if (overlap) std::fill(std::begin(highest.v), std::end(highest.v), std::numeric_limits<float>::lowest());
             tops.clear();
-            fields.clear();
             column.forEachSides([&](std::uint32_t layer, const PlanField& sides2, const PlanField& nearest) {
                 const Layer& of = stack.layers[layer];
                 TileSums::Layer& sums = sumsOf(layers, layer);
                 const std::uint64_t solid = kSums.add(of, sides2, first_node, sums, overlap ? &highest : nullptr);
                 if (solid == 0) return;
                 addTop(layer, solid, tops);
-                TopFields& top = fields.emplace_back();
+                if (tops.size() > fields.size()) fields.emplace_back();
+                TopFields& top = fields[tops.size() - 1];
                 top.sums = &sums;
                 top.solid = solid;
                 if (!(of.crown > 0)) return;

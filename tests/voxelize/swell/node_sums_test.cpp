@@ -88,7 +88,8 @@ TEST(SwellKernels, InterpolateAndCrownAsDefined) {
     std::vector<float> nodes(12);
     for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = 0.01F * static_cast<float>(n * n % 7);
     PlanField values;
-    betweenNodes(x, y, nodes.data(), 2, values);
+    std::vector<float> scratch = nodes;
+    betweenNodes(x, y, scratch, 2, values);
     PlanField lowered = values;
     const PlanField nearest = randomField(7, -0.3F, 0.3F);
     lowerByCrown(values, nearest, 0.04F, 0.1F, lowered);
@@ -121,7 +122,7 @@ TEST(SwellKernels, EveryInstructionSetGivesTheSameBytes) {
         Result r{};
         std::vector<PlanField> ramps(2);
         nodeRamps(grid.qx, 2.5F, 1, ramps);
-        const float nodes[9] = {0, 0.1F, 0.05F, 0.07F, 0.02F, 0, 0.03F, 0.09F, 0.1F};
+        float nodes[9] = {0, 0.1F, 0.05F, 0.07F, 0.02F, 0, 0.03F, 0.09F, 0.1F};
         betweenNodes(ramps, ramps, nodes, 1, r.values);
         r.lowered = r.values;
         lowerByCrown(r.values, randomField(7, -0.3F, 0.3F), 0.04F, 0.1F, r.lowered);
