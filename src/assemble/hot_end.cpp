@@ -31,6 +31,7 @@ double scaleFor(const TracedObjects& objects, HotEndShape shape) {
 
 std::vector<trace::SceneObject> placedAt(const glm::dvec3& tip, const std::vector<HotEndPart>& parts, double scale) {
     std::vector<trace::SceneObject> placed;
+    placed.reserve(parts.size());
     for (const HotEndPart& part : parts) placed.push_back({part.solid, {glm::dmat3(scale), tip}});
     return placed;
 }

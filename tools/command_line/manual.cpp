@@ -74,7 +74,7 @@ public:
         std::size_t column = text.size() + 1;
         if (column > column_width_) {
             text += '\n';
-            column = 0;
+            column = 1;
         }
         text.append(column_width_ - std::min(column, column_width_), ' ');
         column = column_width_;
