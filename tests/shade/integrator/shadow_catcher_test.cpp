@@ -31,8 +31,10 @@ shade::SceneDescription transparentScene(const trace::Intersector& print, const 
     return shade::makeScene(options, print, 48, 36);
 }
 
-float meanAlpha(const trace::Intersector& print, const shade::SceneDescription& scene, const glm::dvec3& place,
-                std::uint32_t samples = 8192) {
+/// Calls visit(pixel) for samples of one ray that sees a place on the bed.
+template <typename Visit>
+void forEachSample(const trace::Intersector& print, const shade::SceneDescription& scene, const glm::dvec3& place,
+                   std::uint32_t samples, const Visit& visit) {
     const shade::PathIntegrator integrator(scene, print, 3);
     const auto tracer = print.makeTracer();
     shade::Sampler sampler(1, samples);
@@ -41,13 +43,19 @@ float meanAlpha(const trace::Intersector& print, const shade::SceneDescription& 
     trace::Ray ray;
     ray.origin = place + glm::dvec3(9, -9, 4);
     ray.direction = glm::normalize(place - ray.origin);
-    double sum = 0.0;
     for (std::uint32_t s = 0; s < samples; ++s) {
         sampler.start(3, 4, s);
-        const shade::Pixel pixel = test::radianceOf(integrator, ray, context);
+        visit(test::radianceOf(integrator, ray, context));
+    }
+}
+
+float meanAlpha(const trace::Intersector& print, const shade::SceneDescription& scene, const glm::dvec3& place,
+                std::uint32_t samples = 8192) {
+    double sum = 0.0;
+    forEachSample(print, scene, place, samples, [&](const shade::Pixel& pixel) {
         EXPECT_EQ(pixel.rgb, Color(0.0f));
         sum += double(pixel.alpha);
-    }
+    });
     return static_cast<float>(sum / samples);
 }
 
@@ -112,22 +120,13 @@ TEST(ShadowCatcher, OverTheBareBedThePictureIsTheOpaqueOne) {
 std::array<double, 2> onTheBed(const trace::Intersector& print, const shade::SceneDescription& scene,
                                const glm::dvec3& place) {
     constexpr std::uint32_t kSamples = 16384;
-    const shade::PathIntegrator integrator(scene, print, 3);
-    const auto tracer = print.makeTracer();
-    shade::Sampler sampler(1, kSamples);
-    shade::RayCounts rays;
-    shade::TraceContext context{*tracer, sampler, rays};
-    trace::Ray ray;
-    ray.origin = place + glm::dvec3(9, -9, 4);
-    ray.direction = glm::normalize(place - ray.origin);
     double sum = 0.0;
     double squares = 0.0;
-    for (std::uint32_t s = 0; s < kSamples; ++s) {
-        sampler.start(3, 4, s);
-        const double value = double(shade::luminance(test::radianceOf(integrator, ray, context).rgb));
+    forEachSample(print, scene, place, kSamples, [&](const shade::Pixel& pixel) {
+        const double value = double(shade::luminance(pixel.rgb));
         sum += value;
         squares += value * value;
-    }
+    });
     const double mean = sum / kSamples;
     return {mean, std::sqrt(std::max(squares / kSamples - mean * mean, 0.0))};
 }
