@@ -49,12 +49,12 @@ picture "Anycubic Slicer, many colours" "$corpus/AnycubicSlicerImageIntractor-mu
 picture "PrusaSlicer, XL" "$corpus/ChestnutLabs-prim_cube_xl.bgcode"
 picture "Creality Print" "$corpus/K1_Series_Klipper-K1C_3DBenchy.gcode.gz"
 picture "Cura 15" "$corpus/OctoPrint-bp_case_cura15.gcode.gz"
-picture "Slic3r, without tags" "$corpus/RRFInstall-cube_huelle.gcode.gz"
+picture "PrusaSlicer 2.2, without tags" "$corpus/RRFInstall-cube_huelle.gcode.gz"
 picture "KISSlicer" "$corpus/demestav-thinbox_kisslicer.gcode.gz"
 picture "PrusaSlicer, MMU2" "$corpus/gcode-metadata-mk3s_mmu2s.gcode.gz"
 picture "Cura, two extruders" "$corpus/gcode_metadata-cura_2ext.ufp"
 picture "Kiri:Moto" "$corpus/preprocess_cancellation-kirimoto.gcode"
-picture "PrusaSlicer, arcs" data/gcode/gear.gcode
+picture "PrusaSlicer, a gear wheel" data/gcode/gear.gcode
 picture "white" data/gcode/knot.gcode --color white
 picture "white, Cura" "$corpus/bgautrea-ender3_cura.gcode.gz" --color white
 picture "white, Slic3r" "$corpus/slic3r_vol.gcode" --color white

@@ -25,6 +25,7 @@ enum class HotEndKind {
 inline constexpr Names<HotEndKind, 3> kHotEnds = {
     {{"none", HotEndKind::none}, {"metal", HotEndKind::metal}, {"clear", HotEndKind::clear}}};
 
+/// What is drawn, and how.
 struct HotEndLook {
     HotEndKind kind = HotEndKind::none;
     HotEndShape shape = HotEndShape::slender;

@@ -2,8 +2,6 @@
 
 #include "trace/convex_solid.h"
 
-#include <iterator>
-
 namespace stratum::assemble {
 namespace {
 

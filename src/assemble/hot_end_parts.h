@@ -24,9 +24,9 @@ struct HotEndPart {
     std::string_view metal;                           ///< for shade::makeBrdf()
 };
 
-/// From the tip upwards. Lengths of V6 and Volcano: the maker's drawings (wiki.e3d-online.com, "E3D-v6 Documentation"
-/// and "E3D-v6 (Volcano) Documentation"); holes, threads, wires and the fan are left out, and the cone of the heat
-/// sink's core is a cylinder of its mean diameter.
+/// From the tip upwards. Lengths of V6 and Volcano: from public models of the maker's drawings (wiki.e3d-online.com,
+/// "E3D-v6 Documentation" and "E3D-v6 (Volcano) Documentation"), not from the drawings themselves; holes, threads,
+/// wires and the fan are left out, and the cone of the heat sink's core is a cylinder of its mean diameter.
 std::vector<HotEndPart> makeHotEndParts(HotEndShape shape);
 
 }  // namespace stratum::assemble

@@ -1,5 +1,7 @@
 #include "gcode/summary.h"
 
+#include "gcode/slicer/bead_colors.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -88,8 +90,7 @@ void describeColors(const Toolpath& toolpath, fmt::memory_buffer& out) {
     };
     for (std::size_t tool = 0; tool < toolpath.tool_colors.size(); ++tool) {
         if (!toolpath.tool_colors[tool] || !(at(toolpath.filament_by_tool, tool) > 0)) continue;
-        const auto& guessed = toolpath.palette_tools;
-        add(tool, *toolpath.tool_colors[tool], std::find(guessed.begin(), guessed.end(), tool) == guessed.end(), {});
+        add(tool, *toolpath.tool_colors[tool], !colorOfTool(toolpath, static_cast<std::uint8_t>(tool)).palette, {});
     }
     for (const ColorChange& change : toolpath.color_changes) {
         if (change.first_bead >= toolpath.beads.size()) continue;

@@ -58,7 +58,8 @@ TEST(HotEnd, IsSmallerAboveASmallPart) {
     EXPECT_NEAR(top, 32, 1e-9);
 }
 
-// Lengths that the maker states: in all, from the tip to the lowest fin, across the fins, and of the block.
+// Lengths of public models of the maker's drawings: in all, from the tip to the lowest fin, across the fins, and of the
+// block.
 TEST(HotEnd, HasTheOutlineOfItsMaker) {
     const std::shared_ptr<const trace::Intersector> ball = trace::makeSdfIntersector(trace::sdfSphere({0, 0, -5}, 5));
     struct Outline {

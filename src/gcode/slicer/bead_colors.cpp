@@ -23,13 +23,6 @@ auto changesUpTo(const Toolpath& toolpath, std::size_t bead) {
                             [](std::size_t b, const ColorChange& c) { return b < c.first_bead; });
 }
 
-StatedColor colorOfTool(const Toolpath& toolpath, std::uint8_t tool) {
-    const std::vector<std::uint8_t>& palette = toolpath.palette_tools;
-    StatedColor stated{std::nullopt, tool, false, std::find(palette.begin(), palette.end(), tool) != palette.end()};
-    if (tool < toolpath.tool_colors.size()) stated.color = toolpath.tool_colors[tool];
-    return stated;
-}
-
 // Sweeps over the beads in print order, so that every change is looked at once. A bead before the last one starts anew.
 class Sweep {
 public:
@@ -58,6 +51,13 @@ private:
 };
 
 }  // namespace
+
+StatedColor colorOfTool(const Toolpath& toolpath, std::uint8_t tool) {
+    const std::vector<std::uint8_t>& palette = toolpath.palette_tools;
+    StatedColor stated{std::nullopt, tool, false, std::find(palette.begin(), palette.end(), tool) != palette.end()};
+    if (tool < toolpath.tool_colors.size()) stated.color = toolpath.tool_colors[tool];
+    return stated;
+}
 
 void colorUnstated(Toolpath& toolpath) {
     const std::vector<double>& filament = toolpath.filament_by_tool;

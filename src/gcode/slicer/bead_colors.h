@@ -26,6 +26,9 @@ struct StatedColor {
 /// there are several: tool n has the one that --color-by tool shows. One filament without a color stays without.
 void colorUnstated(Toolpath& toolpath);
 
+/// That of a tool, without changes of filament.
+StatedColor colorOfTool(const Toolpath& toolpath, std::uint8_t tool);
+
 /// That of `toolpath.beads[bead]`.
 StatedColor statedColorOf(const Toolpath& toolpath, std::size_t bead);
 

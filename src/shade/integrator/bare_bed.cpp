@@ -13,8 +13,8 @@ float PathIntegrator::BareBed::share(const glm::dvec3& place) const {
     if (!(height > 0.0)) return 1.0f;
     const double x = std::max({print.min.x - place.x, place.x - print.max.x, 0.0});
     const double y = std::max({print.min.y - place.y, place.y - print.max.y, 0.0});
-    const double sine2 = height * height / (height * height + x * x + y * y);  // of the elevation of its top, at most
-    return static_cast<float>(1.0 - 0.5 * sine2);
+    const double cotangent = std::hypot(x, y) / height;  // of the elevation of its top, at least; 0 for endless prints
+    return static_cast<float>(1.0 - 0.5 / (1.0 + cotangent * cotangent));
 }
 
 void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowRays& shadow_rays,
@@ -35,8 +35,8 @@ void PathIntegrator::addBare(std::span<const SurfacePoint> points, const ShadowR
     }
 }
 
-void PathIntegrator::knowBareBed(std::span<const SurfacePoint> points, std::span<const Color> bare,
-                                 std::span<Color> sums) const {
+void PathIntegrator::reduceBedNoise(std::span<const SurfacePoint> points, std::span<const Color> bare,
+                                    std::span<Color> sums) const {
     for (std::size_t n = 0; n < points.size(); ++n)
         if (std::isfinite(points[n].t) && points[n].bed)
             sums[n] += bare_bed_->share(points[n].position) * (points[n].albedo * bare_bed_->radiance - bare[n]);

@@ -303,7 +303,7 @@ void PathIntegrator::seenStream(std::span<const trace::Ray> rays, std::span<cons
     std::vector<Color> sums(rays.size(), Color(0.0f));
     std::vector<Color> bare(scene_.catcher || bare_bed_ ? rays.size() : 0, Color(0.0f));
     follow(rays, points, {samplers, sums, bare, nullptr}, tracer, counts);
-    if (bare_bed_) knowBareBed(points, bare, sums);
+    if (bare_bed_) reduceBedNoise(points, bare, sums);
     scene_.catcher ? catchShadows(points, sums, bare, pixels) : blendBackdrop(rays, points, sums, pixels);
 }
 

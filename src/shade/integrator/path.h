@@ -162,7 +162,7 @@ private:
                  std::span<Color> bare) const;
     /// Where the bed is seen: takes the noise out of the light that it would have without the print, which is known. A
     /// control variate: unbiased; far from the print nothing is left to be sampled.
-    void knowBareBed(std::span<const SurfacePoint> points, std::span<const Color> bare, std::span<Color> sums) const;
+    void reduceBedNoise(std::span<const SurfacePoint> points, std::span<const Color> bare, std::span<Color> sums) const;
     /// The pixels of a transparent picture, see ShadowCatcher.
     void catchShadows(std::span<const SurfacePoint> points, std::span<const Color> sums, std::span<const Color> bare,
                       std::span<Pixel> pixels) const;
